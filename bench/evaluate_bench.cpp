@@ -2,7 +2,7 @@
 #include <benchmark/benchmark.h>
 
 #include "engine/evaluation/evaluate.h"
-#include "engine/evaluation/evaluate_sampled.h"
+#include "engine/evaluation/longest_sample_time.h"
 #include "engine/loop/peaks.h"
 #include "engine/loop/stability.h"
 #include "engine/request/tune.h"

@@ -27,11 +27,4 @@ struct BuiltLoop {
 Expected<BuiltLoop> evaluate_sampled(const Subject& subject, const SampledPid& law, const ProgramLimits& limits,
                                      const EvaluateOptions& options);
 
-/// The longest sample time that leaves Ms within `factor` > 1 times `Ms`, the continuous loop's, whose peak lies at
-/// `omega_Ms` (rad/time): of the program with the backward rules. All shorter ones that were looked at do so
-/// too; where the plant resonates they are looked at in steps of a tenth. Ms there is that to 1e-3. Empty where even a
-/// thousandth of 1/omega_Ms does not, and where a thousand times 1/omega_Ms still does.
-std::optional<double> longest_sample_time(const LinearPlant& plant, const ParallelPid& gains, double Ms,
-                                          double omega_Ms, double factor);
-
 }  // namespace tunewright

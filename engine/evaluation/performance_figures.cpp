@@ -112,6 +112,7 @@ double covering_horizon(const StepResponse& setpoint, const StepResponse& load) 
 Trace trace_of(const StepResponse& response, double horizon, int points) {
     Trace trace;
     const auto values = sampled(response.nodes, horizon, points);
+    for (auto* values_of : {&trace.t, &trace.y, &trace.u}) values_of->reserve(values.size());
     for (int i = 0; i < points; ++i) {
         trace.t.push_back(horizon * i / (points - 1));
         trace.y.push_back(values[static_cast<std::size_t>(i)].first);

@@ -116,61 +116,63 @@ constexpr double kSameTurn = 0.1;    // rad of L that count as much as
 constexpr double kSameChange = 0.2;  // this change of ln |L| or
 constexpr double kSameRatio = 0.15;  // this one of ln omega
 
-struct Sample {
-    double omega;
-    LoopPoint point;
-};
-
 /// The part of the grid that shows something.
-std::vector<Sample> visible(const LoopGrid& grid) {
+LoopGrid visible(const LoopGrid& grid) {
     std::size_t first = 0, last = grid.omega.size() - 1;
     while (first + 2 <= last && magnitude(grid.point[first + 1].S) < kLeastShownS) ++first;
     while (last > first + 2 && magnitude(grid.point[last - 1].T) < kLeastShownT) --last;
-    std::vector<Sample> samples;
-    for (std::size_t i = first; i <= last; ++i)
-        if (std::isfinite(magnitude(grid.point[i].L))) samples.push_back({grid.omega[i], grid.point[i]});
-    return samples;
+    LoopGrid seen;
+    for (std::size_t i = first; i <= last; ++i) {
+        if (!std::isfinite(magnitude(grid.point[i].L))) continue;
+        seen.omega.push_back(grid.omega[i]);
+        seen.point.push_back(grid.point[i]);
+    }
+    return seen;
 }
 
 /// How much of a turn at |L| the eye sees: a chord leaves the arc by |L| turn^2 / 8.
 double seen_at(double gain) { return gain < kUnseen ? 0 : std::min(1.0, std::sqrt(gain / kNear)); }
 
-/// How far the curves have come at each sample, seen by the eye: turning of L, growth of |L|, omega, each in its
+/// How far the curves have come at each frequency, seen by the eye: turning of L, growth of |L|, omega, each in its
 /// measure. `turns`: the phase of L, unwrapped.
-std::vector<double> progress_along(const std::vector<Sample>& samples, const std::vector<double>& turns) {
+std::vector<double> progress_along(const LoopGrid& grid, const std::vector<double>& turns) {
     std::vector<double> along{0};
-    for (std::size_t i = 1; i < samples.size(); ++i) {
-        const double a = magnitude(samples[i - 1].point.L), b = magnitude(samples[i].point.L);
+    for (std::size_t i = 1; i < grid.omega.size(); ++i) {
+        const double a = magnitude(grid.point[i - 1].L), b = magnitude(grid.point[i].L);
         const double seen = seen_at(std::max(a, b));
         const double turn = (turns[i] - turns[i - 1]) / kSameTurn, change = std::log(b / a) / kSameChange;
-        const double ratio = std::log(samples[i].omega / samples[i - 1].omega) / kSameRatio;
+        const double ratio = std::log(grid.omega[i] / grid.omega[i - 1]) / kSameRatio;
         const double curve = std::isfinite(change) ? std::hypot(turn, change) : std::abs(turn);
         along.push_back(along.back() + seen * curve + ratio);
     }
     return along;
 }
 
-/// The phase of L at each sample, the dead time's turns between neighbours counted.
-std::vector<double> unwrapped(const std::vector<Sample>& samples, double dead_time) {
-    std::vector<double> turns;
-    double rest = 0, last = 0;  // the phase without the dead time's own
-    for (const Sample& sample : samples) {
-        const double own = std::arg(sample.point.L) + sample.omega * dead_time;
-        rest = turns.empty() ? std::arg(sample.point.L) + sample.omega * dead_time
-                             : rest + std::remainder(own - last, 2 * std::numbers::pi);
-        last = own;
-        turns.push_back(rest - sample.omega * dead_time);
+/// A phase on the turn that is next to `nearby`.
+double on_turn(double phase, double nearby) {
+    constexpr double kTurn = 2 * std::numbers::pi;
+    return phase - kTurn * std::floor((phase - nearby) / kTurn + 0.5);
+}
+
+/// The phase of L at each frequency, the dead time's turns between neighbours counted.
+std::vector<double> unwrapped(const LoopGrid& grid, double dead_time) {
+    std::vector<double> turns(grid.omega.size());
+    double rest = 0;  // the phase without the dead time's own
+    for (std::size_t i = 0; i < turns.size(); ++i) {
+        const double of_dead_time = grid.omega[i] * dead_time, own = std::arg(grid.point[i].L) + of_dead_time;
+        rest = i == 0 ? own : on_turn(own, rest);
+        turns[i] = rest - of_dead_time;
     }
     return turns;
 }
 
 /// At most `most` frequencies, evenly spread along the curves; `kept` (ascending) are among them.
-std::vector<double> spread(const std::vector<Sample>& samples, const std::vector<double>& along, std::size_t most,
+std::vector<double> spread(const LoopGrid& grid, const std::vector<double>& along, std::size_t most,
                            const std::vector<double>& kept) {
     const std::size_t count = most > kept.size() + 2 ? most - kept.size() : most;
     std::vector<double> omega;
     omega.reserve(most);
-    std::size_t i = 1, spaced = 0;  // `ratio` is that of the samples around `spaced`
+    std::size_t i = 1, spaced = 0;  // `ratio` is that of the frequencies around `spaced`
     double ratio = 0;
     for (std::size_t k = 0; k < count; ++k) {
         const double wanted = along.back() * static_cast<double>(k) / static_cast<double>(count - 1);
@@ -178,73 +180,69 @@ std::vector<double> spread(const std::vector<Sample>& samples, const std::vector
         const double part = std::clamp((wanted - along[i - 1]) / (along[i] - along[i - 1]), 0.0, 1.0);
         if (i != spaced) {
             spaced = i;
-            ratio = std::log(samples[i].omega / samples[i - 1].omega);
+            ratio = std::log(grid.omega[i] / grid.omega[i - 1]);
         }
-        omega.push_back(samples[i - 1].omega * std::exp(part * ratio));
+        omega.push_back(grid.omega[i - 1] * std::exp(part * ratio));
     }
     const double first = omega.front(), last = omega.back();
+    const auto spread_evenly = static_cast<std::ptrdiff_t>(omega.size());
     if (count < most)
         for (const double frequency : kept)
             if (frequency > first && frequency < last) omega.push_back(frequency);
-    std::ranges::sort(omega);
+    std::ranges::inplace_merge(omega, omega.begin() + spread_evenly);
     omega.erase(std::unique(omega.begin(), omega.end()), omega.end());
     return omega;
 }
 
-FrequencyTraces traces_of(const std::vector<Sample>& samples, const std::vector<double>& turns) {
+FrequencyTraces traces_of(const LoopGrid& grid, const std::vector<double>& turns) {
     FrequencyTraces traces;
-    for (auto* trace :
-         {&traces.omega, &traces.L_re, &traces.L_im, &traces.L_phase_deg, &traces.S_abs, &traces.T_abs, &traces.CS_abs})
-        trace->reserve(samples.size());
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-        const LoopPoint& p = samples[i].point;
-        traces.omega.push_back(samples[i].omega);
-        traces.L_re.push_back(p.L.real());
-        traces.L_im.push_back(p.L.imag());
-        traces.L_phase_deg.push_back(turns[i] * 180 / std::numbers::pi);
-        traces.S_abs.push_back(magnitude(p.S));
-        traces.T_abs.push_back(magnitude(p.T));
-        traces.CS_abs.push_back(magnitude(p.CS));
+    traces.omega = grid.omega;
+    const std::size_t n = grid.omega.size();
+    for (auto* trace : {&traces.L_re, &traces.L_im, &traces.L_phase_deg, &traces.S_abs, &traces.T_abs, &traces.CS_abs})
+        trace->resize(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        const LoopPoint& p = grid.point[i];
+        traces.L_re[i] = p.L.real();
+        traces.L_im[i] = p.L.imag();
+        traces.L_phase_deg[i] = turns[i] * 180 / std::numbers::pi;
+        traces.S_abs[i] = magnitude(p.S);
+        traces.T_abs[i] = magnitude(p.T);
+        traces.CS_abs[i] = magnitude(p.CS);
     }
     return traces;
-}
-
-/// The phase at a new frequency: the wrapped one, on the turn that the neighbours are on.
-double on_turn(double wrapped, double nearby) {
-    return nearby + std::remainder(wrapped - nearby, 2 * std::numbers::pi);
 }
 
 }  // namespace
 
 FrequencyTraces frequency_traces(const Loop& loop, const LoopGrid& grid, int points, const std::vector<double>& kept) {
-    const double L = loop.plant().dead_time();
-    const std::vector<Sample> seen = visible(grid);
-    const std::vector<double> turns = unwrapped(seen, L);
-    if (seen.size() < 2) return traces_of(seen, turns);
-    std::vector<Sample> samples;
-    std::vector<double> phase;
+    const LoopGrid seen = visible(grid);
+    const std::vector<double> turns = unwrapped(seen, loop.plant().dead_time());
+    if (seen.omega.size() < 2) return traces_of(seen, turns);
+    LoopGrid shown;
+    shown.omega = spread(seen, progress_along(seen, turns), static_cast<std::size_t>(points), kept);
+    shown.point = loop.at(shown.omega);
+    std::vector<double> phase(shown.omega.size());
     std::size_t i = 1;
-    for (const double omega : spread(seen, progress_along(seen, turns), static_cast<std::size_t>(points), kept)) {
-        while (i + 1 < seen.size() && seen[i].omega < omega) ++i;
-        samples.push_back({omega, loop.at(omega)});
+    for (std::size_t k = 0; k < phase.size(); ++k) {
+        const double omega = shown.omega[k];
+        while (i + 1 < seen.omega.size() && seen.omega[i] < omega) ++i;
         // Between neighbours the dead time's turning is known; the rest moves little.
-        const double part = (omega - seen[i - 1].omega) / (seen[i].omega - seen[i - 1].omega);
-        phase.push_back(on_turn(std::arg(samples.back().point.L), turns[i - 1] + part * (turns[i] - turns[i - 1])));
+        const double part = (omega - seen.omega[i - 1]) / (seen.omega[i] - seen.omega[i - 1]);
+        phase[k] = on_turn(std::arg(shown.point[k].L), turns[i - 1] + part * (turns[i] - turns[i - 1]));
     }
-    return traces_of(samples, phase);
+    return traces_of(shown, phase);
 }
 
 FrequencyTraces frequency_traces(const MeasuredLoop& loop, int points) {
-    std::vector<Sample> samples;
-    const auto& omega = loop.omega();
+    const LoopGrid whole = loop.grid();
+    LoopGrid some;
     const std::size_t most = static_cast<std::size_t>(points),
-                      stride = std::max<std::size_t>(1, (omega.size() + most - 1) / most);
-    for (const double frequency : omega) samples.push_back({frequency, loop.at(frequency)});
-    const std::vector<double> turns = unwrapped(samples, 0);
-    std::vector<Sample> some;
+                      stride = std::max<std::size_t>(1, (whole.omega.size() + most - 1) / most);
+    const std::vector<double> turns = unwrapped(whole, 0);
     std::vector<double> phase;
-    for (std::size_t i = 0; i < samples.size(); i += stride) {
-        some.push_back(samples[i]);
+    for (std::size_t i = 0; i < whole.omega.size(); i += stride) {
+        some.omega.push_back(whole.omega[i]);
+        some.point.push_back(whole.point[i]);
         phase.push_back(turns[i]);
     }
     return traces_of(some, phase);

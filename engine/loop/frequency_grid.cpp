@@ -71,9 +71,17 @@ Range range_of(const LinearPlant& plant, const ParallelPid& gains, const OpenLoo
     return {std::min(*lower, highest) * kBelowCorners, std::min(*higher * kAboveCorners, highest)};
 }
 
-bool too_far(const LoopPoint& a, const LoopPoint& b, double step) {
-    const double scale = std::max(1.0, std::min(magnitude(a.S), magnitude(b.S)));
-    return !(magnitude(a.S - b.S) <= step * scale);
+/// A point of the loop on its way into the grid.
+struct Candidate {
+    Candidate(double omega, const LoopPoint& point) : omega(omega), point(point), square(std::norm(point.S)) {}
+
+    double omega;
+    LoopPoint point;
+    double square;  // |S|^2: without roots
+};
+
+bool too_far(const Candidate& a, const Candidate& b, double step) {
+    return !(std::norm(a.point.S - b.point.S) <= step * step * std::max(1.0, std::min(a.square, b.square)));
 }
 
 }  // namespace
@@ -84,7 +92,11 @@ std::vector<double> base_frequencies(const LinearPlant& plant, const ParallelPid
     const double decades = std::log10(range.high / range.low);
     const int n = std::max(2, static_cast<int>(std::ceil(decades * density)));
     std::vector<double> omega;
-    for (int i = 0; i <= n; ++i) omega.push_back(range.low * std::pow(10.0, decades * i / n));
+    omega.reserve(static_cast<std::size_t>(n) + 1);
+    double next = range.low;
+    for (const double ratio = std::pow(10.0, decades / n); omega.size() < static_cast<std::size_t>(n); next *= ratio)
+        omega.push_back(next);
+    omega.push_back(range.high);
     // A lightly damped pole or zero shows between two points of any grid only if one is put there.
     const auto add_resonance = [&](std::complex<double> root) {
         if (root.imag() <= 0 || std::abs(root.real()) > kLightDamping * std::abs(root)) return;
@@ -102,44 +114,57 @@ std::vector<double> base_frequencies(const LinearPlant& plant, const ParallelPid
 
 LoopGrid make_loop_grid(const Loop& loop, double step, int density) {
     const double L = loop.plant().dead_time();
-    const std::vector<double> base = base_frequencies(
-        loop.plant(), loop.gains(),
-        [&](double omega) {
-            return loop.open_loop({0, omega});
-        },
-        density);
-    const double resolved_to = L > 0 ? std::max(kTurnsResolved * 2 * std::numbers::pi / L, base.front()) : base.back();
-    return refined_grid([&](double omega) { return loop.at(omega); }, base, resolved_to, step);
+    LoopGrid base{base_frequencies(
+                      loop.plant(), loop.gains(),
+                      [&](double omega) {
+                          return loop.open_loop({0, omega});
+                      },
+                      density),
+                  {},
+                  0};
+    base.point = loop.at(base.omega);
+    base.resolved_to =
+        L > 0 ? std::max(kTurnsResolved * 2 * std::numbers::pi / L, base.omega.front()) : base.omega.back();
+    return refined_grid([&](double omega) { return loop.at(omega); }, base, step);
 }
 
-LoopGrid refined_grid(const std::function<LoopPoint(double)>& at, const std::vector<double>& base, double resolved_to,
-                      double step) {
+LoopGrid first_grid(const std::function<LoopPoint(double)>& at, std::vector<double> omega, double resolved_to) {
+    LoopGrid grid{std::move(omega), {}, resolved_to};
+    grid.point.reserve(grid.omega.size());
+    for (const double frequency : grid.omega) grid.point.push_back(at(frequency));
+    return grid;
+}
+
+LoopGrid refined_grid(const std::function<LoopPoint(double)>& at, const LoopGrid& base, double step) {
     LoopGrid grid;
-    grid.resolved_to = resolved_to;
-    grid.omega.reserve(kUsualGrowth * base.size());
-    grid.point.reserve(kUsualGrowth * base.size());
-    grid.omega.push_back(base[0]);
-    grid.point.push_back(at(base[0]));
-    // Between two base points: a stack of pending right ends, halved (in log omega) until neighbours are close.
-    std::vector<double> pending;
-    std::vector<LoopPoint> pending_point;
-    for (std::size_t i = 1; i < base.size(); ++i) {
-        pending.assign(1, base[i]);
-        pending_point.assign(1, at(base[i]));
-        while (!pending.empty()) {
-            const double left = grid.omega.back(), right = pending.back();
-            const bool may_refine = right <= grid.resolved_to && right > left * (1 + kClosestNeighbours) &&
-                                    grid.omega.size() + pending.size() < kMaxPoints;
-            if (may_refine && too_far(grid.point.back(), pending_point.back(), step)) {
-                const double middle = std::sqrt(left * right);
-                pending.push_back(middle);
-                pending_point.push_back(at(middle));
+    grid.resolved_to = base.resolved_to;
+    grid.omega.reserve(kUsualGrowth * base.omega.size());
+    grid.point.reserve(kUsualGrowth * base.omega.size());
+    const auto keep = [&grid](const Candidate& next) {
+        grid.omega.push_back(next.omega);
+        grid.point.push_back(next.point);
+    };
+    Candidate left(base.omega[0], base.point[0]);
+    keep(left);
+    // Between two base points: right ends that wait, halved (in log omega) until neighbours are close.
+    std::vector<Candidate> waiting;
+    for (std::size_t i = 1; i < base.omega.size(); ++i) {
+        Candidate right(base.omega[i], base.point[i]);
+        for (;;) {
+            const bool may_refine = right.omega <= grid.resolved_to &&
+                                    right.omega > left.omega * (1 + kClosestNeighbours) &&
+                                    grid.omega.size() + waiting.size() < kMaxPoints;
+            if (may_refine && too_far(left, right, step)) {
+                waiting.push_back(right);
+                const double middle = std::sqrt(left.omega * right.omega);
+                right = Candidate(middle, at(middle));
                 continue;
             }
-            grid.omega.push_back(right);
-            grid.point.push_back(pending_point.back());
-            pending.pop_back();
-            pending_point.pop_back();
+            keep(right);
+            left = right;
+            if (waiting.empty()) break;
+            right = waiting.back();
+            waiting.pop_back();
         }
     }
     return grid;

@@ -50,8 +50,10 @@ public:
             if ((resolved ? f(p) : -bound(p.omega, q)) <= -1) return false;
             const bool inner = resolved && i > 0 && i + 1 < points_.size();
             if (!inner || f(p) > f(points_[i - 1]) || f(p) > f(points_[i + 1])) continue;
-            const auto minus = [&](double omega) { return -f(at(omega)); };
-            const Maximum nearest = log_maximum(minus, points_[i - 1].omega, {p.omega, -f(p)}, points_[i + 1].omega);
+            const auto minus = [&](const PopovPoint& point) -> Maximum { return {point.omega, -f(point)}; };
+            const Maximum before = minus(points_[i - 1]), here = minus(p), after = minus(points_[i + 1]);
+            if (!may_exceed(1, before, here, after)) continue;
+            const Maximum nearest = log_maximum([&](double omega) { return -f(at(omega)); }, before.x, here, after.x);
             if (nearest.value >= 1) return false;
         }
         return holds_beyond(q);

@@ -3,7 +3,9 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/loop/loop_parts.h"
 #include "engine/numerics/fast_complex.h"
+#include "engine/numerics/pair_complex.h"
 
 namespace tunewright {
 namespace {
@@ -22,33 +24,6 @@ int filter_order(FilterType type) {
         case FilterType::measurement_second_order: return 2;
     }
     return 0;
-}
-
-struct ControllerFraction {
-    Complex numerator, denominator;
-};
-
-ControllerFraction controller_fraction(const ParallelPid& gains, Complex s) {
-    const double Tf = gains.filter.Tf;
-    Complex numerator, denominator = 1;
-    switch (gains.filter.type) {
-        case FilterType::none: numerator = gains.Kp + gains.Kd * s; break;
-        case FilterType::derivative:
-            denominator = 1.0 + Tf * s;
-            numerator = gains.Kp * denominator + gains.Kd * s;
-            break;
-        case FilterType::measurement_first_order:
-            numerator = gains.Kp + gains.Kd * s;
-            denominator = 1.0 + Tf * s;
-            break;
-        case FilterType::measurement_second_order:
-            numerator = gains.Kp + gains.Kd * s;
-            denominator = 1.0 + Tf * s * (1.0 + 0.5 * Tf * s);
-            break;
-    }
-    if (gains.Ki == 0) return {numerator, denominator};
-    const Complex integral_path = gains.filter.type == FilterType::derivative ? denominator : Complex(1);
-    return {numerator * s + gains.Ki * integral_path, denominator * s};
 }
 
 }  // namespace
@@ -93,25 +68,22 @@ Complex Loop::open_loop(Complex s) const {
     return quotient(l.numerator, l.denominator);
 }
 
-Loop::Parts Loop::parts(Complex s) const {
+inline Loop::Parts Loop::parts(Complex s) const {
     const auto c = controller_fraction(gains_, s);
-    Parts parts{c.numerator, c.denominator, plant_->gain(), 1};
-    for (int i = 0; i < plant_->integrators(); ++i) parts.plant_denominator *= s;
-    for (int i = 0; i < -plant_->integrators(); ++i) parts.plant_numerator *= s;
-    for (const auto zero : plant_->zeros()) parts.plant_numerator *= s - zero;
-    for (const auto pole : plant_->poles()) parts.plant_denominator *= s - pole;
+    const auto p = plant_fraction(*plant_, s);
+    Parts parts{c.numerator, c.denominator, p.numerator, p.denominator};
     if (const double L = plant_->dead_time(); L > 0) {
         const double angle = -s.imag() * L;
         Complex delay(std::cos(angle), std::sin(angle));
         if (s.real() != 0) delay *= std::exp(-s.real() * L);
-        parts.plant_numerator *= delay;
+        parts.plant_numerator = product(parts.plant_numerator, delay);
     }
     return parts;
 }
 
 Loop::Fraction Loop::fraction(Complex s) const {
     const Parts p = parts(s);
-    return {p.controller_numerator * p.plant_numerator, p.controller_denominator * p.plant_denominator};
+    return {product(p.controller_numerator, p.plant_numerator), product(p.controller_denominator, p.plant_denominator)};
 }
 
 int Loop::denominator_degree() const {
@@ -120,16 +92,61 @@ int Loop::denominator_degree() const {
 
 LoopPoint Loop::at(double omega) const {
     const Parts p = parts({0, omega});
-    const Complex numerator = p.controller_numerator * p.plant_numerator;
-    const Complex denominator = p.controller_denominator * p.plant_denominator;
+    const Complex numerator = product(p.controller_numerator, p.plant_numerator);
+    const Complex denominator = product(p.controller_denominator, p.plant_denominator);
     const Divisor sum(denominator + numerator);
     LoopPoint point;
     point.L = quotient(numerator, denominator);
     point.S = sum.under(denominator);
     point.T = sum.under(numerator);
     // C S = T/P: with P's own fraction, so that it stays finite where C is infinite (omega = 0).
-    point.CS = sum.under(p.controller_numerator * p.plant_denominator);
+    point.CS = sum.under(product(p.controller_numerator, p.plant_denominator));
     return point;
+}
+
+namespace {
+
+/// Of two numbers at a time, where the squares are ordinary numbers.
+PairComplex quotient_of(PairComplex n, PairComplex d, Pair square) {
+    const PairComplex scaled = product(n, conj(d));
+    return {scaled.re / square, scaled.im / square};
+}
+
+bool ordinary(Pair square) {
+    return square[0] > kLeastSquare && square[0] < kLargestSquare && square[1] > kLeastSquare &&
+           square[1] < kLargestSquare;
+}
+
+}  // namespace
+
+bool Loop::pair_at(const double* omega, LoopPoint* to) const {
+    const Pair w = load(omega), angle = w * -plant_->dead_time();
+    if (!(std::abs(angle[0]) <= kLargestPairAngle && std::abs(angle[1]) <= kLargestPairAngle)) return false;
+    const PairComplex s(Pair{}, w);
+    const auto c = controller_fraction(gains_, s);
+    auto p = plant_fraction(*plant_, s);
+    if (plant_->dead_time() > 0) p.numerator = product(p.numerator, unit_circle(angle));
+    const PairComplex numerator = product(c.numerator, p.numerator),
+                      denominator = product(c.denominator, p.denominator);
+    const PairComplex sum = denominator + numerator;
+    const Pair square = norm(denominator), of_sum = norm(sum);
+    if (!ordinary(square) || !ordinary(of_sum)) return false;
+    const PairComplex inverse = quotient_of(1, sum, of_sum), L = quotient_of(numerator, denominator, square),
+                      S = product(denominator, inverse), T = product(numerator, inverse),
+                      CS = product(product(c.numerator, p.denominator), inverse);
+    for (std::size_t i = 0; i < 2; ++i)
+        to[i] = {{L.re[i], L.im[i]}, {S.re[i], S.im[i]}, {T.re[i], T.im[i]}, {CS.re[i], CS.im[i]}};
+    return true;
+}
+
+std::vector<LoopPoint> Loop::at(std::span<const double> omega) const {
+    std::vector<LoopPoint> points(omega.size());
+    for (std::size_t i = 0; i < omega.size(); i += 2) {
+        if (i + 1 < omega.size() && pair_at(&omega[i], &points[i])) continue;
+        points[i] = at(omega[i]);
+        if (i + 1 < omega.size()) points[i + 1] = at(omega[i + 1]);
+    }
+    return points;
 }
 
 int Loop::controller_excess() const {

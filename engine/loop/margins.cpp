@@ -1,5 +1,6 @@
 #include "engine/loop/margins.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
@@ -17,6 +18,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kPi = std::numbers::pi;
 constexpr double kToRounding = 1e-13;  // of ln omega
+constexpr double kBetween = 1.05;      // |L| may be larger by it between neighbours than at both
 
 constexpr double kFirstGain = 1.02, kGainRatio = 1.15, kLastGain = 1e3;  // of 1/K: where an unstable plant is tried
 constexpr std::array<double, 3> kStartGains = {0.2, 0.01, 1e-4};  // of 1/K: the first that leaves the loop stable
@@ -79,7 +81,9 @@ Margins find_interior_margins(const std::function<std::complex<double>(double)>&
         const double left = grid.omega[i - 1], right = grid.omega[i];
         const bool resolved = right <= grid.resolved_to;
         if (!std::isfinite(magnitude(a)) || !std::isfinite(magnitude(b))) continue;
-        if (resolved && (a.imag() < 0) != (b.imag() < 0) && (a.real() < 0 || b.real() < 0)) {
+        // A crossing nearer to 0 than one that is known says nothing new.
+        const bool counts = kBetween * std::max(magnitude(a), magnitude(b)) > std::min(1.0, 1 / margins.gain_margin);
+        if (resolved && counts && (a.imag() < 0) != (b.imag() < 0) && (a.real() < 0 || b.real() < 0)) {
             const double omega =
                 log_root(imaginary, left, right, a.imag() / magnitude(a), b.imag() / magnitude(b), kToRounding);
             note_real_crossing(margins, open_loop(omega).real(), omega);

@@ -32,10 +32,10 @@ public:
 
     /// The band's points, with more between them where L turns fast.
     const std::vector<double>& omega() const { return omega_; }
+    LoopGrid grid() const;  ///< the loop at these
 
 private:
     MeasuredLoop(const MeasuredPlant& plant, const ParallelPid& gains);
-    LoopGrid grid() const;
 
     const MeasuredPlant* plant_;
     ParallelPid gains_;

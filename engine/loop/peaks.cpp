@@ -21,10 +21,9 @@ double magnitude_C(const LoopPoint& p) { return magnitude(p.CS) * magnitude(1.0 
 
 constexpr double kWorthRefining = 0.8;  // of the largest grid value: neighbours on the grid differ by less than that
 
-constexpr double kLongTurn = 0.3;        // rad of the dead time between neighbours of the grid: more hides a peak
-constexpr double kTurnStep = 0.15;       // rad between two looks there
-constexpr double kWorthFollowing = 0.9;  // of the highest so far
-constexpr double kBetween = 1.01;        // |L| and |C| may be larger between neighbours than at both
+constexpr double kLongTurn = 0.3;   // rad of the dead time between neighbours of the grid: more hides a peak
+constexpr double kTurnStep = 0.15;  // rad between two looks there
+constexpr double kBetween = 0.01;   // |L| and |C| may be larger by it between neighbours than at both
 
 constexpr double kHigher = 1 + 1e-12;  // a limit must exceed a peak by more than rounding to stand for it
 constexpr double kLowRise = 0.3;       // of |S| - 1: below it the usual grid is too coarse for so flat a maximum
@@ -38,10 +37,16 @@ Peak interior_peak(const LoopFunction& at, const LoopGrid& grid, Magnitude magni
     Peak best{*largest, grid.omega[static_cast<std::size_t>(largest - value.begin())]};
     const double threshold = kWorthRefining * *largest;
     const auto f = [&](double omega) { return magnitude(at(omega)); };
-    for (std::size_t i = 1; i + 1 < n; ++i) {
-        if (value[i] < threshold || value[i] < value[i - 1] || value[i] < value[i + 1]) continue;
-        const auto peak = log_maximum(f, grid.omega[i - 1], {grid.omega[i], value[i]}, grid.omega[i + 1]);
+    const auto point = [&](std::size_t i) -> Maximum { return {grid.omega[i], value[i]}; };
+    const auto refine = [&](std::size_t i) {
+        const auto peak = log_maximum(f, grid.omega[i - 1], point(i), grid.omega[i + 1]);
         if (peak.value > best.value) best = {peak.value, peak.x};
+    };
+    const auto highest = static_cast<std::size_t>(largest - value.begin());
+    if (highest > 0 && highest + 1 < n) refine(highest);
+    for (std::size_t i = 1; i + 1 < n; ++i) {
+        if (value[i] < threshold || value[i] < value[i - 1] || value[i] < value[i + 1] || i == highest) continue;
+        if (may_exceed(best.value, point(i - 1), point(i), point(i + 1))) refine(i);
     }
     return best;
 }
@@ -133,47 +138,84 @@ Peak find_sensitivity_peak(const Loop& loop, const LoopGrid& grid) {
     return peaks.S;
 }
 
-void raise_by_turns(const std::function<LoopPoint(double)>& at, double time, const LoopGrid& grid, Peaks& peaks) {
-    const auto turn = [time](double omega) { return omega * time; };
-    struct Stretch {
-        double left, right, S, T, CS;  // what its peaks can be at most
-    };
+namespace {
+
+/// Between neighbours of the grid, where the dead time turns L so far that a peak can hide.
+struct Stretch {
+    double left, right;
+    double S, T, CS;             // what its peaks can be at most, by |L| and |C| at both ends
+    double change_S, change_CS;  // of these bounds from end to end, relative
+};
+
+std::vector<Stretch> stretches_of(const LoopGrid& grid, double time) {
     std::vector<Stretch> stretches;
     for (std::size_t i = 1; i < grid.omega.size(); ++i) {
         const double left = grid.omega[i - 1], right = grid.omega[i];
-        if (turn(right - left) < kLongTurn || right > grid.resolved_to) continue;
+        if (time * (right - left) < kLongTurn || right > grid.resolved_to) continue;
         const LoopPoint &a = grid.point[i - 1], &b = grid.point[i];
         const double gain_a = magnitude(a.L), gain_b = magnitude(b.L);
         if (!std::isfinite(gain_a) || !std::isfinite(gain_b)) continue;
         const double small = std::min(gain_a, gain_b), large = std::max(gain_a, gain_b);
         const double nearest = large < 1 ? 1 - large : std::max(0.0, small - 1);
+        const double C_a = magnitude_C(a), C_b = magnitude_C(b), C = std::max(C_a, C_b);
+        const double change = (large - small) / nearest;
         stretches.push_back(
-            {left, right, 1 / nearest, large / nearest, std::max(magnitude_C(a), magnitude_C(b)) / nearest});
+            {left, right, 1 / nearest, large / nearest, C / nearest, change, change + std::abs(C_a - C_b) / C});
     }
-    using Bound = double Stretch::*;
-    const auto raise = [&](Peak& best, Bound bound, auto&& value) {
-        std::sort(stretches.begin(), stretches.end(),
-                  [&](const Stretch& a, const Stretch& b) { return a.*bound > b.*bound; });
+    return stretches;
+}
+
+/// Room for what |L| and |C| may be larger within a stretch than at its ends: no more than they change there and in
+/// the stretches beside it.
+void give_room(std::vector<Stretch>& stretches) {
+    const auto room = [&](std::size_t i, double Stretch::*change) {
+        if (i == 0 || i + 1 == stretches.size()) return kBetween;
+        const Stretch &before = stretches[i - 1], &here = stretches[i], &after = stretches[i + 1];
+        if (before.right != here.left || here.right != after.left) return kBetween;
+        const double most = std::max({before.*change, here.*change, after.*change});
+        return most < kBetween ? most : kBetween;
+    };
+    for (std::size_t i = 0; i < stretches.size(); ++i) {
+        stretches[i].S *= 1 + room(i, &Stretch::change_S);
+        stretches[i].T *= 1 + kBetween;
+        stretches[i].CS *= 1 + room(i, &Stretch::change_CS);
+    }
+}
+
+/// Looks along the stretch, by steps of kTurnStep and at the tops of the hills that may be higher.
+void look_along(const Stretch& s, double time, const std::function<double(double)>& f, Peak& best) {
+    const int looks = static_cast<int>(std::ceil(time * (s.right - s.left) / kTurnStep));
+    const double step = (s.right - s.left) / looks;
+    Maximum before{s.left - step, f(s.left - step)}, here{s.left, f(s.left)};
+    for (int k = 0; k <= looks; ++k) {
+        const double next = s.left + (k + 1) * step;
+        const Maximum after{next, f(next)};
+        const bool top = here.value >= before.value && here.value >= after.value;
+        if (top && may_exceed(best.value, before, here, after)) {
+            const Maximum highest = log_maximum(f, before.x, here, after.x);
+            if (highest.value > best.value) best = {highest.value, highest.x};
+        }
+        before = here;
+        here = after;
+    }
+}
+
+}  // namespace
+
+void raise_by_turns(const LoopFunction& at, double time, const LoopGrid& grid, Peaks& peaks) {
+    std::vector<Stretch> stretches = stretches_of(grid, time);
+    give_room(stretches);
+    const auto raise = [&](Peak& best, double Stretch::*bound, Magnitude value) {
+        std::ranges::sort(stretches, [&](const Stretch& a, const Stretch& b) { return a.*bound > b.*bound; });
+        const auto f = [&](double omega) { return value(at(omega)); };
         for (const Stretch& s : stretches) {
-            if (s.*bound * kBetween <= best.value) return;
-            const auto f = [&](double omega) { return value(at(omega)); };
-            const int looks = static_cast<int>(std::ceil(turn(s.right - s.left) / kTurnStep));
-            const double step = (s.right - s.left) / looks;
-            double before = f(s.left - step), here = f(s.left);
-            for (int k = 0; k <= looks; ++k) {
-                const double omega = s.left + k * step, after = f(omega + step);
-                if (here > kWorthFollowing * best.value && here >= before && here >= after) {
-                    const Maximum top = log_maximum(f, omega - step, {omega, here}, omega + step);
-                    if (top.value > best.value) best = {top.value, top.x};
-                }
-                before = here;
-                here = after;
-            }
+            if (s.*bound <= best.value) return;
+            look_along(s, time, f, best);
         }
     };
-    raise(peaks.S, &Stretch::S, [](const LoopPoint& p) { return magnitude(p.S); });
-    raise(peaks.T, &Stretch::T, [](const LoopPoint& p) { return magnitude(p.T); });
-    raise(peaks.CS, &Stretch::CS, [](const LoopPoint& p) { return magnitude(p.CS); });
+    raise(peaks.S, &Stretch::S, magnitude_S);
+    raise(peaks.T, &Stretch::T, magnitude_T);
+    raise(peaks.CS, &Stretch::CS, magnitude_CS);
 }
 
 Peaks find_peaks(const Loop& loop, const LoopGrid& grid) {

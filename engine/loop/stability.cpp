@@ -8,6 +8,7 @@
 
 #include "engine/loop/delay_system.h"
 #include "engine/loop/frequency_grid.h"
+#include "engine/loop/winding.h"
 #include "engine/numerics/eigenvalues.h"
 #include "engine/numerics/fast_complex.h"
 
@@ -16,16 +17,16 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double kLargestTurn = 0.4;  // |g2 - g1| relative to the smaller: below it the argument cannot be mistaken
 constexpr int kMaxHalvings = 60;
 constexpr double kBoundary = 1e-9;  // |g| relative to its parts: closer to 0 counts as on the axis
 
-constexpr double kBelowOne = 0.99;    // of |L|: 1 + L stays in the right half-plane, with room for rounding
-constexpr double kGridStep = 0.5;     // of S between neighbours: coarse, since each step's turn is checked by itself
-constexpr int kGridDensity = 8;       // points a decade, for the same reason
-constexpr int kTurnsToSpare = 6;      // of the dead time beyond what the states can undo
-constexpr double kSmallEnough = 0.3;  // of |L|: beyond the grid the rest of the axis turns 1 + L no further
-constexpr double kFarthest = 1e18;    // of the loop's own frequency: the search for a small |L| ends
+constexpr double kBelowOne = 0.99;     // of |L|: 1 + L stays in the right half-plane, with room for rounding
+constexpr double kLargestSlope = 1.5;  // of the open loop's turn: it is less than a radian then
+constexpr double kGridStep = 0.5;      // of S between neighbours: coarse, since each step's turn is checked by itself
+constexpr int kGridDensity = 8;        // points a decade, for the same reason
+constexpr int kTurnsToSpare = 6;       // of the dead time beyond what the states can undo
+constexpr double kSmallEnough = 0.3;   // of |L|: beyond the grid the rest of the axis turns 1 + L no further
+constexpr double kFarthest = 1e18;     // of the loop's own frequency: the search for a small |L| ends
 
 /// g(jw) = (D + N e^(-jwL))/(jw + a)^n: bounded, never infinite, g -> 1 + L(infinity).
 class Characteristic {
@@ -35,15 +36,18 @@ public:
     struct Value {
         double omega;
         Complex g;
-        Complex open;  // D/(jw + a)^n: g without the feedback, so g/open = 1 + L
-        double size;   // sum of the magnitudes of the parts
+        Complex open;    // D/(jw + a)^n: g without the feedback, so g/open = 1 + L
+        double size;     // sum of the magnitudes of the parts
+        bool below_one;  // |L| is
     };
     Value at(double omega) const {
-        auto [numerator, denominator] = loop_.fraction({0, omega});
+        const auto [numerator, denominator] = loop_.fraction({0, omega});
         Complex normaliser = 1;
-        for (int i = 0; i < degree_; ++i) normaliser *= Complex(a_, omega);
-        return {omega, quotient(denominator + numerator, normaliser), quotient(denominator, normaliser),
-                (magnitude(denominator) + magnitude(numerator)) / magnitude(normaliser)};
+        for (int i = 0; i < degree_; ++i) normaliser = product(normaliser, Complex(a_, omega));
+        const Divisor normalised(normaliser);
+        const Complex open = normalised.under(denominator), fed_back = normalised.under(numerator);
+        const double of_open = magnitude(open), of_feedback = magnitude(fed_back);
+        return {omega, open + fed_back, open, of_open + of_feedback, of_feedback < kBelowOne * of_open};
     }
 
 private:
@@ -52,38 +56,32 @@ private:
     int degree_;
 };
 
-struct Turn {
-    double angle = 0;
-    bool boundary = false;
-};
-
-/// The change of arg g between two frequencies, halving the step until it is unmistakable.
-Turn turn_between(const Characteristic& g, const Characteristic::Value& left, const Characteristic::Value& right,
-                  int depth) {
-    const double smaller = std::min(magnitude(left.g), magnitude(right.g));
-    if (smaller <= kBoundary * std::max(left.size, right.size)) return {0, true};
-    if (magnitude(right.g - left.g) <= kLargestTurn * smaller) return {std::arg(quotient(right.g, left.g)), false};
-    if (depth == 0) return {std::arg(quotient(right.g, left.g)), true};
-    const double middle = left.omega > 0 ? std::sqrt(left.omega * right.omega) : right.omega / 4;
-    const auto centre = g.at(middle);
-    const Turn first = turn_between(g, left, centre, depth - 1);
-    if (first.boundary) return first;
-    const Turn second = turn_between(g, centre, right, depth - 1);
-    return {first.angle + second.angle, second.boundary};
+/// Follows g between two frequencies, halving the step until its turn is unmistakable. False: g is 0 there, or as good
+/// as that.
+bool follow(const Characteristic& g, Winding& winding, const Characteristic::Value& left,
+            const Characteristic::Value& right, int depth = kMaxHalvings) {
+    if (std::min(magnitude(left.g), magnitude(right.g)) <= kBoundary * std::max(left.size, right.size)) return false;
+    if (Winding::is_short(left.g, right.g)) {
+        winding.follow(right.g);
+        return true;
+    }
+    if (depth == 0) return false;
+    const auto centre = g.at(left.omega > 0 ? std::sqrt(left.omega * right.omega) : right.omega / 4);
+    return follow(g, winding, left, centre, depth - 1) && follow(g, winding, centre, right, depth - 1);
 }
 
 /// Where |L| < 1 from end to end, 1 + L stays in the right half-plane however often the dead time turns it.
-bool dead_time_cannot_encircle(const Characteristic::Value& value) {
-    return magnitude(value.g - value.open) < kBelowOne * magnitude(value.open);
-}
-
-Turn turn_of_step(const Characteristic& g, const Characteristic::Value& left, const Characteristic::Value& right) {
-    if (left.omega > 0 && dead_time_cannot_encircle(left) && dead_time_cannot_encircle(right)) {
-        const double open_turn = std::arg(quotient(right.open, left.open));
-        if (std::abs(open_turn) < 1)
-            return {std::arg(quotient(right.g, right.open)) - std::arg(quotient(left.g, left.open)) + open_turn, false};
+bool follow_dead_time(Winding& winding, const Characteristic::Value& left, const Characteristic::Value& right) {
+    if (left.omega == 0 || !left.below_one || !right.below_one) return false;
+    const Complex open = quotient(right.open, left.open);
+    if (!(std::abs(open.imag()) < kLargestSlope * open.real())) return false;
+    if (Winding::is_short(left.g, right.g)) {
+        winding.follow(right.g);
+    } else {
+        const Complex step = quotient(right.g, left.g);
+        winding.turn(turn_of(step, open, quotient(step, open)), right.g);
     }
-    return turn_between(g, left, right, kMaxHalvings);
+    return true;
 }
 
 /// Every turn of the dead time with |L| > 1 encircles -1 once, and the rational part can undo no more turns than it has
@@ -147,19 +145,17 @@ StabilityCount count_unstable_poles(const Loop& loop) {
     const double scale = std::sqrt(grid.omega.front() * grid.omega.back());
     const Characteristic g(loop, scale);
     auto left = g.at(0);
-    const double start = left.g.real() < 0 ? std::numbers::pi : 0;
     if (magnitude(left.g) <= kBoundary * left.size || left.size == 0)
         return {.unstable_poles = 0, .on_the_boundary = true};
 
-    double angle = start;
+    Winding winding(left.g);
     double omega = grid.omega.front();
     std::size_t next = 0;
     const Complex limit = L > 0 ? Complex(1) : Complex(1 + q);
     for (;;) {
         const auto right = g.at(omega);
-        const Turn turn = turn_of_step(g, left, right);
-        if (turn.boundary) return {.unstable_poles = 0, .on_the_boundary = true};
-        angle += turn.angle;
+        if (!follow_dead_time(winding, left, right) && !follow(g, winding, left, right))
+            return {.unstable_poles = 0, .on_the_boundary = true};
         left = right;
         if (next + 1 < grid.omega.size()) {
             omega = grid.omega[++next];
@@ -171,8 +167,8 @@ StabilityCount count_unstable_poles(const Loop& loop) {
             break;
         omega *= 10;
     }
-    angle += std::arg(limit / left.g);
-    return {.unstable_poles = static_cast<int>(std::lround(-(angle - start) / std::numbers::pi))};
+    const double angle = winding.angle() + std::arg(limit / left.g);
+    return {.unstable_poles = static_cast<int>(std::lround(-angle / std::numbers::pi))};
 }
 
 Expected<std::complex<double>> rightmost_pole(const Loop& loop, int nodes) {

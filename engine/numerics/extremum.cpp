@@ -50,6 +50,7 @@ constexpr double kGolden = 0.3819660112501051;  // (3 - sqrt 5)/2
 constexpr double kTolerance = 1e-8;             // of ln x: within it f is flat to rounding at a maximum
 constexpr double kFlat = 1e-14;                 // of f: the search ends at a step that changes f by less
 constexpr int kMaxIterations = 60;
+constexpr double kMostRise = 4;  // times that of a parabola
 
 }  // namespace
 
@@ -82,6 +83,15 @@ std::vector<LocalMinimum> explore(const std::function<double(const std::vector<d
         met.push_back({std::move(point), value});
     });
     return met;
+}
+
+bool may_exceed(double level, const Maximum& before, const Maximum& here, const Maximum& after) {
+    if (here.value > level) return true;
+    const double left = here.x - before.x, right = after.x - here.x;
+    const double up = (here.value - before.value) / left, down = (here.value - after.value) / right;
+    const double bend = (up + down) / (left + right), slope = up - bend * left;
+    const double rise = bend > 0 ? 0.25 * slope * slope / bend : 0;
+    return here.value + kMostRise * rise > level;
 }
 
 // Boost's brent_find_minima is not used: it starts from an end of the interval. Where dead time puts two maxima between

@@ -35,8 +35,4 @@ Expected<AsBuilt> built_from(const Subject& subject, const built::Build& build, 
 /// all the same.
 void take_as_built(Expected<AsBuilt> built, Evaluation& evaluation, std::optional<AsBuilt>& beside);
 
-/// The longest sample time that keeps Ms within 5 % (evaluate_sampled.h). Empty where the question makes no sense: an
-/// unstable loop, a nonlinear integral, a plant known by points alone.
-std::optional<Figure> longest_sample_time_of(const Subject& subject, const Evaluation& evaluation);
-
 }  // namespace tunewright

@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "engine/evaluation/evaluate.h"
+#include "engine/evaluation/longest_sample_time.h"
 #include "engine/request/identified_region.h"
 #include "engine/request/plan.h"
 #include "engine/request/ranking.h"

@@ -1,4 +1,5 @@
 #include "engine/evaluation/evaluate_sampled.h"
+#include "engine/evaluation/longest_sample_time.h"
 
 #include <gtest/gtest.h>
 

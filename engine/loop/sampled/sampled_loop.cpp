@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "engine/loop/winding.h"
 #include "engine/numerics/extremum.h"
 #include "engine/numerics/fast_complex.h"
 
@@ -23,7 +24,6 @@ constexpr double kFarBelow = 1e-3;     // of 1/Ts: where the integral's phase is
 constexpr double kLightDamping = 0.3;  // of a plant's pole: below it a resonance shows, also folded below pi/Ts
 constexpr double kLeastWidth = 1e-6;   // of a folded resonance, relative
 
-constexpr double kLargestTurn = 0.4;      // |q2 - q1| relative to the smaller: below it the argument cannot be mistaken
 constexpr double kFollowedTurn = 2;       // rad of z and of the dead time: below it no whole turn is missed
 constexpr double kBelowOne = 0.99;        // of |L| at both ends: 1 + L stays in the right half-plane
 constexpr double kBoundary = 1e-9;        // |1 + L| relative to 1 + |L|: closer to 0 counts as on the circle
@@ -47,9 +47,9 @@ Complex derivative_part(const SampledPid& law, Complex difference, Complex back,
     const double Tf = filtered ? law.gains.filter.Tf : 0;
     switch (law.derivative) {
         case DerivativeRule::difference: return Kd * difference / Ts;
-        case DerivativeRule::filtered_backward: return Kd * difference / (Ts + Tf * difference);
+        case DerivativeRule::filtered_backward: return quotient(Kd * difference, Ts + Tf * difference);
         case DerivativeRule::filtered_forward:
-            return filtered ? Kd * difference / (Tf * difference + Ts * back) : Kd * difference / Ts;
+            return filtered ? quotient(Kd * difference, Tf * difference + Ts * back) : Kd * difference / Ts;
         case DerivativeRule::filtered_trapezoidal:
             return filtered ? 2 * Kd * difference / (2 * Tf * difference + Ts * (1.0 + back)) : Kd * difference / Ts;
         case DerivativeRule::slope:
@@ -66,8 +66,8 @@ Complex filter_part(const SampledPid& law, Complex difference) {
     const double ratio = law.gains.filter.Tf / law.Ts;
     const Complex lag = ratio * difference;  // s Tf by backward Euler
     switch (law.gains.filter.type) {
-        case FilterType::measurement_first_order: return 1.0 / (1.0 + lag);
-        case FilterType::measurement_second_order: return 1.0 / (1.0 + lag + 0.5 * lag * lag);
+        case FilterType::measurement_first_order: return quotient(1.0, 1.0 + lag);
+        case FilterType::measurement_second_order: return quotient(1.0, 1.0 + lag + 0.5 * product(lag, lag));
         default: return 1;
     }
 }
@@ -131,7 +131,8 @@ LoopGrid SampledLoop::grid_from(double step, int density) const {
     if (base.size() < 2) base.push_back(kFarBelow * highest);
     std::sort(base.begin(), base.end());
     base.erase(std::unique(base.begin(), base.end()), base.end());
-    return refined_grid([&](double omega) { return at(omega); }, base, highest, step);
+    const auto point = [this](double omega) { return at(omega); };
+    return refined_grid(point, first_grid(point, std::move(base), highest), step);
 }
 
 LoopGrid SampledLoop::grid() const { return grid_of(kGridDensity); }
@@ -194,15 +195,19 @@ public:
 
     struct Value {
         double omega;
-        Complex open, returned;  // q = open (1 + L), returned = 1 + L
-        double size;             // 1 + |L|
+        Complex open, returned, q;  // q = open (1 + L), returned = 1 + L
+        double size;                // 1 + |L|
+        bool zero;                  // 1 + L is
     };
     Value at(double omega) const { return at(omega, loop_.open_loop(omega)); }
     Value at(double omega, Complex L) const {
         const UnitCircle z(omega * loop_.law().Ts);
         Complex open = 1;
-        for (const Complex pole : poles_) open *= pole == 1.0 ? z.one_minus_back : 1.0 - pole * z.back;
-        return {omega, open, 1.0 + L, 1 + magnitude(L)};
+        for (const Complex pole : poles_)
+            open = product(open, pole == 1.0 ? z.one_minus_back : 1.0 - product(pole, z.back));
+        const Complex returned = 1.0 + L;
+        const double size = 1 + magnitude(L);
+        return {omega, open, returned, product(open, returned), size, magnitude(returned) <= kBoundary * size};
     }
 
     /// Of z and of the dead time from one to the other, rad.
@@ -213,29 +218,26 @@ private:
     std::vector<Complex> poles_;
 };
 
-struct Turn {
-    double angle = 0;
-    bool boundary = false;
-};
-
-Turn turn_between(const Characteristic& q, const Characteristic::Value& left, const Characteristic::Value& right,
-                  int depth) {
-    if (std::min(magnitude(left.returned) / left.size, magnitude(right.returned) / right.size) <= kBoundary)
-        return {0, true};
-    const Complex open = quotient(right.open, left.open), step = open * quotient(right.returned, left.returned);
-    // Where |L| < 1 from end to end, 1 + L stays in the right half-plane however often the dead time turns it.
-    if (left.size < 1 + kBelowOne && right.size < 1 + kBelowOne && magnitude(open - 1.0) <= kLargestTurn)
-        return {std::arg(open) + std::arg(right.returned) - std::arg(left.returned), false};
+/// Follows q between two frequencies, halving the step until its turn is unmistakable. False: q is 0 there, or as good
+/// as that.
+bool follow(const Characteristic& q, Winding& winding, const Characteristic::Value& left,
+            const Characteristic::Value& right, int depth = kMaxHalvings) {
+    if (left.zero || right.zero) return false;
     // A whole turn of the dead time in between would look like none.
     const bool followed = q.turn(left, right) <= kFollowedTurn;
-    if (followed && magnitude(step - 1.0) <= kLargestTurn * std::min(1.0, magnitude(step)))
-        return {std::arg(step), false};
-    if (depth == 0) return {std::arg(step), true};
+    if (followed && Winding::is_short(left.q, right.q)) {
+        winding.follow(right.q);
+        return true;
+    }
+    // Where |L| < 1 from end to end, 1 + L stays in the right half-plane however often the dead time turns it.
+    if (left.size < 1 + kBelowOne && right.size < 1 + kBelowOne && Winding::is_short(left.open, right.open)) {
+        const Complex open = quotient(right.open, left.open), returned = quotient(right.returned, left.returned);
+        winding.turn(turn_of(product(open, returned), open, returned), right.q);
+        return true;
+    }
+    if (depth == 0) return false;
     const auto centre = q.at(std::sqrt(left.omega * right.omega));
-    const Turn first = turn_between(q, left, centre, depth - 1);
-    if (first.boundary) return first;
-    const Turn second = turn_between(q, centre, right, depth - 1);
-    return {first.angle + second.angle, second.boundary};
+    return follow(q, winding, left, centre, depth - 1) && follow(q, winding, centre, right, depth - 1);
 }
 
 }  // namespace
@@ -248,8 +250,8 @@ StabilityCount SampledLoop::count_unstable_poles(const LoopGrid& along) const {
     const Characteristic q(*this);
     auto left = q.at(along.omega.front(), along.point.front().L);
     // q is real at both ends: what its argument lacks there to a multiple of pi belongs to the turn.
-    const double start = std::arg(left.open * left.returned);
-    double angle = start - std::numbers::pi * std::round(start / std::numbers::pi);
+    const double start = std::arg(left.q), beyond = start - std::numbers::pi * std::round(start / std::numbers::pi);
+    Winding winding(left.q);
     StabilityCount count;
     for (const Complex pole : plant_.poles()) count.unstable_poles += !(magnitude(pole) < kBeyondNumbers);
     if (count.unstable_poles > 0) return count;
@@ -261,12 +263,10 @@ StabilityCount SampledLoop::count_unstable_poles(const LoopGrid& along) const {
         const auto right = q.at(along.omega[i], along.point[i].L);
         // At a pole of the plant on the circle q = 0 times infinity: its neighbours tell what it does.
         if (!(right.size < kAtAPole)) continue;
-        const Turn turn = turn_between(q, left, right, kMaxHalvings);
-        angle += turn.angle;
-        count.on_the_boundary = turn.boundary;
+        count.on_the_boundary = !follow(q, winding, left, right);
         left = right;
     }
-    count.unstable_poles = static_cast<int>(std::lround(-angle / std::numbers::pi));
+    count.unstable_poles = static_cast<int>(std::lround(-(beyond + winding.angle()) / std::numbers::pi));
     return count;
 }
 

@@ -195,10 +195,10 @@ private:
             return 0;
         }
         const double L = loop_.dead_time(), start = from.t - L, first = std::min(stride.h, L);
-        const Signal v0 = history_.at(start, true, slack());
+        const Signal v0 = history_.at(start, slack()).after;
         const Signal w0 = {from.out.u.value + in_.d, from.out.u.slope};
-        const Signal v1 = stride.longer_than_L ? w0 : history_.at(start + first, false, slack());
-        const double missed = miss(first, v0, history_.at(start + 0.5 * first, true, slack()), v1);
+        const Signal v1 = stride.longer_than_L ? w0 : history_.at(start + first, slack()).before;
+        const double missed = miss(first, v0, history_.at(start + 0.5 * first, slack()).after, v1);
         if (stride.implicit) {
             stride.implicit->start(v0, w0, from.x, scratch_, start_);
             to.out = loop_.output(region_, to.x, stride.implicit->finish(start_, {}, to.x));
@@ -310,7 +310,7 @@ private:
         }
         now_ = std::move(at);
         note(now_);
-        const Signal v = loop_.delayed() ? history_.at(now_.t - loop_.dead_time(), true, slack()) : Signal{};
+        const Signal v = loop_.delayed() ? history_.at(now_.t - loop_.dead_time(), slack()).after : Signal{};
         enter(loop_.region_after(region_, crossing.at_max), v);
         add_echo(now_.t + loop_.dead_time(), 1);
         pass_echo();
@@ -321,7 +321,7 @@ private:
     void pass_echo() {
         const auto passages = echoes_.pass(now_.t + slack());
         if (!passages) return;
-        const Signal v = history_.at(now_.t - loop_.dead_time(), true, slack());
+        const Signal v = history_.at(now_.t - loop_.dead_time(), slack()).after;
         const Region before = region_;
         enter(loop_.region(now_.x, v), v);
         add_echo(now_.t + loop_.dead_time(), region_ == before ? *passages + 1 : 0);

@@ -23,6 +23,18 @@ struct UnitCubic {
     double at(double s) const { return c0 + s * (c1 + s * (c2 + s * c3)); }
     double slope(double s) const { return c1 + s * (2 * c2 + 3 * s * c3); }
     double integral(double s) const { return s * (c0 + s * (c1 / 2 + s * (c2 / 3 + s * c3 / 4))); }
+    /// Of s times it.
+    double moment(double s) const { return s * s * (c0 / 2 + s * (c1 / 3 + s * (c2 / 4 + s * c3 / 5))); }
+    /// Of its square, over [0, 1].
+    double square() const {
+        return c0 * (c0 + c1) + (c1 * c1 + 2 * c0 * c2) / 3 + (c0 * c3 + c1 * c2) / 2 + (c2 * c2 + 2 * c1 * c3) / 5 +
+               c2 * c3 / 3 + c3 * c3 / 7;
+    }
+    /// Rises or falls from end to end: a bound, which holds without roots.
+    bool plainly_monotone() const {
+        const double rise = c1 + c2 + c3, end = c1 + 2 * c2 + 3 * c3;
+        return c1 * rise >= 0 && end * rise >= 0 && std::max(std::abs(c1), std::abs(end)) <= 3 * std::abs(rise);
+    }
 
     /// Points in (0, 1) where the slope changes sign.
     int turning_points(std::array<double, 2>& s) const {
@@ -129,32 +141,24 @@ ErrorIntegrals error_integrals(const std::vector<ResponseNode>& nodes, double ta
                                std::optional<double> error_integral_final) {
     ErrorIntegrals result;
     result.IAE = integral_of_absolute_error(nodes, target, error_integral_final);
-    // Gauss-Legendre, 4 points: exact to degree 7.
-    constexpr std::array<double, 4> x = {0.0694318442029737, 0.3300094782075719, 0.6699905217924281,
-                                         0.9305681557970263};
-    constexpr std::array<double, 4> w = {0.1739274225687269, 0.3260725774312731, 0.3260725774312731,
-                                         0.1739274225687269};
     for (Index i = 1; i < nodes.size(); ++i) {
         const ResponseNode &a = nodes[i - 1], &b = nodes[i];
         const double h = b.t - a.t;
         if (h <= 0) continue;
         const UnitCubic e = UnitCubic::through(h, target - a.y, -a.y_slope, target - b.y, -b.y_slope);
-        for (Index k = 0; k < 4; ++k) {
-            const double value = e.at(x[k]);
-            result.ISE += h * w[k] * value * value;
-        }
-        const auto weighted = [&](double from, double to) {
-            double sum = 0;
-            for (Index k = 0; k < 4; ++k) {
-                const double s = from + (to - from) * x[k];
-                sum += w[k] * (a.t + s * h) * e.at(s);
-            }
-            result.ITAE += std::abs(sum) * h * (to - from);
+        result.ISE += h * e.square();
+        // The integral of t e from the step's start on, t = a.t + s h.
+        const auto first_moment = [&](double s) { return h * (a.t * e.integral(s) + h * e.moment(s)); };
+        double so_far = 0;
+        const auto add_until = [&](double, double s) {
+            const double here = first_moment(s);
+            result.ITAE += std::abs(here - so_far);
+            so_far = here;
         };
         if (may_change_sign(a, b, target, h))
-            signed_pieces(e, weighted);
+            signed_pieces(e, add_until);
         else
-            weighted(0, 1);
+            add_until(0, 1);
     }
     return result;
 }
@@ -168,7 +172,7 @@ double total_variation(const std::vector<ResponseNode>& nodes) {
         if (h > 0) {
             const UnitCubic u = UnitCubic::through(h, a.u, a.u_slope, b.u, b.u_slope);
             std::array<double, 2> turns{};
-            const int n = u.turning_points(turns);
+            const int n = u.plainly_monotone() ? 0 : u.turning_points(turns);
             for (int k = 0; k < n; ++k) {
                 const double value = u.at(turns[Index(k)]);
                 sum += std::abs(value - from);
@@ -196,6 +200,7 @@ Extremes extremes_of_y(const std::vector<ResponseNode>& nodes) {
         note(nodes[i].t, nodes[i].y);
         if (i == 0 || nodes[i].t <= nodes[i - 1].t) continue;
         const UnitCubic y = cubic_of_y(nodes[i - 1], nodes[i]);
+        if (y.plainly_monotone()) continue;
         std::array<double, 2> turns{};
         const int n = y.turning_points(turns);
         for (int k = 0; k < n; ++k)
@@ -249,7 +254,9 @@ std::optional<double> last_outside(const std::vector<ResponseNode>& nodes, doubl
 std::vector<std::pair<double, double>> sampled(const std::vector<ResponseNode>& nodes, double horizon, int points) {
     std::vector<std::pair<double, double>> values;
     values.reserve(Index(points));
-    Index at = 0;
+    Index at = 0, drawn = nodes.size();  // `drawn`: the node before the cubics
+    UnitCubic y{}, u{};
+    double h = 0;
     for (int i = 0; i < points; ++i) {
         const double t = horizon * i / (points - 1);
         while (at + 1 < nodes.size() && nodes[at + 1].t <= t) ++at;
@@ -258,9 +265,15 @@ std::vector<std::pair<double, double>> sampled(const std::vector<ResponseNode>& 
             values.emplace_back(a.y, a.u);
             continue;
         }
-        const ResponseNode& b = nodes[at + 1];
-        const double h = b.t - a.t, s = (t - a.t) / h;
-        values.emplace_back(cubic_of_y(a, b).at(s), UnitCubic::through(h, a.u, a.u_slope, b.u, b.u_slope).at(s));
+        if (at != drawn) {
+            const ResponseNode& b = nodes[at + 1];
+            h = b.t - a.t;
+            y = cubic_of_y(a, b);
+            u = UnitCubic::through(h, a.u, a.u_slope, b.u, b.u_slope);
+            drawn = at;
+        }
+        const double s = (t - a.t) / h;
+        values.emplace_back(y.at(s), u.at(s));
     }
     return values;
 }

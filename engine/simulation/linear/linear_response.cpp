@@ -250,17 +250,25 @@ private:
 
     /// Up to the dead time: the delayed signal is known.
     void take_short_step(const ExactStep& step, double end, ResponseNode& node) {
-        const double L = system_.s.L, slack = kSameInstant * propagator_.h0(), t = end - step.h;
-        const Signal v0 = history_.at(t - L, true, slack), v1 = history_.at(end - L, false, slack);
+        const Signal v0 = delayed_to(end - step.h);
+        delayed_ = {end, history_.at(end - system_.s.L, slack())};
+        const Signal v1 = delayed_->limits.before;
         advance(step, hermite_taylor(step.h, v0, v1), x_, scratch_);
         node = node_at(system_, end, x_, v1);
         if (scaling_ != nullptr) add_excess(step.h, node);
     }
 
+    double slack() const { return kSameInstant * propagator_.h0(); }
+
+    /// The delayed signal at the start of a step, after a jump there.
+    Signal delayed_to(double t) {
+        if (delayed_ && std::abs(delayed_->t - t) <= slack()) return delayed_->limits.after;
+        return history_.at(t - system_.s.L, slack()).after;
+    }
+
     /// The delayed signal may jump now, and with it u.
     void add_jump() {
-        ResponseNode node =
-            node_at(system_, time(), x_, history_.at(time() - system_.s.L, true, kSameInstant * propagator_.h0()));
+        ResponseNode node = node_at(system_, time(), x_, delayed_to(time()));
         scale(node);
         push(node);
         levels_.note_jump();
@@ -280,8 +288,7 @@ private:
         const LongStep& step = long_step();
         const double end = time() + step.h();
         const ResponseNode& now = response_.nodes.back();
-        step.start(history_.at(time() - system_.s.L, true, kSameInstant * propagator_.h0()),
-                   {now.u + system_.in.d, now.u_slope}, x_, scratch_, start_);
+        step.start(delayed_to(time()), {now.u + system_.in.d, now.u_slope}, x_, scratch_, start_);
         return settle(step.h(), false, node, [&](double added, std::vector<double>& x, ResponseNode& at_end) {
             const Signal v =
                 step.finish(start_, {into_u_ * added, into_u_ * excess_.value, into_u_ * excess_.slope}, x);
@@ -351,6 +358,11 @@ private:
     Propagator propagator_;
     StepResponse response_;
     InputHistory history_;
+    struct Delayed {
+        double t;
+        InputHistory::Limits limits;
+    };
+    std::optional<Delayed> delayed_;  // at the end of the last step that looked it up
     StepLevels levels_;
     StoppingRule stopping_;
     std::deque<LongStep> long_steps_;  // of level_of_L_ + 1, ...

@@ -5,22 +5,25 @@
 
 namespace tunewright {
 
-Signal InputHistory::at(double t, bool after, double slack) {
-    if (t < -slack || (t <= slack && !after)) return {};
+InputHistory::Limits InputHistory::at(double t, double slack) {
+    if (t < -slack) return {};
     // The first node at t or later.
     std::size_t i = std::min(cursor_, nodes_.size());
     while (i < nodes_.size() && nodes_[i].t < t - slack) ++i;
     while (i > 0 && nodes_[i - 1].t >= t - slack) --i;
     cursor_ = i;
-    if (i == nodes_.size()) return {nodes_.back().u + d_, nodes_.back().u_slope};
+    const auto node = [this](std::size_t k) -> Signal { return {nodes_[k].u + d_, nodes_[k].u_slope}; };
+    if (i == nodes_.size()) return {node(i - 1), node(i - 1)};
     if (nodes_[i].t <= t + slack) {
         // Several of equal times are the values before and after a jump.
-        while (after && i + 1 < nodes_.size() && nodes_[i + 1].t <= t + slack) ++i;
-        return {nodes_[i].u + d_, nodes_[i].u_slope};
+        std::size_t last = i;
+        while (last + 1 < nodes_.size() && nodes_[last + 1].t <= t + slack) ++last;
+        return {t <= slack ? Signal{} : node(i), node(last)};
     }
     const ResponseNode &a = nodes_[i - 1], &b = nodes_[i];
     const Cubic u = hermite_taylor(b.t - a.t, {a.u, a.u_slope}, {b.u, b.u_slope});
-    return {value_at(u, t - a.t) + d_, slope_at(u, t - a.t)};
+    const Signal between{value_at(u, t - a.t) + d_, slope_at(u, t - a.t)};
+    return {between, between};
 }
 
 int echoes_that_count(double q, double tolerance, int smoothing) {

@@ -22,8 +22,11 @@ public:
     /// `nodes`: of ascending t; must live as long as this. They may grow, and lose their last ones again.
     InputHistory(const std::vector<ResponseNode>& nodes, double d) : nodes_(nodes), d_(d) {}
 
-    /// Limit from the right (`after`) or from the left at t. Nodes within `slack` of t count as being at t.
-    Signal at(double t, bool after, double slack);
+    struct Limits {
+        Signal before, after;
+    };
+    /// From the left and from the right at t. Nodes within `slack` of t count as being at t.
+    Limits at(double t, double slack);
 
 private:
     const std::vector<ResponseNode>& nodes_;

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/evaluation/evaluate_sampled.h"
+#include "engine/evaluation/longest_sample_time.h"
 #include "engine/loop/loop.h"
 #include "engine/loop/peaks.h"
 #include "engine/simulation/linear/indices.h"

@@ -1,0 +1,30 @@
+// How slowly a program may compute before the loop loses what its design promised. A design is made for a controller
+// that acts all the time; one that acts once every sample time holds its output, which is half a sample of dead time
+// more, and sums and differences stand for its integral and derivative.
+//
+//   const auto Ts = longest_sample_time(plant, gains, Ms, omega_Ms, 1.05);   // 5 % of Ms at most
+#pragma once
+
+#include <optional>
+
+#include "engine/controller/pid.h"
+#include "engine/evaluation/evaluation.h"
+#include "engine/plant/linear/linear_plant.h"
+#include "engine/plant/subject.h"
+
+namespace tunewright {
+
+/// The longest sample time that leaves Ms within `factor` > 1 times `Ms`, the continuous loop's, whose peak lies at
+/// `omega_Ms` (rad/time): of the program with the backward rules. All shorter ones that were looked at do so
+/// too; where the plant resonates they are looked at in steps of a tenth. Ms there is that to 1e-3. Empty where even a
+/// thousandth of 1/omega_Ms does not, and where a thousand times 1/omega_Ms still does. Needs a stable loop, `Ms` >= 1
+/// and finite, `omega_Ms` > 0; all in the plant's unit of time. Cost: mostly that of two or more looks at the whole
+/// sampled loop.
+std::optional<double> longest_sample_time(const LinearPlant& plant, const ParallelPid& gains, double Ms,
+                                          double omega_Ms, double factor);
+
+/// The one that keeps Ms within 5 %, of an evaluated controller. Empty where the question makes no sense: an
+/// unstable loop, a nonlinear integral, a plant known by points alone.
+std::optional<Figure> longest_sample_time_of(const Subject& subject, const Evaluation& evaluation);
+
+}  // namespace tunewright

@@ -1,0 +1,49 @@
+// Controller and plant as fractions: the formulas that a loop is evaluated by, for one frequency or for two at a time.
+// `Number`: std::complex<double> or PairComplex.
+#pragma once
+
+#include <complex>
+
+#include "engine/controller/pid.h"
+#include "engine/numerics/fast_complex.h"
+#include "engine/numerics/pair_complex.h"
+#include "engine/plant/linear/linear_plant.h"
+
+namespace tunewright {
+
+template <class Number>
+struct FractionOf {
+    Number numerator, denominator;
+};
+
+/// Of the filtered controller, set-point weights apart.
+template <class Number>
+FractionOf<Number> controller_fraction(const ParallelPid& gains, Number s) {
+    const double Tf = gains.filter.Tf;
+    Number numerator = gains.Kp + gains.Kd * s, denominator = 1;
+    switch (gains.filter.type) {
+        case FilterType::none: break;
+        case FilterType::derivative:
+            denominator = 1.0 + Tf * s;
+            numerator = gains.Kp * denominator + gains.Kd * s;
+            break;
+        case FilterType::measurement_first_order: denominator = 1.0 + Tf * s; break;
+        case FilterType::measurement_second_order: denominator = 1.0 + product(Tf * s, 1.0 + 0.5 * Tf * s); break;
+    }
+    if (gains.Ki == 0) return {numerator, denominator};
+    const Number integral_path = gains.filter.type == FilterType::derivative ? denominator : Number(1);
+    return {product(numerator, s) + gains.Ki * integral_path, product(denominator, s)};
+}
+
+/// Of the plant without its dead time.
+template <class Number>
+FractionOf<Number> plant_fraction(const LinearPlant& plant, Number s) {
+    FractionOf<Number> p{plant.gain(), 1.0};
+    for (int i = 0; i < plant.integrators(); ++i) p.denominator = product(p.denominator, s);
+    for (int i = 0; i < -plant.integrators(); ++i) p.numerator = product(p.numerator, s);
+    for (const auto zero : plant.zeros()) p.numerator = product(p.numerator, s - zero);
+    for (const auto pole : plant.poles()) p.denominator = product(p.denominator, s - pole);
+    return p;
+}
+
+}  // namespace tunewright

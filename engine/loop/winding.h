@@ -1,0 +1,55 @@
+// How far a curve turns about 0, from points along it: the argument principle's sum, with one arctangent for a stretch
+// of points instead of one for each.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+
+#include "engine/numerics/fast_complex.h"
+
+namespace tunewright {
+
+class Winding {
+public:
+    using Complex = std::complex<double>;
+
+    explicit Winding(Complex start) : anchor_(start), last_(start) {}
+
+    /// Whether the way between two points is so short that it cannot turn by more than half a radian, unless the curve
+    /// makes a whole turn in between.
+    static bool is_short(Complex from, Complex to) {
+        return magnitude(to - from) <= kLargestStep * std::min(magnitude(from), magnitude(to));
+    }
+
+    /// To a point that is a short way from the last one.
+    void follow(Complex to) {
+        const Complex turned = quotient(to, anchor_);
+        last_ = to;
+        if (turned.real() > std::abs(turned.imag())) return;  // the next short way stays within half a turn
+        angle_ += std::arg(turned);
+        anchor_ = to;
+    }
+
+    /// To any point, by an angle that is known.
+    void turn(double angle, Complex to) {
+        angle_ += std::arg(quotient(last_, anchor_)) + angle;
+        anchor_ = last_ = to;
+    }
+
+    double angle() const { return angle_ + std::arg(quotient(last_, anchor_)); }  ///< so far, rad
+
+private:
+    static constexpr double kLargestStep = 0.4;  // relative to the smaller end
+
+    Complex anchor_, last_;  // up to the anchor the angle has been added up
+    double angle_ = 0;
+};
+
+/// The change of an argument between two points whose factors `open` and `returned` change by less than half a turn
+/// each; `step` is their product.
+inline double turn_of(std::complex<double> step, std::complex<double> open, std::complex<double> returned) {
+    return open.real() > 0 && returned.real() > 0 ? std::arg(step) : std::arg(open) + std::arg(returned);
+}
+
+}  // namespace tunewright

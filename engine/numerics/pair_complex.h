@@ -1,0 +1,65 @@
+// Two complex numbers at a time, for sweeps over frequency: what pair.h is for real ones. Formulas that are written as
+// templates serve std::complex and this.
+#pragma once
+
+#include <complex>
+#include <cstdint>
+#include <numbers>
+
+#include "engine/numerics/pair.h"
+
+namespace tunewright {
+
+struct PairComplex {
+    Pair re{}, im{};
+
+    PairComplex() = default;
+    PairComplex(double real) : re(Pair{} + real) {}
+    PairComplex(Pair real, Pair imaginary) : re(real), im(imaginary) {}
+};
+
+inline PairComplex operator+(PairComplex a, PairComplex b) { return {a.re + b.re, a.im + b.im}; }
+inline PairComplex operator-(PairComplex a, std::complex<double> b) { return {a.re - b.real(), a.im - b.imag()}; }
+inline PairComplex operator*(double a, PairComplex b) { return {a * b.re, a * b.im}; }
+inline PairComplex conj(PairComplex a) { return {a.re, -a.im}; }
+inline Pair norm(PairComplex a) { return a.re * a.re + a.im * a.im; }
+
+inline PairComplex product(PairComplex a, PairComplex b) {
+    return {a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
+}
+
+/// The largest angle that `unit_circle` takes, rad.
+constexpr double kLargestPairAngle = 1e6;
+
+/// e^(j angle) to 2e-16 for |angle| <= kLargestPairAngle: the remainder to the nearest multiple of pi/2, in three parts
+/// of 33 bits, whose products with the multiple are exact (Cody and Waite, Software Manual for the Elementary
+/// Functions, 1980), and the Taylor polynomials of sine and cosine up to pi/4.
+inline PairComplex unit_circle(Pair angle) {
+    constexpr double kRounder = 0x1.8p52;  // added, it leaves the nearest whole number in the last bits
+    constexpr double kFirst = 0x1.921fb544p0, kSecond = 0x1.0b4611a6p-34, kThird = 0x1.3198a2e037073p-69;
+    const Pair shifted = angle * (2 / std::numbers::pi) + kRounder, quarters = shifted - kRounder;
+    const Pair r = ((angle - quarters * kFirst) - quarters * kSecond) - quarters * kThird, s = r * r;
+    Pair sine = s * (-1.0 / 1307674368000) + 1.0 / 6227020800;
+    sine = sine * s - 1.0 / 39916800;
+    sine = sine * s + 1.0 / 362880;
+    sine = sine * s - 1.0 / 5040;
+    sine = sine * s + 1.0 / 120;
+    sine = sine * s - 1.0 / 6;
+    sine = r + r * s * sine;
+    Pair cosine = s * (1.0 / 20922789888000) - 1.0 / 87178291200;
+    cosine = cosine * s + 1.0 / 479001600;
+    cosine = cosine * s - 1.0 / 3628800;
+    cosine = cosine * s + 1.0 / 40320;
+    cosine = cosine * s - 1.0 / 720;
+    cosine = cosine * s + 1.0 / 24;
+    cosine = 1.0 - (0.5 * s - s * s * cosine);
+    // Quarter turns: by one sine and cosine change places, by two both change sign.
+    using Bits = std::int64_t __attribute__((vector_size(16)));
+    Bits quarter;
+    std::memcpy(&quarter, &shifted, sizeof quarter);
+    const Bits odd = (quarter & 1) != 0;
+    const Pair re = odd ? sine : cosine, im = odd ? cosine : sine;
+    return {((quarter + 1) & 2) != 0 ? -re : re, (quarter & 2) != 0 ? -im : im};
+}
+
+}  // namespace tunewright

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/loop/loop_parts.h"
+#include "engine/loop/controller_fraction.h"
 #include "engine/numerics/fast_complex.h"
 #include "engine/numerics/pair_complex.h"
 
@@ -104,24 +104,9 @@ LoopPoint Loop::at(double omega) const {
     return point;
 }
 
-namespace {
-
-/// Of two numbers at a time, where the squares are ordinary numbers.
-PairComplex quotient_of(PairComplex n, PairComplex d, Pair square) {
-    const PairComplex scaled = product(n, conj(d));
-    return {scaled.re / square, scaled.im / square};
-}
-
-bool ordinary(Pair square) {
-    return square[0] > kLeastSquare && square[0] < kLargestSquare && square[1] > kLeastSquare &&
-           square[1] < kLargestSquare;
-}
-
-}  // namespace
-
 bool Loop::pair_at(const double* omega, LoopPoint* to) const {
     const Pair w = load(omega), angle = w * -plant_->dead_time();
-    if (!(std::abs(angle[0]) <= kLargestPairAngle && std::abs(angle[1]) <= kLargestPairAngle)) return false;
+    if (!in_reach(angle)) return false;
     const PairComplex s(Pair{}, w);
     const auto c = controller_fraction(gains_, s);
     auto p = plant_fraction(*plant_, s);
@@ -131,7 +116,7 @@ bool Loop::pair_at(const double* omega, LoopPoint* to) const {
     const PairComplex sum = denominator + numerator;
     const Pair square = norm(denominator), of_sum = norm(sum);
     if (!ordinary(square) || !ordinary(of_sum)) return false;
-    const PairComplex inverse = quotient_of(1, sum, of_sum), L = quotient_of(numerator, denominator, square),
+    const PairComplex inverse = quotient(1, sum, of_sum), L = quotient(numerator, denominator, square),
                       S = product(denominator, inverse), T = product(numerator, inverse),
                       CS = product(product(c.numerator, p.denominator), inverse);
     for (std::size_t i = 0; i < 2; ++i)
@@ -141,11 +126,9 @@ bool Loop::pair_at(const double* omega, LoopPoint* to) const {
 
 std::vector<LoopPoint> Loop::at(std::span<const double> omega) const {
     std::vector<LoopPoint> points(omega.size());
-    for (std::size_t i = 0; i < omega.size(); i += 2) {
-        if (i + 1 < omega.size() && pair_at(&omega[i], &points[i])) continue;
-        points[i] = at(omega[i]);
-        if (i + 1 < omega.size()) points[i + 1] = at(omega[i + 1]);
-    }
+    in_pairs(
+        omega, points.data(), [this](double w) { return at(w); },
+        [this](const double* w, LoopPoint* to) { return pair_at(w, to); });
     return points;
 }
 

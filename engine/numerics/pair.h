@@ -4,6 +4,7 @@
 //   for (std::size_t i = 0; i + 1 < n; i += 2) store(to + i, load(from + i) * 2.0);
 #pragma once
 
+#include <cstdint>
 #include <cstring>
 
 namespace tunewright {
@@ -21,9 +22,15 @@ inline Pair load(const double* from) {
 
 inline void store(double* to, Pair pair) { std::memcpy(to, &pair, sizeof pair); }
 
-inline Pair size(Pair x) { return x < 0 ? -x : x; }
-
-inline Pair larger(Pair a, Pair b) { return a > b ? a : b; }
+/// |x|: without the sign's bits.
+inline Pair size(Pair x) {
+    using Bits = std::int64_t __attribute__((vector_size(16)));
+    Bits bits;
+    std::memcpy(&bits, &x, sizeof bits);
+    bits &= std::int64_t{0x7fffffffffffffff};
+    std::memcpy(&x, &bits, sizeof bits);
+    return x;
+}
 
 inline bool any(PairMask mask) { return (mask[0] | mask[1]) != 0; }
 

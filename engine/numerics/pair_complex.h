@@ -2,10 +2,12 @@
 // templates serve std::complex and this.
 #pragma once
 
+#include <cmath>
 #include <complex>
 #include <cstdint>
 #include <numbers>
 
+#include "engine/numerics/fast_complex.h"
 #include "engine/numerics/pair.h"
 
 namespace tunewright {
@@ -28,8 +30,23 @@ inline PairComplex product(PairComplex a, PairComplex b) {
     return {a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
 }
 
+/// n/d with `square` = |d|^2, which must be ordinary numbers.
+inline PairComplex quotient(PairComplex n, PairComplex d, Pair square) {
+    const PairComplex scaled = product(n, conj(d));
+    return {scaled.re / square, scaled.im / square};
+}
+
+/// Whether both squares are far enough from over- and underflow.
+inline bool ordinary(Pair square) {
+    return square[0] > kLeastSquare && square[0] < kLargestSquare && square[1] > kLeastSquare &&
+           square[1] < kLargestSquare;
+}
+
 /// The largest angle that `unit_circle` takes, rad.
 constexpr double kLargestPairAngle = 1e6;
+inline bool in_reach(Pair angle) {
+    return std::abs(angle[0]) <= kLargestPairAngle && std::abs(angle[1]) <= kLargestPairAngle;
+}
 
 /// e^(j angle) to 2e-16 for |angle| <= kLargestPairAngle: the remainder to the nearest multiple of pi/2, in three parts
 /// of 33 bits, whose products with the multiple are exact (Cody and Waite, Software Manual for the Elementary

@@ -18,7 +18,7 @@ using Index = std::size_t;
 
 constexpr double kTaylorNorm = 0.5;    // of F h in the states' own units: up to it the series loses no digits
 constexpr int kMaxTerms = 40;          // of the series: 0.5^40/40! is far below rounding; stops numbers out of range
-constexpr double kNegligible = 1e-18;  // of a component's largest term: well below rounding
+constexpr double kNegligible = 1e-18;  // of a component's sum: well below rounding
 
 constexpr Index kInputs = 5;  // of a step beside its states: the cubic's coefficients and the constant
 
@@ -80,7 +80,7 @@ class Series {
 public:
     /// `F`: in columns of ExactStep's length.
     Series(const std::vector<double>& F, const std::vector<double>& G, const std::vector<double>& b, double h)
-        : F_(F), n_(G.size()), length_(2 * pairs_of(n_)), h_(h), term_(length_ * (n_ + 2), 0.0), largest_(term_) {
+        : F_(F), n_(G.size()), length_(2 * pairs_of(n_)), h_(h), term_(length_ * (n_ + 2), 0.0) {
         for (Index i = 0; i < n_; ++i) {
             term_[i * length_ + i] = 1;
             term_[n_ * length_ + i] = G[i];
@@ -93,8 +93,7 @@ public:
 
     ExactStep sum() {
         for (int m = 0; m < kMaxTerms; ++m) {
-            add(m);
-            if (negligible() && m > 0) break;
+            if (!add(m) && m > 0) break;
             multiply_columns(F_.data(), term_.data(), n_, n_ + 2, h_ / (m + 1), term_.data());
         }
         return std::move(step_);
@@ -102,35 +101,31 @@ public:
 
 private:
     /// Term m of the exponential is F^m h^m/m! x; of the moment of s^j/j! it is F^m h^(m + k)/(m + k)! x with k = j
-    /// + 1.
-    void add(int m) {
+    /// + 1. False: the terms count no more; each component by itself, as they may be in units far apart.
+    bool add(int m) {
         double* to = step_.columns.data();
         const double* from = term_.data();
         const Index of_G = n_ * length_, of_b = of_G + length_;
-        for (Index i = 0; i < of_G; ++i) to[i] += from[i];
+        PairMask counting{};
+        const auto add_to = [&](Index i, Pair term) {
+            const Pair sum = load(to + i) + term;
+            store(to + i, sum);
+            counting |= size(term) > kNegligible * size(sum);
+        };
+        for (Index i = 0; i < of_G; i += 2) add_to(i, load(from + i));
         double weight = 1;
         for (Index k = 0; k < 4; ++k) {
             weight *= h_ / (m + int(k) + 1);
-            for (Index i = 0; i < length_; ++i) to[of_G + k * length_ + i] += from[of_G + i] * weight;
+            for (Index i = 0; i < length_; i += 2) add_to(of_G + k * length_ + i, load(from + of_G + i) * weight);
         }
-        for (Index i = 0; i < length_; ++i) to[of_G + 4 * length_ + i] += from[of_b + i] * (h_ / (m + 1));
-    }
-
-    /// Each component by itself: they may be in units far apart.
-    bool negligible() {
-        PairMask counting{};
-        for (Index i = 0; i < term_.size(); i += 2) {
-            const Pair here = size(load(term_.data() + i)), largest = larger(here, load(largest_.data() + i));
-            store(largest_.data() + i, largest);
-            counting |= here > kNegligible * largest;
-        }
-        return !any(counting);
+        for (Index i = 0; i < length_; i += 2) add_to(of_G + 4 * length_ + i, load(from + of_b + i) * (h_ / (m + 1)));
+        return any(counting);
     }
 
     const std::vector<double>& F_;
     Index n_, length_;
     double h_;
-    std::vector<double> term_, largest_;
+    std::vector<double> term_;
     ExactStep step_;
 };
 

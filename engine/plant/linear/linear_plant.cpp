@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "engine/numerics/fast_complex.h"
 #include "engine/numerics/linear_algebra.h"
 #include "engine/plant/linear/factor.h"
+#include "engine/plant/linear/plant_fraction.h"
 
 namespace tunewright {
 namespace {
@@ -205,16 +205,32 @@ Expected<LinearPlant> LinearPlant::make(const Plant& plant) {
 }
 
 std::complex<double> LinearPlant::rational(std::complex<double> s) const {
-    std::complex<double> numerator = gain_, denominator = 1;
-    for (int i = 0; i < integrators_; ++i) denominator *= s;
-    for (int i = 0; i < -integrators_; ++i) numerator *= s;
-    for (const auto zero : zeros_) numerator *= s - zero;
-    for (const auto pole : poles_) denominator *= s - pole;
-    return quotient(numerator, denominator);
+    const auto p = plant_fraction(*this, s);
+    return quotient(p.numerator, p.denominator);
 }
 
 std::complex<double> LinearPlant::at(std::complex<double> s) const {
-    return L_ == 0 ? rational(s) : rational(s) * std::exp(-s * L_);
+    if (L_ == 0) return rational(s);
+    const double angle = -s.imag() * L_;
+    const std::complex<double> delay(std::cos(angle), std::sin(angle));
+    return product(rational(s), s.real() == 0 ? delay : delay * std::exp(-s.real() * L_));
+}
+
+std::vector<std::complex<double>> LinearPlant::at(std::span<const double> omega) const {
+    const auto pair = [this](const double* w, std::complex<double>* to) {
+        const Pair both = load(w), angle = both * -L_;
+        auto [numerator, denominator] = plant_fraction(*this, PairComplex(Pair{}, both));
+        const Pair square = norm(denominator);
+        if (!ordinary(square) || !in_reach(angle)) return false;
+        if (L_ > 0) numerator = product(numerator, unit_circle(angle));
+        const PairComplex P = quotient(numerator, denominator, square);
+        for (std::size_t i = 0; i < 2; ++i) to[i] = {P.re[i], P.im[i]};
+        return true;
+    };
+    std::vector<std::complex<double>> responses(omega.size());
+    in_pairs(
+        omega, responses.data(), [this](double w) { return at(std::complex<double>(0, w)); }, pair);
+    return responses;
 }
 
 int LinearPlant::pole_excess() const {

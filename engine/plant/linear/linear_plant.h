@@ -30,6 +30,8 @@ public:
 
     std::complex<double> at(std::complex<double> s) const;        ///< P(s), dead time included
     std::complex<double> rational(std::complex<double> s) const;  ///< without the dead time
+    /// P(j omega) at many frequencies, several times as quick; the same to 1e-12.
+    std::vector<std::complex<double>> at(std::span<const double> omega) const;
 
     double gain() const { return gain_; }
     int integrators() const { return integrators_; }

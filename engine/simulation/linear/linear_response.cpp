@@ -26,6 +26,7 @@ constexpr double kSameInstant = 1e-9;                  // of the shortest step: 
 constexpr double kFloor = 2e-3;                        // of the largest deviation: errors are relative to at least that
 constexpr int kLeastLevelOfL = 3, kMostLevelOfL = 30;  // of steps a dead time, as a power of 2
 constexpr double kOfGrowth = 0.25;                     // of an unstable mode's time: the longest step
+constexpr std::size_t kUsualSteps = 120, kUsualJumps = 16;  // of a run
 constexpr double kRough = 40;  // tolerances: 16 are what doubling a step costs at order 4, and a margin
 
 /// Chooses step lengths, keeps the nodes, knows when to stop.
@@ -57,6 +58,7 @@ public:
     StepResponse run() {
         x_.assign(Index(system_.n), 0.0);
         scratch_ = x_;
+        make_room();
         ResponseNode first = node_at(system_, 0, x_, {});
         scale(first);
         push(first);
@@ -78,6 +80,13 @@ public:
     }
 
 private:
+    /// For a repetition all of its nodes, or the usual number of them, at once; jumps apart.
+    void make_room() {
+        const std::size_t steps = options_.repeat != nullptr ? options_.repeat->level.size() : kUsualSteps;
+        response_.nodes.reserve(steps + kUsualJumps);
+        response_.schedule.level.reserve(steps);
+    }
+
     /// What comes into the steps as a cubic: the delayed signal, or what scaling adds to the integral's input.
     std::vector<double> input() const {
         if (system_.delayed || scaling_ == nullptr) return system_.G;

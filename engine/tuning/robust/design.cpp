@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "engine/numerics/fast_complex.h"
+
 namespace tunewright::robust {
 namespace {
 
@@ -35,9 +37,9 @@ double reference_frequency(const DesignProblem& problem) {
     // turn.
     const auto lagging = [&](double w) {
         const Complex s(0, w);
-        Complex value = 1.0 / (1.0 + Tf * s * (1.0 + 0.5 * Tf * s));
-        for (const auto zero : plant.zeros()) value *= (s - zero) / (-zero);
-        for (const auto pole : plant.poles()) value /= s - Complex(-std::abs(pole.real()), pole.imag());
+        Complex value = quotient(1, 1.0 + product(Tf * s, 1.0 + 0.5 * Tf * s));
+        for (const auto zero : plant.zeros()) value = product(value, quotient(s - zero, -zero));
+        for (const auto pole : plant.poles()) value = quotient(value, s - Complex(-std::abs(pole.real()), pole.imag()));
         return value;
     };
     double w = slowest / kBeyondCorners, before = std::arg(lagging(w)),

@@ -32,7 +32,7 @@ TEST(PairComplex, UnitCircleIsSineAndCosineOfTheLibrary) {
     near(kLargestPairAngle);
 }
 
-TEST(Loop, AtManyFrequenciesIsThatAtEach) {
+TEST(Loop, AtManyFrequenciesIsThatAtEachAndSoIsItsPlant) {
     std::mt19937 random(5);
     std::uniform_real_distribution<double> unit(0, 1);
     const auto log_uniform = [&](double low, double high) { return low * std::pow(high / low, unit(random)); };
@@ -59,7 +59,9 @@ TEST(Loop, AtManyFrequenciesIsThatAtEach) {
         for (int i = 0; i < 60; ++i) omega.push_back(log_uniform(1e-6, 1e6));
         omega.insert(omega.end(), {1e9, 1e100, 1e150, 0.5});
         const auto points = loop->at(omega);
+        const auto responses = plant->at(omega);
         ASSERT_EQ(points.size(), omega.size());
+        ASSERT_EQ(responses.size(), omega.size());
         const auto expect_same = [&](std::complex<double> many, std::complex<double> one, double w) {
             if (!std::isfinite(std::abs(one))) return;
             EXPECT_LE(std::abs(many - one), 1e-12 * std::abs(one)) << "trial " << trial << " at " << w;
@@ -70,6 +72,7 @@ TEST(Loop, AtManyFrequenciesIsThatAtEach) {
             expect_same(points[i].S, one.S, omega[i]);
             expect_same(points[i].T, one.T, omega[i]);
             expect_same(points[i].CS, one.CS, omega[i]);
+            expect_same(responses[i], plant->at(std::complex<double>(0, omega[i])), omega[i]);
         }
     }
 }

@@ -107,15 +107,16 @@ Sweep::Curve Sweep::curve_of(std::size_t index) const {
     curve.plant = &plant;
     curve.index = index;
     if (plant.dead_time() > 0) curve.resolved_to = kTurnsResolved * 2 * std::numbers::pi / plant.dead_time();
-    curve.omega = frequencies(problem_, plant, reference_, curve.resolved_to);
-    // On an undamped pole P is infinite; its neighbours show the same.
-    std::erase_if(curve.omega, [&](double w) {
-        const Complex P = plant.at({0, w});
-        if (!std::isfinite(P.real()) || !std::isfinite(P.imag())) return true;
+    const std::vector<double> omega = frequencies(problem_, plant, reference_, curve.resolved_to);
+    const std::vector<Complex> responses = plant.at(omega);
+    for (std::size_t i = 0; i < omega.size(); ++i) {
+        const Complex P = responses[i];
+        // On an undamped pole P is infinite; its neighbours show the same.
+        if (!std::isfinite(P.real()) || !std::isfinite(P.imag())) continue;
+        curve.omega.push_back(omega[i]);
         curve.P_re.push_back(P.real());
         curve.P_im.push_back(P.imag());
-        return false;
-    });
+    }
     return curve;
 }
 

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kFarOutside = 2;  // |L| where a loop enters the grid: it has not been near -1 before
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr std::size_t kUsualIntervals = 64;  // of one plant: room for them is taken at once
 
 /// Adds the intervals of positive numbers; those of neighbouring frequencies, which nearly always overlap, are joined
 /// before they are sorted with others.
@@ -37,6 +38,7 @@ void add_joined(const Intervals& intervals, std::vector<GainGap>& out) {
 std::vector<GainGap> gaps_between(std::vector<GainGap>& forbidden) {
     std::sort(forbidden.begin(), forbidden.end(), [](const GainGap& a, const GainGap& b) { return a.lower < b.lower; });
     std::vector<GainGap> gaps;
+    gaps.reserve(forbidden.size() + 1);
     double reached = 0;
     for (const auto& interval : forbidden) {
         if (interval.lower > reached) gaps.push_back({.lower = reached, .upper = interval.lower});
@@ -153,6 +155,7 @@ void Sweep::tell_stability(const LoopGains& c, std::vector<GainGap>& gaps) const
 std::vector<GainGap> Sweep::gain_gaps(double Ti, double Td) const {
     const LoopGains c = gains({0, std::log(Ti), problem_.pid ? std::log(Td) : 0});
     std::vector<GainGap> forbidden;
+    forbidden.reserve(kUsualIntervals * curves_.size());
     for (Curve& curve : curves_) {
         fill_open_loop(curve, c);
         forbid(curve, forbidden);

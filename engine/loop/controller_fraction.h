@@ -1,20 +1,13 @@
-// Controller and plant as fractions: the formulas that a loop is evaluated by, for one frequency or for two at a time.
+// The controller as a fraction: the formula that a loop is evaluated by, for one frequency or for two at a time.
 // `Number`: std::complex<double> or PairComplex.
 #pragma once
-
-#include <complex>
 
 #include "engine/controller/pid.h"
 #include "engine/numerics/fast_complex.h"
 #include "engine/numerics/pair_complex.h"
-#include "engine/plant/linear/linear_plant.h"
+#include "engine/plant/linear/plant_fraction.h"
 
 namespace tunewright {
-
-template <class Number>
-struct FractionOf {
-    Number numerator, denominator;
-};
 
 /// Of the filtered controller, set-point weights apart.
 template <class Number>
@@ -33,17 +26,6 @@ FractionOf<Number> controller_fraction(const ParallelPid& gains, Number s) {
     if (gains.Ki == 0) return {numerator, denominator};
     const Number integral_path = gains.filter.type == FilterType::derivative ? denominator : Number(1);
     return {product(numerator, s) + gains.Ki * integral_path, product(denominator, s)};
-}
-
-/// Of the plant without its dead time.
-template <class Number>
-FractionOf<Number> plant_fraction(const LinearPlant& plant, Number s) {
-    FractionOf<Number> p{plant.gain(), 1.0};
-    for (int i = 0; i < plant.integrators(); ++i) p.denominator = product(p.denominator, s);
-    for (int i = 0; i < -plant.integrators(); ++i) p.numerator = product(p.numerator, s);
-    for (const auto zero : plant.zeros()) p.numerator = product(p.numerator, s - zero);
-    for (const auto pole : plant.poles()) p.denominator = product(p.denominator, s - pole);
-    return p;
 }
 
 }  // namespace tunewright

@@ -35,6 +35,14 @@ bool within_promise(const IndexErrors& errors) {
            errors.ITAE.value_or(0) <= kPromisedItae && errors.TV.value_or(0) <= kPromisedTv;
 }
 
+/// The same instants and those halfway between them.
+StepSchedule halved(const StepSchedule& schedule) {
+    StepSchedule finer{.h0 = schedule.h0 / 2, .level = {}, .to_horizon = 2 * schedule.to_horizon};
+    finer.level.reserve(2 * schedule.level.size());
+    for (const auto level : schedule.level) finer.level.insert(finer.level.end(), 2, level);
+    return finer;
+}
+
 /// On the halved schedule; without one with tolerances that fall until there are more steps indeed: lengths that go by
 /// powers of two may meet a smaller one as they are.
 StepResponse refined(const Simulate& simulate, ResponseOptions& options, const StepResponse& response) {

@@ -44,9 +44,6 @@ struct StepSchedule {
     int to_horizon = 0;              ///< after these, as many equal steps up to the horizon
 };
 
-/// The same instants and those halfway between them.
-StepSchedule halved(const StepSchedule& schedule);
-
 struct ResponseOptions {
     double tolerance = 1e-6;        ///< of the interpolation, relative to the local deviation from the final value
     double settled = 1e-6;          ///< stops when y and u stay within this fraction of their largest deviation

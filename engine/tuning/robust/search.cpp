@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "engine/numerics/extremum.h"
@@ -75,7 +76,7 @@ public:
     void explore(const std::optional<Candidate>& start) {
         if (!start || stopped()) return;
         const double before = best_ ? best_->log_cost : kNoDesign;
-        const SqpResult rough = run(*start, kRoughTolerance, kSameValley);
+        const SqpResult rough = run(*start, kRoughTolerance, kSameValley, before + kWorthFollowing);
         if (stopped() || !rough.converged || rough.log_cost > before + kWorthFollowing) return;
         ends_.pop_back();
         run({rough.x, rough.log_cost, rough.stable}, SqpOptions{}.cost_tolerance);
@@ -95,14 +96,15 @@ public:
     const std::optional<Found>& best() const { return best_; }
 
 private:
-    SqpResult run(const Candidate& start, double cost_tolerance, double same = kSameDesign) {
+    SqpResult run(const Candidate& start, double cost_tolerance, double same = kSameDesign,
+                  double wanted = std::numeric_limits<double>::infinity()) {
         bool stop = false;
         const Report watch = [&](const DesignPoint& x, double cost) {
             stop =
                 report_ && !(best_ && best_->log_cost < cost ? report_(best_->x, best_->log_cost) : report_(x, cost));
             return !stop && !known(x, same);
         };
-        const SqpOptions options{.cost_tolerance = cost_tolerance, .stable_start = start.stable};
+        const SqpOptions options{.cost_tolerance = cost_tolerance, .stable_start = start.stable, .wanted = wanted};
         const SqpResult result = minimise(sweep_, problem_, start.x, options, watch);
         const double cost = std::isfinite(result.log_cost) ? result.log_cost : start.log_cost;
         ends_.push_back(result.x);
@@ -181,7 +183,9 @@ void look_for_valleys(Runs& runs, const Sweep& sweep, const DesignProblem& probl
         for (const auto& valley : valley_starts(problem, points)) runs.from(valley);
     if (has_setpoint(problem)) look_at_long_Ti(runs, sweep, problem);
     if (!has_resonant_plant(problem)) return;
-    for (const auto& valley : valley_starts(problem, scan(sweep, kWideBox))) runs.explore(valley);
+    const double hopeless = runs.best()->log_cost + kHopeless;
+    for (const auto& valley : valley_starts(problem, scan(sweep, kWideBox, Stability::told, hopeless)))
+        runs.explore(valley);
     runs.explore(cheapest(problem, scan(sweep, kIntegralBox), runs.best()->log_cost + kHopeless));
     runs.explore(cheapest_island(sweep, problem, runs.best()->log_cost));
 }

@@ -28,6 +28,7 @@ constexpr double kPowellDamping = 0.2;      // of s.H s, which s.y keeps at leas
 constexpr double kSamePeak = 0.3;           // ln omega: a peak that moves further is another one
 constexpr int kSmallStepsToEnd = 2;         // in a row, each within the tolerance of the cost
 constexpr double kEnoughWon = 0.05;         // of what the model promised, for a step to be taken
+constexpr double kMostOfPromise = 5;        // a run rarely wins so many times what its model promises
 constexpr double kMuchWon = 0.7;            // of it, for the trust region to grow
 constexpr double kSmallestRadius = 1e-5;    // of a logarithm: nothing is left to win in it
 constexpr double kLargestRadius = 4;        // beyond it the linear models have no common solution at all
@@ -172,6 +173,7 @@ SqpResult minimise(const Sweep& sweep, const DesignProblem& problem, const Desig
             result.converged = true;
             break;
         }
+        if (longest(step->p) < radius && result.log_cost - kMostOfPromise * promised > options.wanted) break;
         // Back to the curved constraints before the cost is asked: a sweep costs a tenth of a simulation.
         auto candidate = restored(sweep, moved(result.x, step->p));
         std::optional<PricedDesign> priced;

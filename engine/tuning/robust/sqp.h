@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <optional>
 
 #include "engine/tuning/robust/cost.h"
@@ -16,6 +17,8 @@ struct SqpOptions {
     double simulation_tolerance = 3e-4;
     double trust_radius = 0.5;  ///< of a logarithm
     bool stable_start = false;  ///< the start's loop is known to be stable
+    /// ln(cost) that counts: a run ends, not converged, where many times what the model promises leads not below it.
+    double wanted = std::numeric_limits<double>::infinity();
 };
 
 struct SqpResult {

@@ -88,7 +88,7 @@ std::optional<Candidate> cheapest_island(const Sweep& sweep, const DesignProblem
     DesignProblem wider = problem;
     for (double* limit : {&wider.limits.Ms, &wider.limits.Mt}) *limit = 1 + (*limit - 1) * kWiderLimits;
     Candidate best{.log_cost = below};
-    for (const auto& point : scan(Sweep(wider, sweep.reference()), kIslandBox)) {
+    for (const auto& point : scan(Sweep(wider, sweep.reference()), kIslandBox, Stability::told, below)) {
         if (log_cost_bound(problem, point.x) >= best.log_cost) continue;
         if (const auto inside = feasible_near(sweep, point.x)) consider(best, problem, {.x = *inside, .proved = true});
     }
@@ -119,12 +119,17 @@ std::optional<bool> usable(const DesignProblem& problem, const GainGap& gap, dou
     return true;
 }
 
-/// The largest of feasible_gains.
-std::optional<FeasibleGain> largest_gain(const Sweep& sweep, double Ti, double Td, Stability wanted) {
+/// With the largest of feasible_gains; empty if there is none, or if it certainly costs not less than `below`.
+std::optional<ScanPoint> point_at(const Sweep& sweep, double Ti, double Td, Stability wanted, double below) {
+    const DesignProblem& problem = sweep.problem();
     const auto gaps = sweep.gain_gaps(Ti, Td);
-    for (std::size_t i = gaps.size(); i-- > 0;)
-        if (const auto proved = usable(sweep.problem(), gaps[i], Ti, Td, wanted))
-            return FeasibleGain{gaps[i].upper * (1 - kInside), *proved};
+    for (std::size_t i = gaps.size(); i-- > 0;) {
+        const double Kp = gaps[i].upper * (1 - kInside);
+        const DesignPoint x = {std::log(Kp), std::log(Ti), problem.pid ? std::log(Td) : 0};
+        if (std::isfinite(Kp) && log_cost_bound(problem, x) >= below) continue;
+        if (const auto proved = usable(problem, gaps[i], Ti, Td, wanted))
+            return ScanPoint{x, std::log(Ti / Kp), *proved};
+    }
     return std::nullopt;
 }
 
@@ -143,20 +148,15 @@ std::vector<FeasibleGain> feasible_gains(const Sweep& sweep, double Ti, double T
     return gains;
 }
 
-std::vector<ScanPoint> scan(const Sweep& sweep, const ScanBox& box, Stability wanted) {
+std::vector<ScanPoint> scan(const Sweep& sweep, const ScanBox& box, Stability wanted, double below) {
     const DesignProblem& problem = sweep.problem();
     const double unit = 1 / sweep.reference();
     std::vector<ScanPoint> found;
     const auto Td_values =
         problem.pid ? spaced(box.Td_low * unit, box.Td_high * unit, box.Td_points) : std::vector<double>{1.0};
     for (const double Ti : spaced(box.Ti_low * unit, box.Ti_high * unit, box.Ti_points))
-        for (const double Td : Td_values) {
-            const auto largest = largest_gain(sweep, Ti, Td, wanted);
-            if (!largest) continue;
-            found.push_back({{std::log(largest->Kp), std::log(Ti), problem.pid ? std::log(Td) : 0},
-                             std::log(Ti / largest->Kp),
-                             largest->proved});
-        }
+        for (const double Td : Td_values)
+            if (const auto point = point_at(sweep, Ti, Td, wanted, below)) found.push_back(*point);
     std::sort(found.begin(), found.end(), [](const ScanPoint& a, const ScanPoint& b) { return a.log_ie < b.log_ie; });
     return found;
 }

@@ -40,8 +40,10 @@ struct ScanBox {
 };
 
 /// The feasible points of the box with their largest gain, ascending in `log_ie`. Empty: no point of it is feasible.
-/// Where stability is only told, whoever uses a point has it proved first: few of them are used.
-std::vector<ScanPoint> scan(const Sweep& sweep, const ScanBox& box = {}, Stability wanted = Stability::told);
+/// Where stability is only told, whoever uses a point has it proved first: few of them are used. Points whose ln of the
+/// cost is certainly not less than `below` are left out, most of them before their stability is asked for.
+std::vector<ScanPoint> scan(const Sweep& sweep, const ScanBox& box = {}, Stability wanted = Stability::told,
+                            double below = std::numeric_limits<double>::infinity());
 
 struct Candidate {
     DesignPoint x{};

@@ -39,11 +39,12 @@ void Place::pose() {
 
 std::optional<Error> Place::find_optimum(const RunControl& control, const DesignPoint* before) {
     const RunControl quiet{.stop = control.stop, .progress = {}, .now_ms = {}};
-    DesignPoint last{};
+    robust::Found near{.x = before != nullptr ? *before : DesignPoint{}};
+    bool is_near = before != nullptr;
     for (int round = 0; round < kMostRounds; ++round) {
         robust::DesignProblem problem = problem_;
-        const auto found =
-            robust::verified_search(robust::SearchKind::fast, problem, std::nullopt, nullptr, quiet, before);
+        const auto found = robust::verified_search(robust::SearchKind::fast, problem, std::nullopt, nullptr, quiet,
+                                                   is_near ? &near : nullptr);
         if (!found) return found.error();
         optimum_ = found->x;
         optimum_log_cost_ = found->log_cost;
@@ -51,8 +52,8 @@ std::optional<Error> Place::find_optimum(const RunControl& control, const Design
         const double least = std::log(kJustAboveLeast * robust::kMinTd / sweep_->reference());
         if (problem_.pid) optimum_[2] = std::max(optimum_[2], least);
         if (found->stopped || !add_worst_inside(optimum_, control.stop)) break;
-        last = optimum_;
-        before = &last;
+        near = {.x = optimum_, .curvature = found->curvature};
+        is_near = true;
     }
     keep_active_members();
     return std::nullopt;

@@ -43,10 +43,15 @@ using DesignPoint = std::array<double, 3>;
 constexpr double kMinTi = 1e-6, kMinTd = 2e-4, kMaxTd = 300;
 
 /// What a search answers.
+/// The curvature that a search has seen around a design: of ln(cost) and the active limits over the logarithms of the
+/// parameters, symmetric. A search that starts near by learns it in as many steps as there are parameters.
+using Curvature = std::array<std::array<double, 3>, 3>;
+
 struct Found {
     DesignPoint x{};
     double log_cost = 0;
     bool stopped = false;  ///< the report asked to stop: x is the best so far
+    std::optional<Curvature> curvature = {};
 };
 
 struct DesignProblem {

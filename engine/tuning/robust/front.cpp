@@ -44,7 +44,7 @@ DesignPoint RobustFront::point_of(const Design& design) const {
 /// Between the two nearest neighbours, where both are near and alike; else the nearest one. Not beyond them: each
 /// design is exact to the search's tolerance alone, which a line through two of them would magnify from one to the
 /// next.
-std::optional<DesignPoint> RobustFront::expected_at(double M) const {
+std::optional<Found> RobustFront::expected_at(double M) const {
     std::vector<std::pair<double, const Design*>> near;
     for (const auto& [other, design] : known_)
         if (design && apart(M, other) < kNeighbour) near.emplace_back(other, &*design);
@@ -52,22 +52,22 @@ std::optional<DesignPoint> RobustFront::expected_at(double M) const {
     const auto nearest_two = near.begin() + std::min<std::ptrdiff_t>(2, std::ssize(near));
     std::partial_sort(near.begin(), nearest_two, near.end(),
                       [M](const auto& a, const auto& b) { return apart(M, a.first) < apart(M, b.first); });
-    const DesignPoint nearest = point_of(*near[0].second);
+    const Found nearest{.x = point_of(*near[0].second), .curvature = near[0].second->curvature};
     if (near.size() < 2) return nearest;
     const DesignPoint next = point_of(*near[1].second);
     const double from = std::log(near[0].first - 1), to = std::log(near[1].first - 1);
     const double part = (std::log(M - 1) - from) / (to - from);
     if (part < 0) return nearest;
-    DesignPoint expected = nearest;
-    for (std::size_t i = 0; i < expected.size(); ++i) {
-        const double change = next[i] - nearest[i];
+    Found expected = nearest;
+    for (std::size_t i = 0; i < next.size(); ++i) {
+        const double change = next[i] - nearest.x[i];
         if (!(std::abs(change) < kAlike)) return nearest;
-        expected[i] += part * change;
+        expected.x[i] += part * change;
     }
     return expected;
 }
 
-Expected<Found> RobustFront::searched(const RobustOptions& limits, const DesignPoint* before, const RunControl& control,
+Expected<Found> RobustFront::searched(const RobustOptions& limits, const Found* before, const RunControl& control,
                                       Design& design) {
     auto posed = nominal_problem(problem_, limits);
     if (!posed) return posed.error();
@@ -85,6 +85,7 @@ Expected<Found> RobustFront::searched(const RobustOptions& limits, const DesignP
     if (found) {
         design.controller = controller_at(*posed, found->x);
         design.load_IAE = std::exp(found->log_cost);
+        design.curvature = found->curvature;
     }
     return found;
 }

@@ -30,15 +30,16 @@ public:
         IdealPid controller;
         double load_IAE = 0;  ///< of a unit step, to infinity; the search's own, to about 1e-4
         std::vector<Warning> warnings = {};
+        std::optional<robust::Curvature> curvature = {};  ///< that the search saw
     };
     /// M in (1, 4]. Errors: those of the method robust; cancelled if it was stopped before the search ended.
     Expected<Design> at(double M, const RunControl& control);
 
 private:
     bool in_order(double M, double load_IAE) const;
-    std::optional<robust::DesignPoint> expected_at(double M) const;
+    std::optional<robust::Found> expected_at(double M) const;
     robust::DesignPoint point_of(const Design& design) const;
-    Expected<robust::Found> searched(const RobustOptions& limits, const robust::DesignPoint* before,
+    Expected<robust::Found> searched(const RobustOptions& limits, const robust::Found* before,
                                      const RunControl& control, Design& design);
 
     const TuningProblem& problem_;

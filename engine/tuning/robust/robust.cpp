@@ -113,8 +113,7 @@ OptionSet<RobustFilterOptions> filter_options() {
 
 Expected<Found> search_everywhere(SearchKind kind, const TuningProblem& tuning, DesignProblem& problem,
                                   std::vector<LinearPlant>& others, const PlaneStart& start, CostSurface* surface,
-                                  const RunControl& control, const DesignPoint* before,
-                                  std::vector<Warning>& warnings) {
+                                  const RunControl& control, const Found* before, std::vector<Warning>& warnings) {
     problem.others = others;
     auto found = verified_search(kind, problem, start, surface, control, before);
     for (int round = 0; found && !found->stopped && tuning.family; ++round) {
@@ -126,7 +125,7 @@ Expected<Found> search_everywhere(SearchKind kind, const TuningProblem& tuning, 
         }
         others.insert(others.end(), added.begin(), added.end());
         problem.others = others;
-        const DesignPoint last = found->x;
+        const Found last = *found;
         found = verified_search(kind, problem, start, nullptr, control, &last);
     }
     return found;

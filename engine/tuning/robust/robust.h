@@ -63,7 +63,7 @@ std::optional<Error> without_optimum(const DesignProblem& problem);
 Expected<Found> search_everywhere(SearchKind kind, const TuningProblem& tuning, DesignProblem& problem,
                                   std::vector<LinearPlant>& others,
                                   const std::optional<std::pair<double, double>>& start, CostSurface* surface,
-                                  const RunControl& control, const DesignPoint* before, std::vector<Warning>& warnings);
+                                  const RunControl& control, const Found* before, std::vector<Warning>& warnings);
 
 /// The options of the filter under the names of the contract; at most one of them is given.
 OptionSet<RobustFilterOptions> filter_options();

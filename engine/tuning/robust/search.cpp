@@ -108,7 +108,7 @@ private:
         const SqpResult result = minimise(sweep_, problem_, start.x, options, watch);
         const double cost = std::isfinite(result.log_cost) ? result.log_cost : start.log_cost;
         ends_.push_back(result.x);
-        take({result.x, cost, stop});
+        take({result.x, cost, stop, result.curvature});
         return result;
     }
 
@@ -121,7 +121,8 @@ private:
             const auto feasible = feasible_near(sweep_, x);
             if (!feasible) return kNoDesign;
             const double value = std::min(kNoDesign, log_cost(problem_, *feasible, SqpOptions{}.simulation_tolerance));
-            if (value < best_->log_cost) take({*feasible, value, report_ && !report_(*feasible, value)});
+            if (value < best_->log_cost)
+                take({*feasible, value, report_ && !report_(*feasible, value), best_->curvature});
             stop = stopped();
             return value;
         };

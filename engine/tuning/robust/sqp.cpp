@@ -39,6 +39,19 @@ Vector3 vector(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
 Vector3 difference(const std::array<double, 3>& a, const std::array<double, 3>& b) { return vector(a) - vector(b); }
 DesignPoint moved(const DesignPoint& x, const Vector3& p) { return {x[0] + p[0], x[1] + p[1], x[2] + p[2]}; }
 
+Matrix3 matrix(const Curvature& curvature) {
+    Matrix3 H;
+    for (std::size_t i = 0; i < 3; ++i) H.row(static_cast<Eigen::Index>(i)) = vector(curvature[i]);
+    return H;
+}
+
+Curvature curvature(const Matrix3& H) {
+    Curvature rows;
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 3; ++j) rows[i][j] = H(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+    return rows;
+}
+
 /// BFGS on the Lagrangian with Powell's damping: stays positive definite where the constraints' curvature is not.
 void update(Matrix3& H, const Vector3& step, Vector3 y, int n) {
     const Vector3 Hs = H * step;
@@ -152,7 +165,7 @@ SqpResult minimise(const Sweep& sweep, const DesignProblem& problem, const Desig
     result.log_cost = cost.value;
     if (!std::isfinite(cost.value)) return result;
     std::vector<ActivePeak> peaks = here ? std::move(here->peaks) : sweep.peaks(result.x, kNear);
-    Matrix3 H = kFirstCurvature * Matrix3::Identity();
+    Matrix3 H = options.curvature ? matrix(*options.curvature) : Matrix3(kFirstCurvature * Matrix3::Identity());
     double radius = options.trust_radius;
     int small_steps = 0;
     std::optional<DesignPoint> stable;  // the last design whose loop was seen to be stable
@@ -203,6 +216,7 @@ SqpResult minimise(const Sweep& sweep, const DesignProblem& problem, const Desig
             y += lambda * difference(followed(candidate->peaks, peaks[i]), peaks[i].gradient);
         }
         update(H, difference(result.x, before), y, n);
+        result.curvature = curvature(H);
         cost = next;
         peaks = std::move(candidate->peaks);
     }

@@ -15,8 +15,9 @@ struct SqpOptions {
     int max_iterations = 40;
     double cost_tolerance = 1e-5;  ///< stops when the model promises less than this of ln(cost)
     double simulation_tolerance = 3e-4;
-    double trust_radius = 0.5;  ///< of a logarithm
-    bool stable_start = false;  ///< the start's loop is known to be stable
+    double trust_radius = 0.5;                ///< of a logarithm
+    bool stable_start = false;                ///< the start's loop is known to be stable
+    std::optional<Curvature> curvature = {};  ///< seen near by
     /// ln(cost) that counts: a run ends, not converged, where many times what the model promises leads not below it.
     double wanted = std::numeric_limits<double>::infinity();
 };
@@ -27,6 +28,7 @@ struct SqpResult {
     int iterations = 0;
     bool converged = false;
     bool stable = false;  ///< the loop at x is known to be stable
+    std::optional<Curvature> curvature = {};
 };
 
 /// `report` is called after every accepted step; false stops the search.

@@ -102,25 +102,41 @@ std::optional<Found> search_from_least_peak(DesignProblem& problem, const Report
         const auto start = feasible_near(sweep, least->x);
         if (!start) return std::nullopt;
         const SqpResult result = minimise(sweep, problem, *start, {}, report);
-        if (std::isfinite(result.log_cost)) return Found{result.x, result.log_cost, false};
+        if (std::isfinite(result.log_cost)) return Found{result.x, result.log_cost, false, result.curvature};
         return std::nullopt;
     }
     return std::nullopt;
 }
 
+constexpr double kShortLags = 0.01;              // of the dead time
+constexpr double kOfPromiseFromElsewhere = 0.1;  // of what a curvature of another limit promises, believed less
+
+/// Lags so short beside the dead time leave a derivative next to nothing to gain, and valleys where it costs much.
+bool all_dead_time(const DesignProblem& problem) {
+    if (problem.plant == nullptr || problem.plant->integrators() > 0) return false;
+    double lags = 0;
+    for (const auto pole : problem.plant->poles()) lags += 1 / std::abs(pole);
+    return lags < kShortLags * problem.plant->dead_time();
+}
+
 /// From a design that was right for fewer plants; empty where it cannot be moved within the limits.
-std::optional<Found> search_again(const Sweep& sweep, const DesignProblem& problem, const DesignPoint& before,
+std::optional<Found> search_again(const Sweep& sweep, const DesignProblem& problem, const Found& before,
                                   const Report& report) {
-    const auto start = feasible_near(sweep, before);
+    const auto start = feasible_near(sweep, before.x);
     if (!start) return std::nullopt;
     bool stopped = false;
     const Report watch = [&](const DesignPoint& x, double cost) {
         stopped = report && !report(x, cost);
         return !stopped;
     };
-    const SqpResult result = minimise(sweep, problem, *start, {}, watch);
+    SqpOptions options{.stable_start = true};
+    if (before.curvature && !all_dead_time(problem)) {
+        options.curvature = before.curvature;
+        options.cost_tolerance *= kOfPromiseFromElsewhere;
+    }
+    const SqpResult result = minimise(sweep, problem, *start, options, watch);
     if (!std::isfinite(result.log_cost)) return std::nullopt;
-    return Found{result.x, result.log_cost, stopped};
+    return Found{result.x, result.log_cost, stopped, result.curvature ? result.curvature : before.curvature};
 }
 
 /// The smallest common limit at which a controller is really found, from 1 % above the least peak upward; empty if none
@@ -182,14 +198,13 @@ constexpr int kRounds = 4;                 // searches under tighter limits
 constexpr double kLeastTightening = 1e-6;  // of ln M - 1: what moves a design at all
 constexpr double kMostTightening = 0.5;
 
-constexpr double kShortLags = 0.01;            // of the dead time
 constexpr double kExactRuns = 1e-5;            // tolerance of runs that compare two designs
 constexpr double kShortestTd = 1.01 * kMinTd;  // over the reference frequency: the derivative's time is at its end
 
 /// The search and its check. `promising`: a search from the usual starts may find something.
 Expected<Found> checked_search(SearchKind kind, const Sweep& sweep, DesignProblem& problem, bool promising,
                                const PlaneStart& start, CostSurface* surface, const RunControl& control,
-                               const DesignPoint* before) {
+                               const Found* before) {
     ProgressReport progress(problem, control);
     const Report report = [&](const DesignPoint& x, double cost) { return progress(x, cost); };
     std::optional<Found> found;
@@ -207,7 +222,8 @@ Expected<Found> checked_search(SearchKind kind, const Sweep& sweep, DesignProble
         tighter += 1.5 * excess * problem.limits.Ms / (problem.limits.Ms - 1) + kLeastTightening;
         const DesignProblem narrowed = tightened(problem, std::min(tighter, kMostTightening));
         const Sweep narrow_sweep(narrowed, sweep.reference());
-        const auto again = minimise(narrow_sweep, narrowed, restore(narrow_sweep, found->x).value_or(found->x), {}, {});
+        const auto again = minimise(narrow_sweep, narrowed, restore(narrow_sweep, found->x).value_or(found->x),
+                                    {.curvature = found->curvature}, {});
         found->x = again.x;
         found->log_cost = again.log_cost;
     }
@@ -216,18 +232,10 @@ Expected<Found> checked_search(SearchKind kind, const Sweep& sweep, DesignProble
                  "Try another search or a filter with a longer Tf."};
 }
 
-/// Lags so short beside the dead time leave a derivative next to nothing to gain, and valleys where it costs much.
-bool all_dead_time(const DesignProblem& problem) {
-    if (problem.plant == nullptr || problem.plant->integrators() > 0) return false;
-    double lags = 0;
-    for (const auto pole : problem.plant->poles()) lags += 1 / std::abs(pole);
-    return lags < kShortLags * problem.plant->dead_time();
-}
-
 /// A PI is a PID too. It may be the better one where Td has come to its end, and under a dead time that repeats what
 /// the derivative makes of lags far shorter than it; and it is the one that is left where no PID passes the check.
 Expected<Found> or_without_derivative(Expected<Found> found, const DesignProblem& problem, double reference,
-                                      const RunControl& control, const DesignPoint* before) {
+                                      const RunControl& control, const Found* before) {
     if (!problem.pid || (found && found->stopped)) return found;
     const bool doubtful = found ? all_dead_time(problem) || std::exp(found->x[2]) * reference <= kShortestTd
                                 : found.error().kind == ErrorKind::numerical_failure;
@@ -235,7 +243,7 @@ Expected<Found> or_without_derivative(Expected<Found> found, const DesignProblem
     DesignProblem without = problem;
     without.pid = false;
     const Sweep sweep(without, reference);
-    const DesignPoint near = before != nullptr ? DesignPoint{(*before)[0], (*before)[1], 0} : DesignPoint{};
+    const Found near = before != nullptr ? Found{.x = {before->x[0], before->x[1], 0}} : Found{};
     auto other = checked_search(SearchKind::fast, sweep, without, true, std::nullopt, nullptr, control,
                                 before != nullptr ? &near : nullptr);
     if (!other) return found;
@@ -252,10 +260,10 @@ Expected<Found> or_without_derivative(Expected<Found> found, const DesignProblem
 }  // namespace
 
 Expected<Found> verified_search(SearchKind kind, DesignProblem& problem, const PlaneStart& start, CostSurface* surface,
-                                const RunControl& control, const DesignPoint* before) {
+                                const RunControl& control, const Found* before) {
     const Sweep sweep(problem, reference_frequency(problem));
     // A design without derivative is no start for one with it.
-    const DesignPoint* near = before != nullptr && (!problem.pid || std::isfinite((*before)[2])) ? before : nullptr;
+    const Found* near = before != nullptr && (!problem.pid || std::isfinite(before->x[2])) ? before : nullptr;
     const bool promising = has_reference_optima(problem, sweep);
     return or_without_derivative(checked_search(kind, sweep, problem, promising, start, surface, control, near),
                                  problem, sweep.reference(), control, before);

@@ -30,7 +30,7 @@ std::optional<double> named_limit(const Error& error);
 /// Errors: cancelled, unstable_plant, no_feasible_controller (with the smallest limit that
 /// works), numerical_failure.
 Expected<Found> verified_search(SearchKind kind, DesignProblem& problem, const PlaneStart& start, CostSurface* surface,
-                                const RunControl& control, const DesignPoint* before);
+                                const RunControl& control, const Found* before);
 
 /// The controller whose larger peak of |S| and |T| is smallest.
 struct LeastPeak {

@@ -30,6 +30,7 @@ constexpr int kSmallStepsToEnd = 2;         // in a row, each within the toleran
 constexpr double kEnoughWon = 0.05;         // of what the model promised, for a step to be taken
 constexpr double kMostOfPromise = 5;        // a run rarely wins so many times what its model promises
 constexpr double kMuchWon = 0.7;            // of it, for the trust region to grow
+constexpr double kTellingStep = 1e-3;       // of a logarithm: a curvature from shorter ones is not handed on
 constexpr double kSmallestRadius = 1e-5;    // of a logarithm: nothing is left to win in it
 constexpr double kLargestRadius = 4;        // beyond it the linear models have no common solution at all
 constexpr double kFarRestored = 4;          // radii: what restoring moved further is another design
@@ -215,8 +216,10 @@ SqpResult minimise(const Sweep& sweep, const DesignProblem& problem, const Desig
             if (lambda == 0) continue;
             y += lambda * difference(followed(candidate->peaks, peaks[i]), peaks[i].gradient);
         }
-        update(H, difference(result.x, before), y, n);
-        result.curvature = curvature(H);
+        const Vector3 moved_by = difference(result.x, before);
+        update(H, moved_by, y, n);
+        // From a tiny step gradients' rounding tells more than their change.
+        if (longest(moved_by) > kTellingStep) result.curvature = curvature(H);
         cost = next;
         peaks = std::move(candidate->peaks);
     }

@@ -5,7 +5,6 @@
 #include "engine/controller/pid.h"
 #include "engine/numerics/fast_complex.h"
 #include "engine/numerics/pair_complex.h"
-#include "engine/plant/linear/plant_fraction.h"
 
 namespace tunewright {
 

@@ -128,11 +128,12 @@ LoopGrid make_loop_grid(const Loop& loop, double step, int density) {
     return refined_grid([&](double omega) { return loop.at(omega); }, base, step);
 }
 
-LoopGrid first_grid(const std::function<LoopPoint(double)>& at, std::vector<double> omega, double resolved_to) {
-    LoopGrid grid{std::move(omega), {}, resolved_to};
-    grid.point.reserve(grid.omega.size());
-    for (const double frequency : grid.omega) grid.point.push_back(at(frequency));
-    return grid;
+LoopGrid refined_grid(const std::function<LoopPoint(double)>& at, const std::vector<double>& base, double resolved_to,
+                      double step) {
+    LoopGrid first{base, {}, resolved_to};
+    first.point.reserve(base.size());
+    for (const double omega : base) first.point.push_back(at(omega));
+    return refined_grid(at, first, step);
 }
 
 LoopGrid refined_grid(const std::function<LoopPoint(double)>& at, const LoopGrid& base, double step) {

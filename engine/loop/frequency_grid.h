@@ -34,7 +34,8 @@ LoopGrid make_loop_grid(const Loop& loop, double step = 0.15, int density = 24);
 /// The same refinement of any loop's points, from those of a first grid.
 LoopGrid refined_grid(const std::function<LoopPoint(double)>& at, const LoopGrid& base, double step);
 
-/// A first grid at these frequencies (ascending, at least two) by one evaluation after the other.
-LoopGrid first_grid(const std::function<LoopPoint(double)>& at, std::vector<double> omega, double resolved_to);
+/// From given frequencies (ascending, at least two) up to `resolved_to`.
+LoopGrid refined_grid(const std::function<LoopPoint(double)>& at, const std::vector<double>& base, double resolved_to,
+                      double step);
 
 }  // namespace tunewright

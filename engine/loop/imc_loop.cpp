@@ -89,8 +89,7 @@ LoopGrid ImcLoop::grid() const {
     for (int i = 0; i <= n; ++i) base.push_back(low * std::pow(high / low, static_cast<double>(i) / n));
     const double longest = std::max(plant_.dead_time(), controller_.theta);
     const double resolved_to = longest > 0 ? kTurnsResolved * 2 * std::numbers::pi / longest : base.back();
-    const auto point = [this](double omega) { return at(omega); };
-    return refined_grid(point, first_grid(point, base, resolved_to), kGridStep);
+    return refined_grid([this](double omega) { return at(omega); }, base, resolved_to, kGridStep);
 }
 
 Peaks ImcLoop::peaks(const LoopGrid& grid) const {

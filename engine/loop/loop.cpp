@@ -6,6 +6,7 @@
 #include "engine/loop/controller_fraction.h"
 #include "engine/numerics/fast_complex.h"
 #include "engine/numerics/pair_complex.h"
+#include "engine/plant/linear/plant_fraction.h"
 
 namespace tunewright {
 namespace {
@@ -72,12 +73,7 @@ inline Loop::Parts Loop::parts(Complex s) const {
     const auto c = controller_fraction(gains_, s);
     const auto p = plant_fraction(*plant_, s);
     Parts parts{c.numerator, c.denominator, p.numerator, p.denominator};
-    if (const double L = plant_->dead_time(); L > 0) {
-        const double angle = -s.imag() * L;
-        Complex delay(std::cos(angle), std::sin(angle));
-        if (s.real() != 0) delay *= std::exp(-s.real() * L);
-        parts.plant_numerator = product(parts.plant_numerator, delay);
-    }
+    if (plant_->dead_time() > 0) parts.plant_numerator = product(parts.plant_numerator, delay_of(*plant_, s));
     return parts;
 }
 

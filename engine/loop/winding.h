@@ -33,7 +33,7 @@ public:
 
     /// To any point, by an angle that is known.
     void turn(double angle, Complex to) {
-        angle_ += std::arg(quotient(last_, anchor_)) + angle;
+        angle_ = this->angle() + angle;
         anchor_ = last_ = to;
     }
 

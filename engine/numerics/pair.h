@@ -22,12 +22,17 @@ inline Pair load(const double* from) {
 
 inline void store(double* to, Pair pair) { std::memcpy(to, &pair, sizeof pair); }
 
+using PairBits = std::int64_t __attribute__((vector_size(16)));
+
+inline PairBits bits_of(Pair x) {
+    PairBits bits;
+    std::memcpy(&bits, &x, sizeof bits);
+    return bits;
+}
+
 /// |x|: without the sign's bits.
 inline Pair size(Pair x) {
-    using Bits = std::int64_t __attribute__((vector_size(16)));
-    Bits bits;
-    std::memcpy(&bits, &x, sizeof bits);
-    bits &= std::int64_t{0x7fffffffffffffff};
+    const PairBits bits = bits_of(x) & std::int64_t{0x7fffffffffffffff};
     std::memcpy(&x, &bits, sizeof bits);
     return x;
 }

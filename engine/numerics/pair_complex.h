@@ -4,8 +4,9 @@
 
 #include <cmath>
 #include <complex>
-#include <cstdint>
+#include <cstddef>
 #include <numbers>
+#include <span>
 
 #include "engine/numerics/fast_complex.h"
 #include "engine/numerics/pair.h"
@@ -71,12 +72,27 @@ inline PairComplex unit_circle(Pair angle) {
     cosine = cosine * s + 1.0 / 24;
     cosine = 1.0 - (0.5 * s - s * s * cosine);
     // Quarter turns: by one sine and cosine change places, by two both change sign.
-    using Bits = std::int64_t __attribute__((vector_size(16)));
-    Bits quarter;
-    std::memcpy(&quarter, &shifted, sizeof quarter);
-    const Bits odd = (quarter & 1) != 0;
+    const PairBits quarter = bits_of(shifted), odd = (quarter & 1) != 0;
     const Pair re = odd ? sine : cosine, im = odd ? cosine : sine;
     return {((quarter + 1) & 2) != 0 ? -re : re, (quarter & 2) != 0 ? -im : im};
+}
+
+/// Of two numbers or of two at a time.
+template <class Number>
+struct FractionOf {
+    Number numerator, denominator;
+};
+
+/// Calls `pair(omega, to)` for two neighbours at a time, and where it says false or there is only one, to[i] =
+/// `one(omega)`.
+template <class Value, class One, class TwoAtATime>
+void in_pairs(std::span<const double> omega, Value* to, const One& one, const TwoAtATime& pair) {
+    const std::size_t n = omega.size();
+    for (std::size_t i = 0; i < n; i += 2) {
+        if (i + 1 < n && pair(&omega[i], to + i)) continue;
+        to[i] = one(omega[i]);
+        if (i + 1 < n) to[i + 1] = one(omega[i + 1]);
+    }
 }
 
 }  // namespace tunewright

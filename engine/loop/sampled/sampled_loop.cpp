@@ -131,8 +131,7 @@ LoopGrid SampledLoop::grid_from(double step, int density) const {
     if (base.size() < 2) base.push_back(kFarBelow * highest);
     std::sort(base.begin(), base.end());
     base.erase(std::unique(base.begin(), base.end()), base.end());
-    const auto point = [this](double omega) { return at(omega); };
-    return refined_grid(point, first_grid(point, std::move(base), highest), step);
+    return refined_grid([&](double omega) { return at(omega); }, base, highest, step);
 }
 
 LoopGrid SampledLoop::grid() const { return grid_of(kGridDensity); }

@@ -210,10 +210,7 @@ std::complex<double> LinearPlant::rational(std::complex<double> s) const {
 }
 
 std::complex<double> LinearPlant::at(std::complex<double> s) const {
-    if (L_ == 0) return rational(s);
-    const double angle = -s.imag() * L_;
-    const std::complex<double> delay(std::cos(angle), std::sin(angle));
-    return product(rational(s), s.real() == 0 ? delay : delay * std::exp(-s.real() * L_));
+    return L_ == 0 ? rational(s) : product(rational(s), delay_of(*this, s));
 }
 
 std::vector<std::complex<double>> LinearPlant::at(std::span<const double> omega) const {

@@ -2,16 +2,14 @@
 // `Number`: std::complex<double> or PairComplex.
 #pragma once
 
+#include <cmath>
+#include <complex>
+
 #include "engine/numerics/fast_complex.h"
 #include "engine/numerics/pair_complex.h"
 #include "engine/plant/linear/linear_plant.h"
 
 namespace tunewright {
-
-template <class Number>
-struct FractionOf {
-    Number numerator, denominator;
-};
 
 /// Of the plant without its dead time; finite for a finite s.
 template <class Number>
@@ -24,16 +22,11 @@ FractionOf<Number> plant_fraction(const LinearPlant& plant, Number s) {
     return p;
 }
 
-/// Calls `pair(omega, to)` for two neighbours at a time, and where it says false or there is only one, to[i] =
-/// `one(omega)`.
-template <class Value, class One, class TwoAtATime>
-void in_pairs(std::span<const double> omega, Value* to, const One& one, const TwoAtATime& pair) {
-    const std::size_t n = omega.size();
-    for (std::size_t i = 0; i < n; i += 2) {
-        if (i + 1 < n && pair(&omega[i], to + i)) continue;
-        to[i] = one(omega[i]);
-        if (i + 1 < n) to[i + 1] = one(omega[i + 1]);
-    }
+/// e^(-s L) of the plant's dead time L.
+inline std::complex<double> delay_of(const LinearPlant& plant, std::complex<double> s) {
+    const double L = plant.dead_time(), angle = -s.imag() * L;
+    const std::complex<double> turned(std::cos(angle), std::sin(angle));
+    return s.real() == 0 ? turned : turned * std::exp(-s.real() * L);
 }
 
 }  // namespace tunewright

@@ -39,12 +39,12 @@ void Place::pose() {
 
 std::optional<Error> Place::find_optimum(const RunControl& control, const DesignPoint* before) {
     const RunControl quiet{.stop = control.stop, .progress = {}, .now_ms = {}};
-    robust::Found near{.x = before != nullptr ? *before : DesignPoint{}};
-    bool is_near = before != nullptr;
+    std::optional<robust::Found> near;
+    if (before != nullptr) near = robust::Found{.x = *before};
     for (int round = 0; round < kMostRounds; ++round) {
         robust::DesignProblem problem = problem_;
         const auto found = robust::verified_search(robust::SearchKind::fast, problem, std::nullopt, nullptr, quiet,
-                                                   is_near ? &near : nullptr);
+                                                   near ? &*near : nullptr);
         if (!found) return found.error();
         optimum_ = found->x;
         optimum_log_cost_ = found->log_cost;
@@ -52,8 +52,7 @@ std::optional<Error> Place::find_optimum(const RunControl& control, const Design
         const double least = std::log(kJustAboveLeast * robust::kMinTd / sweep_->reference());
         if (problem_.pid) optimum_[2] = std::max(optimum_[2], least);
         if (found->stopped || !add_worst_inside(optimum_, control.stop)) break;
-        near = {.x = optimum_, .curvature = found->curvature};
-        is_near = true;
+        near = robust::Found{.x = optimum_, .curvature = found->curvature};
     }
     keep_active_members();
     return std::nullopt;

@@ -119,7 +119,7 @@ bool all_dead_time(const DesignProblem& problem) {
     return lags < kShortLags * problem.plant->dead_time();
 }
 
-/// From a design that was right for fewer plants; empty where it cannot be moved within the limits.
+/// From a design that was right for fewer plants or another limit; empty where it cannot be moved within the limits.
 std::optional<Found> search_again(const Sweep& sweep, const DesignProblem& problem, const Found& before,
                                   const Report& report) {
     const auto start = feasible_near(sweep, before.x);

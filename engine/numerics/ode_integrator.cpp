@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "engine/numerics/eigenvalues.h"
+#include "engine/numerics/matrix/eigenvalues.h"
 #include "engine/numerics/rosenbrock_stepper.h"
 
 namespace tunewright {

@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <limits>
 
-#include "engine/numerics/eigenvalues.h"
-#include "engine/numerics/linear_algebra.h"
+#include "engine/numerics/matrix/eigenvalues.h"
+#include "engine/numerics/matrix/linear_algebra.h"
 
 namespace tunewright {
 namespace {

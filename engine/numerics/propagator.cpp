@@ -7,8 +7,8 @@
 #include <type_traits>
 #include <utility>
 
-#include "engine/numerics/eigenvalues.h"
-#include "engine/numerics/linear_algebra.h"
+#include "engine/numerics/matrix/eigenvalues.h"
+#include "engine/numerics/matrix/linear_algebra.h"
 #include "engine/numerics/pair.h"
 
 namespace tunewright {

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "engine/numerics/eigenvalues.h"
-#include "engine/numerics/linear_algebra.h"
+#include "engine/numerics/matrix/dense.h"
+#include "engine/numerics/matrix/linear_algebra.h"
 
 namespace tunewright {
 namespace {
@@ -153,27 +153,30 @@ Expected<PlantRegion> PlantRegion::of_covariance(const Plant& plant, const std::
     const Error unusable{ErrorKind::numerical_failure, "record",
                          "The record's covariance cannot be used as a region of plants. Use uncertainty \"none\"."};
     if (n == 0 || n > kChiSquare95.size() || covariance.size() != n) return unusable;
-    std::vector<double> spread, correlation;
+    std::vector<double> spread;
     for (std::size_t i = 0; i < n; ++i) {
         if (covariance[i].size() != n || !(covariance[i][i] >= 0) || !std::isfinite(covariance[i][i])) return unusable;
         spread.push_back(std::sqrt(covariance[i][i]));
     }
-    for (std::size_t i = 0; i < n; ++i)
-        for (std::size_t j = 0; j < n; ++j) {
-            const double scales = spread[i] * spread[j];
-            correlation.push_back(i == j ? 1 : scales > 0 ? covariance[i][j] / scales : 0);
-            if (!std::isfinite(correlation.back())) return unusable;
+    const auto size = static_cast<Eigen::Index>(n);
+    Eigen::MatrixXd correlation = Eigen::MatrixXd::Identity(size, size);
+    for (Eigen::Index i = 0; i < size; ++i)
+        for (Eigen::Index j = 0; j < size; ++j) {
+            const double scales = spread[std::size_t(i)] * spread[std::size_t(j)];
+            if (i != j) correlation(i, j) = scales > 0 ? covariance[std::size_t(i)][std::size_t(j)] / scales : 0;
+            if (!std::isfinite(correlation(i, j))) return unusable;
         }
     PlantRegion region;
     region.plant_ = plant;
     region.ball_ = true;
     region.names_ = names;
     for (const auto& name : names) region.centre_.push_back(parameter(plant, name));
-    const auto eigen = symmetric_eigen(correlation, static_cast<int>(n));
-    for (std::size_t k = 0; k < n; ++k) {
-        const double size = std::sqrt(kChiSquare95[n - 1] * std::max(0.0, eigen.values[k]));
+    const PrincipalAxes principal = principal_axes(correlation);
+    for (Eigen::Index k = 0; k < size; ++k) {
+        const double reach = std::sqrt(kChiSquare95[n - 1] * std::max(0.0, principal.values(k)));
         std::vector<double> axis;
-        for (std::size_t i = 0; i < n; ++i) axis.push_back(size * spread[i] * eigen.vectors[k][i]);
+        for (std::size_t i = 0; i < n; ++i)
+            axis.push_back(reach * spread[i] * principal.vectors(static_cast<Eigen::Index>(i), k));
         region.axes_.push_back(std::move(axis));
     }
     return region;

@@ -11,7 +11,7 @@
 #include "engine/identification/fit/model_search.h"
 #include "engine/identification/record/record_kind.h"
 #include "engine/number_text.h"
-#include "engine/numerics/dense.h"
+#include "engine/numerics/matrix/dense.h"
 
 namespace tunewright {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "engine/identification/record/series.h"
-#include "engine/numerics/dense.h"
+#include "engine/numerics/matrix/dense.h"
 #include "engine/numerics/statistics.h"
 
 namespace tunewright {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/numerics/dense.h"
+#include "engine/numerics/matrix/dense.h"
 
 namespace tunewright {
 namespace {

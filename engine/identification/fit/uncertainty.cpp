@@ -8,7 +8,7 @@
 #include "engine/identification/fit/load_doubt.h"
 #include "engine/identification/fit/residual_noise.h"
 #include "engine/identification/record/series.h"
-#include "engine/numerics/dense.h"
+#include "engine/numerics/matrix/dense.h"
 
 namespace tunewright {
 namespace {

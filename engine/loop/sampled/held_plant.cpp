@@ -3,7 +3,8 @@
 #include <cmath>
 
 #include "engine/numerics/fast_complex.h"
-#include "engine/numerics/linear_algebra.h"
+#include "engine/numerics/matrix/eigenvalues.h"
+#include "engine/numerics/matrix/linear_algebra.h"
 
 namespace tunewright {
 namespace {

@@ -7,8 +7,7 @@
 #include <utility>
 
 #include "engine/number_text.h"
-#include "engine/numerics/eigenvalues.h"
-#include "engine/numerics/linear_algebra.h"
+#include "engine/numerics/matrix/eigenvalues.h"
 #include "engine/numerics/polynomial_roots.h"
 
 namespace tunewright {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/numerics/linear_algebra.h"
+#include "engine/numerics/matrix/linear_algebra.h"
 #include "engine/plant/linear/factor.h"
 #include "engine/plant/linear/plant_fraction.h"
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "engine/error.h"
-#include "engine/numerics/eigenvalues.h"
-#include "engine/numerics/linear_algebra.h"
+#include "engine/numerics/matrix/eigenvalues.h"
+#include "engine/numerics/matrix/linear_algebra.h"
 #include "engine/plant/expression/taylor.h"
 #include "engine/plant/nonlinear/nonlinear_system.h"
 

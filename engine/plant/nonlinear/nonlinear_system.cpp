@@ -9,7 +9,7 @@
 
 #include "engine/expected.h"
 #include "engine/number_text.h"
-#include "engine/numerics/linear_algebra.h"
+#include "engine/numerics/matrix/linear_algebra.h"
 #include "engine/plant/expression/program_run.h"
 #include "engine/plant/expression/tokens.h"
 

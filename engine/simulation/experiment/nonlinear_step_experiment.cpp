@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "engine/number_text.h"
-#include "engine/numerics/eigenvalues.h"
-#include "engine/numerics/linear_algebra.h"
+#include "engine/numerics/matrix/eigenvalues.h"
+#include "engine/numerics/matrix/linear_algebra.h"
 #include "engine/simulation/experiment/nonlinear_experiments.h"
 #include "engine/simulation/nonlinear/plant_run.h"
 

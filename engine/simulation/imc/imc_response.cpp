@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include "engine/numerics/linear_algebra.h"
+#include "engine/numerics/matrix/linear_algebra.h"
 #include "engine/numerics/propagator.h"
 #include "engine/simulation/run/stopping_rule.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/numerics/linear_algebra.h"
+#include "engine/numerics/matrix/linear_algebra.h"
 #include "engine/simulation/linear/response_system.h"
 
 namespace tunewright {

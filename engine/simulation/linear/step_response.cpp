@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/numerics/linear_algebra.h"
+#include "engine/numerics/matrix/linear_algebra.h"
 
 namespace tunewright {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/numerics/eigenvalues.h"
-#include "engine/numerics/linear_algebra.h"
+#include "engine/numerics/matrix/eigenvalues.h"
+#include "engine/numerics/matrix/linear_algebra.h"
 #include "engine/plant/linear/linear_plant.h"
 #include "engine/simulation/run/delayed_input.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/numerics/linear_algebra.h"
+#include "engine/numerics/matrix/linear_algebra.h"
 #include "engine/numerics/sign_change.h"
 
 namespace tunewright {

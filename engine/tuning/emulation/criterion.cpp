@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kPenalty = 100;    // of a run that ends early, in J at rest
 constexpr double kLargest = 1e100;  // of a penalised J
-constexpr int kMaxSteps = 20000;
+constexpr int kMaxSimulationSteps = 20000;
 
 }  // namespace
 
@@ -28,7 +28,7 @@ PidRun Criterion::run(std::size_t scenario, const IdealPid& pid, double toleranc
     NonlinearOptions options;
     options.tolerance = tolerance;
     options.horizon = problem_.horizon;
-    options.max_steps = kMaxSteps;
+    options.max_steps = kMaxSimulationSteps;
     options.initial = asked.x0;
     options.samples = problem_.intervals + 1;
     options.nodes = false;

@@ -237,6 +237,14 @@ SettingsPoint clipped(const SettingsPoint& point, const Bounds& bounds) {
     return inside;
 }
 
+SettingsPoint sizes_of(const SettingsPoint& point, const Bounds& bounds) {
+    constexpr double kLeastShare = 1e-3;
+    SettingsPoint sizes = point;
+    for (std::size_t i = 0; i < sizes.size(); ++i)
+        sizes[i] = std::max(std::abs(sizes[i]), kLeastShare * (bounds.high[i] - bounds.low[i]));
+    return sizes;
+}
+
 namespace {
 
 constexpr double kShareOfPlantTime = 0.5;  // the default target's lags over the plant's slowest time

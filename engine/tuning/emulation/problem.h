@@ -81,6 +81,9 @@ SettingsPoint point_of(const EmulationProblem& problem, const IdealPid& pid);
 
 SettingsPoint clipped(const SettingsPoint& point, const Bounds& bounds);
 
+/// By which each unknown's changes are measured: its magnitude, near 0 a share of its range.
+SettingsPoint sizes_of(const SettingsPoint& point, const Bounds& bounds);
+
 /// The response that the nonlinear controller is to give, by the option `target`: as asked for, or from the
 /// linearisation. Errors: invalid_argument, `where` = "target/...", where it does not suit the relative
 /// degree, which the sentence names, or is not stable.

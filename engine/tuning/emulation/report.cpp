@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/number_text.h"
-#include "engine/numerics/linear_algebra.h"
+#include "engine/numerics/matrix/linear_algebra.h"
 #include "engine/tuning/emulation/problem.h"
 #include "engine/tuning/emulation/search.h"
 
@@ -97,7 +97,6 @@ std::optional<Flatness> flatness(const std::function<double(const SettingsPoint&
 constexpr double kOnBound = 1e-6;        // of the range
 constexpr double kLeftOfU = 0.1;         // of int u_nl^2, beyond which a PID cannot emulate (Remark 7)
 constexpr double kLeftOfY = 0.05;        // of int y_nl^2, likewise
-constexpr double kMinSize = 1e-3;        // of an unknown near 0, relative to its range
 constexpr int kReportedIntervals = 400;  // of a run in the answer
 
 // The answer carries every so many samples.
@@ -199,9 +198,7 @@ void add_bounds(EmulationReport& report, const EmulationProblem& problem, const 
 void add_flatness(EmulationReport& report, const Criterion& criterion, const Remark6& remark6,
                   const EmulatedDesign& design, const std::stop_token& stop) {
     const EmulationProblem& problem = criterion.problem();
-    SettingsPoint sizes = design.point;
-    for (std::size_t i = 0; i < sizes.size(); ++i)
-        sizes[i] = std::max(std::abs(sizes[i]), kMinSize * (design.bounds.high[i] - design.bounds.low[i]));
+    const SettingsPoint sizes = sizes_of(design.point, design.bounds);
     const auto J = [&](const SettingsPoint& point) {
         if (stop.stop_requested()) return 0.0;
         return problem.remark6 ? remark6.J(point)

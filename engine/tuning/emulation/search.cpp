@@ -8,7 +8,7 @@
 #include "engine/loop/peaks.h"
 #include "engine/loop/stability.h"
 #include "engine/numerics/extremum.h"
-#include "engine/numerics/linear_algebra.h"
+#include "engine/numerics/matrix/linear_algebra.h"
 #include "engine/plant/linear/linear_plant.h"
 #include "engine/progress.h"
 #include "engine/simulation/linear/indices.h"
@@ -106,18 +106,17 @@ constexpr double kSearchTolerance = 1e-8;        // of those between which diffe
 constexpr int kExplored[] = {0, 0, 30, 60, 90};  // points of the global look, by the number of unknowns
 constexpr int kPolished = 2;                     // starts that are polished
 constexpr double kApart = 0.05;                  // of two of them, in a unit box
-constexpr int kMaxSteps = 25;
+constexpr int kMaxPolishSteps = 25;
 constexpr double kDifference = 1e-4;    // of a derivative, relative to the unknown
 constexpr double kFlat = 1e-10;         // expected fall of J, relative, at which a polish ends
 constexpr double kFirstDamping = 1e-3;  // of Levenberg and Marquardt
 constexpr double kMinDamping = 1e-9;
 constexpr double kMaxDamping = 1e8;
-constexpr double kConfident = 10;      // damping up to which a small expected fall means that J is flat
-constexpr double kMaxStep = 0.5;       // relative to the unknown
-constexpr double kMinSize = 1e-3;      // of an unknown near 0, relative to its range
-constexpr double kSubplexStep = 0.02;  // in a unit box
-constexpr double kNotLookedAt = 700;   // ln J of a point where the search is stopped
-constexpr double kLeastJ = 1e-300;     // keeps the logarithm of an exact emulation finite
+constexpr double kConfident = 10;       // damping up to which a small expected fall means that J is flat
+constexpr double kMaxPolishStep = 0.5;  // relative to the unknown
+constexpr double kSubplexStep = 0.02;   // in a unit box
+constexpr double kNotLookedAt = 700;    // ln J of a point where the search is stopped
+constexpr double kLeastJ = 1e-300;      // keeps the logarithm of an exact emulation finite
 constexpr int kSubplexEvaluations = 150;
 constexpr double kSubplexTolerance = 1e-9;
 constexpr double kLogarithmicFrom = 3;  // high/low from which a bound's scale is logarithmic
@@ -233,9 +232,8 @@ private:
     std::optional<Slope> slope_at(const SettingsPoint& point, const std::vector<double>& residuals) const {
         const std::size_t n = point.size();
         std::vector<std::vector<double>> columns(n);
-        Slope slope{std::vector<double>(n), std::vector<double>(n, 0), std::vector<double>(n * n, 0)};
+        Slope slope{sizes_of(point, bounds_), std::vector<double>(n, 0), std::vector<double>(n * n, 0)};
         for (std::size_t i = 0; i < n; ++i) {
-            slope.size[i] = std::max(std::abs(point[i]), kMinSize * (bounds_.high[i] - bounds_.low[i]));
             SettingsPoint moved = point;
             moved[i] += kDifference * slope.size[i];
             if (stopped()) return std::nullopt;
@@ -262,8 +260,8 @@ private:
         std::vector<double> H = slope.H, low(n), high(n);
         for (std::size_t i = 0; i < n; ++i) {
             H[i * n + i] *= 1 + damping;
-            low[i] = std::min(0.0, std::max((bounds_.low[i] - point[i]) / slope.size[i], -kMaxStep));
-            high[i] = std::max(0.0, std::min((bounds_.high[i] - point[i]) / slope.size[i], kMaxStep));
+            low[i] = std::min(0.0, std::max((bounds_.low[i] - point[i]) / slope.size[i], -kMaxPolishStep));
+            high[i] = std::max(0.0, std::min((bounds_.high[i] - point[i]) / slope.size[i], kMaxPolishStep));
         }
         const std::vector<double> d = best_step_in_box(H, slope.g, low, high);
         SettingsPoint next = point;
@@ -291,7 +289,7 @@ private:
         keep(point, cost);
         if (!cost.ended.empty()) return false;
         double damping = kFirstDamping;
-        for (int i = 0; i < kMaxSteps; ++i) {
+        for (int i = 0; i < kMaxPolishSteps; ++i) {
             const auto slope = slope_at(point, residuals);
             if (!slope) return false;
             for (;;) {

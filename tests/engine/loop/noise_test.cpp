@@ -7,7 +7,7 @@
 #include <numbers>
 #include <random>
 
-#include "engine/numerics/linear_algebra.h"
+#include "engine/numerics/matrix/linear_algebra.h"
 
 namespace tunewright {
 namespace {

@@ -1,6 +1,6 @@
 // Linear systems in any units.
-#include "engine/numerics/linear_algebra.h"
-#include "engine/numerics/eigenvalues.h"
+#include "engine/numerics/matrix/linear_algebra.h"
+#include "engine/numerics/matrix/eigenvalues.h"
 
 #include <gtest/gtest.h>
 

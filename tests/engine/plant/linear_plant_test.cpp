@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "engine/numerics/linear_algebra.h"
+#include "engine/numerics/matrix/eigenvalues.h"
 
 namespace tunewright {
 namespace {

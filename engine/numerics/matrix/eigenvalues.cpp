@@ -1,9 +1,11 @@
-#include "engine/numerics/eigenvalues.h"
+#include "engine/numerics/matrix/eigenvalues.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "engine/numerics/matrix/dense.h"
 
 namespace tunewright {
 namespace {
@@ -68,15 +70,9 @@ std::vector<Complex> eigenvalues(std::span<const double> matrix, int n) {
     return paired(Eigen::EigenSolver<Matrix>(A, false).eigenvalues());
 }
 
-SymmetricEigen symmetric_eigen(std::span<const double> matrix, int n) {
-    const Eigen::SelfAdjointEigenSolver<Matrix> solver(as_matrix(matrix, n));
-    SymmetricEigen result;
-    for (Eigen::Index k = 0; k < n; ++k) {
-        result.values.push_back(solver.eigenvalues()(k));
-        const Eigen::VectorXd vector = solver.eigenvectors().col(k);
-        result.vectors.emplace_back(vector.data(), vector.data() + n);
-    }
-    return result;
+PrincipalAxes principal_axes(const Matrix& A) {
+    const Eigen::SelfAdjointEigenSolver<Matrix> solver(A);
+    return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
 double balanced_norm(std::span<const double> matrix, int n) {

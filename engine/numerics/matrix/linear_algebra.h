@@ -2,7 +2,6 @@
 // compiled once, behind this header. Matrices are n x n, row by row. Eigenvalues: eigenvalues.h.
 #pragma once
 
-#include <complex>
 #include <optional>
 #include <span>
 #include <vector>
@@ -32,14 +31,6 @@ std::vector<double> matrix_product(std::span<const double> A, std::span<const do
 
 /// The rows of a matrix one after another.
 std::vector<double> row_by_row(const std::vector<std::vector<double>>& rows);
-
-/// C (sI - A)^-1 B + D by solving the linear system.
-std::complex<double> resolvent_response(std::span<const double> A, std::span<const double> B, std::span<const double> C,
-                                        double D, int n, std::complex<double> s);
-
-/// C (sI - A)^-1 for a row C: entries are not finite where s is an eigenvalue.
-std::vector<std::complex<double>> resolvent_row(std::span<const double> A, std::span<const double> C, int n,
-                                                std::complex<double> s);
 
 /// exp(M), scaling and squaring with a Pade approximant (Higham 2005, as Eigen implements it).
 std::vector<double> matrix_exponential(std::span<const double> matrix, int n);

@@ -15,14 +15,6 @@ Eigen::MatrixXd gram(const Eigen::Ref<const Eigen::MatrixXd>& A, const Eigen::Re
 /// A' b for A of n x m.
 Eigen::VectorXd transpose_times(const Eigen::Ref<const Eigen::MatrixXd>& A, const Eigen::Ref<const Eigen::VectorXd>& b);
 
-/// Eigenvalues in ascending order, eigenvectors in columns of length 1.
-struct PrincipalAxes {
-    Eigen::VectorXd values;
-    Eigen::MatrixXd vectors;
-};
-/// Of a symmetric matrix, of which the lower triangle is read.
-PrincipalAxes principal_axes(const Eigen::MatrixXd& A);
-
 /// A x = b for A symmetric and positive semidefinite (LDL' with pivoting), of which the lower triangle is read.
 Eigen::VectorXd solve_symmetric(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 
@@ -48,5 +40,13 @@ struct Reflected {
     Eigen::VectorXd diagonal;
 };
 Reflected reflected(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
+
+/// Eigenvalues in ascending order, eigenvectors in columns of length 1.
+struct PrincipalAxes {
+    Eigen::VectorXd values;
+    Eigen::MatrixXd vectors;
+};
+/// Of a symmetric matrix, of which the lower triangle is read.
+PrincipalAxes principal_axes(const Eigen::MatrixXd& A);
 
 }  // namespace tunewright

@@ -1,4 +1,4 @@
-#include "engine/numerics/linear_algebra.h"
+#include "engine/numerics/matrix/linear_algebra.h"
 
 #include <Eigen/LU>
 #include <Eigen/SVD>
@@ -11,7 +11,6 @@ namespace tunewright {
 namespace {
 
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-using Complex = std::complex<double>;
 
 Matrix as_matrix(std::span<const double> values, int n) { return Eigen::Map<const Matrix>(values.data(), n, n); }
 
@@ -36,41 +35,6 @@ std::vector<double> matrix_product(std::span<const double> A, std::span<const do
     Eigen::Map<Matrix>(result.data(), n, n).noalias() =
         Eigen::Map<const Matrix>(A.data(), n, n) * Eigen::Map<const Matrix>(B.data(), n, n);
     return result;
-}
-
-Complex resolvent_response(std::span<const double> A, std::span<const double> B, std::span<const double> C, double D,
-                           int n, Complex s) {
-    if (n == 0) return D;
-    const Eigen::VectorXd b = Eigen::Map<const Eigen::VectorXd>(B.data(), n);
-    const Eigen::VectorXd c = Eigen::Map<const Eigen::VectorXd>(C.data(), n);
-    Eigen::MatrixXcd pencil = (-as_matrix(A, n)).cast<Complex>();
-    pencil.diagonal().array() += s;
-    const Eigen::VectorXcd x = pencil.partialPivLu().solve(b.cast<Complex>());
-    return c.cast<Complex>().dot(x) + D;
-}
-
-namespace {
-
-/// Solves (sI - A)' x = C'. Where it is known that there are at most kMost states nothing is allocated: most plants are
-/// small, and a loop asks at hundreds of frequencies.
-template <int kStates, int kMost>
-std::vector<Complex> resolvent_row_of(std::span<const double> A, std::span<const double> C, int n, Complex s) {
-    Eigen::Matrix<Complex, kStates, kStates, Eigen::ColMajor, kMost, kMost> pencil =
-        (-Eigen::Map<const Matrix>(A.data(), n, n).transpose()).cast<Complex>();
-    pencil.diagonal().array() += s;
-    const Eigen::Matrix<Complex, kStates, 1, Eigen::ColMajor, kMost, 1> row =
-        pencil.partialPivLu().solve(Eigen::Map<const Eigen::VectorXd>(C.data(), n).cast<Complex>());
-    return {row.data(), row.data() + n};
-}
-
-}  // namespace
-
-std::vector<Complex> resolvent_row(std::span<const double> A, std::span<const double> C, int n, Complex s) {
-    constexpr int kAnyNumber = Eigen::Dynamic, kFew = 4;
-    if (n == 1) return {C[0] / (s - A[0])};
-    if (n == 2) return resolvent_row_of<2, 2>(A, C, n, s);
-    if (n <= kFew) return resolvent_row_of<kAnyNumber, kFew>(A, C, n, s);
-    return resolvent_row_of<kAnyNumber, kAnyNumber>(A, C, n, s);
 }
 
 std::vector<double> matrix_exponential(std::span<const double> matrix, int n) {

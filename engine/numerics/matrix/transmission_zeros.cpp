@@ -1,4 +1,4 @@
-#include "engine/numerics/eigenvalues.h"
+#include "engine/numerics/matrix/eigenvalues.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

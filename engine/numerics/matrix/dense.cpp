@@ -1,6 +1,8 @@
-#include "engine/numerics/dense.h"
+#include "engine/numerics/matrix/dense.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <Eigen/QR>
 
 namespace tunewright {
 
@@ -11,11 +13,6 @@ MatrixXd gram(const Eigen::Ref<const MatrixXd>& A, const Eigen::Ref<const Matrix
 
 VectorXd transpose_times(const Eigen::Ref<const MatrixXd>& A, const Eigen::Ref<const VectorXd>& b) {
     return A.transpose() * b;
-}
-
-PrincipalAxes principal_axes(const MatrixXd& A) {
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(A);
-    return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
 VectorXd solve_symmetric(const MatrixXd& A, const VectorXd& b) { return A.ldlt().solve(b); }

@@ -1,5 +1,5 @@
-// Eigenvalues of small dense matrices, and what rests on them, as plain functions: Eigen's eigenvalue solvers are
-// compiled once, behind this header. Matrices are n x n, row by row.
+// Eigenvalues of small dense matrices, and the zeros and the response of a state space, as plain functions: Eigen's
+// solvers are compiled once, behind this header. Matrices are n x n, row by row. Those of a symmetric one: dense.h.
 #pragma once
 
 #include <complex>
@@ -13,13 +13,6 @@ namespace tunewright {
 /// None where an entry is not finite.
 std::vector<std::complex<double>> eigenvalues(std::span<const double> matrix, int n);
 
-/// Of a real symmetric matrix: vectors[k] has length one and belongs to values[k], in ascending order.
-struct SymmetricEigen {
-    std::vector<double> values;
-    std::vector<std::vector<double>> vectors;
-};
-SymmetricEigen symmetric_eigen(std::span<const double> matrix, int n);
-
 /// Largest row sum of absolute values that a diagonal similarity leaves about as small as any (balancing): whatever
 /// units the states of x' = M x have, a bound on the speed of what they do together. States that nothing comes back
 /// from, or nothing goes to, do not count; 0 for a nilpotent chain of them.
@@ -32,5 +25,13 @@ double balanced_norm(std::span<const double> matrix, int n);
 std::optional<std::vector<std::complex<double>>> transmission_zeros(std::span<const double> A,
                                                                     std::span<const double> B,
                                                                     std::span<const double> C, double D, int n);
+
+/// C (sI - A)^-1 B + D by solving the linear system.
+std::complex<double> resolvent_response(std::span<const double> A, std::span<const double> B, std::span<const double> C,
+                                        double D, int n, std::complex<double> s);
+
+/// C (sI - A)^-1 for a row C: entries are not finite where s is an eigenvalue.
+std::vector<std::complex<double>> resolvent_row(std::span<const double> A, std::span<const double> C, int n,
+                                                std::complex<double> s);
 
 }  // namespace tunewright

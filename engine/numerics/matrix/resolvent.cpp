@@ -1,0 +1,43 @@
+#include "engine/numerics/matrix/eigenvalues.h"
+
+#include <Eigen/LU>
+#include <cstddef>
+
+namespace tunewright {
+namespace {
+
+using Complex = std::complex<double>;
+
+/// Solves (sI - A)' x = C'. Where it is known that there are at most kMost states nothing is allocated: most plants are
+/// small, and a loop asks at hundreds of frequencies.
+template <int kStates, int kMost>
+std::vector<Complex> row_of(std::span<const double> A, std::span<const double> C, int n, Complex s) {
+    // A row by row is A' column by column.
+    Eigen::Matrix<Complex, kStates, kStates, Eigen::ColMajor, kMost, kMost> pencil =
+        (-Eigen::Map<const Eigen::MatrixXd>(A.data(), n, n)).cast<Complex>();
+    pencil.diagonal().array() += s;
+    const Eigen::Matrix<Complex, kStates, 1, Eigen::ColMajor, kMost, 1> row =
+        pencil.partialPivLu().solve(Eigen::Map<const Eigen::VectorXd>(C.data(), n).cast<Complex>());
+    return {row.data(), row.data() + n};
+}
+
+}  // namespace
+
+std::vector<Complex> resolvent_row(std::span<const double> A, std::span<const double> C, int n, Complex s) {
+    constexpr int kAnyNumber = Eigen::Dynamic, kFew = 4;
+    if (n == 1) return {C[0] / (s - A[0])};
+    if (n == 2) return row_of<2, 2>(A, C, n, s);
+    if (n <= kFew) return row_of<kAnyNumber, kFew>(A, C, n, s);
+    return row_of<kAnyNumber, kAnyNumber>(A, C, n, s);
+}
+
+Complex resolvent_response(std::span<const double> A, std::span<const double> B, std::span<const double> C, double D,
+                           int n, Complex s) {
+    if (n == 0) return D;
+    const std::vector<Complex> row = resolvent_row(A, C, n, s);
+    Complex response = D;
+    for (std::size_t i = 0; i < row.size(); ++i) response += row[i] * B[i];
+    return response;
+}
+
+}  // namespace tunewright

@@ -21,13 +21,25 @@ Few solve_symmetric(const FewByFew& A, const Few& b) { return A.ldlt().solve(b);
 
 VectorXd solve_square(const MatrixXd& A, const VectorXd& b) { return A.fullPivLu().solve(b); }
 
-MatrixXd inverse_of(const MatrixXd& A) { return A.fullPivLu().inverse(); }
+// Column by column, here and below: Eigen's forms for many columns at once take half as long again to compile.
+MatrixXd inverse_of(const MatrixXd& A) {
+    const Eigen::FullPivLU<MatrixXd> lu(A);
+    MatrixXd inverse(A.rows(), A.cols());
+    for (Eigen::Index k = 0; k < A.cols(); ++k) inverse.col(k) = lu.solve(VectorXd(VectorXd::Unit(A.rows(), k)));
+    return inverse;
+}
 
 VectorXd least_squares(const MatrixXd& A, const VectorXd& b) { return A.colPivHouseholderQr().solve(b); }
 
 Reflected reflected(const MatrixXd& A, const MatrixXd& B) {
-    const Eigen::HouseholderQR<MatrixXd> qr(A);
-    return {qr.householderQ().adjoint() * B, qr.matrixQR().diagonal()};
+    const Eigen::ColPivHouseholderQR<MatrixXd> qr(A);
+    Reflected result{B, qr.matrixQR().diagonal()};
+    for (Eigen::Index k = 0; k < B.cols(); ++k) {
+        VectorXd column = B.col(k);
+        column.applyOnTheLeft(qr.householderQ().adjoint());
+        result.B.col(k) = column;
+    }
+    return result;
 }
 
 }  // namespace tunewright

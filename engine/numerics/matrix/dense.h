@@ -33,8 +33,8 @@ Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& A);
 /// The x with the least |A x - b| (QR with column pivoting): dependent columns get 0.
 Eigen::VectorXd least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 
-/// A = Q R for A of n x m, n >= m: Q' B, of whose rows the last n - m are what no combination of A's columns reaches,
-/// and the diagonal of R.
+/// A P = Q R for A of n x m, n >= m, its columns in the order P: Q' B, of whose rows the last n - m are what no
+/// combination of A's columns reaches, and the diagonal of R.
 struct Reflected {
     Eigen::MatrixXd B;
     Eigen::VectorXd diagonal;

@@ -9,6 +9,7 @@ import subprocess
 import tempfile
 import threading
 import time
+import uuid
 
 from postgres import Cluster
 from service import Service
@@ -107,6 +108,7 @@ class Poster:
         self.service = service
         self.body = json.dumps(request)
         self.wanted = wanted
+        self.name = uuid.uuid4().hex  # two posters at one service never mean the same job
         self.next = 0
         self.ids = []
         self.refusals = []
@@ -126,7 +128,7 @@ class Poster:
             if number >= self.wanted:
                 return
             while not self.over and time.monotonic() < self.end:
-                if self._post("faults-%d" % number):
+                if self._post("%s-%d" % (self.name, number)):
                     break
                 time.sleep(0.05)
 

@@ -13,7 +13,8 @@ from service import LONG, QUICK, Service
 
 # Some 20 ms of work: long enough to be caught in the middle, short enough for hundreds.
 SOME_WORK = {"plant": {"type": "sopdt", "K": 1, "T1": 5, "T2": 2, "L": 1},
-             "tune": [{"method": "robust", "search": "nelder_mead"}], "evaluate": {"points": 0}}
+             "tune": [{"method": "robust", "search": "nelder_mead", "Ms": ms} for ms in (1.4, 1.6, 1.8)],
+             "evaluate": {"points": 0}}
 LEASE = 2
 OPTIONS = ("--workers", "2", "--lease", str(LEASE), "--drain-timeout", "0")
 

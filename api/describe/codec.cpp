@@ -176,11 +176,18 @@ Codec<std::vector<double>> numbers(std::size_t least, std::size_t most, const Nu
                 target.assign(value.size(), 0);
                 const std::size_t before = reader.count();
                 for (std::size_t i = 0; i < value.size() && reader.count() < before + kFaultsListed; ++i) {
+                    const Json& element = value[i];
+                    if (element.is_number()) {
+                        const double read = element.get<double>();
+                        // Among numbers of a matrix or a record one that small is the rounding of 0.
+                        if (std::abs(read) < kSmallestNumber && !rule.exclusive_minimum) continue;
+                        if (broken_rule(read, rule).empty()) {
+                            target[i] = read;
+                            continue;
+                        }
+                    }
                     const Reader::At at(reader, i);
-                    // Among numbers of a matrix or a record one that small is the rounding of 0.
-                    const bool rounding = value[i].is_number() && std::abs(value[i].get<double>()) < kSmallestNumber;
-                    if (rounding && !rule.exclusive_minimum) continue;
-                    if (const auto read = read_number(value[i], rule, reader)) target[i] = *read;
+                    read_number(element, rule, reader);
                 }
             },
             [](const std::vector<double>& values, Writer& out) {

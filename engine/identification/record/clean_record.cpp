@@ -78,6 +78,8 @@ void scale_rows(const RecordRows& rows, CleanRecord& clean) {
     s.u_scale = 0;
     for (double u : rows.change_level) s.u_scale = std::max(s.u_scale, std::abs(u - s.u_rest));
     clean.row = rows.number;
+    clean.t.reserve(rows.t.size());
+    clean.y.reserve(rows.y.size());
     for (std::size_t i = 0; i < rows.t.size(); ++i) {
         clean.t.push_back((rows.t[i] - s.t_origin) / s.t_scale);
         clean.y.push_back((rows.y[i] - s.y_origin) / s.y_scale);
@@ -86,6 +88,11 @@ void scale_rows(const RecordRows& rows, CleanRecord& clean) {
         clean.v_time.push_back((rows.change_time[j] - s.t_origin) / s.t_scale);
         clean.v_level.push_back((rows.change_level[j] - s.u_rest) / s.u_scale);
     }
+}
+
+/// A record of the same input and facts, without samples: of a long one those are nearly all of it.
+CleanRecord without_all_samples(const CleanRecord& record) {
+    return {record, {}, {}, {}, record.v_time, record.v_level};
 }
 
 /// The mean of v over `blocks` blocks of equal length.
@@ -200,19 +207,18 @@ bool unevenly_spaced(const CleanRecord& record) {
 
 CleanRecord thin_out(const CleanRecord& record, int most) {
     constexpr int kMaxBlocks = 400;
-    CleanRecord thin = record;
-    if (record.changes() > kMaxBlocks) average_input(record, kMaxBlocks, thin);
     const int n = record.samples();
-    if (n <= most) return thin;
     // Where u keeps moving, all of the record is transient.
-    if (record.changes() > 4) return every_few(thin, most);
+    CleanRecord thin = n <= most              ? record
+                       : record.changes() > 4 ? every_few(record, most)
+                                              : without_all_samples(record);
+    if (record.changes() > kMaxBlocks) average_input(record, kMaxBlocks, thin);
+    if (n <= most || record.changes() > 4) return thin;
     std::vector<int> chosen = {0, n - 1};
     for (int i = 0; i < most / 2; ++i) chosen.push_back(static_cast<int>(static_cast<long long>(i) * n / (most / 2)));
     add_transients(record, most / 2 / std::clamp(record.changes(), 1, 4), chosen);
     std::sort(chosen.begin(), chosen.end());
     chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
-    thin.t.clear();
-    thin.y.clear();
     for (int i : chosen) {
         thin.t.push_back(record.t[i]);
         thin.y.push_back(record.y[i]);
@@ -223,9 +229,7 @@ CleanRecord thin_out(const CleanRecord& record, int most) {
 CleanRecord every_few(const CleanRecord& record, int most) {
     const int n = record.samples(), stride = (n + most - 1) / most;
     if (stride <= 1) return record;
-    CleanRecord few = record;
-    few.t.clear();
-    few.y.clear();
+    CleanRecord few = without_all_samples(record);
     // One stride throughout: evenly spaced samples stay evenly spaced.
     for (int i = (n - 1) % stride; i < n; i += stride) {
         few.t.push_back(record.t[static_cast<std::size_t>(i)]);
@@ -235,26 +239,23 @@ CleanRecord every_few(const CleanRecord& record, int most) {
 }
 
 CleanRecord first_part(const CleanRecord& record, double fraction) {
-    CleanRecord part = record;
+    CleanRecord part{record, {}, {}, {}, {}, {}};
     part.scale.t_scale *= fraction;
-    const auto kept = [&](const std::vector<double>& times) {
-        return static_cast<std::size_t>(std::upper_bound(times.begin(), times.end(), fraction) - times.begin());
+    const auto take = [&](const std::vector<double>& times, const std::vector<double>& values, auto& to, auto& of) {
+        const auto kept = std::upper_bound(times.begin(), times.end(), fraction) - times.begin();
+        to.assign(times.begin(), times.begin() + kept);
+        of.assign(values.begin(), values.begin() + kept);
+        for (double& t : to) t /= fraction;
     };
-    part.t.resize(kept(record.t));
-    part.y.resize(part.t.size());
-    part.v_time.resize(kept(record.v_time));
-    part.v_level.resize(part.v_time.size());
-    for (double& t : part.t) t /= fraction;
-    for (double& t : part.v_time) t /= fraction;
+    take(record.t, record.y, part.t, part.y);
+    take(record.v_time, record.v_level, part.v_time, part.v_level);
     return part;
 }
 
 CleanRecord block_means(const CleanRecord& record, int most) {
     const int n = record.samples(), block = (n + most - 1) / most;
     if (block <= 1) return record;
-    CleanRecord means = record;
-    means.t.clear();
-    means.y.clear();
+    CleanRecord means = without_all_samples(record);
     for (int i = 0; i < n; i += block) {
         const int end = std::min(n, i + block);
         means.t.push_back(std::accumulate(record.t.begin() + i, record.t.begin() + end, 0.0) / (end - i));

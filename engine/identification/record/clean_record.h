@@ -38,13 +38,8 @@ struct Cleaning {
 /// "line 12" or "row 12".
 std::string row_text(const Cleaning& cleaning, int row);
 
-/// Dimensionless samples and input. The input v is 0 before the first sample and v_level[j] from v_time[j] on; v_time
-/// ascends strictly, from 0. Sample times ascend from 0, equal times may repeat (each row's y is data). |v| <= 1, y
-/// spans 1, the record lasts 1.
-struct CleanRecord {
-    std::vector<double> t, y;
-    std::vector<int> row;  ///< of each sample of the whole record, as Cleaning numbers them
-    std::vector<double> v_time, v_level;
+/// What is known of a whole record, whichever of its samples are looked at.
+struct RecordFacts {
     std::optional<double> y_rest;             ///< y0 where the user gave it
     bool u0_given = false;                    ///< then the level of rest is known, also for integrating plants
     RecordKind kind = RecordKind::automatic;  ///< as given
@@ -55,6 +50,15 @@ struct CleanRecord {
     bool moved_between_rows =
         false;             ///< each change of u was put midway between the row that shows it and the one before
     int moves_placed = 0;  ///< changes of u that were put at rows that are missing (fit/record_repair.h)
+};
+
+/// Dimensionless samples and input. The input v is 0 before the first sample and v_level[j] from v_time[j] on; v_time
+/// ascends strictly, from 0. Sample times ascend from 0, equal times may repeat (each row's y is data). |v| <= 1, y
+/// spans 1, the record lasts 1.
+struct CleanRecord : RecordFacts {
+    std::vector<double> t, y;
+    std::vector<int> row;  ///< of each sample, as Cleaning numbers them; empty where samples were chosen or averaged
+    std::vector<double> v_time, v_level;
 
     int samples() const { return static_cast<int>(t.size()); }
     int changes() const { return static_cast<int>(v_time.size()); }

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <boost/sort/spreadsort/float_sort.hpp>
 #include <cmath>
 #include <numeric>
 
@@ -46,7 +47,7 @@ double noise_std(std::span<const double> y) {
 
 double quantisation_step(std::span<const double> y) {
     std::vector<double> values(y.begin(), y.end());
-    std::sort(values.begin(), values.end());
+    boost::sort::spreadsort::float_sort(values.begin(), values.end());
     const double range = values.back() - values.front();
     constexpr double kSame = 1e-9;    // values this close, relative to the largest, differ by rounding in binary
     constexpr double kOffGrid = 0.1;  // of a step: printed digits and converters lie nearer to their grid

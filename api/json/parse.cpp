@@ -1,0 +1,230 @@
+#include <rapidjson/error/error.h>
+#include <rapidjson/reader.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <vector>
+
+#include "api/json/json.h"
+
+namespace tunewright::api {
+namespace {
+
+Problem refused(std::string pointer, std::string detail) {
+    Problem problem{422, "invalid-request", "The request is not valid", detail, {}, {}};
+    problem.errors.push_back({std::move(pointer), std::move(detail)});
+    return problem;
+}
+
+template <class Integer>
+std::optional<Integer> whole_number(std::string_view token) {
+    Integer value{};
+    const auto [end, fault] = std::from_chars(token.data(), token.data() + token.size(), value);
+    if (fault != std::errc{} || end != token.data() + token.size()) return std::nullopt;
+    return value;
+}
+
+// Infinity for what no double holds; what is too small is 0, or the nearest that there is.
+double nearest_double(std::string_view token) {
+    double value = 0;
+    const auto [end, fault] = std::from_chars(token.data(), token.data() + token.size(), value);
+    if (fault == std::errc{}) return value;
+    // That function does not say on which side a number leaves the range.
+    return std::strtod(std::string(token).c_str(), nullptr);
+}
+
+std::string place(std::string_view text, std::size_t position) {
+    const std::string_view before = text.substr(0, position);
+    const auto line = 1 + std::count(before.begin(), before.end(), '\n');
+    const std::size_t start = before.rfind('\n') == before.npos ? 0 : before.rfind('\n') + 1;
+    return "line " + std::to_string(line) + ", column " + std::to_string(before.size() - start + 1);
+}
+
+// Builds the tree from the reader's events. The names of its functions are the reader's.
+class TreeBuilder : public rapidjson::BaseReaderHandler<rapidjson::UTF8<>, TreeBuilder> {
+public:
+    explicit TreeBuilder(std::string_view text) : text_(text) {}
+
+    bool Null() { return add(nullptr); }
+    bool Bool(bool value) { return add(value); }
+    bool String(const char* text, rapidjson::SizeType length, bool) {
+        std::string value(text, length);
+        return is_paired(value) && add(std::move(value));
+    }
+    bool StartObject() { return open(Json::object()); }
+    bool StartArray() { return open(Json::array()); }
+    bool EndObject(rapidjson::SizeType) { return close(); }
+    bool EndArray(rapidjson::SizeType) { return close(); }
+
+    bool RawNumber(const char* text, rapidjson::SizeType length, bool) {
+        const std::string_view token(text, length);
+        const auto real = [](char c) { return c == '.' || c == 'e' || c == 'E'; };
+        if (std::none_of(token.begin(), token.end(), real)) {
+            if (const auto whole = whole_number<std::uint64_t>(token)) return add(*whole);
+            if (const auto whole = whole_number<std::int64_t>(token)) return add(*whole);
+        }
+        const double value = nearest_double(token);
+        return std::isinf(value) ? too_large(token) : add(value);
+    }
+
+    bool Key(const char* text, rapidjson::SizeType length, bool) {
+        const std::string name(text, length);
+        if (!is_paired(name)) return false;
+        Json& object = *stack_.back();
+        if (object.contains(name)) {
+            problem_ = refused(pointer() + "/" + pointer_segment(name),
+                               name + " is given twice in the same object; only one value can hold. Remove one.");
+            return false;
+        }
+        if (object.size() >= kMaxMembers) {
+            problem_ = refused(pointer(), "The object has more than " + std::to_string(kMaxMembers) +
+                                              " members; none of the contract needs so many.");
+            return false;
+        }
+        names_.back() = name;
+        return true;
+    }
+
+    void fault(rapidjson::ParseErrorCode code, std::size_t position) {
+        if (code == rapidjson::kParseErrorTermination) return;  // the builder's own, and already told
+        if (code == rapidjson::kParseErrorNumberTooBig) {
+            too_large(text_.substr(position, text_.find_first_of(" \t\r\n,]}", position) - position));
+        } else if (code == rapidjson::kParseErrorDocumentEmpty && position == text_.size()) {
+            problem_ = not_json(
+                "The body is empty; send a JSON object such as {\"plant\": {\"type\": \"fopdt\", \"K\": 2, \"T\": 10, "
+                "\"L\": 3}}.");
+        } else {
+            problem_ = not_json("The body is not JSON: the text at " + place(text_, position) + " cannot be read" +
+                                hint(position) + ".");
+        }
+    }
+
+    Json take() { return std::move(root_); }
+    const std::optional<Problem>& problem() const { return problem_; }
+
+private:
+    bool too_large(std::string_view number) {
+        problem_ = refused(pointer_of_next(), "The number " + std::string(number.substr(0, 40)) +
+                                                  " is too large; it must fit a double (up to 1.8e308).");
+        return false;
+    }
+
+    // The reader refuses the first half of a surrogate pair that stands alone, and takes the second.
+    bool is_paired(std::string_view value) {
+        for (std::size_t i = value.find('\xED'); i != value.npos; i = value.find('\xED', i + 1)) {
+            if (static_cast<unsigned char>(value[i + 1]) < 0xA0) continue;
+            problem_ =
+                not_json("The body is not JSON: a text has \\udc00 to \\udfff without the first half of the pair.");
+            return false;
+        }
+        return true;
+    }
+
+    // The spellings that other languages write and JSON does not have.
+    std::string hint(std::size_t position) const {
+        const std::size_t from = position > 12 ? position - 12 : 0;
+        const std::string_view around = text_.substr(from, 24);
+        for (const char* word : {"NaN", "Infinity", "nan", "inf"}) {
+            if (around.find(word) != around.npos)
+                return " (JSON has no NaN or Infinity: leave the field out or write a number)";
+        }
+        if (around.find('\'') != around.npos) return " (texts stand in double quotes)";
+        if (position >= text_.size()) return " (it ends too early: a bracket or quote is not closed)";
+        if (around.find(",}") != around.npos || around.find(",]") != around.npos)
+            return " (no comma after the last element)";
+        return "";
+    }
+
+    template <class Value>
+    Json* place_value(Value&& value) {
+        if (stack_.empty()) {
+            root_ = std::forward<Value>(value);
+            return &root_;
+        }
+        Json& parent = *stack_.back();
+        if (parent.is_array()) return &parent.get_ref<Json::array_t&>().emplace_back(std::forward<Value>(value));
+        auto& members = parent.get_ref<Json::object_t&>();
+        if (members.size() == members.capacity()) grow(members);
+        // The name is known to be new: appending spares the library's search.
+        members.Container::emplace_back(names_.back(), std::forward<Value>(value));
+        return &members.back().second;
+    }
+
+    // Left to itself the library copies all members: pairs with a constant name cannot be moved.
+    static void grow(Json::object_t& members) {
+        Json::object_t larger;
+        larger.reserve(2 * members.size() + 4);
+        for (auto& [name, member] : members) larger.Container::emplace_back(name, std::move(member));
+        members.swap(larger);
+    }
+
+    template <class Value>
+    bool add(Value&& value) {
+        place_value(std::forward<Value>(value));
+        return true;
+    }
+
+    bool open(Json container) {
+        if (stack_.size() >= kMaxDepth) {
+            problem_ = refused(pointer(), "Objects and arrays are nested more than " + std::to_string(kMaxDepth) +
+                                              " deep; the contract needs 6.");
+            return false;
+        }
+        stack_.push_back(place_value(std::move(container)));
+        names_.emplace_back();
+        return true;
+    }
+
+    bool close() {
+        stack_.pop_back();
+        names_.pop_back();
+        return true;
+    }
+
+    std::string pointer() const {
+        std::string path;
+        for (std::size_t i = 0; i + 1 < stack_.size(); ++i) path += "/" + segment(i, 1);
+        return path;
+    }
+
+    std::string pointer_of_next() const {
+        return stack_.empty() ? "" : pointer() + "/" + segment(stack_.size() - 1, 0);
+    }
+
+    // `placed` 1: the element that is open now is already the array's last.
+    std::string segment(std::size_t level, std::size_t placed) const {
+        if (stack_[level]->is_array()) return std::to_string(stack_[level]->size() - placed);
+        return pointer_segment(names_[level]);
+    }
+
+    std::string_view text_;
+    Json root_;
+    std::vector<Json*> stack_;
+    std::vector<std::string> names_;
+    std::optional<Problem> problem_;
+};
+
+}  // namespace
+
+std::variant<Json, Problem> parse(std::string_view text) {
+    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+    if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+    // The reader takes a zero for the end of its text, and writes strings without their escapes over it.
+    std::string copy(text);
+    TreeBuilder builder(text);
+    rapidjson::InsituStringStream stream(copy.data());
+    rapidjson::Reader reader;
+    constexpr unsigned kFlags =
+        rapidjson::kParseInsituFlag | rapidjson::kParseNumbersAsStringsFlag | rapidjson::kParseValidateEncodingFlag;
+    const rapidjson::ParseResult result = reader.Parse<kFlags>(stream, builder);
+    if (result.IsError())
+        builder.fault(result.Code(), result.Offset());
+    else if (stream.Tell() < text.size())
+        builder.fault(rapidjson::kParseErrorDocumentRootNotSingular, stream.Tell());
+    if (builder.problem()) return *builder.problem();
+    return builder.take();
+}
+
+}  // namespace tunewright::api

@@ -13,6 +13,8 @@ namespace {
 constexpr double kRestWeight = 3.1622776601683795;
 /// A column whose part outside the others' span is relatively below this is no independent one.
 constexpr double kDependent = 1e-9;
+/// With that share of its length left a column has lost no digits.
+constexpr double kMuchIsLeft = 0.7;
 /// Of a logarithm, for central differences: truncation (1e-8) and rounding (1e-12) both stay small.
 constexpr double kStep = 1e-4;
 
@@ -40,7 +42,7 @@ public:
           first_anchor_(n_ + (record_.y_rest ? 1 : 0)),
           rows_(first_anchor_ + anchor_rows(anchors_)),
           y_(rows_),
-          columns_(rows_, form.linear_size()) {
+          columns_(Eigen::MatrixXd::Zero(rows_, form.linear_size())) {
         for (int i = 0; i < n_; ++i) y_[i] = record_.y[i];
         if (record_.y_rest) y_[n_] = kRestWeight * *record_.y_rest;
         int row = first_anchor_;
@@ -48,19 +50,19 @@ public:
             y_[row++] = anchor.weight * anchor.value.real();
             if (anchor.omega > 0) y_[row++] = anchor.weight * anchor.value.imag();
         }
+        // The same at every shape.
+        columns_.col(form_.offset_index()).head(n_).setOnes();
+        if (record_.y_rest) columns_(n_, form_.offset_index()) = kRestWeight;
+        if (form_.slope) columns_.col(form_.slope_index()).head(n_) = column(record_.t);
     }
 
     /// n_rows x linear_size, kept until the next call.
     const Eigen::MatrixXd& regressors(const ModelShape& shape) {
         const bool zero = form_.gains() == 2;
         respond(shape, zero ? 1 : 0);
-        columns_.setZero();
         fill(0, now_, zero);
-        columns_.col(form_.offset_index()).head(n_).setOnes();
         if (form_.other_level) fill(form_.level_index(), level_, zero);
-        if (form_.slope) columns_.col(form_.slope_index()).head(n_) = column(record_.t);
         if (form_.load) fill(form_.load_index(), load_, zero);
-        if (record_.y_rest) columns_(n_, form_.offset_index()) = kRestWeight;
         int row = first_anchor_;
         for (const FrequencyConstraint& anchor : anchors_) {
             const std::complex<double> s(0, anchor.omega), g = anchor.weight * unit_transfer(shape, s);
@@ -196,8 +198,8 @@ private:
         }
     }
 
-    /// Gram-Schmidt with one repetition; the gain's column comes last, so that its independence of the others is what
-    /// is judged.
+    /// Gram-Schmidt, with one repetition where little is left of a column (Giraud, Langou, Rozloznik 2005); the gain's
+    /// column comes last, so that its independence of the others is what is judged.
     void orthogonalise(const Eigen::MatrixXd& columns, Projection& result) const {
         const int m = static_cast<int>(columns.cols());
         result.basis.resize(rows_, m);
@@ -210,14 +212,16 @@ private:
             auto q = result.basis.col(k);
             q = columns.col(m - 1 - k);
             const double length = q.norm();
-            for (int pass = 0; pass < 2; ++pass) {
+            double rest = length;
+            for (int pass = 0; pass < 2 && k > 0; ++pass) {
                 for (int i = 0; i < k; ++i) {
                     const double part = result.basis.col(i).dot(q);
                     R(i, k) += part;
                     q -= part * result.basis.col(i);
                 }
+                rest = q.norm();
+                if (rest > kMuchIsLeft * length) break;
             }
-            const double rest = q.norm();
             constexpr double kTiny = 1e-150;  // its square is still above 0
             if (!(rest > kDependent * length) || rest < kTiny) {
                 if (k == m - 1) result.determined = false;

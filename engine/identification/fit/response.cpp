@@ -11,8 +11,9 @@
 namespace tunewright {
 namespace {
 
-/// Whether the times from place i on are kMarch more steps of dt.
+/// Whether the times from place i on are unit_systems::kMarch more steps of dt.
 bool evenly(std::span<const double> times, std::size_t i, double dt) {
+    using unit_systems::kSameStep;
     const double* t = times.data() + i;
     const Pair first = load(t) - load(t - 1), second = load(t + 2) - load(t + 1);
     return !any((size(first - dt) > kSameStep) | (size(second - dt) > kSameStep));
@@ -20,7 +21,8 @@ bool evenly(std::span<const double> times, std::size_t i, double dt) {
 
 template <int kDerivatives, std::size_t kOrder, class Transition>
 void run(std::span<const double> times, const InputSteps& input, double L,
-         const DrivenSystem<kOrder, Transition>& system, UnitResponse& out) {
+         const unit_systems::DrivenSystem<kOrder, Transition>& system, UnitResponse& out) {
+    using namespace unit_systems;
     const std::array<double*, 3> to = {out.x.data(), out.x1.data(), out.x2.data()};
     const auto event_of = [&](std::size_t j) {
         return j < input.time.size() ? input.time[j] + L : std::numeric_limits<double>::infinity();
@@ -51,6 +53,7 @@ void run(std::span<const double> times, const InputSteps& input, double L,
 
 template <int kDerivatives>
 void run(std::span<const double> t, const InputSteps& input, const ModelShape& shape, UnitResponse& out) {
+    using namespace unit_systems;
     const auto of = [&](const auto& system) { run<kDerivatives>(t, input, shape.L(), system, out); };
     switch (shape.structure) {
         case Structure::fopdt: return of(lag(shape.T()));

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-namespace tunewright {
+namespace tunewright::unit_systems {
 
 QuadraticDecay::QuadraticDecay(double a1, double a2) : a2_(a2), sigma_(a1 / (2 * a2)) {
     const double square = sigma_ * sigma_ - 1 / a2;
@@ -34,4 +34,4 @@ StateMatrix<3> CubicDecay::over(double dt) const {
     return out;
 }
 
-}  // namespace tunewright
+}  // namespace tunewright::unit_systems

@@ -10,7 +10,7 @@
 
 #include "engine/numerics/pair.h"
 
-namespace tunewright {
+namespace tunewright::unit_systems {
 
 /// Steps of DrivenState::march: two pairs.
 inline constexpr std::size_t kMarch = 4;
@@ -256,4 +256,4 @@ inline DrivenSystem<3, CubicDecay> third_order(double T3, double a1, double a2) 
     return {{{1, 0, 1}, {{{0, 0, 1}, {f, 0, -f}, {-f * f, w * f, f * f}}}, {1, 0, 0}}, {T3, a1, a2}};
 }
 
-}  // namespace tunewright
+}  // namespace tunewright::unit_systems

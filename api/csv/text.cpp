@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdint>
 
+#include "api/json/json.h"
+
 namespace tunewright::api {
 namespace {
 
@@ -21,22 +23,6 @@ void append(std::string& out, std::uint32_t code) {
         byte(0x80 | ((code >> 6) & 0x3F));
     }
     byte(0x80 | (code & 0x3F));
-}
-
-// The length of the UTF-8 sequence at `at`; 0 if it is none.
-std::size_t sequence(std::string_view text, std::size_t at) {
-    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-    const unsigned char lead = byte(at);
-    const std::size_t length = lead < 0x80 ? 1 : lead >= 0xC2 && lead < 0xE0 ? 2 : lead >= 0xE0 && lead < 0xF0 ? 3 : 4;
-    if (length == 1) return 1;
-    if (lead < 0xC2 || lead > 0xF4 || at + length > text.size()) return 0;
-    for (std::size_t i = 1; i < length; ++i) {
-        if ((byte(at + i) & 0xC0) != 0x80) return 0;
-    }
-    if ((lead == 0xE0 && byte(at + 1) < 0xA0) || (lead == 0xED && byte(at + 1) > 0x9F) ||
-        (lead == 0xF0 && byte(at + 1) < 0x90) || (lead == 0xF4 && byte(at + 1) > 0x8F))
-        return 0;
-    return length;
 }
 
 std::string from_utf16(std::string_view bytes, bool big_endian) {
@@ -85,15 +71,6 @@ bool zeros_at(std::string_view bytes, std::size_t parity) {
 }
 
 }  // namespace
-
-bool is_utf8(std::string_view text) {
-    for (std::size_t at = 0; at < text.size();) {
-        const std::size_t length = sequence(text, at);
-        if (length == 0) return false;
-        at += length;
-    }
-    return true;
-}
 
 std::string encoding_of(std::string_view bytes) {
     const bool little = bytes.substr(0, 2) == "\xFF\xFE", big = bytes.substr(0, 2) == "\xFE\xFF";

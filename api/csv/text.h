@@ -18,10 +18,6 @@ std::string_view utf8_text(std::string_view bytes, std::string& storage);
 /// "windows-1252", or "iso-8859-1" where none of its letters is beyond Latin-1's.
 std::string encoding_of(std::string_view bytes);
 
-/// Whether every byte belongs to a valid UTF-8 sequence (RFC 3629): overlong forms, surrogates and what lies above
-/// U+10FFFF are not valid.
-bool is_utf8(std::string_view text);
-
 /// The line that begins at offset `at`, without its line end; `at` is then moved to the next line. \n, \r\n and \r end
 /// a line, and so does the end of the text. Returns nothing where `at` is at the end of the text:
 ///

@@ -132,10 +132,4 @@ std::string pointer_segment(std::string_view name) {
     return out;
 }
 
-std::string_view whole_characters(std::string_view text, std::size_t bytes) {
-    if (text.size() <= bytes) return text;
-    while (bytes > 0 && (static_cast<unsigned char>(text[bytes]) & 0xC0) == 0x80) --bytes;
-    return text.substr(0, bytes);
-}
-
 }  // namespace tunewright::api

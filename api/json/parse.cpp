@@ -211,13 +211,17 @@ private:
 std::variant<Json, Problem> parse(std::string_view text) {
     constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
     if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+    TreeBuilder builder(text);
+    // The reader's own check reads on behind the end of a text that breaks off within a character.
+    if (const std::size_t valid = valid_utf8(text); valid < text.size()) {
+        builder.fault(rapidjson::kParseErrorStringInvalidEncoding, valid);
+        return *builder.problem();
+    }
     // The reader takes a zero for the end of its text, and writes strings without their escapes over it.
     std::string copy(text);
-    TreeBuilder builder(text);
     rapidjson::InsituStringStream stream(copy.data());
     rapidjson::Reader reader;
-    constexpr unsigned kFlags =
-        rapidjson::kParseInsituFlag | rapidjson::kParseNumbersAsStringsFlag | rapidjson::kParseValidateEncodingFlag;
+    constexpr unsigned kFlags = rapidjson::kParseInsituFlag | rapidjson::kParseNumbersAsStringsFlag;
     const rapidjson::ParseResult result = reader.Parse<kFlags>(stream, builder);
     if (result.IsError())
         builder.fault(result.Code(), result.Offset());

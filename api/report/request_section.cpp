@@ -1,5 +1,6 @@
 // The whole request, so that it can be run again.
 #include "api/json/digest.h"
+#include "api/json/json.h"
 #include "api/report/figures.h"
 
 namespace tunewright::api {

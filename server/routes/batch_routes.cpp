@@ -1,7 +1,6 @@
 #include <memory>
 #include <optional>
 
-#include "api/csv/text.h"
 #include "api/json/json.h"
 #include "server/http/app/negotiation.h"
 #include "server/http/app/problems.h"

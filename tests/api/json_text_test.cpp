@@ -4,6 +4,7 @@
 #include <random>
 
 #include "api/json/digest.h"
+#include "api/json/json.h"
 #include "api/json/writer.h"
 #include "support.h"
 

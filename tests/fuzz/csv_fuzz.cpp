@@ -11,7 +11,6 @@
 
 #include "api/batch/reader.h"
 #include "api/csv/record.h"
-#include "api/csv/text.h"
 #include "api/json/json.h"
 
 namespace tunewright::api {

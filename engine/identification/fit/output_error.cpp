@@ -13,8 +13,8 @@ namespace {
 constexpr double kRestWeight = 3.1622776601683795;
 /// A column whose part outside the others' span is relatively below this is no independent one.
 constexpr double kDependent = 1e-9;
-/// With that share of its length left a column has lost no digits.
-constexpr double kMuchIsLeft = 0.7;
+/// With that share of its length left a column has lost one digit at most.
+constexpr double kMuchIsLeft = 0.1;
 /// Of a logarithm, for central differences: truncation (1e-8) and rounding (1e-12) both stay small.
 constexpr double kStep = 1e-4;
 

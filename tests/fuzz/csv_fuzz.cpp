@@ -10,8 +10,10 @@
 #include <string>
 
 #include "api/batch/reader.h"
+#include "api/contract/terms.h"
 #include "api/csv/record.h"
 #include "api/json/json.h"
+#include "engine/tuning/robust/verified_search.h"
 
 namespace tunewright::api {
 
@@ -22,6 +24,12 @@ std::variant<PreparedJob, Problem> prepare_entry(std::string_view body, const Jo
     return PreparedJob{"", 60, std::string(body), ""};
 }
 
+std::variant<Notify, Problem> read_notify(std::string_view json) {
+    auto parsed = parse(json);
+    if (auto* problem = std::get_if<Problem>(&parsed)) return std::move(*problem);
+    return Notify{};
+}
+
 }  // namespace tunewright::api
 
 namespace tunewright {
@@ -30,6 +38,8 @@ const std::string& default_method() {
     static const std::string id = "robust";
     return id;
 }
+// No search ends here.
+std::optional<double> robust::named_limit(const Error&) { return std::nullopt; }
 }  // namespace tunewright
 
 namespace {

@@ -1,5 +1,7 @@
 #include "server/jobs/running/workers.h"
 
+#include <algorithm>
+
 #include "server/clock.h"
 #include "server/executor.h"
 #include "server/jobs/running/result_outbox.h"
@@ -86,7 +88,8 @@ void Workers::end(const std::shared_ptr<HeldJob>& held, api::JobOutcome outcome,
                                                                      : std::move(outcome.outline_json);
     end.first = held->job.batch.empty();
     end.version = settings_.version;
-    end.finished_at = settings_.now();
+    // The database's clock said when it began; ours follows that to a millisecond or so.
+    end.finished_at = std::max(settings_.now(), held->job.started_at.value_or(held->job.created_at));
     outbox_.finish({held, std::move(end), seconds, std::move(outcome.method)});
 }
 

@@ -46,7 +46,9 @@ void add_record_warnings(const CleanRecord& record, IdentifiedModel& model) {
 
 void note_start(const CleanRecord& record, const Fit& fit, DataQuality& quality) {
     if (!fit.form.other_level && !(fit.form.slope && is_integrating(fit.form.structure))) return;
-    const double level = level_of_rest(fit) * record.scale.u_scale + record.scale.u_rest;
+    constexpr double kRounding = 1e-12;  // of u's steps
+    const double rest = level_of_rest(fit), moved = std::abs(rest) > kRounding ? rest : 0;
+    const double level = moved * record.scale.u_scale + record.scale.u_rest;
     quality.notes.push_back("The record does not start at rest: y rests at u = " + text(level) +
                             ", as estimated from the record (the first u is " + text(record.scale.u_rest) +
                             "). Give u0 if it is known.");

@@ -45,7 +45,7 @@ void run(std::span<const double> times, const InputSteps& input, double L,
         if (std::abs(dt - before) > kSameStep) continue;
         for (; i + kMarch <= times.size() && times[i + kMarch - 1] < event && evenly(times, i, dt); i += kMarch) {
             if (std::abs(dt - march.dt) > kSameStep) march.prepare(dt, steps.over(dt), system.readings);
-            state.template march<kDerivatives>(march, to, i);
+            state.template march<kDerivatives>(march, times[i + kMarch - 1] - times[i - 1], to, i);
         }
         now = times[i - 1];
     }

@@ -128,15 +128,16 @@ public:
         }
     }
 
-    /// kMarch steps of dt, read from place i on: each state is this one times a power of the transition, so none waits
-    /// for the one before, and the processor computes two in one instruction.
+    /// kMarch steps, read from place i on: each state is this one times a power of the transition, so none waits for
+    /// the one before, and the processor computes two in one instruction. They took `took`: an integral forgets no
+    /// rounding.
     template <int kDerivatives>
-    void march(const March<kOrder>& march, const std::array<double*, 3>& to, std::size_t i) {
+    void march(const March<kOrder>& march, double took, const std::array<double*, 3>& to, std::size_t i) {
         read_march<0>(march, to[0] + i);
         if constexpr (kDerivatives > 0) read_march<1>(march, to[1] + i);
         if constexpr (kDerivatives > 1) read_march<2>(march, to[2] + i);
         step(march.last);
-        area_ += v_ * (march.dt * kMarch);
+        area_ += v_ * took;
     }
 
 private:

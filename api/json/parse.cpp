@@ -111,15 +111,12 @@ private:
         return false;
     }
 
-    // The reader refuses the first half of a surrogate pair that stands alone, and takes the second.
+    // The text is UTF-8: what is not has come from an escape. The reader refuses the first half of a surrogate pair
+    // that stands alone, and takes the second.
     bool is_paired(std::string_view value) {
-        for (std::size_t i = value.find('\xED'); i != value.npos; i = value.find('\xED', i + 1)) {
-            if (static_cast<unsigned char>(value[i + 1]) < 0xA0) continue;
-            problem_ =
-                not_json("The body is not JSON: a text has \\udc00 to \\udfff without the first half of the pair.");
-            return false;
-        }
-        return true;
+        if (is_utf8(value)) return true;
+        problem_ = not_json("The body is not JSON: a text has \\udc00 to \\udfff without the first half of the pair.");
+        return false;
     }
 
     // The spellings that other languages write and JSON does not have.

@@ -129,8 +129,8 @@ public:
     }
 
     /// kMarch steps, read from place i on: each state is this one times a power of the transition, so none waits for
-    /// the one before, and the processor computes two in one instruction. They took `took`: an integral forgets no
-    /// rounding.
+    /// the one before, and the processor computes two in one instruction. `took` is their time from sample to sample: a
+    /// sum of rounded lengths would drift from it, and an integral with it.
     template <int kDerivatives>
     void march(const March<kOrder>& march, double took, const std::array<double*, 3>& to, std::size_t i) {
         read_march<0>(march, to[0] + i);

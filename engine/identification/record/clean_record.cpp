@@ -209,11 +209,12 @@ CleanRecord thin_out(const CleanRecord& record, int most) {
     constexpr int kMaxBlocks = 400;
     const int n = record.samples();
     // Where u keeps moving, all of the record is transient.
-    CleanRecord thin = n <= most              ? record
-                       : record.changes() > 4 ? every_few(record, most)
-                                              : without_all_samples(record);
-    if (record.changes() > kMaxBlocks) average_input(record, kMaxBlocks, thin);
-    if (n <= most || record.changes() > 4) return thin;
+    if (n <= most || record.changes() > 4) {
+        CleanRecord thin = every_few(record, most);
+        if (record.changes() > kMaxBlocks) average_input(record, kMaxBlocks, thin);
+        return thin;
+    }
+    CleanRecord thin = without_all_samples(record);
     std::vector<int> chosen = {0, n - 1};
     for (int i = 0; i < most / 2; ++i) chosen.push_back(static_cast<int>(static_cast<long long>(i) * n / (most / 2)));
     add_transients(record, most / 2 / std::clamp(record.changes(), 1, 4), chosen);

@@ -54,6 +54,7 @@ Expected<BuiltLoop> evaluate_sampled(const Subject& subject, const SampledPid& l
         return Error{ErrorKind::unsupported, "implement",
                      "A loop as it is built needs a model of the plant: points of a frequency response do not say what "
                      "lies above half the sampling frequency. Identify a model first."};
+    if (const auto error = refuse_sampling(*linear, law.Ts, law.computation_delay)) return *error;
     BuiltLoop built;
     const SampledLoop loop(*linear, law);
     const LoopGrid grid = loop.grid();
@@ -71,10 +72,12 @@ Expected<BuiltLoop> evaluate_sampled(const Subject& subject, const SampledPid& l
     if (limited.actuator) all.output = limited.actuator;
     const Simulate simulate = [&](const ProgramLimits& program, const StepInputs& inputs,
                                   std::optional<double> horizon) {
-        if (system != nullptr) return simulate_sampled(*system, law, program, inputs, {.horizon = horizon});
-        return simulate_sampled(*linear, law, program, inputs, {.horizon = horizon});
+        const SampledOptions run{.horizon = horizon, .stop = options.stop};
+        if (system != nullptr) return simulate_sampled(*system, law, program, inputs, run);
+        return simulate_sampled(*linear, law, program, inputs, run);
     };
     add_performance(built, simulate, all, options);
+    if (auto error = stopped(options)) return *error;
     return built;
 }
 

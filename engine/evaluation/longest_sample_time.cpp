@@ -13,6 +13,7 @@ namespace {
 constexpr double kFirstSample = 0.1;   // of 1/omega_Ms: where the search starts
 constexpr double kShortest = 1e-3;     // of 1/omega_Ms
 constexpr double kLongest = 1e3;       // of 1/omega_Ms: where it ends
+constexpr double kMostInDelay = 1e4;   // sample times in the dead time: a loop is looked at once for each
 constexpr double kShorter = 0.6;       // of a sample time: a shorter one that the whole loop must bear too
 constexpr double kLightDamping = 0.5;  // of a pole
 constexpr double kNext = 1.1;          // from one sample time to the next, where they are looked at one by one
@@ -75,7 +76,7 @@ private:
     double excess_at(double Ts) const {
         return std::log(SampledLoop(plant_, {.gains = gains_, .Ts = Ts}).Ms() / limit_);
     }
-    double shortest() const { return kShortest / omega_Ms_; }
+    double shortest() const { return std::max(kShortest / omega_Ms_, plant_.dead_time() / kMostInDelay); }
     double longest() const { return kLongest / omega_Ms_; }
 
     /// Where the continuous loop's peak comes to the limit.
@@ -92,7 +93,7 @@ private:
     /// loop confirms.
     std::optional<double> by_peak() {
         const auto Ts = guess();
-        if (!Ts) return std::nullopt;
+        if (!Ts || *Ts < shortest()) return std::nullopt;
         low_ = std::max(kShorter * *Ts, shortest());
         f_low_ = excess_at(*low_);
         if (f_low_ <= 0 && std::abs(excess_at(*Ts)) <= kWholeLoop) return Ts;

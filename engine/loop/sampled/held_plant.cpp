@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "engine/number_text.h"
 #include "engine/numerics/fast_complex.h"
 #include "engine/numerics/matrix/eigenvalues.h"
 #include "engine/numerics/matrix/linear_algebra.h"
@@ -13,8 +14,18 @@ using Index = std::size_t;
 using Complex = std::complex<double>;
 
 constexpr double kOneMultiple = 1e-9;  // of a sample: a dead time that near to a multiple is one
+constexpr int kMostCounted = 1'000'000'000;
 
 }  // namespace
+
+std::optional<Error> refuse_sampling(const LinearPlant& plant, double sample_time, double computation_delay) {
+    const double delay = plant.dead_time() + computation_delay;
+    if (delay <= kMostDelaySamples * sample_time) return std::nullopt;
+    return Error{ErrorKind::invalid_argument, "implement/sample_time",
+                 "Dead time and computation delay together are " + text(delay) + ", more than " +
+                     std::to_string(kMostDelaySamples) + " sample times of " + text(sample_time) +
+                     ". Give a longer sample_time; a twentieth of the dead time is short."};
+}
 
 UnitCircle::UnitCircle(double angle) {
     const double s = std::sin(0.5 * angle), c = std::cos(0.5 * angle), sine = 2 * s * c;
@@ -25,6 +36,7 @@ UnitCircle::UnitCircle(double angle) {
 
 SampledDelay in_samples(double delay, double sample_time) {
     const double count = delay / sample_time, nearest = std::round(count);
+    if (!(count < kMostCounted)) return {kMostCounted, 0};
     if (std::abs(count - nearest) <= kOneMultiple * std::max(1.0, nearest)) return {static_cast<int>(nearest), 0};
     const double whole = std::floor(count);
     return {static_cast<int>(whole), delay - whole * sample_time};

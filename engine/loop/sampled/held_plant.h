@@ -10,8 +10,10 @@
 #pragma once
 
 #include <complex>
+#include <optional>
 #include <vector>
 
+#include "engine/error.h"
 #include "engine/plant/linear/linear_plant.h"
 
 namespace tunewright {
@@ -24,9 +26,16 @@ struct UnitCircle {
     std::complex<double> minus_one;       ///< z - 1
 };
 
+/// Sample times that a dead time may last: more are no loop that anybody runs, and cost without end.
+inline constexpr int kMostDelaySamples = 100'000;
+
+/// An error at implement/sample_time where dead time and computation delay together last longer than that.
+std::optional<Error> refuse_sampling(const LinearPlant& plant, double sample_time, double computation_delay);
+
 class HeldPlant {
 public:
-    /// `plant` is kept and must outlive this. `sample_time` > 0; `computation_delay` >= 0 adds to the dead time.
+    /// `plant` is kept and must outlive this. `sample_time` > 0; `computation_delay` >= 0 adds to the dead time, which
+    /// ends after 1e9 sample times.
     HeldPlant(const LinearPlant& plant, double sample_time, double computation_delay);
 
     const LinearPlant& plant() const { return *plant_; }
@@ -49,7 +58,7 @@ private:
     std::vector<std::complex<double>> poles_;
 };
 
-/// A dead time in whole samples and a rest below one; what is a multiple to rounding counts as one.
+/// A dead time in whole samples, 1e9 at most, and a rest below one; what is a multiple to rounding counts as one.
 struct SampledDelay {
     int whole = 0;
     double rest = 0;

@@ -104,7 +104,7 @@ StepResponse NonlinearRun::result() {
     StepResponse& loop = response_.loop;
     loop.settles = false;
     if (in_.d != 0) plant_.give(in_.d);
-    for (int k = 0; k < options_.most_samples; ++k) {
+    for (int k = 0; k < options_.most_samples && !options_.stop.stop_requested(); ++k) {
         const double t = (k + 1) * law_.Ts;
         outputs_.push_back({k * law_.Ts + law_.computation_delay, program_.step(in_.r, plant_.y())});
         if (!run_to(t)) break;

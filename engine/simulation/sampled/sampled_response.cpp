@@ -15,6 +15,7 @@ namespace {
 using Index = std::size_t;
 
 constexpr int kMostHalvings = 12;      // of a piece, before a node is set whatever the cubic says
+constexpr Index kMostNodes = 1000000;  // from there on no piece is halved any more
 constexpr double kLook = 0.309;        // of a piece: where swings that the middle meets at the same place are not
 constexpr double kRestOnLimit = 1e-9;  // of u at rest: nearer to a limit it is within
 constexpr int kRestSamples = 10;       // beyond the dead time: the least that a response must have rested for
@@ -150,7 +151,7 @@ void SampledRun::run_piece(Piece& piece, int level, double t, double t_end, doub
     const double scale = std::max(largest_y_, std::abs(y_middle));
     const bool bent = std::abs(cubic - y_middle) > options_.tolerance * scale ||
                       (h * fastest_swing_ > std::numbers::pi && swings(piece, level, start, left, end, v));
-    if (bent && level < kMostHalvings) {
+    if (bent && level < kMostHalvings && response_.nodes.size() < kMostNodes) {
         state_ = start;
         const double t_middle = 0.5 * (t + t_end);
         run_piece(piece, level + 1, t, t_middle, v, u);
@@ -189,7 +190,7 @@ void SampledRun::note(double t) {
 
 StepResponse SampledRun::result() {
     response_.settles = false;
-    for (int k = 0; k < options_.most_samples; ++k) {
+    for (int k = 0; k < options_.most_samples && !options_.stop.stop_requested(); ++k) {
         sample(k);
         run_period(k);
         const double t = (k + 1) * law_.Ts;

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <optional>
+#include <stop_token>
 
 #include "engine/controller/sampled/pid_program.h"
 #include "engine/plant/linear/linear_plant.h"
@@ -19,8 +20,9 @@ namespace tunewright {
 struct SampledOptions {
     double tolerance = 1e-6;        ///< of the cubics between nodes, relative to the largest |y|
     double settled = 1e-8;          ///< ends when y and u stay this close to rest, relative to their largest deviation
-    std::optional<double> horizon;  ///< ends at the first sample from here on instead
+    std::optional<double> horizon = {};  ///< ends at the first sample from here on instead
     int most_samples = 400000;
+    std::stop_token stop = {};  ///< asked once every sample; the response then ends, unsettled
 };
 
 /// `u` of the nodes is what the program gives out, held, from the end of its computation delay on. `settles` is false

@@ -275,6 +275,10 @@ std::optional<Error> wrong_direction(const Build& build, const Wish& wish) {
 
 }  // namespace
 
+std::optional<Error> refuse_sampling(const Build& build, const LinearPlant& plant) {
+    return build.sampled() ? tunewright::refuse_sampling(plant, build.Ts, build.computation_delay) : std::nullopt;
+}
+
 Expected<Fitted> design(const Build& build, const std::vector<const LinearPlant*>& plants, const Wish& wish,
                         const RunControl& control) {
     if (build.product != nullptr && build.product->form == product::Form::p_only)
@@ -283,6 +287,8 @@ Expected<Fitted> design(const Build& build, const std::vector<const LinearPlant*
                          " has proportional action alone, and a design with integral "
                          "action cannot be typed into it. Choose another controller."};
     if (auto error = wrong_direction(build, wish)) return *error;
+    for (const LinearPlant* plant : plants)
+        if (const auto error = refuse_sampling(build, *plant)) return *error;
     const OwnForm form(build, wish);
     Settings start = start_of(build, wish);
     const auto rules = rules_of(build, form.controller(std::abs(start.gain), start.Ti, start.Td));

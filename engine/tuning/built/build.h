@@ -62,6 +62,9 @@ struct Wish {
     IdealPid start;                        ///< a design of the ideal form nearby
 };
 
+/// Where the plant's dead time is no dead time for this sample time (loop/sampled/held_plant.h).
+std::optional<Error> refuse_sampling(const Build& build, const LinearPlant& plant);
+
 /// The settings with the least load IAE on the first plant, limits held on all, as typed: on the controller's own law
 /// and grid of settings. Errors: no_feasible_controller, not_representable, cancelled.
 Expected<Fitted> design(const Build& build, const std::vector<const LinearPlant*>& plants, const Wish& wish,

@@ -65,6 +65,7 @@ std::vector<LinearPlant> worst_as_built(const PlantFamily& family, const built::
 
 Expected<BuiltDesign> tune_robust_as_built(const TuningProblem& tuning, const RobustOptions& options,
                                            const built::Build& build, const RunControl& control) {
+    if (const auto error = built::refuse_sampling(build, tuning.linear)) return *error;
     const auto start_problem = build.sampled() ? delayed(tuning, build) : Expected<TuningProblem>(tuning);
     if (!start_problem) return start_problem.error();
     RobustOptions ideal = options;

@@ -2,6 +2,9 @@
 // holds there too.
 #include <gtest/gtest.h>
 
+#include <stop_token>
+#include <tuple>
+
 #include "engine/evaluation/evaluate_sampled.h"
 #include "engine/loop/sampled/sampled_loop.h"
 #include "engine/simulation/linear/indices.h"
@@ -46,6 +49,29 @@ BuiltLoop evaluated(const Plant& plant, const SampledPid& law, const ProgramLimi
 StabilityCount count(const Plant& plant, const SampledPid& law) {
     const LinearPlant linear = *LinearPlant::make(plant);
     return SampledLoop(linear, law).count_unstable_poles();
+}
+
+TEST(SampledExtremes, ADeadTimeBeyondCountingIsRefusedWithTheSampleTime) {
+    const Plant plant = Fopdt{.K = 2, .T = 10, .L = 3};
+    for (const auto& [L, Ts, delay] : {std::tuple{1e15, 0.5, 0.0}, {3.0, 1e-9, 0.0}, {3.0, 0.5, 3e9}}) {
+        const auto built = evaluate_sampled(subject_of(Plant(Fopdt{.K = 2, .T = 10, .L = L})),
+                                            {.gains = {.Kp = 1}, .Ts = Ts, .computation_delay = delay}, {}, {});
+        ASSERT_FALSE(built) << L;
+        EXPECT_EQ(built.error().kind, ErrorKind::invalid_argument);
+        EXPECT_EQ(built.error().where, "implement/sample_time");
+    }
+    EXPECT_EQ(in_samples(1e300, 1e-300).whole, 1'000'000'000);
+    EXPECT_TRUE(evaluated(plant, {.gains = {.Kp = 1, .Ki = 0.02}, .Ts = 3e-3}).robustness.stable);
+}
+
+TEST(SampledExtremes, ALagOfRoundingNeitherFillsTheMemoryNorKeepsAStopWaiting) {
+    const LinearPlant plant = *LinearPlant::make(Fopdt{.K = 2, .T = 1e-15, .L = 3});
+    const SampledPid law{.gains = {.Kp = 0.01, .Ki = 1e-7}, .Ts = 0.5};
+    const StepResponse response = simulate_sampled(plant, law, {}, {1, 0}, {.most_samples = 20000});
+    EXPECT_LT(response.nodes.size(), 1'100'000u);
+    std::stop_source stop;
+    stop.request_stop();
+    EXPECT_FALSE(simulate_sampled(plant, law, {}, {1, 0}, {.stop = stop.get_token()}).settles);
 }
 
 TEST(SampledExtremes, ASampleTimeOfAThousandLags) {

@@ -14,7 +14,7 @@ constexpr std::size_t kLongestValue = 300;  // characters of what the user has w
 // One printable ASCII character for each; signs that units have are spelled.
 std::string ascii(const std::string& text) {
     std::string out;
-    for (std::size_t i = 0; i < text.size() && out.size() < kLongestValue; ++i) {
+    for (std::size_t i = 0; i < text.size(); ++i) {
         const auto c = static_cast<unsigned char>(text[i]);
         if (text.compare(i, 2, "\xC2\xB0") == 0) {
             out += "deg ";
@@ -80,12 +80,12 @@ std::vector<std::string> head_lines(const Program& program, const Provenance& pr
     for (const auto& [name, value] : provenance) {
         std::string label = safe(name);
         label.resize(std::max(kColumn, label.size() + 1), ' ');
-        wrap(label + safe(value), kColumn, lines);
+        wrap(label + safe(value).substr(0, kLongestValue), kColumn, lines);
     }
     wrap("Settings      " + settings_line(program), kColumn, lines);
     for (const std::string& note : program.notes) {
         lines.emplace_back();
-        wrap(note, 0, lines);
+        wrap(safe(note), 0, lines);  // a schedule's names its variable and unit, in the user's words
     }
     lines.emplace_back();
     lines.insert(lines.end(), call.begin(), call.end());

@@ -56,6 +56,7 @@ SampledPid in_seconds(SampledPid pid, double seconds) {
     pid.gains.Ki /= seconds;
     pid.gains.Kd *= seconds;
     pid.gains.filter.Tf *= seconds;
+    pid.gains.setpoint_lag *= seconds;
     pid.Ts *= seconds;
     pid.computation_delay *= seconds;
     return pid;

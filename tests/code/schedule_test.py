@@ -55,6 +55,18 @@ class ScheduleTest(unittest.TestCase):
         self.assertAlmostEqual(block["Ti"], 60 / (0.5 / 9 + 0.5 / 5), 9)
         self.assertEqual(block["Ts"], 0.6)
 
+    def test_names_of_the_variable_stay_within_the_comment(self):
+        for name, unit in (("a */ int injected(void){return 1;} /*", "%"), ("load\nraise SystemExit#", "*)"),
+                           ("(* load", "\n+"), ("load // \\", "??/")):
+            case = answer()
+            case["range"]["scheduling"].update(name=name, unit=unit)
+            rows, options = passing_rows(20), {"sample_time": 0.5}
+            expected = run_python(code(case, "python", options), COLUMNS, rows)
+            c_text = code(case, "c", options)
+            self.assertEqual(CProgram([c_text], COLUMNS).run(0, rows), expected)
+            self.assertEqual(c_text.count("*/"), code(answer(), "c", options).count("*/"))
+            self.assertEqual(len(run_structured_text(code(case, "st", options), COLUMNS, rows)), len(rows))
+
     def test_what_is_no_schedule_is_told(self):
         def told(result, *arguments):
             done = command(result, "--language", "c", "--sample-time", "1", *arguments)

@@ -63,14 +63,16 @@ TEST(CodeSettings, UnitsOfTimeAreSecondsByFactors) {
     EXPECT_EQ(seconds_in("h"), 3600);
     EXPECT_EQ(seconds_in("d"), 86400);
     EXPECT_FALSE(seconds_in("minutes"));
-    const SampledPid pid = in_seconds({.gains = {.Kp = 2, .Ki = 6, .Kd = 3, .filter = {FilterType::derivative, 0.5}},
-                                       .Ts = 0.25,
-                                       .computation_delay = 0.1},
-                                      60);
+    const SampledPid pid =
+        in_seconds({.gains = {.Kp = 2, .Ki = 6, .Kd = 3, .filter = {FilterType::derivative, 0.5}, .setpoint_lag = 2},
+                    .Ts = 0.25,
+                    .computation_delay = 0.1},
+                   60);
     EXPECT_EQ(pid.gains.Kp, 2);
     EXPECT_EQ(pid.gains.Ki, 0.1);
     EXPECT_EQ(pid.gains.Kd, 180);
     EXPECT_EQ(pid.gains.filter.Tf, 30);
+    EXPECT_EQ(pid.gains.setpoint_lag, 120);
     EXPECT_EQ(pid.Ts, 15);
     EXPECT_EQ(pid.computation_delay, 6);
 }

@@ -93,6 +93,8 @@ struct Parameter {
     Shape shape = Shape::power;
     Term term = {};
     Range range = {};
+    /// What the models whose manuals were read take at most: more gets a note, for others may take it.
+    double usual_most = std::numeric_limits<double>::infinity();
     double resolution = 0;  ///< step of what can be typed; 0: a floating-point number
     /// The maker's default, where it is known; of a filter also what stands where the law leaves it open.
     std::optional<Value> standard = {};

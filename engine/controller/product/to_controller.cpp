@@ -31,29 +31,37 @@ public:
     /// Empty: neither given nor known by default.
     std::optional<double> number(const Parameter& parameter) {
         const auto value = number_of(parameter, settings_);
-        if (value && !setting_named(settings_, parameter.name)) defaults_.push_back({&parameter, *value});
+        if (value) note_if_default(parameter, *value);
         if (value && !missing_) missing_ = missing_for(product_, parameter, context_);
         return value;
+    }
+    const Option& option(const Parameter& parameter) {
+        const Option& chosen = option_of(parameter, settings_);
+        note_if_default(parameter, chosen.value);
+        return chosen;
+    }
+    double alpha(const Parameter& parameter) {
+        const Value* given = setting_named(settings_, parameter.name);
+        const Value& code = given ? *given : *parameter.standard;
+        note_if_default(parameter, code);
+        return decoded_alpha(code).value_or(0);
     }
     const std::optional<Error>& missing() const { return missing_; }
 
     void note_defaults(std::vector<Note>& notes) const {
-        if (defaults_.empty()) return;
-        std::string names;
-        for (const auto& [parameter, value] : defaults_)
-            names += (names.empty() ? "" : ", ") + std::string(parameter->name) + " = " + text(value, 6);
-        notes.push_back({"default", "Not given, so the maker's default: " + names + "."});
+        if (!defaults_.empty()) notes.push_back({"default", "Not given, so the maker's default: " + defaults_ + "."});
     }
 
 private:
-    struct Default {
-        const Parameter* parameter;
-        double value;
-    };
+    void note_if_default(const Parameter& parameter, const Value& value) {
+        if (setting_named(settings_, parameter.name)) return;
+        defaults_ += (defaults_.empty() ? "" : ", ") + std::string(parameter.name) + " = " + text_of(value);
+    }
+
     const Product& product_;
     const Settings& settings_;
     const Context& context_;
-    std::vector<Default> defaults_ = {};
+    std::string defaults_ = {};
     std::optional<Error> missing_ = {};
 };
 
@@ -152,21 +160,23 @@ Filter read_filter(const Product& product, const Settings& settings, const Clock
 }
 
 // What no term says: weights by options, by parameters, by what the block fixes.
-void read_weights(const Product& product, const Settings& settings, Law& law) {
+void read_weights(const Product& product, Reading& reading, Law& law) {
     law.b = product.weights.b;
     law.c = product.weights.c;
     for (const Parameter& parameter : product.parameters) {
         if (parameter.shape == Shape::option) {
-            const Option& option = option_of(parameter, settings);
+            const Option& option = reading.option(parameter);
             law.b = option.b.value_or(law.b);
             law.c = option.c.value_or(law.c);
         } else if (parameter.shape == Shape::alpha_code) {
-            if (const Value* code = setting_named(settings, parameter.name))
-                law.b = 1 - decoded_alpha(*code).value_or(0);
-        } else if (const auto value = number_of(parameter, settings)) {
-            if (parameter.shape == Shape::weight) (parameter.role == Role::weight_b ? law.b : law.c) = *value;
-            if (parameter.shape == Shape::one_minus_b) law.b = 1 - *value;
-            if (parameter.shape == Shape::feedforward) law.b = 1 + *value / law.own.Kp;
+            law.b = 1 - reading.alpha(parameter);
+        } else if (parameter.shape == Shape::weight) {
+            double& weight = parameter.role == Role::weight_b ? law.b : law.c;
+            weight = reading.number(parameter).value_or(weight);
+        } else if (parameter.shape == Shape::one_minus_b) {
+            if (const auto share = reading.number(parameter)) law.b = 1 - *share;
+        } else if (parameter.shape == Shape::feedforward) {
+            if (const auto gain = reading.number(parameter)) law.b = 1 + *gain / law.own.Kp;
         }
     }
 }
@@ -228,7 +238,7 @@ Expected<IdealPid> to_controller(const Product& product, const Settings& setting
     }
     if (auto wrong = read_gain(product, settings, reading, law.own)) return *wrong;
     if (auto wrong = read_times(product, reading, law.own)) return *wrong;
-    read_weights(product, settings, law);
+    read_weights(product, reading, law);
     law.own.ideal_Td = ideal_without_filter(product, law).Td;
     if (!period_known) {
         if (auto missing = missing_for_filter(product, context)) return *missing;

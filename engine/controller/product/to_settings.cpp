@@ -97,6 +97,9 @@ std::optional<double> without_integral(const Parameter& parameter, Work& work) {
 // A value that the law determines, into the parameter's range.
 double within_range(const Parameter& parameter, double value, Work& work) {
     const double typed = rounded(parameter, value);
+    if (typed > parameter.usual_most)
+        work.notes.push_back({"range", std::string(parameter.name) + " is " + text(typed, 6) +
+                                           ", and not every model takes that. " + std::string(parameter.remark)});
     const bool inside = value >= parameter.range.low - parameter.resolution / 2 &&
                         value <= parameter.range.high + parameter.resolution / 2;
     if (inside || (parameter.off && value == *parameter.off)) return value;

@@ -123,7 +123,9 @@ Product betaflight() {
                          .role = role,
                          .term = term,
                          .range = {low, kUnbounded},
-                         .resolution = kWholeNumber};
+                         .usual_most = 250,
+                         .resolution = kWholeNumber,
+                         .remark = "Recent versions take up to 250."};
     };
     return {
         .id = "betaflight",
@@ -153,7 +155,7 @@ Product betaflight() {
         .traps = {"On yaw I counts 2.5 times, unless integrated yaw is used.",
                   "Throttle attenuation, D max and I relaxation are not linear."},
         .evidence = {.level = EvidenceLevel::read,
-                     .read = {"constants of the scales", "D on the gyro", "I of yaw times 2.5"},
+                     .read = {"constants of the scales", "D on the gyro", "I of yaw times 2.5", "largest slider"},
                      .unverified = {"filters of newer versions"},
                      .sources = {"betaflight pid_init.c and pid.h (public copies of several revisions)"}},
         .example = {.design = {.Kp = 1.6,

@@ -71,7 +71,7 @@ TEST(ProductRefusals, AValueOutsideItsRangeIsRefusedWithTheNearest) {
     quick.Td = 0;
     quick.filter = {};
     // 0 would switch the integral off.
-    EXPECT_THAT(refused("mitsubishi_fx_pid", quick).message, HasSubstr("TI would be 0.2, and it takes at least 1"));
+    EXPECT_THAT(refused("mitsubishi_fx_pid", quick).message, HasSubstr("TI would be 0.2, and it takes 1 to 32767 100 ms"));
     EXPECT_NEAR(nearest("mitsubishi_fx_pid", quick).realised.Ti, 0.1, 1e-15);
 }
 
@@ -185,6 +185,36 @@ TEST(ProductRefusals, MissingSettingsHaveTheMakersDefaults) {
     ASSERT_TRUE(omron);
     EXPECT_NEAR(omron->b, 0.35, 1e-15);
     EXPECT_FALSE(omron->has_integral());
+}
+
+TEST(ProductRefusals, WeightsAndChoicesThatAreTakenByDefaultAreToldToo) {
+    const auto defaults = [](const char* product, const Settings& settings) {
+        std::vector<Note> notes;
+        EXPECT_TRUE(to_controller(product_of(product), settings, kContext, notes)) << product;
+        return note(notes, "default");
+    };
+    EXPECT_EQ(defaults("omron_pid190", {{"P", 333.0}, {"Tik_0_1s", 1200.0}, {"Tdk_0_1s", 0.0}}),
+              "Not given, so the maker's default: alpha_code = 000.");
+    EXPECT_EQ(defaults("yokogawa_ff_pid", {{"GAIN", 2.0}, {"RESET", 60.0}, {"RATE", 0.0}}),
+              "Not given, so the maker's default: MODE = Auto.");
+    EXPECT_EQ(defaults("omron_pid190",
+                       {{"P", 333.0}, {"Tik_0_1s", 1200.0}, {"Tdk_0_1s", 0.0}, {"alpha_code", std::string("140")}}),
+              "");
+}
+
+TEST(ProductRefusals, WordsOfSixteenBitsEndAt32767) {
+    const IdealPid slow{.Kp = 1, .Ti = 3600, .Td = 400, .b = 1, .filter = {FilterType::derivative, 40}};
+    EXPECT_THAT(refused("mitsubishi_fx_pid", slow).message,
+                testing::AllOf(HasSubstr("TI would be 36000"), HasSubstr("TD would be 40000"), HasSubstr("32767")));
+    const IdealPid slower{.Kp = 1, .Ti = 22000, .b = 1};
+    EXPECT_THAT(refused("rockwell_slc_pid", slower).message, HasSubstr("TI_RG1 = 32767"));
+    EXPECT_EQ(not_read("mitsubishi_fx_pid", {{"KP", 40000.0}, {"TI", 100.0}}).where, "settings/KP");
+}
+
+TEST(ProductNotes, ATimeThatNotEveryModelTakesIsTold) {
+    const IdealPid slow{.Kp = 1, .Ti = 120, .Td = 20, .b = 1, .c = 1, .filter = {FilterType::derivative, 2}};
+    EXPECT_EQ(note(nearest("abb_drive_pid", slow).notes, "range"),
+              "derivation_time is 20, and not every model takes that. ACS880 and ACS380 take up to 10 s.");
 }
 
 TEST(ProductNotes, WeightsThatTheBlockFixesComeWithTheExactPrefilter) {

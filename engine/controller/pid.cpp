@@ -18,6 +18,9 @@ constexpr double kAmplitudeTolerance = 1e-13;  // of the bracket's upper end, at
 // the measurement filters stand outside the law in both forms, as if Tf were 0 here.
 double lead_filter(const Filter& filter) { return filter.type == FilterType::derivative ? filter.Tf : 0; }
 
+// The ideal form's Kp and Ti over the series form's; 1 without integral action.
+double interaction(const SeriesPid& pid) { return 1 + (pid.Td - lead_filter(pid.filter)) / pid.Ti; }
+
 struct Roots {
     double larger, smaller;
 };
@@ -72,8 +75,7 @@ Expected<IdealPid> to_ideal(const ParallelPid& pid) {
 Expected<IdealPid> to_ideal(const SeriesPid& pid) {
     if (pid.Ti == 0)
         return Error{ErrorKind::invalid_argument, "Ti", "Ti is 0; it must be above 0, or null for no integral action."};
-    const double Tf = lead_filter(pid.filter);
-    const double factor = 1 + (pid.Td - Tf) / pid.Ti;
+    const double Tf = lead_filter(pid.filter), factor = interaction(pid);
     if (factor == 0)
         return Error{ErrorKind::unsupported, "",
                      "No ideal form: Ti + Td = Tf = " + text(Tf) +
@@ -87,6 +89,11 @@ Expected<IdealPid> to_ideal(const SeriesPid& pid) {
                     .c = pid.c,
                     .filter = pid.filter,
                     .setpoint_lag = pid.setpoint_lag};
+}
+
+double b_equivalent(const SeriesPid& pid) {
+    const double factor = interaction(pid);
+    return factor == 0 ? 1 : 1 / factor;
 }
 
 Expected<SeriesPid> to_series(const IdealPid& pid) {
@@ -130,8 +137,7 @@ ParallelPid gains_of(const ParallelPid& pid) { return pid; }
 ParallelPid gains_of(const Npid& npid) { return to_parallel(npid.linear_part()); }
 
 ParallelPid gains_of(const SeriesPid& pid) {
-    const double Tf = lead_filter(pid.filter);
-    const double factor = 1 + (pid.Td - Tf) / pid.Ti;
+    const double Tf = lead_filter(pid.filter), factor = interaction(pid);
     return {.Kp = pid.Kp * factor,
             .Ki = pid.Kp / pid.Ti,
             .Kd = pid.Kp * (pid.Td - Tf * factor),

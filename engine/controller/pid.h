@@ -74,7 +74,7 @@ struct SeriesPid {
     double c = 0;
     Filter filter = {};
     double setpoint_lag = 0;
-    double b_equivalent = 1;  ///< Ti'/Ti of the ideal form: what b = 1 in the series form amounts to
+    double b_equivalent = 1;  ///< see b_equivalent(); of a series form that was given, 1 until it is asked for
 };
 
 /// u = Kp [ e + (1/Ti) int exp(-e^2/(2 delta_r^2)) e dt - Td dy/dt ], e = r - y: the integral sees little of a large
@@ -103,6 +103,9 @@ Expected<IdealPid> to_ideal(const ParallelPid& pid);
 /// Exact, the set-point weight included: the series form's proportional kick is Kp b, so b becomes b Kp/Kp_ideal.
 /// Errors: Ti = 0; Ti + Td = Tf with a derivative filter (no proportional part is left).
 Expected<IdealPid> to_ideal(const SeriesPid& pid);
+
+/// Ti'/Ti of the ideal form: what b = 1 in the series form amounts to. 1 where no ideal form exists.
+double b_equivalent(const SeriesPid& pid);
 
 /// Of any form; of the nonlinear PID its linear part. Errors: as above.
 Expected<IdealPid> to_ideal(const Controller& controller);

@@ -50,6 +50,11 @@ std::optional<Error> check_options(const EvaluateOptions& o) {
 Equivalents equivalents_of(const Controller& controller) {
     Equivalents equivalents;
     equivalents.parallel = gains(controller);
+    // A series controller is its own: through the ideal form it would come back with another b.
+    if (const auto* series = std::get_if<SeriesPid>(&controller)) {
+        equivalents.series = *series;
+        return equivalents;
+    }
     const auto ideal = to_ideal(controller);
     if (!ideal) {
         equivalents.why_no_series = ideal.error().message;
@@ -77,13 +82,14 @@ std::optional<Error> stopped(const EvaluateOptions& options) {
 Controller resolved(Controller controller, const EvaluateOptions& options) {
     if (auto* npid = std::get_if<Npid>(&controller); npid != nullptr && !npid->delta_r)
         npid->delta_r = std::abs(options.setpoint_step);
+    if (auto* series = std::get_if<SeriesPid>(&controller)) series->b_equivalent = b_equivalent(*series);
     return controller;
 }
 
 Evaluation begun(const Controller& controller, const EvaluateOptions& options) {
     Evaluation evaluation;
     evaluation.controller = resolved(controller, options);
-    evaluation.equivalents = equivalents_of(controller);
+    evaluation.equivalents = equivalents_of(evaluation.controller);
     return evaluation;
 }
 

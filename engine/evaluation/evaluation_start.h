@@ -16,7 +16,7 @@ std::optional<Error> refuse_evaluation(const Controller& controller, const Evalu
 /// An error where the options' stop was requested.
 std::optional<Error> stopped(const EvaluateOptions& options);
 
-/// The same controller; an Npid without delta_r has the set-point step's size for it.
+/// The same controller; an Npid without delta_r has the set-point step's size for it, a SeriesPid its b_equivalent.
 Controller resolved(Controller controller, const EvaluateOptions& options);
 
 /// The controller, resolved, with its equivalents.

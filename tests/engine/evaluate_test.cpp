@@ -44,6 +44,21 @@ TEST(Evaluate, PiOnItsOwnLagIsAFirstOrderLoop) {
     EXPECT_NEAR(*e.robustness.phase_margin_deg, 90, 1e-6);
 }
 
+TEST(Evaluate, ASeriesControllerIsItsOwnSeriesEquivalent) {
+    // 1 + Td/Ti = 1.25, so b = 1 in the series form is 0.8 in the ideal one; the first move is Kp b of its own form.
+    const SeriesPid given{.Kp = 1.5, .Ti = 8, .Td = 2};
+    const auto e = evaluated(Fopdt{.K = 1, .T = 10, .L = 1}, given);
+    EXPECT_NEAR(std::get<SeriesPid>(e.controller).b_equivalent, 0.8, 1e-15);
+    const auto& series = e.equivalents.series;
+    ASSERT_TRUE(series);
+    EXPECT_EQ(series->Kp, 1.5);
+    EXPECT_EQ(series->Ti, 8);
+    EXPECT_EQ(series->Td, 2);
+    EXPECT_EQ(series->b, 1);
+    EXPECT_NEAR(series->b_equivalent, 0.8, 1e-15);
+    EXPECT_NEAR(*e.performance.setpoint.first_move, 1.5, 1e-12);
+}
+
 /// Heun's rule with the delayed input from a table, for a FOPDT plant and every filter type.
 struct PlainLoop {
     double K, T, L;

@@ -6,18 +6,25 @@
 namespace tunewright::api {
 namespace {
 
-/// Seconds that nothing names, and a plant that takes more than a day: the times may be milliseconds.
+/// Seconds that nothing names, and a plant that takes more than a day, as of milliseconds, or less than a thousandth of
+/// a second, as of days.
 void ask_for_unit(IdentifiedModel& model) {
-    constexpr double kDay = 86400;
+    constexpr double kDay = 86400, kShort = 1e-3;
     const auto plant = LinearPlant::make(model.plant);
-    if (!plant || plant->time_scale() <= kDay) return;
+    if (!plant) return;
+    const double total = plant->time_scale();
+    const bool slow = total > kDay;
+    if (!slow && !(total > 0 && total < kShort)) return;
     model.warnings.insert(
         model.warnings.begin(),
-        {"time-unit-doubtful", "The plant comes out slower than a day: its lags and dead time add up to " +
-                                   tunewright::text(plant->time_scale() / kDay, 3) +
-                                   " days, because the times were taken as seconds; nothing in the "
-                                   "file names their unit. If they are milliseconds, choose ms as "
-                                   "the unit of the times."});
+        {"time-unit-doubtful",
+         (slow ? "The plant comes out slower than a day: its lags and dead time add up to " +
+                     tunewright::text(total / kDay, 3) + " days"
+               : "The plant comes out quicker than a millisecond: its lags and dead time add up to " +
+                     tunewright::text(total, 3) + " s") +
+             ", because the times were taken as seconds; nothing in the file names their unit. If they are " +
+             (slow ? "milliseconds, choose ms" : "days, as spreadsheets count, choose d") +
+             " as the unit of the times."});
 }
 
 }  // namespace

@@ -8,7 +8,21 @@
 namespace tunewright::api {
 namespace {
 
-constexpr double kDay = 86400, kHour = 3600;
+constexpr double kDay = 86400, kHour = 3600, kMinute = 60;
+
+/// Whether a number is a day of the years 1954 to 2119 as spreadsheets count them, or from 1916 to 2190 by MATLAB's
+/// datenum.
+bool is_day(double value) { return (value > 20000 && value < 80000) || (value > 700000 && value < 800000); }
+
+/// Whether steps are whole seconds, or whole minutes where they are longer, counted in days: their decimals do not end,
+/// as those of a sample time in seconds do.
+bool steps_of_a_clock(double days) {
+    constexpr double kOff = 0.1, kShort = 90, kLong = 1801;  // seconds
+    constexpr double kLastDecimal = 1e-7, kEnds = 0.02;
+    const double seconds = days * kDay, unit = seconds < kShort ? 1 : kMinute;
+    if (std::abs(std::remainder(days / kLastDecimal, 1)) < kEnds) return false;
+    return seconds > 1 - kOff && seconds < kLong && std::abs(std::remainder(seconds, unit)) < kOff;
+}
 
 }  // namespace
 
@@ -97,7 +111,7 @@ std::optional<std::string> TimeColumn::unit_by_size(std::string_view text, const
     const bool dated = name.find("date") != name.npos || name.find("stamp") != name.npos ||
                        name.find("datum") != name.npos || name.find("zeitstempel") != name.npos;
     const double mean_step = std::abs(*last - *first) / steps;
-    if (dated && *first > 20000 && *first < 80000 && mean_step < 0.05 && mean_step > 0) return "d";
+    if (is_day(*first) && mean_step > 0 && mean_step < 0.05 && (dated || steps_of_a_clock(mean_step))) return "d";
     return std::nullopt;
 }
 

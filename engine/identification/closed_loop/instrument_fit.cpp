@@ -181,21 +181,31 @@ double mismatch_of(const SetPointPart& part, const InstrumentEquations& here, co
 }
 
 /// Variance of the gain, in units of its scaled column, by leaving out one stretch of the record after another
-/// (delete-d jackknife: Shao and Wu 1989): a load that stepped once is no noise that goes on all the time.
+/// (delete-d jackknife: Shao and Wu 1989): a load that stepped once is no noise that goes on all the time. A stretch
+/// without which the gain is hardly determined, as the one of a single move of the set point, has nothing to be
+/// compared with.
 double jackknife(const InstrumentEquations& here, Index gain) {
     constexpr Index kStretches = 10;
+    constexpr double kCarriesAll = 25;  // times the gain's variance without the stretch
     const Index length = here.e.size() / kStretches;
-    const MatrixXd A = gram(here.Z, here.J);
+    const MatrixXd A = gram(here.Z, here.J), squares = gram(here.Z, here.Z);
     const VectorXd b = transpose_times(here.Z, here.e);
+    const auto variance = [&](const MatrixXd& of_A, const MatrixXd& of_squares) {
+        const VectorXd row = inverse_of(of_A).row(gain);
+        return row.dot(of_squares * row);
+    };
+    const double whole = variance(A, squares);
     std::vector<double> moved;
     for (Index k = 0; k < kStretches; ++k) {
-        const auto Z = here.Z.middleRows(k * length, length);
-        const VectorXd step = solve_square(A - gram(Z, here.J.middleRows(k * length, length)),
-                                           b - transpose_times(Z, here.e.segment(k * length, length)));
-        moved.push_back(step[gain]);
+        const MatrixXd Z = here.Z.middleRows(k * length, length);
+        const MatrixXd rest = A - gram(Z, here.J.middleRows(k * length, length));
+        if (!(variance(rest, squares - gram(Z, Z)) < kCarriesAll * whole)) continue;
+        moved.push_back(solve_square(rest, b - transpose_times(Z, here.e.segment(k * length, length)))[gain]);
     }
+    if (moved.size() < 2) return 0;
+    const auto stretches = static_cast<double>(moved.size());
     const double spread = deviation(moved);
-    return spread * spread * static_cast<double>((kStretches - 1) * (kStretches - 1)) / kStretches;
+    return spread * spread * (stretches - 1) * (stretches - 1) / stretches;
 }
 
 /// Variance of the gain, in units of its scaled column, where residuals count as the independent samples they are

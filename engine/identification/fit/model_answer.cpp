@@ -231,6 +231,20 @@ IdentifiedModel searched_model(ModelSearch search, const CleanRecord& recorded) 
             std::to_string(record.moves_placed) +
             " change(s) of u happened while rows are missing: each is placed where it explains y best.");
     }
+    if (record.switches_placed > 0) {
+        model.warnings.push_back({"coarse-relay-record",
+                                  "The rows are too far apart to show when the relay switched: each switch is placed "
+                                  "between two rows where it explains y best, which the standard errors do not "
+                                  "count. Record at least 40 rows a period."});
+    }
+    if (record.moves_unseen > 0) {
+        model.warnings.push_back(
+            {"unseen-move", "u moved while nothing was recorded: rows are missing over " +
+                                text(record.moves_unseen * record.scale.t_scale, 3) +
+                                " before it is seen to have moved. It is taken to have moved in the middle of them, so "
+                                "the dead time may be off by half of that; its standard error says so. Repeat the test "
+                                "with the recorder running, or give the row at which u moved."});
+    }
     if (record.moved_between_rows) {
         model.data_quality.notes.emplace_back(
             "u is taken to change midway between the row that shows it and the row before: the samples are not evenly "

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <string>
 
 #include "engine/identification/fit/record_repair.h"
@@ -176,6 +177,30 @@ void try_gap_moves(ModelSearch& search, ModelChoice model, const RunControl& con
     search = std::move(other);
 }
 
+/// A relay recorded in few rows a half period: each of its switches lies within the row that shows it. Kept where that
+/// leaves two thirds of the sum of squares or less.
+void try_switches_between_rows(ModelSearch& search, ModelChoice model, const RunControl& control) {
+    constexpr double kMuchLess = 1.5, kWorthLooking = 95;   // per cent: few rows hide a pattern
+    constexpr int kFewRows = 40, kMost = 200, kRounds = 4;  // rows for each change of u; changes
+    if (search.percents[static_cast<std::size_t>(search.choice.index)] > kWorthLooking) return;
+    const CleanRecord& record = search.context.record;
+    if (record.changes() > kMost || record.samples() > kFewRows * record.changes()) return;
+    const auto fitted = [&](CleanRecord placed, ModelChoice choice) {
+        return fit_all(fit_context(std::move(placed), true, control.stop), choice, {}, control);
+    };
+    // A model of few parameters places them: one of more would explain the misplaced ones too.
+    ModelSearch other = fitted(changed_between_rows(record), ModelChoice::fopdt);
+    for (int round = 0; round < kRounds && usable(other) && !control.stop.stop_requested(); ++round) {
+        ModelSearch next = fitted(with_switches_placed(record, other.chosen(), control.stop), ModelChoice::fopdt);
+        if (!usable(next) || next.chosen().sse >= other.chosen().sse) break;
+        other = std::move(next);
+    }
+    if (!usable(other)) return;
+    other = fitted(with_switches_placed(record, other.chosen(), control.stop), model);
+    if (!usable(other) || kMuchLess * other.chosen().sse > search.chosen().sse) return;
+    search = std::move(other);
+}
+
 /// A late load can be distinguished from the response only where u moves again; a drift also by what y does before u
 /// moves.
 bool shows_load(const CleanRecord& r) { return r.changes() > 1; }
@@ -241,6 +266,12 @@ void try_drift(ModelSearch& search, ModelChoice model, const RunControl& control
     search = std::move(other);
 }
 
+/// A load far beyond all that u did stands in for the plant's own response.
+bool plausible_load(const Fit& fit) {
+    constexpr double kLargest = 3;  // ranges of u
+    return !fit.form.load || std::abs(fit.linear[fit.form.load_index()]) <= kLargest * std::abs(fit.linear[0]);
+}
+
 void try_disturbances(ModelSearch& search, ModelChoice model, const RunControl& control) {
     constexpr double kMuchLess = 3, kFarLess = 30, kStrong = 10, kWorthLooking = 0.005;
     const CleanRecord& record = search.context.record;
@@ -255,7 +286,7 @@ void try_disturbances(ModelSearch& search, ModelChoice model, const RunControl& 
         if (d.slope && d.load && !leaves_a_pattern(best->context, best->chosen())) break;
         others.push_back(fit_some(search, model, d, control));
         const ModelSearch& other = others.back();
-        if (!usable(other)) continue;
+        if (!usable(other) || !plausible_load(other.chosen())) continue;
         // A disturbance that leaves a pattern too stands in for a structure that is none of these.
         const double less = best->chosen().sse / other.chosen().sse;
         if (less < (leaves_a_pattern(other.context, other.chosen()) ? kFarLess : kMuchLess)) continue;
@@ -264,7 +295,8 @@ void try_disturbances(ModelSearch& search, ModelChoice model, const RunControl& 
             best = &other;
     }
     if (best == &search) return;
-    search = fit_all(search.context, model, best->disturbances, control);
+    ModelSearch whole = fit_all(search.context, model, best->disturbances, control);
+    if (usable(whole) && plausible_load(whole.chosen())) search = std::move(whole);
 }
 
 /// Whether an unstable model's free run lasts so many time constants that it is all but arbitrary.
@@ -306,7 +338,8 @@ double unexplained_share(const FitContext& context, const Fit& fit) {
 }
 
 ModelSearch search_models(const CleanRecord& record, ModelChoice model, bool relay, const RunControl& control) {
-    ModelSearch search = fit_all(fit_context(record, relay, control.stop), model, {}, control);
+    const std::optional<CleanRecord> unseen = with_unseen_moves(record);
+    ModelSearch search = fit_all(fit_context(unseen.value_or(record), relay, control.stop), model, {}, control);
     auto unexplained = [&] {
         return usable(search) && !control.stop.stop_requested() && leaves_a_pattern(search.context, search.chosen());
     };
@@ -315,6 +348,7 @@ ModelSearch search_models(const CleanRecord& record, ModelChoice model, bool rel
     if (search.part < 1) return search;
     if (unexplained()) try_between_rows(search, model, control);
     if (usable(search) && !control.stop.stop_requested()) try_gap_moves(search, model, control);
+    if (relay && usable(search) && !control.stop.stop_requested()) try_switches_between_rows(search, model, control);
     if (unexplained()) try_disturbances(search, model, control);
     if (usable(search) && !control.stop.stop_requested() && !search.disturbances.slope) {
         try_drift_for_slow_part(search, model, control);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numeric>
 
 #include "engine/identification/record/series.h"
 #include "engine/numerics/statistics.h"
@@ -91,6 +92,33 @@ double row_before(const CleanRecord& r, double time) {
     return row == r.t.begin() ? time : *std::prev(row);
 }
 
+/// Moves each of the changes `moves` of `placed` to where structure and shape of `fit` explain y best, one after the
+/// other until none moves. `offer(j, take)` calls take(time) for each time that change j may have; it answers whether
+/// that is the best so far.
+template <class Offer>
+void place(CleanRecord& placed, const Fit& fit, const std::vector<int>& moves, const std::stop_token& stop,
+           const Offer& offer) {
+    constexpr int kRounds = 3;
+    double least = project({&placed, {}}, fit.form, fit.shape).sse;
+    for (int round = 0; round < kRounds; ++round) {
+        bool moved = false;
+        for (const int j : moves) {
+            if (stop.stop_requested()) return;
+            double best = placed.v_time[j];
+            offer(j, [&](double time) {
+                placed.v_time[j] = time;
+                const double now = project({&placed, {}}, fit.form, fit.shape).sse;
+                if (!(now < least)) return false;
+                least = now;
+                best = time;
+                return moved = true;
+            });
+            placed.v_time[j] = best;
+        }
+        if (!moved) return;
+    }
+}
+
 }  // namespace
 
 std::vector<std::size_t> doubtful_samples(const CleanRecord& record, const Fit& fit) {
@@ -130,34 +158,55 @@ std::vector<int> gap_moves(const CleanRecord& record) {
     return moves;
 }
 
+std::optional<CleanRecord> with_unseen_moves(const CleanRecord& record) {
+    constexpr double kLeast = 2;  // usual spacings
+    if (static_cast<int>(gap_moves(record).size()) < record.changes() || unevenly_spaced(record)) return std::nullopt;
+    const double usual = usual_spacing(record);
+    CleanRecord middle = record;
+    middle.moves_unseen = 1;
+    for (double& time : middle.v_time) {
+        const double hidden = time - row_before(record, time) - usual;
+        middle.moves_unseen = std::min(middle.moves_unseen, hidden);
+        time -= 0.5 * hidden;
+    }
+    if (middle.moves_unseen < kLeast * usual) return std::nullopt;
+    return middle;
+}
+
 CleanRecord with_gap_moves_placed(const CleanRecord& record, const Fit& fit, const std::vector<int>& moves,
                                   const std::stop_token& stop) {
-    constexpr int kRounds = 3, kFarthest = 8;  // of all moves; rows back
+    constexpr int kFarthest = 8;  // rows back
     const double usual = usual_spacing(record);
     CleanRecord placed = record;
     placed.moves_placed = static_cast<int>(moves.size());
-    const auto misses = [&] { return project({&placed, {}}, fit.form, fit.shape).sse; };
-    double least = misses();
-    for (int round = 0; round < kRounds; ++round) {
-        bool moved = false;
-        for (const int j : moves) {
-            if (stop.stop_requested()) return placed;
-            const double seen = record.v_time[j];
-            const double first = std::max(row_before(record, seen), j > 0 ? placed.v_time[j - 1] : 0.0);
-            double best = placed.v_time[j];
-            for (int back = 0; back <= kFarthest && seen - back * usual > first + 0.5 * usual; ++back) {
-                placed.v_time[j] = seen - back * usual;
-                const double now = misses();
-                if (now < least) {
-                    least = now;
-                    best = placed.v_time[j];
-                    moved = true;
-                }
+    placed.moves_unseen = 0;
+    place(placed, fit, moves, stop, [&](int j, const auto& take) {
+        const double seen = record.v_time[j];
+        const double first = std::max(row_before(record, seen), j > 0 ? placed.v_time[j - 1] : 0.0);
+        for (int back = 0; back <= kFarthest && seen - back * usual > first + 0.5 * usual; ++back)
+            take(seen - back * usual);
+    });
+    return placed;
+}
+
+CleanRecord with_switches_placed(const CleanRecord& record, const Fit& fit, const std::stop_token& stop) {
+    constexpr int kParts = 5;  // of a row, and then of such a part
+    std::vector<int> all(static_cast<std::size_t>(record.changes()));
+    std::iota(all.begin(), all.end(), 0);
+    CleanRecord placed = record;
+    placed.switches_placed = record.changes();
+    place(placed, fit, all, stop, [&](int j, const auto& take) {
+        const double seen = record.v_time[j], row = row_before(record, seen), part = (seen - row) / kParts;
+        const double first = std::max(row, j > 0 ? placed.v_time[j - 1] : 0.0);
+        double best = placed.v_time[j];
+        for (const double step : {part, part / kParts}) {
+            const double middle = best;
+            for (int k = -kParts + 1; k < kParts; ++k) {
+                const double time = middle + k * step;
+                if (time > first + 0.1 * part && time <= seen && take(time)) best = time;
             }
-            placed.v_time[j] = best;
         }
-        if (!moved) break;
-    }
+    });
     return placed;
 }
 

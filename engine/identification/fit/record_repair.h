@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <stop_token>
 #include <vector>
 
@@ -31,6 +32,12 @@ ModelSearch without_false_readings(ModelSearch search, CleanRecord& record, Mode
 /// times the usual one: the record does not show when they happened in it.
 std::vector<int> gap_moves(const CleanRecord& record);
 
+/// Where every change of u was first seen after missing rows, the dead time takes up what they hide, however well the
+/// model then fits: the record with each change in the middle of the rows at which it may have happened, and with
+/// `moves_unseen`, the shortest such stretch. Empty where one change is recorded, where no stretch is two usual
+/// spacings long, and of rows that are not evenly spaced, whose writer may have waited for the change.
+std::optional<CleanRecord> with_unseen_moves(const CleanRecord& record);
+
 /// The record with each of the changes `moves` (from gap_moves()) at the missing row at which the structure and shape
 /// of `fit` explain y best: one change after the other, until none moves, three rounds at most. A change is moved back
 /// by whole usual spacings, eight at most, and never to or before the change of u before it.
@@ -39,5 +46,9 @@ std::vector<int> gap_moves(const CleanRecord& record);
 /// far keep their rows.
 CleanRecord with_gap_moves_placed(const CleanRecord& record, const Fit& fit, const std::vector<int>& moves,
                                   const std::stop_token& stop);
+
+/// The same of every change of u, within the row that shows it and in steps of a fifth of it: a relay that looks
+/// oftener than it is recorded switches between the rows.
+CleanRecord with_switches_placed(const CleanRecord& record, const Fit& fit, const std::stop_token& stop);
 
 }  // namespace tunewright

@@ -291,9 +291,15 @@ FittedPlant fitted_plant(const CleanRecord& record, const Fit& fit, double quant
     ParameterCovariance& covariance = result.covariance;
     for (const auto& [name, value] : best) covariance.names.push_back(name);
     covariance.matrix.assign(best.size(), std::vector<double>(best.size(), 0));
-    const Eigen::MatrixXd deviations =
+    Eigen::MatrixXd deviations =
         fit.deviations.empty() ? deviations_of(fit, record.t, quantisation, noise, load) : given_deviations(fit);
     const std::vector<int> places = fit.form.searched();
+    if (record.moves_unseen > 0) {
+        // As likely at any of the missing rows: that is the dead time's.
+        deviations.conservativeResize(deviations.rows() + 1, Eigen::NoChange);
+        deviations.bottomRows(1).setZero();
+        deviations(deviations.rows() - 1, 0) = record.moves_unseen / std::sqrt(12.0);
+    }
     const int size = static_cast<int>(places.size());
     for (int axis = 0; axis < deviations.rows(); ++axis) {
         // A long axis is walked in part and scaled up: the logarithms would overflow.

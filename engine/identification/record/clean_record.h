@@ -48,8 +48,11 @@ struct RecordFacts {
     int dropped = 0;  ///< rows whose y is not used
     int u_only = 0;   ///< of them, rows whose u counts
     bool moved_between_rows =
-        false;             ///< each change of u was put midway between the row that shows it and the one before
-    int moves_placed = 0;  ///< changes of u that were put at rows that are missing (fit/record_repair.h)
+        false;                ///< each change of u was put midway between the row that shows it and the one before
+    int moves_placed = 0;     ///< changes of u that were put at rows that are missing (fit/record_repair.h)
+    int switches_placed = 0;  ///< a relay's switches that were put between rows (fit/record_repair.h)
+    /// No change of u was recorded: each was put into the middle of the missing rows before it, so long at least.
+    double moves_unseen = 0;
 };
 
 /// Dimensionless samples and input. The input v is 0 before the first sample and v_level[j] from v_time[j] on; v_time

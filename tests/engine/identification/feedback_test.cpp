@@ -77,6 +77,17 @@ TEST(Feedback, SetPointStepsTellThePlantWithinItsErrors) {
     EXPECT_LT(model->standard_errors.at("K"), 0.1);
 }
 
+TEST(Feedback, OneMoveOfTheSetPointTellsTheGainAsFarAsItsNoiseAllows) {
+    for (const double noise : {0.002, 0.02}) {
+        const auto model = identify(PiLoop{.noise = noise, .rows = 900, .move_every = 450}.record(), {}, {});
+        ASSERT_TRUE(model) << model.error().message;
+        const Fopdt& plant = fopdt_of(*model);
+        const double error = model->standard_errors.at("K");
+        EXPECT_NEAR(plant.K, 2, 4 * error) << noise;
+        EXPECT_LT(error, 0.1) << noise;
+    }
+}
+
 TEST(Feedback, KicksOfTheControllerStandInForAColumnOfTheSetPoint) {
     PiLoop loop;
     loop.with_r = false;

@@ -100,6 +100,100 @@ TEST(Records, MovesOfUInGapsArePlacedAtTheMissingRows) {
     EXPECT_TRUE(noted(*model, "happened while rows are missing"));
 }
 
+bool warned(const IdentifiedModel& model, const std::string& code) {
+    return std::ranges::any_of(model.warnings, [&](const Warning& w) { return w.code == code; });
+}
+
+TEST(Records, ADeadTimeThatMissingRowsHideIsAsOpenAsTheyAreLong) {
+    // u moves at 300; the rows from `from` to `to` are missing.
+    const auto recorded = [](double from, double to) {
+        Record whole = simulate(even_times(1200, 1), 50, 100, {{300, 51}}, first_order(2, 30, 25));
+        add_noise(whole, 0.02, 4);
+        Record record;
+        for (std::size_t i = 0; i < whole.t.size(); ++i) {
+            if (whole.t[i] > from && whole.t[i] < to) continue;
+            record.t.push_back(whole.t[i]);
+            record.u.push_back(whole.u[i]);
+            record.y.push_back(whole.y[i]);
+        }
+        return record;
+    };
+    for (const auto& [from, to] : {std::pair{294.0, 325.0}, {299.0, 330.0}, {270.0, 301.0}}) {
+        const auto model = identify(recorded(from, to), {}, {});
+        ASSERT_TRUE(model);
+        const auto* plant = std::get_if<Fopdt>(&model->plant);
+        ASSERT_NE(plant, nullptr);
+        EXPECT_NEAR(plant->L, 25, 15.5) << from;
+        EXPECT_NEAR(model->standard_errors.at("L"), 30 / std::sqrt(12.0), 0.2) << from;
+        EXPECT_NEAR(plant->T, 30, 0.5) << from;
+        EXPECT_TRUE(warned(*model, "unseen-move")) << from;
+    }
+    const auto elsewhere = identify(recorded(500, 540), {}, {});
+    ASSERT_TRUE(elsewhere);
+    EXPECT_NEAR(std::get<Fopdt>(elsewhere->plant).L, 25, 0.5);
+    EXPECT_FALSE(warned(*elsewhere, "unseen-move"));
+}
+
+TEST(Records, ALoadFarBeyondWhatUDidIsNoExplanation) {
+    for (unsigned seed = 0; seed < 8; ++seed) {
+        Record record = simulate(even_times(600, 1), 30, 60, {{60, 32}}, first_order(2, 20, 5));
+        add_noise(record, 0.02, seed);
+        Record scatter = record;
+        scatter.y = record.u;
+        add_noise(scatter, 0.08, seed + 100);
+        record.u = scatter.y;  // as read back
+        const auto model = identify(record, {}, {});
+        ASSERT_TRUE(model);
+        EXPECT_NEAR(static_gain(*model), 2, 0.1) << seed;
+        EXPECT_FALSE(warned(*model, "load-disturbance")) << seed;
+    }
+}
+
+/// A relay of +-1 that looks at y = 2 e^(-5s)/(20s + 1) every half second, from rest, recorded every `rows` seconds.
+Record coarse_relay_record(double hysteresis, double rows) {
+    constexpr double kLook = 0.5;
+    constexpr int kDelay = 10, kLooks = 1000, kStart = 60;
+    const double decay = std::exp(-kLook / 20);
+    std::vector<double> u(kLooks, 0.0);
+    Record record;
+    double y = 0, level = 1;
+    const int every = static_cast<int>(std::lround(rows / kLook));
+    for (int k = 0; k < kLooks; ++k) {
+        if (k >= kStart) {
+            if (y > hysteresis) level = -1;
+            if (y < -hysteresis) level = 1;
+            u[static_cast<std::size_t>(k)] = level;
+        }
+        if (k % every == 0) {
+            record.t.push_back(k * kLook);
+            record.u.push_back(40 + 10 * u[static_cast<std::size_t>(k)]);
+            record.y.push_back(70 + y);
+        }
+        y = decay * y + 2 * (1 - decay) * (k >= kDelay ? u[static_cast<std::size_t>(k - kDelay)] : 0);
+    }
+    add_noise(record, 0.002, 5);
+    return record;
+}
+
+TEST(Records, ARelayThatSwitchesBetweenRowsGivesADesignThatHolds) {
+    const LinearPlant truth = *LinearPlant::make(Fopdt{.K = 0.2, .T = 20, .L = 5});
+    for (const double hysteresis : {0.07, 0.08, 0.1}) {
+        const auto model = identify(coarse_relay_record(hysteresis, 2), {}, {});
+        ASSERT_TRUE(model) << model.error().message;
+        EXPECT_TRUE(warned(*model, "coarse-relay-record")) << hysteresis;
+        TuningRequest request;
+        request.subject = std::get<Subject>(Subject::make(model->plant));
+        request.tune = {{.method = "robust", .options = {}}};
+        const auto tuned = tune(request, {});
+        ASSERT_TRUE(tuned);
+        const auto judged =
+            evaluate(Fopdt{.K = 0.2, .T = 20, .L = 5}, tuned->controllers[0].evaluation->controller, {});
+        ASSERT_TRUE(judged);
+        ASSERT_TRUE(judged->robustness.stable) << hysteresis;
+        EXPECT_LT(*judged->robustness.Ms, 1.75) << hysteresis;
+    }
+}
+
 TEST(Records, WhatOnlyASlowPartExplainsIsNotExplainedAway) {
     // The record ends in the inverse response of a plant that goes the other way: gain 5, b = -6, lags 9 and 4.
     const auto inverse = [](double t) {

@@ -1,6 +1,6 @@
 // The head of every screen: where one can go, and the colours.
 import { h } from "./dom.ts";
-import { addressOfJob, showsJob } from "./routes.ts";
+import { addressOfJob, formatRoute, showsJob } from "./routes.ts";
 import type { Route } from "./routes.ts";
 import { shown } from "./store.ts";
 import type { Store } from "./store.ts";
@@ -18,6 +18,8 @@ export function header(store: Store): HTMLElement {
     jobs: h("a", { href: "#/jobs" }, "Jobs"),
     methods: h("a", { href: "#/methods" }, "Methods"),
   };
+  /** With its sliders where they were left. */
+  let design: Extract<Route, { screen: "design" }> | null = null;
   const route = store.pick((workspace) => workspace.route);
   shown(() => route.value, mark);
 
@@ -29,12 +31,14 @@ export function header(store: Store): HTMLElement {
         (screen === "start" && current.screen !== "batch" && !(current.screen in links));
       if (here) link.setAttribute("aria-current", "page");
       else link.removeAttribute("aria-current");
+      // On a phone the row is longer than the screen.
+      if (here) link.scrollIntoView({ block: "nearest", inline: "nearest" });
     }
+    if (current.screen === "design") design = current;
     if (!showsJob(current)) return;
-    for (const screen of ["design", "compare"] as const) {
-      links[screen].href = addressOfJob(current.job, screen);
-      links[screen].hidden = false;
-    }
+    links.design.href = design?.job === current.job ? formatRoute(design) : addressOfJob(current.job, "design");
+    links.compare.href = addressOfJob(current.job, "compare");
+    for (const screen of ["design", "compare"] as const) links[screen].hidden = false;
   }
 
   return h(

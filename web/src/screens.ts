@@ -1,9 +1,10 @@
 // Which screen belongs to the address: made, kept or made anew, and what they hand to each other.
-import { sentenceOf } from "./api/client.ts";
+import { notConnected, sentenceOf } from "./api/client.ts";
 import { getJob, getRecentJobs, postJob } from "./api/jobs.ts";
 import { isRangeRequest } from "./api/range.ts";
 import type { Batch } from "./api/job_lists.ts";
 import type { FieldError, IdentifyRequest, TuningRequest } from "./api/types.ts";
+import { h } from "./dom.ts";
 import type { TuneSubject } from "./form/tuning_request.ts";
 import type { JobFlow } from "./job_flow.ts";
 import type { RangeView } from "./range/view.ts";
@@ -25,6 +26,13 @@ export interface Screens {
   /** Shows what the address names. `first`: nothing was shown before, and the focus stays where it is. */
   go(first: boolean): void;
   focusHeading(): void;
+}
+
+/** A screen whose part of the page could not be fetched. */
+function awayView(): View {
+  const heading = h("h1", { tabindex: -1 }, "Range");
+  const trouble = h("p", { class: "trouble", role: "status" }, sentenceOf(notConnected()));
+  return { element: h("main", { id: "main" }, heading, trouble), heading, dispose: () => undefined };
 }
 
 /** `listed`: when methods and examples are known. */
@@ -80,8 +88,10 @@ export function screens(
 
   /** Kept as well, with the design that it shows; a file of its own, which most visits do not need. */
   async function openRange(route: Extract<Route, { screen: "range" }>, focus: boolean): Promise<void> {
-    const { rangeView } = await import("./range/view.ts");
+    const part = await import("./range/view.ts").catch(() => null);
     if (store.get().route !== route) return;
+    if (!part) return mount(awayView(), "Range · Tunewright", focus);
+    const { rangeView } = part;
     range ??= rangeView(store, announce, {
       onExample(id) {
         history.replaceState(null, "", formatRoute({ screen: "range", example: id, job: null }));

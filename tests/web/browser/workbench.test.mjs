@@ -81,6 +81,81 @@ test("the slider of Ms designs anew; undo, redo and the proposal lead back, the 
   });
 });
 
+test("what a job hands out is the design on the screen: it is kept first, or the proposal's alone", async () => {
+  await withPage(PLANT, {}, async (page) => {
+    await openDesign(page);
+    const report = page.getByRole("link", { name: "Report" });
+    const request = page.locator("summary", { hasText: /^Request$/ });
+    await slider(page, "Robustness Ms").focus();
+    await page.keyboard.press("Shift+ArrowRight");
+    await page.waitForURL(/Ms=1\.5/);
+    await report.waitFor({ state: "hidden" });
+    await request.waitFor({ state: "hidden" });
+    const kept = await designAt(page, 1.5);
+    await page.getByRole("button", { name: "Keep this design" }).click();
+    await report.waitFor();
+    await request.waitFor();
+    const job = await jobOf(page);
+    assert.deepEqual([job.request.tune[0].Ms, job.request.tune[0].Mt], [1.5, 1.5]);
+    assert.ok(Math.abs(job.result.controllers[0].controller.Kp / kept.controller.Kp - 1) < 1e-9);
+    assert.doesNotMatch(page.url(), /Ms=/);
+    await shows(page, "Kp", kept.controller.Kp);
+
+    const field = page.locator(".controls").getByRole("textbox", { name: "Kp" });
+    await field.fill("4");
+    await field.press("Enter");
+    await page.getByText(/^Ms is 2\.\d+, above the limit of 1\.50 that the design keeps to\. Report, request and code/).waitFor();
+    await report.waitFor({ state: "hidden" });
+    assert.equal(await page.getByRole("button", { name: "Keep this design" }).isVisible(), false);
+    await page.getByRole("button", { name: "Back to the proposal" }).click();
+    await report.waitFor();
+  });
+});
+
+test("the sliders stand where they were left, after Back and by the header's link", async () => {
+  await withPage(PLANT, {}, async (page) => {
+    await openDesign(page);
+    await slider(page, "Robustness Ms").focus();
+    await page.keyboard.press("Shift+ArrowRight");
+    await page.waitForURL(/Ms=1\.5/);
+    const { controller } = await designAt(page, 1.5);
+    await shows(page, "Kp", controller.Kp);
+    const screens = page.getByRole("navigation", { name: "Screens" });
+    await screens.getByRole("link", { name: "Methods" }).click();
+    await page.waitForURL(/methods/);
+    await page.goBack();
+    await slider(page, "Robustness Ms").waitFor();
+    await shows(page, "Kp", controller.Kp);
+    await screens.getByRole("link", { name: "Methods" }).click();
+    await screens.getByRole("link", { name: "Design" }).click();
+    await page.waitForURL(/Ms=1\.5/);
+    await shows(page, "Kp", controller.Kp);
+  });
+});
+
+test("a limit that the method does not take is told at its field, and the address keeps the last good one", async () => {
+  await withPage(PLANT, {}, async (page) => {
+    await openDesign(page);
+    const field = page.locator(".controls").getByRole("textbox", { name: "Robustness Ms" });
+    await field.fill("0.9");
+    await field.press("Enter");
+    await page.getByText("Robustness Ms is 0.9; it must be above 1.").waitFor();
+    assert.equal(await field.getAttribute("aria-invalid"), "true");
+    assert.doesNotMatch(page.url(), /Ms=/);
+  });
+});
+
+test("paper is light though the page is dark, and has no sliders", async () => {
+  await withPage(PLANT, {}, async (page) => {
+    await openDesign(page);
+    await page.evaluate(() => (document.documentElement.dataset.theme = "dark"));
+    await page.emulateMedia({ media: "print" });
+    const colour = await page.evaluate(() => getComputedStyle(document.body).color);
+    assert.equal(colour, "rgb(23, 32, 42)");
+    assert.equal(await page.locator(".controls").isVisible(), false);
+  });
+});
+
 test("a gain by hand is evaluated as it stands, and typed values act when the field is left", async () => {
   await withPage(PLANT, {}, async (page) => {
     await openDesign(page);

@@ -98,12 +98,15 @@ async function send(
     });
     return { response, text: response.status === 304 ? "" : await response.text() };
   } catch {
-    throw new ApiError(
-      { type: "not-connected", detail: "Not connected to the service. Nothing is lost; try again when it is back." },
-      0,
-    );
+    throw notConnected();
   }
 }
+
+export const notConnected = (): ApiError =>
+  new ApiError(
+    { type: "not-connected", detail: "Not connected to the service. Nothing is lost; try again when it is back." },
+    0,
+  );
 
 function parse(text: string): unknown {
   try {

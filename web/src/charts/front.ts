@@ -46,7 +46,7 @@ export function frontFrame(shown: FrontShown, units: UnitNames): Frame {
   return {
     title: "Robustness against speed",
     description: here
-      ? `The design has Ms ${formatNumber(here.x)} and a load IAE of ${formatNumber(here.y)}. ${rules.length} rules stand beside it.`
+      ? `The design has Ms ${formatNumber(here.x)} and a load IAE of ${formatNumber(here.y)}. ${rules.length === 0 ? "" : `${rules.length} rules stand beside it.`}`.trim()
       : "There is no such design.",
     x: { kind: "linear", label: "Ms", range: [LOWEST_MS, HIGHEST_MS] },
     panes: [

@@ -33,7 +33,7 @@ export class FormErrors {
   readonly summary = h("div", {
     class: "summary",
     role: "group",
-    "aria-label": "What to mend",
+    "aria-label": "Problems to fix",
     tabindex: -1,
     hidden: true,
   });
@@ -68,7 +68,7 @@ export class FormErrors {
       const control = this.place(error);
       if (!control) return h("li", {}, error.detail, error.pointer ? h("code", {}, ` ${error.pointer}`) : null);
       openAround(control.input);
-      const link = h("a", { href: `#${control.input.id}` }, error.detail);
+      const link = h("a", { href: `#${control.input.id}` }, inWordsOf(control, error));
       link.addEventListener("click", (event) => {
         event.preventDefault();
         control.input.focus();
@@ -88,7 +88,7 @@ export class FormErrors {
     const controls = [...this.controls];
     const control = controls[matchPointer(error.pointer, controls.map((item) => item.pointer()))];
     if (!control) return undefined;
-    control.error.textContent = [control.error.textContent, error.detail].filter(Boolean).join(" ");
+    control.error.textContent = [control.error.textContent, inWordsOf(control, error)].filter(Boolean).join(" ");
     control.error.hidden = false;
     control.input.setAttribute("aria-invalid", "true");
     return control;
@@ -99,6 +99,13 @@ export class FormErrors {
     control.error.hidden = true;
     control.input.removeAttribute("aria-invalid");
   }
+}
+
+/** With the field's label where the service writes the member's name. */
+function inWordsOf({ input }: Control, { pointer, detail }: FieldError): string {
+  const member = pointer.slice(pointer.lastIndexOf("/") + 1);
+  const label = input.labels?.[0]?.firstElementChild?.textContent;
+  return label && detail.startsWith(`${member} is `) ? label + detail.slice(member.length) : detail;
 }
 
 /** Opens the folded parts of the page that an element is in. */

@@ -12,7 +12,7 @@ const ROLES: Record<PreviewColumn["guess"], string> = {
   "-": "not used",
 };
 
-const SEPARATORS: Record<string, string> = { tab: "tabs", blanks: "blanks" };
+const SEPARATORS: Record<string, string> = { tab: "tabs", blanks: "blanks", ",": "commas", ";": "semicolons", "|": "bars" };
 
 const LARGEST_BYTES = 8 * 1024 * 1024;
 

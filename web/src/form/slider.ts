@@ -16,6 +16,8 @@ export interface SliderOptions {
   /** What its ends mean. */
   ends?: [string, string];
   pointer: () => string | null;
+  /** Why a typed value is none; "" where it is one. */
+  wrong?(value: number): string;
   /** What is spoken for a value; it must name the quantity. */
   spoken(value: number): string;
   /** While it is dragged. */
@@ -136,7 +138,7 @@ export function slider(options: SliderOptions, errors: FormErrors): Slider {
   if (options.onHome) range.addEventListener("dblclick", () => options.onHome!());
   field.input.addEventListener("change", () => {
     const parsed = parseNumber(field.input.value, options.label);
-    const bad = !parsed.ok ? parsed.sentence : wrongSign(parsed.value);
+    const bad = !parsed.ok ? parsed.sentence : wrongSign(parsed.value) || (options.wrong?.(parsed.value) ?? "");
     if (bad || !parsed.ok) {
       field.control.error.textContent = bad;
       field.control.error.hidden = false;

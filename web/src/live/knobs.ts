@@ -18,6 +18,8 @@ export interface Knob {
   ends?: [string, string];
   /** Null: the method's own choice, which it does not tell. */
   value: number | null;
+  /** What the method says of the option's values. */
+  schema?: Schema;
 }
 
 export type HandName = "Kp" | "Ti" | "Td" | "Tf";
@@ -26,6 +28,26 @@ export const HAND: readonly HandName[] = ["Kp", "Ti", "Td", "Tf"];
 const MS_RANGE = { lo: 1.1, hi: 2.5, step: 0.01, log: false };
 export const DEFAULT_LIMIT = 1.4;
 const SPREAD = 5;
+
+/** Why a typed value cannot be asked for; "" where it can. */
+export function wrongValue({ label, schema }: Knob, value: number): string {
+  const { minimum, exclusiveMinimum, maximum, exclusiveMaximum } = schema ?? {};
+  const rules = [
+    minimum !== undefined && value < minimum ? `at least ${minimum}` : "",
+    exclusiveMinimum !== undefined && value <= exclusiveMinimum ? `above ${exclusiveMinimum}` : "",
+    maximum !== undefined && value > maximum ? `at most ${maximum}` : "",
+    exclusiveMaximum !== undefined && value >= exclusiveMaximum ? `below ${exclusiveMaximum}` : "",
+  ].filter(Boolean);
+  return rules.length > 0 ? `${label} is ${value}; it must be ${rules.join(" and ")}.` : "";
+}
+
+/** Of an option with dots between its parts, as far as the method describes it. */
+function schemaAt(method: Method | undefined, id: string): Pick<Knob, "schema"> {
+  let at: Schema | undefined = method?.options;
+  for (const part of id.split(".")) at = at?.properties?.[part];
+  const schema = at && numberSchema(at);
+  return schema ? { schema } : {};
+}
 
 const numberAt = (tune: TuneEntry, id: string): number | null => {
   const value = id.split(".").reduce<unknown>((at, part) => (at as Record<string, unknown> | undefined)?.[part], tune);
@@ -56,7 +78,7 @@ export function optionKnobs(tune: TuneEntry, entry: Entry, method: Method | unde
     if (!numeric || NOT_TURNED.includes(name)) return [];
     const told = numberAt(tune, name) ?? numberAt({ method: "", ...entry.options }, name) ?? given(schema.default);
     const range = rangeOf(numeric, told, entry);
-    return range ? [{ id: name, label: nameOf(name), unit: namedUnit(schema["x-unit"] ?? "", units), ...range, value: told }] : [];
+    return range ? [{ id: name, label: nameOf(name), unit: namedUnit(schema["x-unit"] ?? "", units), ...range, value: told, schema: numeric }] : [];
   });
 }
 
@@ -97,7 +119,7 @@ function robustKnobs(tune: TuneEntry, entry: Entry, method: Method | undefined, 
     ...(isTied(tune) ? [] : [limit("Mt", "Robustness Mt")]),
     noiseKnob(tune, entry, units),
     ...setpointKnob(tune, method),
-  ];
+  ].map((knob) => ({ ...knob, ...schemaAt(method, knob.id) }));
 }
 
 /** How much noise reaches the output: by a limit on Mks, or by the filter's time. */

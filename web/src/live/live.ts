@@ -103,10 +103,12 @@ export function liveDesign(onSettled: (point: Point) => void): Live {
     },
   );
 
-  /** Settings by hand keep the name of what they were moved from. */
-  function named(entry: Entry, asked: Point): Entry {
+  /** Settings by hand keep the name of what they were moved from, and its limits to be drawn. */
+  function named(entry: Entry, { tune, hand }: Point): Entry {
+    if (!hand) return entry;
     const from = proposal.peek()!.entry;
-    return asked.hand ? { ...entry, method: from.method, options: {}, title: `${from.title ?? from.method}, by hand` } : entry;
+    const limits = Object.entries(tune ?? {}).filter(([name]) => name === "Ms" || name === "Mt");
+    return { ...entry, method: from.method, options: Object.fromEntries(limits), title: `${from.title ?? from.method}, by hand` };
   }
 
   function fail(error: unknown): void {

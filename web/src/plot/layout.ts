@@ -33,6 +33,8 @@ const USUAL_TICK_LENGTH = 4;
 const TICK_GLYPH_PX = 7;
 /** Between the ticks of a y axis. */
 export const TICK_PX = 38;
+/** Between the ticks of an x axis. */
+export const X_TICK_PX = 90;
 const RIGHT = 14;
 const TOP = 8;
 const BOTTOM = 38;
@@ -58,8 +60,8 @@ export function layoutFrame(
         : covering(pane.y.range ?? dataRange(pane), atLeast?.boxes[index]?.y)),
   );
   const left = leftOf(frame, yRanges, heights);
-  const innerWidth = Math.max(40, width - left - RIGHT);
   const xRange = view.x ?? covering(frame.x.range ?? dataRangeOfX(frame), atLeast?.boxes[0]?.x);
+  const innerWidth = Math.max(40, width - left - rightOf(frame, xRange, width - left));
   let top = TOP;
   const boxes = frame.panes.map((pane, index): PaneBox => {
     const paneHeight = heights[index]!;
@@ -87,6 +89,12 @@ function leftOf(frame: Frame, ranges: Range[], heights: number[]): number {
     tickTexts(ticks(pane.y.kind, ranges[index]!, heights[index]! / TICK_PX)).map((text) => text.length),
   );
   return LEFT + TICK_GLYPH_PX * Math.max(0, Math.max(0, ...lengths) - USUAL_TICK_LENGTH);
+}
+
+/** Half of the last tick's text, which may stand at the very end. */
+function rightOf(frame: Frame, range: Range, width: number): number {
+  const last = tickTexts(ticks(frame.x.kind, range, width / X_TICK_PX)).at(-1) ?? "";
+  return Math.max(RIGHT, Math.ceil((TICK_GLYPH_PX * last.length) / 2));
 }
 
 const dataRangeOfX = (frame: Frame): Range =>

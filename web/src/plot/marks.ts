@@ -6,7 +6,7 @@ import { ticks, tickTexts } from "./axis.ts";
 import { columnExtremes, drawableRuns } from "./dense.ts";
 import type { Frame, Look, Mark, Point, Trace } from "./frame.ts";
 import { markLabels } from "./labels.ts";
-import { TICK_PX } from "./layout.ts";
+import { TICK_PX, X_TICK_PX } from "./layout.ts";
 import type { Layout, PaneBox } from "./layout.ts";
 
 type Attributes = Record<string, string | number>;
@@ -60,7 +60,7 @@ function drawBox(frame: Frame, box: PaneBox, clip: string, last: boolean): TreeN
 
 function axisTicks(box: PaneBox): { x: number[]; y: number[] } {
   return {
-    x: ticks(box.x.kind, box.x.range, box.width / 90),
+    x: ticks(box.x.kind, box.x.range, box.width / X_TICK_PX),
     y: ticks(box.y.kind, box.y.range, box.height / TICK_PX),
   };
 }

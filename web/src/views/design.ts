@@ -197,7 +197,9 @@ export function designView(store: Store, announce: (sentence: string) => void, e
   function showTurned(held: boolean): void {
     if (!finished) return;
     const { job, result } = finished;
-    own.follow(turned.answer()?.entry.controller ?? null);
+    const moved = turned.answer()?.entry.controller ?? null;
+    own.follow(moved);
+    title.setOwn(moved === null);
     if (held) return void showMoving(job, turned.effective(result), store.get(), true);
     showResult(job, result, store.get());
     if (turned.answer()) announce(verdict.textContent ?? "");

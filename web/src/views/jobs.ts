@@ -322,18 +322,8 @@ function loopsCard(
       onBatch(await postLoops(chosen, options));
     } catch (error) {
       const listed = error instanceof ApiError ? (error.problem.errors ?? []) : [];
-      fault.replaceChildren(
-        h("p", {}, sentenceOf(error)),
-        ...(listed.length > 0
-          ? [
-              h(
-                "ul",
-                {},
-                listed.map((item) => h("li", {}, item.detail)),
-              ),
-            ]
-          : []),
-      );
+      const faults = listed.map((item) => h("li", {}, item.detail));
+      fault.replaceChildren(faults.length > 0 ? h("ul", {}, faults) : h("p", {}, sentenceOf(error)));
     }
     file.value = "";
   }

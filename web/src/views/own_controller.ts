@@ -134,6 +134,13 @@ export function ownController(
     update();
   }
 
+  /** The service writes what a job has, not what is tried. */
+  function showCode(): void {
+    if (!shown) return;
+    const { job, index, name, units, result } = shown;
+    code.show(!tried && result.controllers[index]?.controller ? { job: job.id, index, name, units } : null);
+  }
+
   function ask(): void {
     const entry = shown?.result.controllers[shown.index];
     const controller = tried ?? entry?.controller;
@@ -234,13 +241,13 @@ export function ownController(
         showMine();
         showTodays();
       }
-      const { job, index, name, units, result } = next;
-      code.show(result.controllers[index]?.controller ? { job: job.id, index, name, units } : null);
+      showCode();
       update();
     },
     follow(controller) {
       if (controller === tried) return;
       tried = controller;
+      showCode();
       ask();
     },
     dispose() {

@@ -13,7 +13,7 @@ import { pointOf, tiedAt, valuesOf } from "../live/point.ts";
 import type { Point } from "../live/point.ts";
 import { formatRoute } from "../routes.ts";
 import type { Store } from "../store.ts";
-import { unitNames } from "../words/numbers.ts";
+import { formatNumber, unitNames } from "../words/numbers.ts";
 import { controlsCard } from "./cards/controls_card.ts";
 import { frontCard } from "./cards/front_card.ts";
 import type { FrontSubject } from "./cards/front_card.ts";
@@ -39,6 +39,9 @@ export interface TurnedEvents {
   onRetune(request: TuningRequest, index: number): Promise<void>;
 }
 
+/** Of a limit on Ms: an answer within it is not called above. */
+const LIMIT_TOLERANCE = 1e-3;
+
 /** Measured points have no responses over time, hence no front. */
 const hasFront = (plant: Plant): boolean => plant.type !== "frequency_response";
 
@@ -56,14 +59,11 @@ export function turnedDesign(
   const controls = controlsCard(live);
   const front = frontCard(announce, controls.turnMs, () => controls.setLowest(front.lowest()));
   const trouble = h("p", { class: "trouble", role: "status", hidden: true });
-  const again = h("button", { type: "button", onclick: () => void overRegion() }, "Hold the limits for every model");
-  const region = h(
-    "div",
-    { class: "trouble", hidden: true },
-    h("p", {}, "Turned for the best model alone, not for every model consistent with the record."),
-    h("p", { class: "actions" }, again),
-  );
-  controls.element.append(trouble, region);
+  const about = h("p", {});
+  const keep = h("button", { type: "button", onclick: () => void keepDesign() });
+  const keeping = h("p", { class: "actions" }, keep);
+  const away = h("div", { class: "trouble", hidden: true }, about, keeping);
+  controls.element.append(trouble, away);
 
   const base = (): Entry | undefined => shown?.result.controllers[shown.index];
   const todayOf = (result: Result): Entry | undefined =>
@@ -87,17 +87,18 @@ export function turnedDesign(
     showFront();
   }
 
-  async function overRegion(): Promise<void> {
+  /** The job's report, request and code are the proposal's: a design that stays has a job of its own. */
+  async function keepDesign(): Promise<void> {
     const tune = live.point.peek()?.tune;
     if (!shown?.job.request || !tune) return;
-    again.disabled = true;
+    keep.disabled = true;
     try {
       await events.onRetune(withTune(shown.job.request, shown.result, shown.index, tune), shown.index);
     } catch (error) {
       trouble.textContent = sentenceOf(error);
       trouble.hidden = false;
     } finally {
-      again.disabled = false;
+      keep.disabled = false;
     }
   }
 
@@ -106,6 +107,29 @@ export function turnedDesign(
     const tune = point?.tune;
     if (!tune || point.hand || tune.method !== "robust") return null;
     return typeof tune["Ms"] === "number" ? tune["Ms"] : (knobs.find((knob) => knob.id === "Ms")?.value ?? null);
+  }
+
+  /** What stands on the screen and not in the job, and what can be done about it. */
+  function showAway(answer: Answer | null): void {
+    away.hidden = !answer;
+    if (!answer) return;
+    const { hand } = answer.point;
+    const everyModel = shown?.job.request?.["uncertainty"] === "identified";
+    keeping.hidden = hand !== null;
+    keep.textContent = everyModel ? "Hold the limits for every model" : "Keep this design";
+    about.textContent = hand
+      ? `${aboveLimit(answer)}Report, request and code are the proposal's; settings by hand have none.`
+      : everyModel
+        ? "Turned for the best model alone, not for every model consistent with the record."
+        : "Report, request and code are the proposal's. Keep this design to have its own.";
+  }
+
+  /** Settings by hand keep to no limit. */
+  function aboveLimit({ entry, point }: Answer): string {
+    const limit = limitAt({ tune: point.tune, hand: null });
+    const Ms = entry.robustness?.Ms;
+    if (limit === null || typeof Ms !== "number" || Ms <= limit * (1 + LIMIT_TOLERANCE)) return "";
+    return `Ms is ${formatNumber(Ms)}, above the limit of ${formatNumber(limit)} that the design keeps to. `;
   }
 
   /** What the curves hold to, besides Ms. */
@@ -160,10 +184,7 @@ export function turnedDesign(
       trouble.textContent = live.trouble.value;
       trouble.hidden = live.trouble.value === "";
     }),
-    effect(() => {
-      const turned = Boolean(live.answer.value && !live.answer.value.point.hand);
-      region.hidden = !(turned && shown?.job.request?.["uncertainty"] === "identified");
-    }),
+    effect(() => showAway(live.answer.value)),
   ];
 
   /** Not where a text is typed: there it takes back letters. */
@@ -212,7 +233,8 @@ export function turnedDesign(
     front: front.element,
     show(job, result, index) {
       if (shown?.result === result && shown.index === index) return;
-      addressed = shown === null;
+      // The same entry again, newly fetched, still stands where the address says.
+      addressed = shown === null || (shown.job.id === job.id && shown.index === index);
       shown = { job, result, index };
       begin();
     },

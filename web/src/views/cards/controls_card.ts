@@ -5,7 +5,7 @@ import { h, uniqueId } from "../../dom.ts";
 import { FormErrors } from "../../form/errors.ts";
 import { slider } from "../../form/slider.ts";
 import type { Slider } from "../../form/slider.ts";
-import { DEFAULT_LIMIT, HAND, handKnobs, handValue, optionKnobs, withHand, withOption } from "../../live/knobs.ts";
+import { DEFAULT_LIMIT, HAND, handKnobs, handValue, optionKnobs, withHand, withOption, wrongValue } from "../../live/knobs.ts";
 import type { HandName, Knob } from "../../live/knobs.ts";
 import type { Live } from "../../live/live.ts";
 import { tiedAt } from "../../live/point.ts";
@@ -100,6 +100,7 @@ export function controlsCard(live: Live): ControlsCard {
         ...(knob.step || knob.log ? { step: knob.step ?? RELATIVE_STEP } : {}),
         ...(knob.ends ? { ends: knob.ends } : {}),
         pointer: () => null,
+        wrong: (value) => wrongValue(knob, value),
         spoken: (value) => spoken(knob, value),
         onMove: (value) => move(made, knob, value, turn),
         onTouch: () => live.held.peek() || live.expect(points(made.near(AT_TOUCH), knob, turn)),

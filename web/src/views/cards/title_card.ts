@@ -15,6 +15,8 @@ export interface TitleCard {
   element: HTMLElement;
   heading: HTMLElement;
   show(job: Job | null): void;
+  /** Whether what is shown is the job's own; report and request are left out where it is not. */
+  setOwn(own: boolean): void;
 }
 
 /** `screen`: the heading of a job without a name. `actions`: beside the links that every job has. */
@@ -34,6 +36,14 @@ export function titleCard(screen: string, announce: (sentence: string) => void, 
     formula,
     h("p", { class: "actions" }, editLink, recordLink, report.element, actions, menu.element),
   );
+  let about: Job | null = null;
+  let own = true;
+
+  function showOwn(): void {
+    menu.show("v1/jobs", own ? about?.request : null);
+    report.show(own && about?.result ? about.id : null);
+  }
+
   return {
     element,
     heading,
@@ -52,11 +62,15 @@ export function titleCard(screen: string, announce: (sentence: string) => void, 
       const shown = plant && !job.result?.model && hasFormulaOnly(plant) ? [plantFormula(plant, "div", true)] : [];
       formula.replaceChildren(...shown);
       formula.hidden = shown.length === 0;
-      menu.show("v1/jobs", request);
       editLink.href = formatRoute({ screen: "edit", job: job.id });
       recordLink.href = formatRoute({ screen: "identify", job: job.id });
       recordLink.hidden = !request?.record;
-      report.show(job.result ? job.id : null);
+      about = job;
+      showOwn();
+    },
+    setOwn(now) {
+      own = now;
+      showOwn();
     },
   };
 }

@@ -34,8 +34,8 @@ std::optional<std::size_t> column_named(const std::string& name) {
 Problem not_valid(std::string title, std::vector<FieldError> errors) {
     Problem problem{422, "invalid-request", std::move(title), errors.front().detail, std::move(errors), {}};
     if (problem.errors.size() > 1)
-        problem.detail =
-            std::to_string(problem.errors.size()) + " values need mending. The first: " + problem.errors.front().detail;
+        problem.detail = std::to_string(problem.errors.size()) +
+                         " values are not valid. The first: " + problem.errors.front().detail;
     return problem;
 }
 
@@ -198,6 +198,10 @@ std::optional<Problem> Loops::read_headings(long number, std::string_view line) 
 std::optional<Problem> Loops::find_columns(long number, const std::vector<std::string_view>& headings) {
     const std::string where = "Line " + std::to_string(number) + " must name the columns, such as name,K,T,L: ";
     at_.fill(kMissing);
+    const auto known = [](std::string_view heading) { return column_named(split_heading(heading).name).has_value(); };
+    if (std::ranges::none_of(headings, known))
+        return refused("Line " + std::to_string(number) +
+                       " has no heading of a loop's columns. Put name,K,T,L into the first line, above the loops.");
     width_ = headings.size();
     while (width_ > 0 && headings[width_ - 1].empty()) --width_;
     std::array<std::string, kColumns> units;

@@ -57,7 +57,7 @@ std::optional<Problem> Reader::problem() const {
         problem.detail = faults_.front().detail;
     } else {
         problem.detail =
-            std::to_string(count_) + " values need mending" +
+            std::to_string(count_) + " values are not valid" +
             (count_ > faults_.size() ? ", the first " + std::to_string(faults_.size()) + " are listed" : "") +
             ". The first: " + faults_.front().detail;
     }

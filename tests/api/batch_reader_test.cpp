@@ -251,7 +251,7 @@ TEST(BatchReader, ABadLoopFailsAloneWithItsLine) {
     ASSERT_EQ(out.entries.size(), 6u);
     EXPECT_EQ(out.entries[1].name, "b");
     EXPECT_EQ(problem_of(out.entries[1]).detail,
-              "Request 2, line 3: 2 values need mending. The first: K is \"x\"; it must be a number.");
+              "Request 2, line 3: 2 values are not valid. The first: K is \"x\"; it must be a number.");
     EXPECT_EQ(detail_at(problem_of(out.entries[1]).errors, "/plant/T"), "T is missing; every loop needs K, T and L.");
     EXPECT_THAT(problem_of(out.entries[2]).detail, HasSubstr("line 4: It has 6 cells, the headings are 4."));
     EXPECT_THAT(detail_at(problem_of(out.entries[3]).errors, "/plant/K"), HasSubstr("K is 0"));

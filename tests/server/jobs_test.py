@@ -1,5 +1,6 @@
 """What a client may rely on about jobs."""
 
+import json
 import csv
 import io
 import re
@@ -101,6 +102,13 @@ class JobTest(unittest.TestCase):
         for method, path in (("GET", ""), ("DELETE", ""), ("POST", "/cancel")):
             answer = self.service.call(method, "/v1/jobs/0123456789abcdefghjkmnpqrs" + path)
             self.assertEqual((answer.status, answer.media_type), (404, "application/problem+json"))
+
+    def test_what_is_asked_for_is_quoted_as_utf_8_whatever_its_bytes_are(self):
+        for method, path in (("GET", "/v1/jobs/%ff"), ("POST", "/v1/jobs/%ff/cancel"), ("GET", "/v1/batches/%ff"),
+                             ("GET", "/v1/jobs/" + "a" * 63 + "%c3%a9")):
+            answer = self.service.call(method, path)
+            self.assertEqual(answer.status, 404)
+            self.assertIn("There is no", json.loads(answer.body.decode("utf-8"))["detail"])
 
     def test_an_unchanged_job_is_304(self):
         job = self.service.post_job(QUICK, wait=30)

@@ -21,7 +21,7 @@ std::vector<Warning> range_warnings(const ReducedModel& model, const FirstOrderR
 }  // namespace
 
 std::optional<Error> unfit(const ReducedModel& model, const FirstOrderRule& rule) {
-    if (model.integrators == 1 && !rule.has_integrating_form)
+    if (model.integrators > (rule.has_integrating_form ? 1 : 0))
         return degenerate("plant", rule.name + " has no form for integrating plants.",
                           "Use simc, lambda, amigo, ziegler_nichols_ultimate or robust.");
     if (model.L <= 0)

@@ -26,7 +26,7 @@ struct FirstOrderOptions {
 
 OptionSet<FirstOrderOptions> first_order_options();
 
-/// What such a rule refuses: L = 0, T = 0 and, without an integrating form, an integrator.
+/// What such a rule refuses: L = 0, T = 0, two integrators and, without an integrating form, one.
 std::optional<Error> unfit(const ReducedModel& model, const FirstOrderRule& rule);
 
 /// `settings` on the model of the plant (by option `reduction`, tangent first), with a derivative filter by option

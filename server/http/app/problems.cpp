@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "api/csv/text.h"
+
 namespace tunewright::server::http {
 namespace {
 
@@ -36,7 +38,10 @@ api::Problem problem(int status, std::string detail) {
 Response problem_response(const api::Problem& problem, std::chrono::seconds retry_after) {
     Response response;
     response.status = problem.status;
-    response.body = api::to_json(problem);
+    // Sentences quote what was asked for, whatever its bytes are.
+    const std::string body = api::to_json(problem);
+    std::string storage;
+    response.body = api::utf8_text(body, storage);
     response.set("Content-Type", "application/problem+json");
     if (problem.status == 429 || problem.status == 503)
         response.set("Retry-After", std::to_string(retry_after.count()));

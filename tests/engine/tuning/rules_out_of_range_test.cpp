@@ -105,6 +105,7 @@ const std::vector<Case> kRefuses{
     {"chien_hrones_reswick", {word("mode", "servo")}, kIntegrating, "Chien-Hrones-Reswick for set points has no form"},
     {"kappa_tau", {}, kIntegrating, "has no form for integrating plants"},
     {"haalman", {}, kIntegrating, "Haalman's rule has no form for integrating plants"},
+    {"haalman", {}, kDoubleIntegrator, "Haalman's rule has no form for integrating plants"},
     {"haalman", {}, kNoDeadTime, "plant/L: Haalman's rule divides by the dead time"},
     {"haalman", {}, kNoLag, "plant/T: Haalman's rule needs a lag"},
     {"gain_phase_margin", {}, kIntegrating, "Ho, Hang and Cao's rule has no form for integrating plants"},

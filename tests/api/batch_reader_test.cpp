@@ -263,7 +263,7 @@ TEST(BatchReader, SaysWhichColumnsAreMissing) {
     EXPECT_THAT(refusal(loops(), "name,K,L\na,1,3\n"),
                 HasSubstr("422 Line 1 must name the columns, such as name,K,T,L: T is missing."));
     EXPECT_THAT(refusal(loops(), "K\n1\n"), HasSubstr("T and L are missing"));
-    EXPECT_THAT(refusal(loops(), "1,2,3\n"), HasSubstr("\"1\" is none of name, K, T and L"));
+    EXPECT_THAT(refusal(loops(), "1,2,3\n"), HasSubstr("Line 1 has no heading of a loop's columns. Put name,K,T,L"));
     EXPECT_THAT(refusal(loops(), "K,T,L,Ms\n1,2,3,4\n"), HasSubstr("\"Ms\" is none of"));
     EXPECT_THAT(refusal(loops(), "K,T,tau,L\n1,2,3,4\n"), HasSubstr("two columns say T"));
     EXPECT_THAT(refusal(loops(), "K,T [min],L [s]\n1,2,3\n"), HasSubstr("must be in the same unit"));

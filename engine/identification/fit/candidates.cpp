@@ -257,7 +257,7 @@ std::string why_chosen(const std::vector<Fit>& fits, const std::vector<double>& 
                "; information criterion within " + text(-lead, 3) + ").";
     }
     return name + ": the best balance of fit and number of parameters (" + figures +
-           "; information criterion lower by " + text(lead, 3) + " with " + text(independent_samples, 3) +
+           "; information criterion lower by " + text(lead, 3) + " with " + figure_text(independent_samples) +
            " independent samples).";
 }
 

@@ -284,7 +284,7 @@ private:
                 {"schedule-coupling",
                  "The schedule follows a variable of the loop itself. At rest the loop is as designed, but on the way "
                  "the settings' motion changes the gain from y to u by up to " +
-                     text(100 * coupling_, 2) + " %, at " + text(coupled_at_) +
+                     figure_text(100 * coupling_, 2) + " %, at " + text(coupled_at_) +
                      ": the limits hold for slow passages; make large steps as ramps."});
     }
 

@@ -71,7 +71,8 @@ TEST(ProductRefusals, AValueOutsideItsRangeIsRefusedWithTheNearest) {
     quick.Td = 0;
     quick.filter = {};
     // 0 would switch the integral off.
-    EXPECT_THAT(refused("mitsubishi_fx_pid", quick).message, HasSubstr("TI would be 0.2, and it takes 1 to 32767 100 ms"));
+    EXPECT_THAT(refused("mitsubishi_fx_pid", quick).message,
+                HasSubstr("TI would be 0.2, and it takes 1 to 32767 100 ms"));
     EXPECT_NEAR(nearest("mitsubishi_fx_pid", quick).realised.Ti, 0.1, 1e-15);
 }
 

@@ -13,7 +13,7 @@ namespace {
 constexpr double kFirstSample = 0.1;   // of 1/omega_Ms: where the search starts
 constexpr double kShortest = 1e-3;     // of 1/omega_Ms
 constexpr double kLongest = 1e3;       // of 1/omega_Ms: where it ends
-constexpr double kMostInDelay = 1e4;   // sample times in the dead time: a loop is looked at once for each
+constexpr double kMostInDelay = 3e4;   // sample times in the dead time: a loop is looked at once for each
 constexpr double kShorter = 0.6;       // of a sample time: a shorter one that the whole loop must bear too
 constexpr double kLightDamping = 0.5;  // of a pole
 constexpr double kNext = 1.1;          // from one sample time to the next, where they are looked at one by one

@@ -180,11 +180,13 @@ void try_gap_moves(ModelSearch& search, ModelChoice model, const RunControl& con
 /// A relay recorded in few rows a half period: each of its switches lies within the row that shows it. Kept where that
 /// leaves two thirds of the sum of squares or less.
 void try_switches_between_rows(ModelSearch& search, ModelChoice model, const RunControl& control) {
-    constexpr double kMuchLess = 1.5, kWorthLooking = 95;   // per cent: few rows hide a pattern
-    constexpr int kFewRows = 40, kMost = 200, kRounds = 4;  // rows for each change of u; changes
+    constexpr double kMuchLess = 1.5, kWorthLooking = 95;  // per cent: few rows hide a pattern
+    constexpr int kFewRows = 40, kRounds = 4;              // rows for each change of u
+    constexpr double kMostWork = 60'000;                   // changes times rows: each is tried at some places
     if (search.percents[static_cast<std::size_t>(search.choice.index)] > kWorthLooking) return;
     const CleanRecord& record = search.context.record;
-    if (record.changes() > kMost || record.samples() > kFewRows * record.changes()) return;
+    const double rows = record.samples(), changes = record.changes();
+    if (rows > kFewRows * changes || rows * changes > kMostWork) return;
     const auto fitted = [&](CleanRecord placed, ModelChoice choice) {
         return fit_all(fit_context(std::move(placed), true, control.stop), choice, {}, control);
     };
@@ -197,7 +199,9 @@ void try_switches_between_rows(ModelSearch& search, ModelChoice model, const Run
     }
     if (!usable(other)) return;
     other = fitted(with_switches_placed(record, other.chosen(), control.stop), model);
-    if (!usable(other) || kMuchLess * other.chosen().sse > search.chosen().sse) return;
+    // Each place is a parameter more.
+    const auto left = [&] { return other.chosen().sse / std::max(1 - changes / rows, 0.1); };
+    if (!usable(other) || kMuchLess * left() > search.chosen().sse) return;
     search = std::move(other);
 }
 

@@ -20,10 +20,11 @@ TEST(Negotiation, PreferWaitIsReadAsRfc7240WritesIt) {
     EXPECT_EQ(wait_of("wait=10"), 10);
     EXPECT_EQ(wait_of("respond-async, WAIT = 5; strict"), 5);
     EXPECT_EQ(wait_of("wait=0"), 0);
+    EXPECT_EQ(wait_of("wait=\"7\""), 7);
     EXPECT_EQ(wait_of("wait=3600"), 60) << "at most a minute";
     EXPECT_EQ(wait_of("wait=99999999999999"), 60);
-    for (const char* none :
-         {"", "wait", "wait=", "wait=-1", "wait=1.5", "wait=ten", "waiting=3", "wait=-99999999999999"})
+    for (const char* none : {"", "wait", "wait=", "wait=-1", "wait=1.5", "wait=ten", "waiting=3", "wait=\"\"",
+                             "wait=\"", "wait=-99999999999999"})
         EXPECT_EQ(wait_of(none), std::nullopt) << none;
     EXPECT_FALSE(preferred_wait({}));
 }

@@ -120,7 +120,7 @@ export function turnedDesign(
     about.textContent = hand
       ? `${aboveLimit(answer)}Report, request and code are the proposal's; settings by hand have none.`
       : everyModel
-        ? "Turned for the best model alone, not for every model consistent with the record."
+        ? "Turned for the best model alone, not for every model consistent with the record. Report, request and code are the proposal's."
         : "Report, request and code are the proposal's. Keep this design to have its own.";
   }
 

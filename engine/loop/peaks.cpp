@@ -184,7 +184,8 @@ void give_room(std::vector<Stretch>& stretches) {
 
 /// Looks along the stretch, by steps of kTurnStep and at the tops of the hills that may be higher.
 void look_along(const Stretch& s, double time, const std::function<double(double)>& f, Peak& best) {
-    const int looks = static_cast<int>(std::ceil(time * (s.right - s.left) / kTurnStep));
+    constexpr double kMostLooks = 1e8;
+    const int looks = static_cast<int>(std::min(std::ceil(time * (s.right - s.left) / kTurnStep), kMostLooks));
     const double step = (s.right - s.left) / looks;
     Maximum before{s.left - step, f(s.left - step)}, here{s.left, f(s.left)};
     for (int k = 0; k <= looks; ++k) {

@@ -1,5 +1,6 @@
 #include "engine/controller/product/formula.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -130,6 +131,11 @@ double filter_time(const Parameter& parameter, const Quantities& quantities, dou
 }
 
 double slope_filter_time(double samples, double Ts) { return (samples - 1) * Ts / 2; }
+
+int whole_samples(double samples) {
+    constexpr double kMost = 1e6;
+    return static_cast<int>(std::lround(std::clamp(samples, 1.0, kMost)));
+}
 
 std::string formula_text(const Product& product, const Parameter& parameter) {
     switch (parameter.shape) {

@@ -34,5 +34,7 @@ double filter_time(const Parameter& parameter, const Quantities& quantities, dou
 /// Tf of a first-order filter that delays a slope like the block's does: of M samples (M - 1) Ts/2, of the four points
 /// Ts. Both add that to the delay of a difference, Ts/2.
 double slope_filter_time(double samples, double Ts);
+/// The samples of a slope as a whole number, from 1 to a million.
+int whole_samples(double samples);
 
 }  // namespace tunewright::product

@@ -9,7 +9,6 @@ namespace tunewright::product {
 namespace {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-constexpr double kMostSamples = 1e6;  // of a slope
 
 // What the settings say, in seconds and units of u per y, in the block's own form.
 struct Law {
@@ -273,7 +272,7 @@ SampledPid sampled_law(const Product& product, const Settings& settings, const C
     if (product.filter.kind == FilterKind::slope) {
         const Parameter* samples = parameter_of(product, Role::filter);
         const double M = samples ? number_of(*samples, settings).value_or(1) : product.filter.value;
-        law.slope_samples = static_cast<int>(std::lround(std::clamp(M, 1.0, kMostSamples)));
+        law.slope_samples = whole_samples(M);
     }
     return law;
 }

@@ -307,8 +307,7 @@ Expected<Fitted> design(const Build& build, const std::vector<const LinearPlant*
         const IdealPid pid = form.controller(gain, Ti, Td);
         Law law = *rules;
         law.gains = to_parallel(pid);
-        if (slope && build.sampled())
-            law.slope_samples = std::max(1, static_cast<int>(std::lround(1 + 2 * pid.filter.Tf / build.Ts)));
+        if (slope && build.sampled()) law.slope_samples = product::whole_samples(1 + 2 * pid.filter.Tf / build.Ts);
         if (build.product == nullptr) law.derivative = rule_of(build, pid);
         return law;
     };

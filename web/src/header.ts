@@ -20,8 +20,16 @@ export function header(store: Store): HTMLElement {
   };
   /** With its sliders where they were left. */
   let design: Extract<Route, { screen: "design" }> | null = null;
+  const nav = h("nav", { "aria-label": "Screens" }, Object.values(links));
   const route = store.pick((workspace) => workspace.route);
   shown(() => route.value, mark);
+
+  /** On a phone the row is longer than the screen; the page itself stays where it is. */
+  function reveal(link: HTMLElement): void {
+    const row = nav.getBoundingClientRect();
+    const { left, right } = link.getBoundingClientRect();
+    nav.scrollLeft += Math.min(0, left - row.left) + Math.max(0, right - row.right);
+  }
 
   function mark(current: Route): void {
     for (const [screen, link] of Object.entries(links)) {
@@ -31,8 +39,7 @@ export function header(store: Store): HTMLElement {
         (screen === "start" && current.screen !== "batch" && !(current.screen in links));
       if (here) link.setAttribute("aria-current", "page");
       else link.removeAttribute("aria-current");
-      // On a phone the row is longer than the screen.
-      if (here) link.scrollIntoView({ block: "nearest", inline: "nearest" });
+      if (here) requestAnimationFrame(() => reveal(link));
     }
     if (current.screen === "design") design = current;
     if (!showsJob(current)) return;
@@ -45,7 +52,7 @@ export function header(store: Store): HTMLElement {
     "header",
     { class: "top" },
     h("a", { class: "brand", href: "#/" }, "Tunewright"),
-    h("nav", { "aria-label": "Screens" }, Object.values(links)),
+    nav,
     h("div", { class: "tools" }, h("a", { href: "openapi.json" }, "API"), themeButton()),
   );
 }

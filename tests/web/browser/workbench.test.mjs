@@ -280,5 +280,22 @@ test("on a phone the responses stand first, and the sliders directly under them"
     ];
     assert.deepEqual(order, order.toSorted((a, b) => a - b));
     assert.ok(order[0] < 500, `the first plot begins at ${order[0]}`);
+
+    const scrolled = () => page.evaluate(() => window.scrollY);
+    await slider(page, "Robustness Ms").scrollIntoViewIfNeeded();
+    await slider(page, "Robustness Ms").focus();
+    const before = await scrolled();
+    assert.ok(before > 200, `the sliders lie below the first screen, not at ${before}`);
+    await page.keyboard.press("Shift+ArrowRight");
+    await page.waitForURL(/Ms=1\.5/);
+    assert.equal(await scrolled(), before);
+    for (const name of ["Methods", "Start"]) {
+      const link = page.getByRole("navigation", { name: "Screens" }).getByRole("link", { name });
+      await link.click();
+      await page.waitForFunction((wanted) => document.querySelector("nav a[aria-current]")?.textContent === wanted, name);
+      await page.waitForTimeout(100);
+      const { x, width } = await link.boundingBox();
+      assert.ok(x >= 0 && x + width <= 390, `${name} stands from ${x} to ${x + width}`);
+    }
   });
 });

@@ -74,7 +74,7 @@ test("what the service refuses stands at the row it is about, and the text stays
       await field(page, "dh/dt =").fill("(q - k*sqrt(hh))/A");
       await field(page, "Value of k").fill("0.5*");
       await tune(page);
-      const summary = page.getByRole("group", { name: "What to mend" });
+      const summary = page.getByRole("group", { name: "Problems to fix" });
       await summary.waitFor();
       assert.ok(await summary.evaluate((element) => element === document.activeElement));
       const value = field(page, "Value of k");
@@ -100,7 +100,7 @@ test("what is missing is said without asking the service", async () => {
     await field(page, "dh/dt =").fill("");
     await field(page, "Its value").fill("half");
     await tune(page);
-    const summary = page.getByRole("group", { name: "What to mend" });
+    const summary = page.getByRole("group", { name: "Problems to fix" });
     await summary.getByRole("heading", { name: "2 problems to fix" }).waitFor();
     for (const label of ["dh/dt =", "Its value"])
       assert.equal(await field(page, label).getAttribute("aria-invalid"), "true", label);

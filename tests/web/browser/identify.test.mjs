@@ -203,7 +203,7 @@ test("a record that cannot be read says why at its field, and is mended there", 
       const { problems } = await (await looked).json();
       const errors = problems.map(({ pointer, detail }) => ({ pointer: `/record/${pointer}`, detail }));
       assert.ok(errors.length > 0);
-      const summary = page.getByRole("group", { name: "What to mend" });
+      const summary = page.getByRole("group", { name: "Problems to fix" });
       await summary.waitFor();
       for (const error of errors) {
         assert.ok((await summary.innerText()).includes(error.detail), error.detail);
@@ -237,7 +237,7 @@ test("a record that no model explains is still drawn, and the part that one expl
       const { type, errors, record } = await (await refused).json();
       assert.equal(type, "not-identifiable");
       assert.equal(record.t.length, rows.length);
-      const summary = page.getByRole("group", { name: "What to mend" });
+      const summary = page.getByRole("group", { name: "Problems to fix" });
       await summary.waitFor();
       assert.ok((await summary.innerText()).includes(errors[0].detail));
       await tracesShown(page, "Record", 2);
@@ -262,7 +262,7 @@ test("a record in which nothing happens is refused in the service's words", asyn
       const refused = page.waitForResponse((response) => response.url().endsWith("/v1/identify"));
       await dropFile(page, ".drop", "flat.csv", ["t,u,y", ...rows.map((_, t) => `${t},5,20`)].join("\n"));
       const { detail, errors = [] } = await (await refused).json();
-      const summary = page.getByRole("group", { name: "What to mend" });
+      const summary = page.getByRole("group", { name: "Problems to fix" });
       await summary.waitFor();
       assert.ok((await summary.innerText()).includes(errors[0]?.detail ?? detail));
     },

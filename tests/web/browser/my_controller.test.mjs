@@ -228,7 +228,7 @@ test("a controller whose range is missing is not designed for, and it is said; a
     await page.getByText("Until then designs are made for an ideal controller.", { exact: false }).waitFor();
     await giveRange(page, /^Output range/, 1, "one");
     await page.getByRole("button", { name: "Tune this model" }).click();
-    const summary = page.getByRole("group", { name: "What to mend" });
+    const summary = page.getByRole("group", { name: "Problems to fix" });
     await summary.getByRole("link", { name: /^Output range, to "one" is not a number/ }).click();
     const end = picker(page).getByRole("group", { name: /^Output range/ }).getByLabel("to");
     assert.ok(await end.evaluate((element) => element === document.activeElement));

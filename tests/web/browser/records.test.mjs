@@ -93,12 +93,12 @@ test("dropped, one click, tuned: the heater of the TCLab", async () => {
 test("a file without a header shows its columns, and is tuned after they are chosen", async () => {
   await withPage("", {}, async (page) => {
     await dropFile(page, ".drop", "log.csv", file([], (i) => `${fixed(y(i))},${fixed(u(i) + 0.001 * (i % 2))},${40 + (i % 3)}`));
-    const summary = page.getByRole("group", { name: "What to mend" });
+    const summary = page.getByRole("group", { name: "Problems to fix" });
     await summary.waitFor();
     assert.match(await summary.innerText(), /No time column found\. Choose one or enter the sampling time/);
     await noApiWords(page);
     assert.equal(await page.locator(".preview-columns li svg").count(), 3);
-    await page.getByText("300 rows, columns separated by ,").waitFor();
+    await page.getByText("300 rows, columns separated by commas").waitFor();
     assert.deepEqual(await accessibilityViolations(page), []);
     await page.getByLabel("Controller output (u)").selectOption({ index: 2 });
     await page.getByLabel("Measurement (y)").selectOption({ index: 1 });
@@ -112,7 +112,7 @@ test("a file without a header shows its columns, and is tuned after they are cho
 test("a file without times is tuned after the sampling time is entered", async () => {
   await withPage("", {}, async (page) => {
     await dropFile(page, ".drop", "log.csv", file(["OP,PV"], (i) => `${u(i)},${fixed(y(i))}`));
-    const summary = page.getByRole("group", { name: "What to mend" });
+    const summary = page.getByRole("group", { name: "Problems to fix" });
     await summary.waitFor();
     assert.match(await summary.innerText(), /No time column found\. Choose one or enter the sampling time/);
     const field = page.getByLabel("Sampling time (s)");

@@ -110,7 +110,7 @@ test("a relay that cannot oscillate says why at its field", async () => {
       await page.getByRole("button", { name: "Simulate" }).click();
       const { errors } = await (await refused).json();
       const input = page.getByLabel("Hysteresis");
-      await page.getByRole("group", { name: "What to mend" }).waitFor();
+      await page.getByRole("group", { name: "Problems to fix" }).waitFor();
       assert.equal(errors[0].pointer, "/relay/hysteresis");
       assert.equal(await input.getAttribute("aria-invalid"), "true");
       assert.equal(await page.locator(`#${await input.getAttribute("id")}-error`).innerText(), errors[0].detail);

@@ -87,7 +87,7 @@ test("a field that cannot be read says so beside itself, and the summary leads t
   await withPage("", {}, async (page) => {
     await page.getByLabel("T (s)", { exact: true }).fill("1,2,3");
     await page.getByRole("button", { name: "Tune this model" }).click();
-    const summary = page.getByRole("group", { name: "What to mend" });
+    const summary = page.getByRole("group", { name: "Problems to fix" });
     await summary.waitFor();
     assert.ok(await summary.evaluate((element) => element === document.activeElement));
     assert.match(await summary.innerText(), /1 problem to fix/);

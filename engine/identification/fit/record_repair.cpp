@@ -92,6 +92,19 @@ double row_before(const CleanRecord& r, double time) {
     return row == r.t.begin() ? time : *std::prev(row);
 }
 
+/// Whether the rows up to the one at `time` came at the usual spacing, as those of a recorder that writes whether
+/// anything happens or not: one that waits for a change writes few while all is at rest.
+bool written_steadily(const CleanRecord& r, double time, double usual) {
+    constexpr std::ptrdiff_t kRows = 8, kMost = 2;  // looked at; of them late
+    constexpr double kLate = 1.5;                   // usual spacings
+    const auto last = std::lower_bound(r.t.begin(), r.t.end(), time) - r.t.begin();
+    if (last < kRows) return false;
+    std::ptrdiff_t late = 0;
+    for (auto i = last - kRows + 1; i <= last; ++i)
+        late += r.t[static_cast<std::size_t>(i)] - r.t[static_cast<std::size_t>(i) - 1] > kLate * usual ? 1 : 0;
+    return late <= kMost;
+}
+
 /// Moves each of the changes `moves` of `placed` to where structure and shape of `fit` explain y best, one after the
 /// other until none moves. `offer(j, take)` calls take(time) for each time that change j may have; it answers whether
 /// that is the best so far.
@@ -160,8 +173,10 @@ std::vector<int> gap_moves(const CleanRecord& record) {
 
 std::optional<CleanRecord> with_unseen_moves(const CleanRecord& record) {
     constexpr double kLeast = 2;  // usual spacings
-    if (static_cast<int>(gap_moves(record).size()) < record.changes() || unevenly_spaced(record)) return std::nullopt;
     const double usual = usual_spacing(record);
+    if (static_cast<int>(gap_moves(record).size()) < record.changes() || unevenly_spaced(record)) return std::nullopt;
+    const auto written = [&](double time) { return written_steadily(record, row_before(record, time), usual); };
+    if (!std::ranges::all_of(record.v_time, written)) return std::nullopt;
     CleanRecord middle = record;
     middle.moves_unseen = 1;
     for (double& time : middle.v_time) {

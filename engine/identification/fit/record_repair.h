@@ -35,7 +35,8 @@ std::vector<int> gap_moves(const CleanRecord& record);
 /// Where every change of u was first seen after missing rows, the dead time takes up what they hide, however well the
 /// model then fits: the record with each change in the middle of the rows at which it may have happened, and with
 /// `moves_unseen`, the shortest such stretch. Empty where one change is recorded, where no stretch is two usual
-/// spacings long, and of rows that are not evenly spaced, whose writer may have waited for the change.
+/// spacings long, and where rows are not evenly spaced, or not before each stretch: what wrote them may have waited for
+/// the change.
 std::optional<CleanRecord> with_unseen_moves(const CleanRecord& record);
 
 /// The record with each of the changes `moves` (from gap_moves()) at the missing row at which the structure and shape

@@ -128,6 +128,20 @@ TEST(Records, ADeadTimeThatMissingRowsHideIsAsOpenAsTheyAreLong) {
         EXPECT_NEAR(plant->T, 30, 0.5) << from;
         EXPECT_TRUE(warned(*model, "unseen-move")) << from;
     }
+    // A recorder that writes on change: the step is the first row for long, and stands at its own time.
+    const Record dense = simulate(even_times(1200, 1), 50, 100, {{300, 51}}, first_order(2, 30, 25));
+    Record on_change;
+    for (std::size_t i = 0; i < dense.t.size(); ++i) {
+        const bool moved = i == 0 || dense.u[i] != on_change.u.back() || dense.y[i] - on_change.y.back() > 0.002;
+        if (!moved) continue;
+        on_change.t.push_back(dense.t[i]);
+        on_change.u.push_back(dense.u[i]);
+        on_change.y.push_back(dense.y[i]);
+    }
+    const auto exact = identify(on_change, {}, {});
+    ASSERT_TRUE(exact);
+    EXPECT_NEAR(std::get<Fopdt>(exact->plant).L, 25, 0.5);
+    EXPECT_FALSE(warned(*exact, "unseen-move"));
     const auto elsewhere = identify(recorded(500, 540), {}, {});
     ASSERT_TRUE(elsewhere);
     EXPECT_NEAR(std::get<Fopdt>(elsewhere->plant).L, 25, 0.5);

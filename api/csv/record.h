@@ -56,9 +56,9 @@ struct CsvFault {
 /// as numbers or stamps (time_stamp.h), columns as chosen, or found (columns.h). Times become `time_unit`: stamps
 /// since the first one; numbers from the unit of their heading. Times that count milliseconds or less since 1970, and
 /// spreadsheets' days (under a heading such as "Date", or in steps of whole seconds or minutes), are known by their
-/// size. A clock set back by an hour, and one
-/// without a date that passes midnight, go on. Where at most one line in fifty cannot be read (a total at the end, half
-/// a line of a serial port), it is left out (`unread`); else there are at most ten faults, each with its line.
+/// size. A clock set back by an hour, and one without a date that passes midnight, go on. Where at most one line in
+/// fifty cannot be read (a total at the end, half a line of a serial port), it is left out (`unread`); else there are
+/// at most ten faults, each with its line.
 std::variant<CsvRecord, std::vector<CsvFault>> read_csv_record(std::string_view bytes, const CsvOptions& options);
 
 }  // namespace tunewright::api

@@ -85,7 +85,7 @@ std::vector<std::string> head_lines(const Program& program, const Provenance& pr
     wrap("Settings      " + settings_line(program), kColumn, lines);
     for (const std::string& note : program.notes) {
         lines.emplace_back();
-        wrap(safe(note), 0, lines);  // a schedule's names its variable and unit, in the user's words
+        wrap(safe(note), 0, lines);  // that of a schedule has its variable and unit in the user's words
     }
     lines.emplace_back();
     lines.insert(lines.end(), call.begin(), call.end());

@@ -173,8 +173,8 @@ std::vector<int> gap_moves(const CleanRecord& record) {
 
 std::optional<CleanRecord> with_unseen_moves(const CleanRecord& record) {
     constexpr double kLeast = 2;  // usual spacings
-    const double usual = usual_spacing(record);
     if (static_cast<int>(gap_moves(record).size()) < record.changes() || unevenly_spaced(record)) return std::nullopt;
+    const double usual = usual_spacing(record);
     const auto written = [&](double time) { return written_steadily(record, row_before(record, time), usual); };
     if (!std::ranges::all_of(record.v_time, written)) return std::nullopt;
     CleanRecord middle = record;

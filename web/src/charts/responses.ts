@@ -81,7 +81,7 @@ function describe(kind: "setpoint" | "load", drawn: Drawn[], time: string, y: st
     };
     return kind === "setpoint"
       ? `${item.name}: overshoot ${number("overshoot_percent")} %, settles after ${number("settling_time")} ${time}.`
-      : `${item.name}: peak ${`${number("peak")} ${y}`.trim()}, integrated absolute error ${number("IAE")}.`;
+      : `${item.name}: peak ${number("peak")}${y && ` ${y}`}, integrated absolute error ${number("IAE")}.`;
   });
   return sentences.join(" ") || "No response to draw.";
 }

@@ -132,7 +132,7 @@ private:
             design_.schedule_curve = design_.one_curve;
             return std::nullopt;
         }
-        auto schedule = design_schedule(places_, own_, options_);
+        auto schedule = design_schedule(places_, own_, options_, one_controller());
         if (!schedule) {
             if (!design_.one) return no_one_;
             design_.partial = schedule.error().kind == ErrorKind::cancelled;
@@ -143,6 +143,10 @@ private:
         return take(std::move(*schedule));
     }
 
+    std::optional<IdealPid> one_controller() const {
+        return design_.one ? std::optional(design_.one->controller) : std::nullopt;
+    }
+
     std::optional<Error> take(ScheduleDesign schedule) {
         const auto in_use_at = [&](double at) { return in_use(schedule.schedule, at); };
         std::vector<double> rows;
@@ -150,8 +154,10 @@ private:
             if (row.at >= problem_.model->low() && row.at <= problem_.model->high()) rows.push_back(row.at);
         for (const PlaceFigures& place : design_.one_curve.places) rows.push_back(place.at);
         auto curve = curve_over(places_, own_, in_use_at, kCurvePlaces, rows, options_.allowance);
-        design_.warnings.insert(design_.warnings.end(), schedule.warnings.begin(), schedule.warnings.end());
         design_.partial = design_.partial || schedule.partial;
+        if (curve) schedule.worst_relative_IAE = std::max(schedule.worst_relative_IAE, largest_relative_IAE(*curve));
+        remark_price(schedule, options_.allowance);
+        design_.warnings.insert(design_.warnings.end(), schedule.warnings.begin(), schedule.warnings.end());
         if (!curve) {
             design_.schedule = std::move(schedule);
             return unless_stopped(curve.error());
@@ -160,7 +166,6 @@ private:
         if (design_.one && !design_.one_curve.places.empty())
             if (auto error = add_places(design_.one_curve, places_, own_, always(design_.one->controller), rows))
                 return error;
-        schedule.worst_relative_IAE = std::max(schedule.worst_relative_IAE, largest_relative_IAE(*curve));
         design_.schedule_curve = std::move(*curve);
         design_.schedule = std::move(schedule);
         return std::nullopt;

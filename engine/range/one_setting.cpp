@@ -31,7 +31,7 @@ struct Together {
     std::vector<LinearPlant> others;
     robust::DesignProblem problem;
 
-    explicit Together(const std::vector<Place*>& points) : problem(points.front()->problem()) {
+    Together(const std::vector<Place*>& points, bool PI) : problem(points.front()->problem()) {
         for (std::size_t k = 0; k < points.size(); ++k) {
             const auto& model = points[k]->model();
             if (k > 0) others.push_back(*model.nominal);
@@ -39,6 +39,7 @@ struct Together {
         }
         problem.others = others;
         problem.objective = robust::Objective::load_ie;
+        if (PI) problem.pid = false;
     }
 };
 
@@ -61,14 +62,14 @@ double log_price_of(const std::vector<Place*>& points, const DesignPoint& x, Aim
 
 }  // namespace
 
-JointProblem one_setting_problem(const std::vector<Place*>& points, const RangeOptions& options) {
+JointProblem one_setting_problem(const std::vector<Place*>& points, const RangeOptions& options, bool PI) {
     JointProblem joint;
     joint.places.assign(points.begin(), points.end());
     joint.aim = options.aim;
-    const Eigen::Index n = points.front()->problem().dimension();
-    joint.settings = [n](const Eigen::VectorXd& v, double, SettingsSlope* slope) {
+    const Eigen::Index n = PI ? 2 : points.front()->problem().dimension();
+    joint.settings = [n, PI](const Eigen::VectorXd& v, double, SettingsSlope* slope) {
         if (slope != nullptr) slope->setIdentity(3, n);
-        return DesignPoint{v[0], v[1], n > 2 ? v[2] : 0};
+        return DesignPoint{v[0], v[1], n > 2 ? v[2] : PI ? -kNowhere : 0};
     };
     double fastest = 0, slowest = kNowhere;
     for (const Place* place : points) {
@@ -84,22 +85,30 @@ JointProblem one_setting_problem(const std::vector<Place*>& points, const RangeO
     return joint;
 }
 
+Eigen::VectorXd unknowns_of(const JointProblem& joint, const DesignPoint& x) {
+    Eigen::VectorXd v(joint.low.size());
+    for (Eigen::Index i = 0; i < v.size(); ++i) v[i] = x[std::size_t(i)];
+    if (v.size() > 2) v[2] = std::max(v[2], joint.low[2]);
+    return v;
+}
+
 namespace {
 
 /// Where searches begin: the least integrated error, which needs no simulation, and the cheapest own optimum that can
 /// be moved within the limits of all points. Cheapest first.
-Expected<std::vector<DesignPoint>> starts(const std::vector<Place*>& points, const RangeOptions& options,
+Expected<std::vector<DesignPoint>> starts(const std::vector<Place*>& points, const RangeOptions& options, bool PI,
                                           const RunControl& control) {
-    Together together(points);
+    Together together(points, PI);
     robust::DesignProblem problem = together.problem;
     const RunControl quiet{.stop = control.stop, .progress = {}, .now_ms = {}};
     const auto integrated =
         robust::verified_search(robust::SearchKind::fast, problem, std::nullopt, nullptr, quiet, nullptr);
-    if (!integrated) return integrated.error();
+    if (!integrated) return in_words_of_range(integrated.error());
     std::vector<std::pair<double, DesignPoint>> found;
     const auto consider = [&](DesignPoint x) {
         const double least = 1.01 * robust::kMinTd / middle_reference(points);
         if (problem.pid) x[2] = std::max(x[2], std::log(least));
+        if (PI) x[2] = -kNowhere;
         found.emplace_back(log_price_of(points, x, options.aim, kCompareTolerance), x);
     };
     consider(integrated->x);
@@ -111,14 +120,6 @@ Expected<std::vector<DesignPoint>> starts(const std::vector<Place*>& points, con
     for (const auto& [price, x] : found) result.push_back(x);
     return result;
 }
-
-Eigen::VectorXd unknowns(const DesignPoint& x, Eigen::Index n) {
-    Eigen::VectorXd v(n);
-    for (Eigen::Index i = 0; i < n; ++i) v[i] = x[std::size_t(i)];
-    return v;
-}
-
-DesignPoint point_of_unknowns(const Eigen::VectorXd& v) { return {v[0], v[1], v.size() > 2 ? v[2] : 0}; }
 
 double largest_excess(const std::vector<Place*>& points, const DesignPoint& x) {
     double worst = -1;
@@ -133,13 +134,12 @@ public:
     Progressing(const DesignRules& rules, const RunControl& control, const robust::Limits& limits)
         : rules_(rules), control_(control), limits_(limits) {}
 
-    void operator()(const JointResult& result) {
+    void operator()(const JointResult& result, const DesignPoint& x) {
         if (!control_.progress || !result.holds()) return;
         ++steps_;
         Progress progress{.fraction = 0.3 * (1 - std::pow(0.85, steps_)), .stage = "tune", .message = {}, .best = {}};
         progress.message = "one setting: at worst " + text(std::exp(result.log_price), 3) + " times the own optimum.";
-        progress.best = BestSoFar{setting_at(rules_, point_of_unknowns(result.v), 1), std::exp(result.log_price),
-                                  limits_.Ms, limits_.Mt};
+        progress.best = BestSoFar{setting_at(rules_, x, 1), std::exp(result.log_price), limits_.Ms, limits_.Mt};
         control_.progress(progress);
     }
 
@@ -155,13 +155,14 @@ JointResult best_end(const JointProblem& joint, const std::vector<DesignPoint>& 
                      Progressing& progress) {
     std::optional<JointResult> best;
     int runs = 0;
-    const Eigen::Index n = joint.low.size();
     std::vector<Eigen::VectorXd> begun;
     for (const DesignPoint& start : starts) {
-        const Eigen::VectorXd v = unknowns(start, n);
+        const Eigen::VectorXd v = unknowns_of(joint, start);
         if (std::ranges::any_of(begun, [&](const auto& other) { return same(other, v); })) continue;
         begun.push_back(v);
-        auto end = search_jointly(joint, v, search, [&](const JointResult& so_far) { progress(so_far); });
+        auto end = search_jointly(joint, v, search, [&](const JointResult& so_far) {
+            progress(so_far, joint.settings(so_far.v, 0, nullptr));
+        });
         const bool better = !best || (end.holds() && (!best->holds() || end.log_price < best->log_price));
         const bool stopped = end.stopped;
         if (better) best = std::move(end);
@@ -184,20 +185,36 @@ IdealPid setting_at(const DesignRules& rules, const DesignPoint& x, double b) {
 
 namespace {
 
+/// Peaks on every plant of the place, those set aside too; empty where one loop is not stable.
+std::optional<Peaks> worst_peaks(const Place& place, const IdealPid& controller) {
+    const ParallelPid gains = to_parallel(controller);
+    if (const auto& measured = place.model().measured) {
+        const auto loop = MeasuredLoop::make(*measured, gains);
+        if (!loop || loop->band_too_short() || !loop->count_unstable_poles().stable()) return std::nullopt;
+        return loop->peaks();
+    }
+    std::optional<Peaks> worst;
+    const auto take = [&](const LinearPlant& plant) {
+        const auto loop = Loop::make(plant, gains);
+        if (!loop || !count_unstable_poles(*loop).stable()) return false;
+        const Peaks peaks = find_peaks(*loop, make_loop_grid(*loop));
+        if (!worst) worst = peaks;
+        if (peaks.S.value > worst->S.value) worst->S = peaks.S;
+        if (peaks.T.value > worst->T.value) worst->T = peaks.T;
+        return true;
+    };
+    for (std::size_t i = 0; i < place.problem().plants(); ++i)
+        if (!take(place.problem().plant_at(i))) return std::nullopt;
+    for (const LinearPlant& plant : place.set_aside())
+        if (!take(plant)) return std::nullopt;
+    return worst;
+}
+
 void add_peaks(const Place& place, const IdealPid& controller, PlacePrice& price) {
     const std::string unstable = "The loop is not stable here.";
-    const auto take = [&](const Peaks& peaks) {
-        price.Ms = finite_or(peaks.S.value, unstable);
-        price.Mt = finite_or(peaks.T.value, unstable);
-    };
-    if (const auto& measured = place.model().measured) {
-        const auto loop = MeasuredLoop::make(*measured, to_parallel(controller));
-        if (loop && !loop->band_too_short() && loop->count_unstable_poles().stable()) return take(loop->peaks());
-    } else {
-        const auto loop = Loop::make(*place.model().nominal, to_parallel(controller));
-        if (loop && count_unstable_poles(*loop).stable()) return take(find_peaks(*loop, make_loop_grid(*loop)));
-    }
-    price.Ms = price.Mt = no_figure(unstable);
+    const auto peaks = worst_peaks(place, controller);
+    price.Ms = peaks ? finite_or(peaks->S.value, unstable) : no_figure(unstable);
+    price.Mt = peaks ? finite_or(peaks->T.value, unstable) : no_figure(unstable);
 }
 
 }  // namespace
@@ -206,7 +223,7 @@ PlacePrice price_at(const Place& place, const IdealPid& controller) {
     const DesignRules rules{
         .pid = place.problem().pid, .filter = place.problem().filter, .limits = {}, .sign = place.problem().sign};
     PlacePrice price{.at = place.at(),
-                     .own = setting_at(rules, place.optimum(), controller.b),
+                     .own = setting_at(rules, place.own_design(), controller.b),
                      .own_IAE = std::exp(place.optimum_log_cost()),
                      .IAE = {},
                      .relative_IAE = {},
@@ -222,17 +239,22 @@ PlacePrice price_at(const Place& place, const IdealPid& controller) {
 
 namespace {
 
+struct VerifiedEnd {
+    DesignPoint x{};
+    bool stopped = false;
+};
+
 /// The best end that holds the limits on the independent grid as well, searched again inside them where it does not.
-Expected<JointResult> verified_end(const std::vector<Place*>& points, const RangeOptions& options,
+Expected<VerifiedEnd> verified_end(const std::vector<Place*>& points, const JointProblem& joint,
                                    const std::vector<DesignPoint>& from, const RunControl& control,
                                    Progressing& progress) {
-    const JointProblem joint = one_setting_problem(points, options);
     JointOptions search;
     search.stop = control.stop;
     JointResult end = best_end(joint, from, search, progress);
     for (int round = 0; round < kRounds; ++round) {
-        const double excess = largest_excess(points, point_of_unknowns(end.v));
-        if (excess <= 0.5 * kAllowedOnGrid) return end;
+        const DesignPoint x = joint.settings(end.v, 0, nullptr);
+        const double excess = largest_excess(points, x);
+        if (excess <= 0.5 * kAllowedOnGrid) return VerifiedEnd{x, end.stopped};
         if (!std::isfinite(excess)) break;
         search.margin += 1.5 * excess + 1e-6;
         end = search_jointly(joint, end.v, search, {});
@@ -255,6 +277,27 @@ OneSetting described(const std::vector<Place*>& points, const DesignRules& rules
     return one;
 }
 
+/// `PI`: with Td = 0, as one_setting_problem has it.
+Expected<OneSetting> found_setting(const std::vector<Place*>& points, Places& places, const RangeOptions& options,
+                                   bool PI) {
+    Progressing progress(places.rules(), places.control(), options.limits);
+    auto from = starts(points, options, PI, places.control());
+    if (!from) return from.error();
+    for (int round = 0;; ++round) {
+        const JointProblem joint = one_setting_problem(points, options, PI);
+        const auto end = verified_end(points, joint, *from, places.control(), progress);
+        if (!end) return end.error();
+        bool added = false;
+        for (Place* place : points) added = place->add_worst_inside(end->x, places.control().stop) || added;
+        if (!added || end->stopped || round == kRegionRounds) {
+            OneSetting one = described(points, places.rules(), end->x, options.b);
+            one.partial = end->stopped;
+            return one;
+        }
+        *from = {end->x};
+    }
+}
+
 }  // namespace
 
 Expected<OneSetting> design_one_setting(Places& places, const std::vector<double>& at, const RangeOptions& options) {
@@ -264,22 +307,14 @@ Expected<OneSetting> design_one_setting(Places& places, const std::vector<double
         if (!found) return found.error();
         points.push_back(*found);
     }
-    Progressing progress(places.rules(), places.control(), options.limits);
-    auto from = starts(points, options, places.control());
-    if (!from) return from.error();
-    for (int round = 0;; ++round) {
-        const auto end = verified_end(points, options, *from, places.control(), progress);
-        if (!end) return end.error();
-        const DesignPoint x = point_of_unknowns(end->v);
-        bool added = false;
-        for (Place* place : points) added = place->add_worst_inside(x, places.control().stop) || added;
-        if (!added || end->stopped || round == kRegionRounds) {
-            OneSetting one = described(points, places.rules(), x, options.b);
-            one.partial = end->stopped;
-            return one;
-        }
-        *from = {x};
-    }
+    auto one = found_setting(points, places, options, false);
+    const bool cut_short = one ? one->partial : one.error().kind == ErrorKind::cancelled;
+    if (cut_short || std::ranges::none_of(points, &Place::optimum_is_PI)) return one;
+    const auto PI = found_setting(points, places, options, true);
+    const auto aim = [&](const OneSetting& setting) {
+        return options.aim == Aim::worst ? setting.worst_relative_IAE : setting.mean_relative_IAE;
+    };
+    return PI && (!one || aim(*PI) < aim(*one)) ? PI : one;
 }
 
 }  // namespace tunewright::range

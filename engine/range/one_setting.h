@@ -21,7 +21,7 @@ struct PlacePrice {
     double own_IAE = 0;
     Figure IAE;           ///< of the setting; empty: the loop is not stable, or does not settle
     Figure relative_IAE;  ///< over own_IAE, about 1 or more
-    Figure Ms, Mt;        ///< on the nominal plant; empty: not stable
+    Figure Ms, Mt;        ///< the largest over the place's plants; empty: on one of them the loop is not stable
 };
 
 struct OneSetting {
@@ -43,10 +43,14 @@ Expected<OneSetting> design_one_setting(Places& places, const std::vector<double
 IdealPid setting_at(const DesignRules& rules, const robust::DesignPoint& x, double b);
 
 /// The search for one setting of these places (at least one, with their optima): unknowns ln Kp, ln Ti, and ln Td of
-/// PID.
-JointProblem one_setting_problem(const std::vector<Place*>& points, const RangeOptions& options);
+/// PID. `PI`: Td is 0 although a PID was asked for. A filter tied to Td shrinks with it, so that no small Td comes near
+/// a PI on a plant whose gain does not fall with frequency.
+JointProblem one_setting_problem(const std::vector<Place*>& points, const RangeOptions& options, bool PI = false);
 
-/// x as a setting at a place: simulated to 1e-6, peaks refined.
+/// x as the unknowns of such a problem.
+Eigen::VectorXd unknowns_of(const JointProblem& joint, const robust::DesignPoint& x);
+
+/// A setting at a place: simulated finely, peaks refined on every plant of the place.
 PlacePrice price_at(const Place& place, const IdealPid& controller);
 
 }  // namespace tunewright::range

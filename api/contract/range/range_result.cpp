@@ -32,8 +32,8 @@ const Description<range::PlacePrice>& place_price_contract() {
                 {.unit = "y time/u"})
             .field("IAE", &P::IAE, figure(), "The same with the one setting.", {.unit = "y time/u"})
             .field("relative_IAE", &P::relative_IAE, figure(), "IAE over own_IAE.")
-            .field("Ms", &P::Ms, figure(), "On the nominal plant.")
-            .field("Mt", &P::Mt, figure(), "On the nominal plant.")
+            .field("Ms", &P::Ms, figure(), "The largest over the plants of the point.")
+            .field("Mt", &P::Mt, figure(), "The largest over the plants of the point.")
             .why_null("The loop is not stable here, or does not settle.");
         return d;
     }();

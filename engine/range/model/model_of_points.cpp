@@ -100,8 +100,35 @@ double alike(const LogRatios& a, const LogRatios& b) {
     return ab / std::sqrt(aa * bb);
 }
 
+/// In some number the one lies above its nominal plant and the other below.
+bool opposed(const LogRatios& a, const LogRatios& b) {
+    for (std::size_t i = 0; i < a.size(); ++i)
+        if (a[i] * b[i] < 0) return true;
+    return false;
+}
+
+/// Between its nominal plant and the other member.
+bool inside(const LogRatios& a, const LogRatios& b) {
+    for (std::size_t i = 0; i < a.size(); ++i)
+        if (std::abs(a[i]) > std::abs(b[i])) return false;
+    return a != b && !opposed(a, b);
+}
+
+std::vector<LogRatios> outermost(const std::vector<LogRatios>& members) {
+    std::vector<LogRatios> result;
+    for (const LogRatios& member : members)
+        if (std::ranges::none_of(members, [&](const LogRatios& other) { return inside(member, other); }))
+            result.push_back(member);
+    return result;
+}
+
+bool uncertain_in(const std::vector<LogRatios>& members, std::size_t number) {
+    return std::ranges::any_of(members, [&](const LogRatios& member) { return member[number] != 0; });
+}
+
 /// Each member of one family with that of the other that lies off its nominal plant most alike; of a family without
-/// members the nominal plant.
+/// members the nominal plant. Where a number is uncertain in one family alone, likeness says nothing about it: then all
+/// outermost members of both that are not opposed go together too, so that what lies between is enclosed.
 std::vector<std::pair<LogRatios, LogRatios>> paired(const std::vector<LogRatios>& left,
                                                     const std::vector<LogRatios>& right, std::size_t size) {
     std::vector<std::pair<LogRatios, LogRatios>> pairs;
@@ -111,6 +138,12 @@ std::vector<std::pair<LogRatios, LogRatios>> paired(const std::vector<LogRatios>
     };
     for (const LogRatios& member : left) pairs.emplace_back(member, most_alike(right, member));
     for (const LogRatios& member : right) pairs.emplace_back(most_alike(left, member), member);
+    bool unlike = false;
+    for (std::size_t i = 0; i < size; ++i) unlike = unlike || uncertain_in(left, i) != uncertain_in(right, i);
+    if (unlike)
+        for (const LogRatios& a : outermost(left))
+            for (const LogRatios& b : outermost(right))
+                if (!opposed(a, b)) pairs.emplace_back(a, b);
     std::ranges::sort(pairs);
     pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
     return pairs;
@@ -121,12 +154,7 @@ public:
     std::optional<Error> make(const std::vector<RangePoint>& points) {
         if (auto fault = take(points)) return fault;
         for (std::size_t k = 1; k < points.size(); ++k)
-            if (!same_structure(points[k - 1].family.nominal(), points[k].family.nominal()))
-                return bad_point(k, "plant",
-                                 "The plants at " + text(points[k - 1].at) + " and " + text(points[k].at) +
-                                     " differ in structure, so their parameters say nothing about the plants between. "
-                                     "Give both in one structure of named parameters or coefficients, or interpolate "
-                                     "the frequency responses.");
+            if (auto fault = fault_between(points[k - 1], points[k])) return bad_point(k, "plant", *fault);
         for (std::size_t k = 0; k + 1 < points.size(); ++k)
             pairs_.push_back(paired(ratios(points[k].family), ratios(points[k + 1].family),
                                     structure_numbers(points[k].family.nominal()).size()));
@@ -155,6 +183,27 @@ public:
     }
 
 private:
+    /// Why nothing can be interpolated between two points.
+    static std::optional<std::string> fault_between(const RangePoint& left, const RangePoint& right) {
+        const Plant &one = left.family.nominal(), &other = right.family.nominal();
+        const std::string places = text(left.at) + " and " + text(right.at);
+        const std::string cure =
+            " Give both in one structure of named parameters or coefficients, or set "
+            "schedule.between to \"frequency_response\".";
+        if (one.index() == other.index() && structure_numbers(one).empty())
+            return "The plants at " + places +
+                   " are given by zeros and poles or as state spaces, whose numbers are not interpolated." + cure;
+        if (!same_structure(one, other))
+            return "The plants at " + places +
+                   " differ in structure, so their parameters say nothing about the plants between." + cure;
+        const auto* rational = std::get_if<TransferFunction>(&one);
+        const double a = structure_numbers(one).front(), b = structure_numbers(other).front();
+        if ((rational != nullptr && rational->num.size() > 1) || a * b > 0) return std::nullopt;
+        return "The plant's " + std::string(rational != nullptr ? "numerator" : "K") + " goes from " + text(a) +
+               " to " + text(b) + " between " + places +
+               ": where it passes 0 the input does not move the output. Part the range there.";
+    }
+
     /// Of the members of the nominal plant's structure: others say nothing about plants between.
     static std::vector<LogRatios> ratios(const PlantFamily& family) {
         std::vector<LogRatios> result;
@@ -243,15 +292,17 @@ private:
             omega_.push_back(low * std::pow(high / low, double(i) / (kResponsePoints - 1)));
     }
 
-    ResponseCurve curve(const LinearPlant& plant) const {
+    ResponseCurve curve(const LinearPlant& plant) {
         ResponseCurve result;
         double before = 0;
         for (const double omega : omega_) {
             const std::complex<double> value = plant.rational({0, omega});
             const double wrapped = std::arg(value);
-            // The first one near that of the static gain; the dead time's share is known without unwrapping.
-            const double unwrapped =
-                result.phase.empty() ? wrapped : before + std::remainder(wrapped - before, 2 * std::numbers::pi);
+            // The first one near that of the model before, so that two that lie about a negative real axis, one above
+            // and one below, are not a turn apart; the dead time's share is known without unwrapping.
+            if (result.phase.empty()) before = curves_.empty() ? wrapped : first_phase_;
+            const double unwrapped = before + std::remainder(wrapped - before, 2 * std::numbers::pi);
+            if (result.phase.empty()) first_phase_ = unwrapped;
             before = unwrapped;
             result.log_size.push_back(std::log(std::abs(value)));
             result.phase.push_back(unwrapped - omega * plant.dead_time());
@@ -261,6 +312,7 @@ private:
 
     std::vector<double> omega_;
     std::vector<ResponseCurve> curves_;
+    double first_phase_ = 0;  // at the lowest frequency, of the model whose curve was made last
 };
 
 template <class Model>

@@ -61,7 +61,8 @@ std::vector<Error> place_faults(const std::vector<double>& places);
 /// neighbours, the parameter itself where its values differ in sign or one is 0. Sopdt's time constants go in
 /// descending order. Uncertainty: each member of a neighbour's family, as ratios to its nominal parameters, is taken
 /// together with the member of the other neighbour's that lies off most alike; the logarithms of the ratios are linear
-/// in `at` too.
+/// in `at` too. Where a parameter is uncertain in one of the families alone, so is each outermost member with every
+/// outermost one of the other that lies in no parameter to the opposite side: all corners of ranges are enclosed.
 ///
 /// `frequency_response`: ln |P| and the unwrapped phase are linear in `at` between neighbours, at 160 frequencies; such
 /// a place has no response over time, so over the range Ti/Kp stands for the IAE, for schedule and own optimum alike.

@@ -21,27 +21,50 @@ constexpr double kHopelessLayout = 0.6;  // of ln of the price allowed, of the l
 constexpr double kHopelessStep = 0.15;   // of what is left to the price allowed
 constexpr double kNearby = 0.3;          // of the distance of a search's places inside a part
 constexpr int kIterations = 14;
+constexpr int kNearestRows[] = {kMostRows, 10, 5, 2};  // where no number of rows stays within the allowance
+constexpr double kAllowedOfOne = 5e-5;                 // of ln of a limit: as one setting is held between the points
+
+/// The limits first, then the price.
+bool nearer(const ScheduleDesign& one, const std::optional<ScheduleDesign>& other) {
+    if (!other || one.holds_limits != other->holds_limits) return !other || one.holds_limits;
+    return one.worst_relative_IAE < other->worst_relative_IAE;
+}
 
 class LinearDesign {
 public:
-    LinearDesign(Places& places, OwnOptima& own, const RangeOptions& options)
-        : places_(places), own_(own), options_(options), allowed_(std::log1p(options.allowance)) {}
+    LinearDesign(Places& places, OwnOptima& own, const RangeOptions& options, const std::optional<IdealPid>& one)
+        : places_(places), own_(own), options_(options), one_(one), allowed_(std::log1p(options.allowance)) {}
 
-    /// With so many rows. Empty: the search ended without holding the limits, or above the price wanted.
+    /// With so many rows, from the own optima. Empty: the search ended without holding the limits, or above the price
+    /// wanted. For the least price the search begins again from the one setting where that was in vain: it keeps the
+    /// limits at the points at least, which settings interpolated between few optima need not.
     Expected<std::optional<ScheduleDesign>> with(int rows, bool least_price) {
-        const auto layout = own_.layout(rows, options_.interpolation);
-        const Knots knots(places_, options_.interpolation, layout.at);
-        JointProblem joint = knots.problem();
-        const auto known = places_of(layout.at);
+        auto at = own_.layout(rows, options_.interpolation).at;
+        if (least_price) fill_up(at, rows, places_.model().high());
+        Knots knots(places_, options_.interpolation, at);
+        const auto known = places_of(at);
         if (!known) return known.error();
-        joint.places.assign(known->begin(), known->end());
+        for (Place* place : *known)
+            if (place->optimum_is_PI()) knots.leave_out_derivative(place->at());
+        auto design = searched(knots, *known, knots.start(own_), least_price);
+        if (!design || !least_price || !one_ || (*design && (*design)->holds_limits)) return design;
+        if (!(one_->Td > 0))
+            for (const double row : at) knots.leave_out_derivative(row);
+        auto again = searched(knots, *known, knots.constant(point_of(*one_)), true);
+        return !again || (*again && nearer(**again, *design)) ? again : design;
+    }
+
+private:
+    Expected<std::optional<ScheduleDesign>> searched(const Knots& knots, const std::vector<Place*>& known,
+                                                     Eigen::VectorXd v, bool least_price) {
+        JointProblem joint = knots.problem();
+        joint.places.assign(known.begin(), known.end());
         JointOptions search;
         search.most_iterations = kIterations;
         search.hopeless = least_price ? 0 : kHopelessStep;
         search.margin = kInside;
         search.enough = least_price ? -1 : allowed_ - kPriceRoom;
         search.stop = places_.control().stop;
-        Eigen::VectorXd v = knots.start(own_);
         std::optional<ScheduleDesign> best;
         for (int round = 0; round < kRounds; ++round) {
             const auto end = search_jointly(joint, v, search, {});
@@ -60,6 +83,7 @@ public:
             for (const double at : verified->worst) {
                 const auto place = places_.at(at);
                 if (!place) return place.error();
+                (*place)->take_back_exceeded(point_of(settings_at(schedule, at)));
                 if (std::ranges::find(joint.places, *place) == joint.places.end()) joint.places.push_back(*place);
             }
             own_.renew(places_);
@@ -67,7 +91,6 @@ public:
         return best;
     }
 
-private:
     /// The rows' places, where the price is largest, and some inside every part, where the limits are nearest; inside,
     /// what is known nearby serves.
     Expected<std::vector<Place*>> places_of(const std::vector<double>& rows) {
@@ -117,30 +140,18 @@ private:
                               .worst_relative_IAE = std::exp(verified.log_price),
                               .partial = stopped,
                               .warnings = {}};
-        const bool better =
-            !best || (design.holds_limits && !best->holds_limits) ||
-            (design.holds_limits == best->holds_limits && design.worst_relative_IAE < best->worst_relative_IAE);
-        if (better) best = design;
+        if (nearer(design, best)) best = design;
     }
 
     Places& places_;
     OwnOptima& own_;
     const RangeOptions& options_;
+    const std::optional<IdealPid>& one_;
     double allowed_;
 };
 
 bool satisfies(const std::optional<ScheduleDesign>& design) {
     return design && design->holds_limits && design->within_allowance;
-}
-
-/// A warning where the schedule costs more than is allowed.
-void remark(ScheduleDesign& design, const RangeOptions& options) {
-    if (design.within_allowance) return;
-    design.warnings.push_back({"schedule-over-allowance",
-                               "With " + std::to_string(design.schedule.rows.size()) +
-                                   " rows the schedule costs up to " + text(100 * (design.worst_relative_IAE - 1), 3) +
-                                   " % more IAE than a place's own optimum, and " + text(100 * options.allowance, 3) +
-                                   " % is allowed. Allow more rows, or a larger price."});
 }
 
 void tell(const Places& places, int rows) {
@@ -152,35 +163,110 @@ void tell(const Places& places, int rows) {
                               .best = {}});
 }
 
-Expected<ScheduleDesign> linear_schedule(Places& places, OwnOptima& own, const RangeOptions& options) {
-    LinearDesign linear(places, own, options);
-    std::optional<ScheduleDesign> best;
+Error no_schedule(const Places& places) {
+    return {places.control().stop.stop_requested() ? ErrorKind::cancelled : ErrorKind::numerical_failure, "",
+            "No schedule was found whose limits hold between its rows. Narrow the range, or part it where its plants "
+            "change most."};
+}
+
+/// The fewest rows within the allowance. Empty: no number of rows that is worth trying has led there.
+Expected<std::optional<ScheduleDesign>> fewest_rows(LinearDesign& linear, const Places& places, const OwnOptima& own,
+                                                    const RangeOptions& options) {
     const double hopeless = kHopelessLayout * std::log1p(options.allowance);
-    const int first = options.rows.value_or(2), last = options.rows.value_or(kMostRows);
-    for (int rows = std::max(2, first); rows <= std::max(2, last); ++rows) {
-        if (!options.rows && own.layout(rows, options.interpolation).error > hopeless) continue;
+    std::optional<ScheduleDesign> best;
+    for (int rows = 2; rows <= kMostRows && !places.control().stop.stop_requested(); ++rows) {
+        if (own.layout(rows, options.interpolation).error > hopeless) continue;
         tell(places, rows);
-        auto design = linear.with(rows, options.rows.has_value());
-        if (!design) return design.error();
-        const bool better = *design && (!best || (*design)->worst_relative_IAE < best->worst_relative_IAE);
-        if (better) best = **design;
-        if (satisfies(*design) || places.control().stop.stop_requested()) break;
+        auto design = linear.with(rows, false);
+        if (!design || satisfies(*design)) return design;
+        if (*design && nearer(**design, best)) best = **design;
     }
-    if (!best)
-        return Error{places.control().stop.stop_requested() ? ErrorKind::cancelled : ErrorKind::numerical_failure, "",
-                     "No schedule was found whose limits hold between its rows. Narrow the range, or part it where its "
-                     "plants change most."};
-    return *best;
+    return best;
+}
+
+/// What comes nearest to the allowance: the most rows, fewer only where those lead nowhere.
+Expected<std::optional<ScheduleDesign>> nearest(LinearDesign& linear, const Places& places,
+                                                std::optional<ScheduleDesign> best) {
+    for (const int rows : kNearestRows) {
+        if (places.control().stop.stop_requested()) break;
+        tell(places, rows);
+        auto design = linear.with(rows, true);
+        if (!design) return design;
+        if (*design && nearer(**design, best)) best = **design;
+        if (best && best->holds_limits) break;
+    }
+    return best;
+}
+
+Expected<ScheduleDesign> linear_schedule(Places& places, OwnOptima& own, const RangeOptions& options,
+                                         const std::optional<IdealPid>& one) {
+    LinearDesign linear(places, own, options, one);
+    if (options.rows) tell(places, *options.rows);
+    auto design =
+        options.rows ? linear.with(std::max(2, *options.rows), true) : fewest_rows(linear, places, own, options);
+    if (design && !options.rows && !satisfies(*design)) design = nearest(linear, places, std::move(*design));
+    if (!design) return design.error();
+    if (!*design) return no_schedule(places);
+    return **design;
+}
+
+/// The one setting in as many rows as are asked for, else in one.
+Expected<ScheduleDesign> same_everywhere(const Places& places, const OwnOptima& own, const RangeOptions& options,
+                                         const IdealPid& one) {
+    const double low = places.model().low(), width = places.model().high() - low;
+    const int rows = options.rows.value_or(1);
+    const bool steps = options.interpolation == Interpolation::steps || rows == 1;
+    ScheduleDesign design{.schedule = {.interpolation = options.interpolation, .hysteresis = 0, .rows = {}},
+                          .warnings = {}};
+    if (options.interpolation == Interpolation::steps) design.schedule.hysteresis = options.hysteresis * width;
+    for (int k = 0; k < rows; ++k)
+        design.schedule.rows.push_back({.at = low + width * k / (steps ? rows : rows - 1),
+                                        .Kp = one.Kp,
+                                        .Ti = one.Ti,
+                                        .Td = one.Td,
+                                        .Tf = one.filter.Tf,
+                                        .b = options.b});
+    const double allowed = std::log1p(options.allowance);
+    const auto verified = verify(places, own, design.schedule, allowed);
+    if (!verified) return verified.error();
+    design.holds_limits = verified->excess <= kAllowedOfOne;
+    design.within_allowance = verified->log_price <= allowed;
+    design.worst_relative_IAE = std::exp(verified->log_price);
+    return design;
 }
 
 }  // namespace
 
-Expected<ScheduleDesign> design_schedule(Places& places, OwnOptima& own, const RangeOptions& options) {
+void fill_up(std::vector<double>& at, int rows, double high) {
+    while (int(at.size()) < rows) {
+        const auto end = [&](std::size_t k) { return k + 1 < at.size() ? at[k + 1] : high; };
+        std::size_t widest = 0;
+        for (std::size_t k = 1; k < at.size(); ++k)
+            if (end(k) - at[k] > end(widest) - at[widest]) widest = k;
+        at.insert(at.begin() + std::ptrdiff_t(widest) + 1, 0.5 * (at[widest] + end(widest)));
+    }
+}
+
+Expected<ScheduleDesign> design_schedule(Places& places, OwnOptima& own, const RangeOptions& options,
+                                         const std::optional<IdealPid>& one) {
     const bool one_row = options.rows && *options.rows == 1;
     const bool steps = options.interpolation == Interpolation::steps || one_row;
-    auto design = steps ? steps_schedule(places, own, options) : linear_schedule(places, own, options);
-    if (design) remark(*design, options);
-    return design;
+    auto design = steps ? steps_schedule(places, own, options, one) : linear_schedule(places, own, options, one);
+    if ((design && satisfies(*design)) || !one || places.control().stop.stop_requested()) return design;
+    auto same = same_everywhere(places, own, options, *one);
+    return same && same->holds_limits && (!design || nearer(*same, *design)) ? same : design;
+}
+
+void remark_price(ScheduleDesign& design, double allowance) {
+    if (design.within_allowance) return;
+    const double more = 100 * (design.worst_relative_IAE - 1), allowed = 100 * allowance;
+    int digits = 3;
+    while (digits < 9 && text(more, digits) == text(allowed, digits)) ++digits;
+    design.warnings.push_back({"schedule-over-allowance", "With " + std::to_string(design.schedule.rows.size()) +
+                                                              " rows the schedule costs up to " + text(more, digits) +
+                                                              " % more IAE than a place's own optimum, and " +
+                                                              text(allowed, 3) +
+                                                              " % is allowed. Allow more rows, or a larger price."});
 }
 
 }  // namespace tunewright::range

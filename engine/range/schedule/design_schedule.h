@@ -1,6 +1,7 @@
 // The schedule with the fewest rows that keeps the limits everywhere and costs no more than is allowed.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,14 +28,26 @@ struct ScheduleDesign {
 /// are tightened by what is exceeded, until nothing exceeds a limit by more than 2e-5, or the allowance. Of `steps`
 /// each part is one setting that serves its places and half the hysteresis beyond (steps_schedule).
 ///
-/// Without `options.rows` the fewest rows, from 1 on; where even 20 do not stay within the allowance, those that come
-/// nearest, with a warning. `own` learns the places that are looked at.
+/// Without `options.rows` the fewest rows, from 1 on; where no number of them stays within the allowance, those that
+/// come nearest: 20, or fewer where 20 lead nowhere. `own` learns the places that are looked at.
+///
+/// `one`: the one setting for the range, where there is one. A search that leads nowhere from the own optima begins
+/// again from it, and where it keeps the limits everywhere and nothing better is found, it is the schedule: in
+/// `options.rows` equal rows, else in one.
 /// Errors: those of Places::at; cancelled where nothing was found before the stop.
-Expected<ScheduleDesign> design_schedule(Places& places, OwnOptima& own, const RangeOptions& options);
+Expected<ScheduleDesign> design_schedule(Places& places, OwnOptima& own, const RangeOptions& options,
+                                         const std::optional<IdealPid>& one);
 
 /// Parts by OwnOptima::layout; each part's row is the one setting with the least worst price over the part and half the
 /// hysteresis beyond it. The fewest rows that stay within the allowance, or `options.rows`; where 20 do not, those 20.
 /// Errors: as design_schedule.
-Expected<ScheduleDesign> steps_schedule(Places& places, OwnOptima& own, const RangeOptions& options);
+Expected<ScheduleDesign> steps_schedule(Places& places, OwnOptima& own, const RangeOptions& options,
+                                        const std::optional<IdealPid>& one);
+
+/// Rows in the middles of the widest parts, until there are so many; the last part ends at `high`.
+void fill_up(std::vector<double>& at, int rows, double high);
+
+/// The warning where the schedule costs more than is allowed.
+void remark_price(ScheduleDesign& design, double allowance);
 
 }  // namespace tunewright::range

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kFirstStep = 0.25;  // of a logarithm
 constexpr double kUnbounded = 700;   // of a logarithm: what a double can hold
+constexpr double kJustAboveLeastTd = 1.01;
 
 }  // namespace
 
@@ -20,12 +21,27 @@ using Eigen::Index;
 Knots::Knots(const Places& places, Interpolation interpolation, std::vector<double> at)
     : interpolation_(interpolation),
       at_(std::move(at)),
+      PI_(at_.size(), false),
       slowest_(std::numeric_limits<double>::infinity()),
       dimension_(places.rules().pid ? 3 : 2) {
     for (const Place* place : places.known()) {
         fastest_ = std::max(fastest_, place->sweep().reference());
         slowest_ = std::min(slowest_, place->sweep().reference());
     }
+}
+
+void Knots::leave_out_derivative(double at) {
+    const auto row = std::ranges::find(at_, at);
+    if (dimension_ > 2 && row != at_.end()) PI_[std::size_t(row - at_.begin())] = true;
+}
+
+Eigen::VectorXd Knots::constant(const robust::DesignPoint& x) const {
+    const double least = std::log(kJustAboveLeastTd * robust::kMinTd / fastest_);
+    Eigen::VectorXd v(unknowns());
+    for (Index row = 0; row < rows(); ++row)
+        for (Index i = 0; i < dimension_; ++i)
+            v[dimension_ * row + i] = i == 2 ? std::max(x[2], least) : x[std::size_t(i)];
+    return v;
 }
 
 Eigen::VectorXd Knots::start(const OwnOptima& own) const {
@@ -47,10 +63,11 @@ robust::DesignPoint Knots::settings(const Eigen::VectorXd& v, double at, Setting
     for (Index i = 0; i < dimension_; ++i) {
         // 1/Ti is what `linear_in_gains` mixes: its logarithm is the negative one of Ti.
         const double sign = i == 1 && interpolation_ == Interpolation::linear_in_gains ? -1 : 1;
-        const double a = std::exp(sign * v[dimension_ * left + i]), b = std::exp(sign * v[dimension_ * (left + 1) + i]);
+        const auto end = [&](Index row) { return absent(row, i) ? 0 : std::exp(sign * v[dimension_ * row + i]); };
+        const double a = end(left), b = end(left + 1);
         const double mixed = a + share * (b - a);
         x[std::size_t(i)] = sign * std::log(mixed);
-        if (slope == nullptr) continue;
+        if (slope == nullptr || !(mixed > 0)) continue;
         (*slope)(i, dimension_ * left + i) = (1 - share) * a / mixed;
         (*slope)(i, dimension_ * (left + 1) + i) = share * b / mixed;
     }
@@ -77,7 +94,8 @@ Schedule Knots::schedule(const Eigen::VectorXd& v, const DesignRules& rules, dou
     Schedule schedule{.interpolation = interpolation_, .hysteresis = 0, .rows = {}};
     for (Index row = 0; row < rows(); ++row) {
         const Index k = dimension_ * row;
-        const IdealPid pid = setting_at(rules, {v[k], v[k + 1], dimension_ > 2 ? v[k + 2] : 0}, b);
+        const double Td = absent(row, 2) ? -std::numeric_limits<double>::infinity() : dimension_ > 2 ? v[k + 2] : 0;
+        const IdealPid pid = setting_at(rules, {v[k], v[k + 1], Td}, b);
         schedule.rows.push_back(
             {.at = at_[std::size_t(row)], .Kp = pid.Kp, .Ti = pid.Ti, .Td = pid.Td, .Tf = pid.filter.Tf, .b = b});
     }

@@ -16,8 +16,13 @@ class Knots {
 public:
     Knots(const Places& places, Interpolation interpolation, std::vector<double> at);
 
+    /// The row there is a PI, if there is one: Td is 0 at it, whatever its unknown.
+    void leave_out_derivative(double at);
+
     /// The own optima of the rows' places.
     Eigen::VectorXd start(const OwnOptima& own) const;
+    /// The same setting for all rows.
+    Eigen::VectorXd constant(const robust::DesignPoint& x) const;
     robust::DesignPoint settings(const Eigen::VectorXd& v, double at, SettingsSlope* slope) const;
     /// Bounds and steps; settings. The places are left empty.
     JointProblem problem() const;
@@ -26,9 +31,11 @@ public:
 private:
     Eigen::Index rows() const { return Eigen::Index(at_.size()); }
     Eigen::Index unknowns() const { return dimension_ * rows(); }
+    bool absent(Eigen::Index row, Eigen::Index i) const { return i == 2 && PI_[std::size_t(row)]; }
 
     Interpolation interpolation_;
     std::vector<double> at_;
+    std::vector<bool> PI_;  ///< of each row
     double fastest_ = 0, slowest_ = 0;
     Eigen::Index dimension_;
 };

@@ -159,7 +159,10 @@ OwnOptima::Layout OwnOptima::layout(int rows, Interpolation interpolation) const
         (parts.cover(middle, most).empty() ? low : high) = middle;
     }
     Layout layout{.at = {}, .error = high};
-    for (const std::size_t end : parts.cover(high, most)) layout.at.push_back(grid.at[end]);
+    auto ends = parts.cover(high, most);
+    // The spread need not grow with a part: then the halving of a part's length misses that the whole range serves.
+    if (ends.empty()) ends = {0, grid.at.size() - 1};
+    for (const std::size_t end : ends) layout.at.push_back(grid.at[end]);
     if (steps) layout.at.pop_back();
     return layout;
 }

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "engine/range/schedule/design_schedule.h"
@@ -14,16 +15,18 @@ constexpr int kPlacesOfPart = 3;       // that each part's search knows at least
 
 class StepsDesign {
 public:
-    StepsDesign(Places& places, OwnOptima& own, const RangeOptions& options)
+    StepsDesign(Places& places, OwnOptima& own, const RangeOptions& options, const std::optional<IdealPid>& one)
         : places_(places),
           own_(own),
           options_(options),
+          one_(one),
           low_(places.model().low()),
           high_(places.model().high()),
           hysteresis_(options.hysteresis * (high_ - low_)) {}
 
     Expected<std::optional<ScheduleDesign>> with(int rows) {
         auto layout = own_.layout(rows, Interpolation::steps).at;
+        if (options_.rows) fill_up(layout, rows, high_);
         std::optional<ScheduleDesign> best;
         for (int round = 0; round < kStepsRounds; ++round) {
             ScheduleDesign design{
@@ -43,8 +46,10 @@ public:
             design.within_allowance = design.worst_relative_IAE <= 1 + options_.allowance;
             design.partial = places_.control().stop.stop_requested();
             if (!best || design.holds_limits || !best->holds_limits) best = design;
-            if (design.holds_limits || !std::isfinite(verified->excess) || design.partial) break;
-            margin_ += 1.2 * verified->excess;
+            if (design.holds_limits || design.partial) break;
+            const bool joined = take_back_exceeded(design.schedule);
+            if (!joined && !std::isfinite(verified->excess)) break;
+            if (!joined) margin_ += 1.2 * verified->excess;
         }
         return best;
     }
@@ -63,32 +68,44 @@ private:
         return inside;
     }
 
+    /// Did plants that the searches left out come back, on which a setting in use at their place exceeds a limit?
+    bool take_back_exceeded(const Schedule& schedule) {
+        bool added = false;
+        for (Place* place : places_.known())
+            for (const IdealPid& pid : in_use(schedule, place->at()))
+                added = place->take_back_exceeded(point_of(pid)) || added;
+        return added;
+    }
+
     /// Empty: no setting that holds the limits was found.
     Expected<std::optional<ScheduleRow>> serve(double from, double to) {
         const auto inside = places_of(from, to);
         if (!inside) return inside.error();
-        const JointProblem joint = one_setting_problem(*inside, options_);
-        JointOptions search;
-        search.margin = margin_;
-        search.stop = places_.control().stop;
-        std::optional<JointResult> best;
-        for (const Place* start : {inside->front(), inside->back()}) {
-            Eigen::VectorXd v(joint.low.size());
-            for (Eigen::Index i = 0; i < v.size(); ++i) v[i] = start->optimum()[std::size_t(i)];
-            auto end = search_jointly(joint, v, search, {});
-            if (end.holds() && std::isfinite(end.log_price) && (!best || end.log_price < best->log_price))
-                best = std::move(end);
-        }
+        std::optional<IdealPid> best;
+        double least = std::numeric_limits<double>::infinity();
+        const auto consider = [&](const robust::DesignPoint& start, bool PI) {
+            const JointProblem joint = one_setting_problem(*inside, options_, PI);
+            JointOptions search;
+            search.margin = margin_;
+            search.stop = places_.control().stop;
+            const auto end = search_jointly(joint, unknowns_of(joint, start), search, {});
+            if (!end.holds() || !(end.log_price < least)) return;
+            least = end.log_price;
+            best = setting_at(places_.rules(), joint.settings(end.v, from, nullptr), options_.b);
+        };
+        for (const Place* start : {inside->front(), inside->back()}) consider(start->optimum(), false);
+        if (std::ranges::any_of(*inside, &Place::optimum_is_PI))
+            for (const Place* start : {inside->front(), inside->back()}) consider(start->optimum(), true);
+        if (!best && one_) consider(point_of(*one_), !(one_->Td > 0));
         if (!best) return std::optional<ScheduleRow>();
-        const IdealPid pid =
-            setting_at(places_.rules(), {best->v[0], best->v[1], best->v.size() > 2 ? best->v[2] : 0}, options_.b);
-        return std::optional(
-            ScheduleRow{.at = from, .Kp = pid.Kp, .Ti = pid.Ti, .Td = pid.Td, .Tf = pid.filter.Tf, .b = options_.b});
+        return std::optional(ScheduleRow{
+            .at = from, .Kp = best->Kp, .Ti = best->Ti, .Td = best->Td, .Tf = best->filter.Tf, .b = options_.b});
     }
 
     Places& places_;
     OwnOptima& own_;
     const RangeOptions& options_;
+    const std::optional<IdealPid>& one_;
     double low_, high_, hysteresis_, margin_ = kStepsInside;
 };
 
@@ -98,10 +115,11 @@ bool suffices(const std::optional<ScheduleDesign>& design) {
 
 }  // namespace
 
-Expected<ScheduleDesign> steps_schedule(Places& places, OwnOptima& own, const RangeOptions& options) {
+Expected<ScheduleDesign> steps_schedule(Places& places, OwnOptima& own, const RangeOptions& options,
+                                        const std::optional<IdealPid>& one) {
     std::optional<ScheduleDesign> best;
     const auto attempt = [&](int rows) -> std::optional<Error> {
-        auto design = StepsDesign(places, own, options).with(rows);
+        auto design = StepsDesign(places, own, options, one).with(rows);
         if (!design) return design.error();
         const bool better = *design && (!best || suffices(*design) ||
                                         (!suffices(best) && (*design)->worst_relative_IAE < best->worst_relative_IAE));
@@ -116,7 +134,7 @@ Expected<ScheduleDesign> steps_schedule(Places& places, OwnOptima& own, const Ra
         if (auto error = attempt(enough)) return *error;
         while (suffices(best) && enough - few > 1) {
             const int middle = (enough + few) / 2;
-            auto design = StepsDesign(places, own, options).with(middle);
+            auto design = StepsDesign(places, own, options, one).with(middle);
             if (!design) return design.error();
             if (suffices(*design)) best = **design;
             (suffices(*design) ? enough : few) = middle;

@@ -15,6 +15,7 @@ using robust::DesignPoint;
 constexpr int kMostRounds = 10;           // of adding the worst plant found inside a region
 constexpr std::size_t kFewMembers = 4;    // all of them are kept
 constexpr double kFarFromLimits = -0.02;  // of ln of a limit's ratio: a member below it is not active
+constexpr double kAllowedAside = 5e-5;    // relative, of a limit on a member that was set aside
 constexpr double kJustAboveLeast = 1.01;  // times the least Td: where a PI stands in for a PID
 
 }  // namespace
@@ -50,8 +51,9 @@ std::optional<Error> Place::find_optimum(const RunControl& control, const Design
         optimum_log_cost_ = found->log_cost;
         // A PI that does better than any PID has ln Td = -infinity, which no search over logarithms can start from.
         const double least = std::log(kJustAboveLeast * robust::kMinTd / sweep_->reference());
+        optimum_is_PI_ = problem_.pid && !std::isfinite(optimum_[2]);
         if (problem_.pid) optimum_[2] = std::max(optimum_[2], least);
-        if (found->stopped || !add_worst_inside(optimum_, control.stop)) break;
+        if (found->stopped || !add_worst_inside(own_design(), control.stop)) break;
         near = robust::Found{.x = optimum_, .curvature = found->curvature};
     }
     keep_active_members();
@@ -63,14 +65,16 @@ std::optional<Error> Place::find_optimum(const RunControl& control, const Design
 void Place::keep_active_members() {
     if (model_.members.size() <= kFewMembers) return;
     std::vector<double> nearest(model_.members.size(), kFarFromLimits);
-    for (const auto& peak : sweep_->peaks(optimum_, kFarFromLimits))
+    for (const auto& peak : sweep_->peaks(own_design(), kFarFromLimits))
         if (peak.plant > 0) nearest[peak.plant - 1] = std::max(nearest[peak.plant - 1], peak.value);
     std::vector<LinearPlant> kept;
     for (std::size_t i = 0; i < nearest.size(); ++i)
-        if (nearest[i] > kFarFromLimits) kept.push_back(std::move(model_.members[i]));
+        (nearest[i] > kFarFromLimits ? kept : set_aside_).push_back(std::move(model_.members[i]));
     model_.members = std::move(kept);
     pose();
 }
+
+DesignPoint Place::own_design() const { return {optimum_[0], optimum_[1], optimum_is_PI_ ? -INFINITY : optimum_[2]}; }
 
 double Place::log_price(const DesignPoint& x, double tolerance) const { return log_price(priced(x, tolerance)); }
 
@@ -87,6 +91,18 @@ bool Place::add_worst_inside(const DesignPoint& x, const std::stop_token& stop) 
     auto added = robust::worst_inside(*model_.family, problem_, x, stop);
     if (added.empty()) return false;
     model_.members.insert(model_.members.end(), added.begin(), added.end());
+    pose();
+    return true;
+}
+
+/// A setting that differs much from the place's own optimum comes near other limits than that does.
+bool Place::take_back_exceeded(const DesignPoint& x) {
+    const auto exceeded = std::ranges::stable_partition(set_aside_, [&](const LinearPlant& plant) {
+        return robust::excess_on(plant, problem_, x, {}) <= kAllowedAside;
+    });
+    if (exceeded.empty()) return false;
+    model_.members.insert(model_.members.end(), exceeded.begin(), exceeded.end());
+    set_aside_.erase(exceeded.begin(), exceeded.end());
     pose();
     return true;
 }

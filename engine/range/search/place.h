@@ -37,7 +37,12 @@ public:
     /// from which it is searched. Regions of uncertainty are held inside. Errors: as robust::verified_search.
     std::optional<Error> find_optimum(const RunControl& control, const robust::DesignPoint* before);
 
+    /// Where searches begin: of a PI that does better than any PID with the least Td, at which the limits need not
+    /// hold.
     const robust::DesignPoint& optimum() const { return optimum_; }
+    /// The optimum itself: ln Td is -infinity where it is a PI.
+    robust::DesignPoint own_design() const;
+    bool optimum_is_PI() const { return optimum_is_PI_; }
     double optimum_log_cost() const { return optimum_log_cost_; }
 
     /// ln of IAE over that of the own optimum; infinite where it does not settle. The loop must be stable.
@@ -53,15 +58,22 @@ public:
 
     /// The plants inside the region of uncertainty on which x exceeds a limit join the members: true if there are any.
     bool add_worst_inside(const robust::DesignPoint& x, const std::stop_token& stop);
+    /// The same of the members that were set aside.
+    bool take_back_exceeded(const robust::DesignPoint& x);
+
+    /// Members that were far from every limit at the optimum: the searches leave them out, judgements do not.
+    const std::vector<LinearPlant>& set_aside() const { return set_aside_; }
 
 private:
     void pose();
     void keep_active_members();
 
     PlaceModel model_;
+    std::vector<LinearPlant> set_aside_;
     robust::DesignProblem problem_;
     std::optional<robust::Sweep> sweep_;
     robust::DesignPoint optimum_{};
+    bool optimum_is_PI_ = false;  // although a PID was asked for
     double optimum_log_cost_ = 0;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "engine/number_text.h"
 #include "engine/tuning/robust/robust.h"
@@ -34,6 +35,20 @@ Expected<robust::FilterRule> common_rule(const RangeModel& model, const RangeOpt
 
 }  // namespace
 
+Error in_words_of_range(Error error) {
+    const auto instead = [&](std::string_view of, std::string_view cure) {
+        const auto at = error.message.find(of);
+        if (at != std::string::npos) error.message.replace(at, of.size(), cure);
+    };
+    if (error.where.starts_with("filter")) error.where = "options/" + error.where;
+    instead("Fix the filter with filter {\"Tf\": ...}, or limit the control activity with Mks.",
+            "Fix the filter with schedule.filter {\"Tf\": ...}, or give the plant its dead time.");
+    instead("Give filter {", "Give schedule.filter {");
+    instead("Try another search or a filter with a longer Tf.",
+            "Give schedule.filter a longer Tf, or part the range where its plants change most.");
+    return error;
+}
+
 Expected<DesignRules> design_rules(const RangeModel& model, const RangeOptions& options) {
     const auto first = model.at(model.low());
     if (!first) return first.error();
@@ -44,7 +59,7 @@ Expected<DesignRules> design_rules(const RangeModel& model, const RangeOptions& 
                      "controller without integral action."};
     rules.sign = first->nominal ? robust::first_sign(*first->nominal) : first->measured->gain_sign();
     const auto filter = common_rule(model, options, rules.pid);
-    if (!filter) return filter.error();
+    if (!filter) return in_words_of_range(filter.error());
     rules.filter = *filter;
     return rules;
 }
@@ -76,7 +91,7 @@ Expected<Place*> Places::find(double at, bool from_neighbour) {
     if (!place->problem().measured)
         if (auto error = robust::without_optimum(place->problem())) {
             error->message = "At " + named(at) + ": " + error->message;
-            return *error;
+            return in_words_of_range(*error);
         }
     const Place* neighbour = nullptr;
     if (from_neighbour && after != places_.end()) neighbour = after->second.get();
@@ -86,7 +101,7 @@ Expected<Place*> Places::find(double at, bool from_neighbour) {
     }
     if (auto error = place->find_optimum(control_, neighbour ? &neighbour->optimum() : nullptr)) {
         error->message = "At " + named(at) + ": " + error->message;
-        return *error;
+        return in_words_of_range(*error);
     }
     return places_.emplace(at, std::move(place)).first->second.get();
 }

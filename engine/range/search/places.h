@@ -16,6 +16,10 @@ namespace tunewright::range {
 /// gives at a point. Errors: as robust::filter_rule, and unstable_plant for a zero at s = 0.
 Expected<DesignRules> design_rules(const RangeModel& model, const RangeOptions& options);
 
+/// An error of a design at one plant with the fields and the cures that a range has: its filter is the options', and it
+/// has neither Mks nor a choice of searches.
+Error in_words_of_range(Error error);
+
 class Places {
 public:
     Places(const RangeModel& model, const Scheduling& scheduling, const DesignRules& rules, const RunControl& control)

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 
@@ -61,6 +63,54 @@ TEST(RangeModel, InterpolatesWhatIsUncertainOfBothNeighbours) {
     EXPECT_NEAR(largest, 2 * std::sqrt(2 * 1.1), 1e-12);
 }
 
+/// Gain, lag and dead time of a model's member, from its response.
+std::array<double, 3> numbers_of(const LinearPlant& plant) {
+    return {plant.low_frequency_gain(), plant.lag_sum(), plant.dead_time()};
+}
+
+TEST(RangeModel, EnclosesWhatIsUncertainOfOneNeighbourAlone) {
+    Fopdt left{1, 10, 1}, right{2, 5, 1};
+    left.uncertainty.L = left.uncertainty.T = FactorRange{0.5, 2};
+    right.uncertainty.K = FactorRange{0.5, 2};
+    const auto model = model_of_points(two(left, right), Between::parameters);
+    const auto middle = (*model)->at(2);
+    ASSERT_TRUE(middle);
+    const auto nominal = numbers_of(*middle->nominal);
+    // Halfway each factor 0.5 or 2 has become its root, and all eight combinations of them may occur.
+    for (int corner = 0; corner < 8; ++corner) {
+        const auto there = [&](const LinearPlant& member) {
+            const auto numbers = numbers_of(member);
+            for (std::size_t i = 0; i < 3; ++i)
+                if (std::abs(numbers[i] / nominal[i] - std::pow(2, (corner >> i) & 1 ? 0.5 : -0.5)) > 1e-9)
+                    return false;
+            return true;
+        };
+        EXPECT_TRUE(std::ranges::any_of(middle->members, there)) << corner;
+    }
+    Fopdt alike{2, 5, 1};
+    alike.uncertainty.L = alike.uncertainty.T = FactorRange{0.5, 2};
+    const auto same = model_of_points(two(left, alike), Between::parameters);
+    EXPECT_LE((*same)->at(2)->members.size(), 6u);  // corners with their own kind alone, and centres
+}
+
+TEST(RangeModel, InterpolatesResponsesThatLieOnEitherSideOfANegativeRealAxis) {
+    for (const double sign : {1.0, -1.0}) {
+        const Plant lead = TransferFunction{{sign * 24, sign * 3}, {30, 11, 1}, 2};
+        const Plant lag = TransferFunction{{sign * 30, sign * 2}, {30, 11, 1}, 2};
+        const auto model = model_of_points(two(lead, lag), Between::frequency_response);
+        ASSERT_TRUE(model);
+        const auto middle = (*model)->at(2);
+        ASSERT_TRUE(middle) << middle.error().message;
+        const auto a = LinearPlant::make(lead)->at({0, 0.02}), b = LinearPlant::make(lag)->at({0, 0.02});
+        const auto between =
+            sign * std::polar(std::sqrt(std::abs(a) * std::abs(b)), 0.5 * (std::arg(sign * a) + std::arg(sign * b)));
+        EXPECT_LT(std::abs(middle->measured->at(0.02) - between), 1e-3 * std::abs(between));
+        RangeOptions options;
+        options.between = Between::frequency_response;
+        EXPECT_TRUE(design_range({.scheduling = {}, .model = *model, .options = options}, {}));
+    }
+}
+
 TEST(RangeModel, InterpolatesFrequencyResponsesOfUnlikeStructures) {
     const Plant left = Fopdt{1, 10, 2}, right = Zpk{3.0 / 8, {}, {-0.5, -0.5, -0.5}, 1};
     EXPECT_FALSE(model_of_points(two(left, right), Between::parameters));
@@ -106,8 +156,33 @@ TEST(RangeModel, RefusesPointsThatMakeNoRange) {
     EXPECT_EQ(fault(two(Fopdt{1, 10, 2}, Fopdt{-1, 10, 2})).substr(0, 55),
               "points/1/plant: The gain changes its sign between 0 and");
     EXPECT_EQ(fault(two(Fopdt{1, 10, -2}, Fopdt{1, 10, 2})).substr(0, 14), "points/0/plant");
+    EXPECT_EQ(
+        fault(two(Fopdt{-1, -5, 0.5}, Fopdt{1, 5.6, 0.6})),
+        "points/1/plant: The plant's K goes from -1 to 1 between 0 and 4: where it passes 0 the input does not move "
+        "the output. Part the range there.");
+    EXPECT_EQ(
+        fault(two(Zpk{2, {}, {-1, -2, -3}, 1}, Zpk{1, {}, {-1, -2, -3}, 1})),
+        "points/1/plant: The plants at 0 and 4 are given by zeros and poles or as state spaces, whose numbers are "
+        "not interpolated. Give both in one structure of named parameters or coefficients, or set "
+        "schedule.between to \"frequency_response\".");
     EXPECT_EQ(fault(two(Ipdt{1, 1}, Fopdt{1, 10, 2}), Between::frequency_response).substr(0, 51),
               "points/1/plant: The plant has 0 integrators and 0 u");
+}
+
+/// Where a design over these points fails: its field and sentence.
+std::string failure(const std::vector<RangePoint>& points) {
+    const auto model = model_of_points(points, Between::parameters);
+    const auto design = design_range({.scheduling = {}, .model = *model, .options = {}}, {});
+    return design ? "" : design.error().where + ": " + design.error().message;
+}
+
+TEST(RangeModel, ADesignThatFailsNamesFieldsAndCuresThatARangeHas) {
+    EXPECT_EQ(failure(two(Fopdt{1, 5, 0}, Fopdt{1, 5, 1})),
+              "options/filter: At at = 0: On this plant the gain is unbounded within the limits, because no dead time "
+              "bounds it, so there is no optimum. Fix the filter with schedule.filter {\"Tf\": ...}, or give the plant "
+              "its dead time.");
+    const std::string numbers = failure(two(Fopdt{1e-12, 1e9, 1e8}, Fopdt{1e12, 1e-6, 1e-7}));
+    EXPECT_EQ(numbers.find("Try another search"), std::string::npos) << numbers;
 }
 
 }  // namespace

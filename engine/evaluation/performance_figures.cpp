@@ -12,10 +12,10 @@ namespace {
 constexpr double kSettlingBand = 0.02;
 constexpr double kAtTarget = 1e-9;  // of the largest y: an error at rest below it is none
 
-/// The indices of one kind of performance, or the reason why there are none.
+/// The indices of one kind of performance, or the reason why there are none. `cut`: the run ended before its horizon.
 template <class Figures>
-void store(Figures& p, const Indices& indices) {
-    p.TV = indices.TV;
+void store(Figures& p, const Indices& indices, bool cut) {
+    p.TV = cut ? no_figure(indices.why_no_error) : Figure(indices.TV);
     if (!indices.error) {
         p.IAE = p.ISE = p.ITAE = no_figure(indices.why_no_error);
         return;
@@ -29,8 +29,10 @@ void store(Figures& p, const Indices& indices) {
 
 // Where the error comes to rest decides.
 const char* why_no_integral(const StepResponse& response, double target, bool to_infinity) {
+    if (!response.settles)
+        return to_infinity ? "The response does not settle within the steps allowed; give a horizon."
+                           : "The response needs more steps up to the horizon than are allowed; give a shorter one.";
     if (!to_infinity) return nullptr;
-    if (!response.settles) return "The response does not settle within the steps allowed; give a horizon.";
     double scale = std::abs(target);
     for (const auto& node : response.nodes) scale = std::max(scale, std::abs(node.y));
     if (std::abs(target - response.y_final) > kAtTarget * scale)
@@ -63,7 +65,7 @@ SetpointPerformance setpoint_figures(const StepResponse& response, double step, 
                                      const std::optional<Indices>& indices) {
     SetpointPerformance p;
     const auto& nodes = response.nodes;
-    store(p, indices ? *indices : indices_of(response, step, to_infinity));
+    store(p, indices ? *indices : indices_of(response, step, to_infinity), !to_infinity && !response.settles);
     const Extremes extremes = extremes_of_y(nodes);
     p.overshoot_percent = std::max(0.0, 100 * ((step > 0 ? extremes.max : extremes.min) / step - 1));
     const auto rise = [&](double from, double to) {
@@ -81,7 +83,7 @@ SetpointPerformance setpoint_figures(const StepResponse& response, double step, 
 LoadPerformance load_figures(const StepResponse& response, bool to_infinity, const std::optional<Indices>& indices) {
     LoadPerformance p;
     const auto& nodes = response.nodes;
-    store(p, indices ? *indices : indices_of(response, 0, to_infinity));
+    store(p, indices ? *indices : indices_of(response, 0, to_infinity), !to_infinity && !response.settles);
     const Extremes extremes = extremes_of_y(nodes);
     p.peak = std::abs(extremes.max) >= std::abs(extremes.min) ? extremes.max : extremes.min;
     p.recovery_time = Figure(last_outside(nodes, 0, kSettlingBand * std::abs(*p.peak)),

@@ -155,6 +155,7 @@ DelaySystem close_without_delay(const DelaySystem& open) {
     closed.R = open.R * g;
     closed.N = open.N * g;
     closed.Z = open.Z * g;
+    closed.Y_r = open.Z * g * open.R;
     return closed;
 }
 

@@ -1,6 +1,6 @@
 // The closed loop in state space: linear equations with one delayed signal.
 //
-//   x' = F x + G v + H r,   u = M x + N v + R r,   y = Y x + Z v,   v(t) = w(t - L),  w = u + d
+//   x' = F x + G v + H r,   u = M x + N v + R r,   y = Y x + Z v + Y_r r,   v(t) = w(t - L),  w = u + d
 //
 // Plant states first, then the controller's: filter states, integral of r - y_f, filtered set point. N couples u to the
 // delayed signal directly (proportional action on a plant with a direct term, or a pure derivative on a plant of pole
@@ -22,6 +22,7 @@ struct DelaySystem {
     std::vector<double> G, H, M;  // n
     std::vector<double> Y;        // n
     double N = 0, R = 0, Z = 0;
+    double Y_r = 0;           // what y has of r at once, of a loop that is closed without delay
     int integral_state = -1;  // index of the integral's state, -1 without integral action
     int setpoint_state = -1;  // of the filtered set point, the last one; -1 without a set-point filter
     double setpoint_lag = 0;  // its T

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <complex>
 #include <numbers>
 #include <vector>
 
@@ -42,6 +43,54 @@ TEST(Evaluate, PiOnItsOwnLagIsAFirstOrderLoop) {
     EXPECT_NEAR(*l.peak, (std::exp(-t_peak) - std::exp(-k * t_peak)) / (k - 1), 1e-5);
     EXPECT_NEAR(*e.robustness.Ms, 1, 1e-9);
     EXPECT_NEAR(*e.robustness.phase_margin_deg, 90, 1e-6);
+}
+
+TEST(Evaluate, ASetPointJumpsThroughAPlantsDirectTerm) {
+    // (0.5 s + 1.5)/(s + 0.4) with Kp = 1, Ti = 1.1: y(0+) = 0.5/(1 + 0.5). The indices are an independent program's
+    // (exact exponentials, Richardson's extrapolation over two step sizes), to 1e-7.
+    EvaluateOptions options;
+    options.points = 50;
+    const auto e =
+        evaluated(TransferFunction{.num = {0.5, 1.5}, .den = {1, 0.4}, .L = 0}, IdealPid{.Kp = 1, .Ti = 1.1}, options);
+    const auto& s = e.performance.setpoint;
+    EXPECT_NEAR(*s.IAE, 0.5407095, 1e-5);
+    EXPECT_NEAR(*s.overshoot_percent, 4.862, 1e-3);
+    EXPECT_NEAR(*s.TV, 1.07683, 1e-4);
+    ASSERT_TRUE(e.responses);
+    EXPECT_NEAR(e.responses->setpoint.y.front(), 1.0 / 3, 1e-9);
+    EXPECT_NEAR(e.responses->setpoint.y.back(), 1, 0.01);
+}
+
+TEST(Evaluate, ADampedLoopOnAResonantPlantComesToRest) {
+    // Steps longer than the dead time kept such runs moving at 1e-7 of their size. The same simulated up to a horizon
+    // at which the rest is below 1e-9 says what the indices are.
+    const Plant plant =
+        Zpk{.K = 7, .zeros = {}, .poles = {{-0.03, 1}, {-0.03, -1}, {-0.05, 2.7}, {-0.05, -2.7}}, .L = 0.3};
+    for (const double factor : {0.84, 0.9, 0.95, 1.0, 1.02, 1.05}) {
+        const IdealPid pid{.Kp = 0.0527337 * factor,
+                           .Ti = 0.578744,
+                           .Td = 3.960216,
+                           .filter = {FilterType::measurement_second_order, 0.3960216}};
+        EvaluateOptions finite;
+        finite.horizon = 300;
+        const auto e = evaluated(plant, pid), reference = evaluated(plant, pid, finite);
+        ASSERT_TRUE(e.performance.load.IAE) << factor << ": " << e.performance.load.IAE.why;
+        EXPECT_NEAR(*e.performance.load.IAE / *reference.performance.load.IAE, 1, 2e-5) << factor;
+        EXPECT_NEAR(*e.performance.load.TV / *reference.performance.load.TV, 1, 1e-3) << factor;
+    }
+}
+
+TEST(Evaluate, WhatEndsBeforeItsHorizonHasNoIndices) {
+    const double zeta = 1e-4, omega = 3;
+    const std::complex<double> pole = omega * std::complex<double>(-zeta, std::sqrt(1 - zeta * zeta));
+    EvaluateOptions options;
+    options.horizon = 40'000;
+    options.points = 0;
+    const auto e = evaluated(Zpk{.K = 0.9, .zeros = {}, .poles = {pole, std::conj(pole), -0.1}, .L = 0.5},
+                             ParallelPid{.Kp = 0.002, .Ki = 0.004}, options);
+    EXPECT_FALSE(e.performance.load.IAE);
+    EXPECT_FALSE(e.performance.load.TV);
+    EXPECT_NE(e.performance.load.IAE.why.find("shorter"), std::string::npos) << e.performance.load.IAE.why;
 }
 
 TEST(Evaluate, ASeriesControllerIsItsOwnSeriesEquivalent) {

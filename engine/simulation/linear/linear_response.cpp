@@ -58,7 +58,9 @@ public:
     StepResponse run() {
         x_.assign(Index(system_.n), 0.0);
         scratch_ = x_;
-        make_room();
+        const std::size_t steps = options_.repeat != nullptr ? options_.repeat->level.size() : kUsualSteps;
+        response_.nodes.reserve(steps + kUsualJumps);
+        response_.schedule.level.reserve(steps);
         ResponseNode first = node_at(system_, 0, x_, {});
         scale(first);
         push(first);
@@ -80,13 +82,6 @@ public:
     }
 
 private:
-    /// For a repetition all of its nodes, or the usual number of them, at once; jumps apart.
-    void make_room() {
-        const std::size_t steps = options_.repeat != nullptr ? options_.repeat->level.size() : kUsualSteps;
-        response_.nodes.reserve(steps + kUsualJumps);
-        response_.schedule.level.reserve(steps);
-    }
-
     /// What comes into the steps as a cubic: the delayed signal, or what scaling adds to the integral's input.
     std::vector<double> input() const {
         if (system_.delayed || scaling_ == nullptr) return system_.G;
@@ -115,7 +110,6 @@ private:
     }
 
     bool escaped() const { return scaling_ != nullptr && !(std::abs(response_.nodes.back().y) <= escape_); }
-
     /// An unstable plant's own modes amplify what a step gets wrong: no step may be long for them.
     static double longest_step(const LinearPlant& plant) {
         double longest = std::numeric_limits<double>::infinity();
@@ -164,8 +158,8 @@ private:
 
     /// From now to infinity. Scaled, the integral's state has that to go: near the end it sees the error as it is.
     double error_integral_left() const {
-        if (scaling_ != nullptr) return *steady_.error_integral - x_[Index(system_.s.integral_state)];
-        return *steady_.error_integral - response_.nodes.back().error_integral;
+        const double so_far = scaling_ ? x_[Index(system_.s.integral_state)] : response_.nodes.back().error_integral;
+        return *steady_.error_integral - so_far;
     }
 
     StepResponse ended() {
@@ -203,10 +197,17 @@ private:
     }
 
     void choose_level(int step) {
-        if (options_.repeat != nullptr)
-            levels_.repeat(options_.repeat->level[Index(step)]);
-        else
-            levels_.choose(smoothness());
+        if (options_.repeat != nullptr) return levels_.repeat(options_.repeat->level[Index(step)]);
+        const Smoothness found = smoothness();
+        const bool long_ones = levels_.longer_than_L();
+        levels_.choose(found);
+        // The way to rest becomes smoother: what is rough there, long steps have made of a resonance, and would again.
+        if (found == Smoothness::rough && long_ones && near_rest()) levels_.go_no_higher();
+    }
+
+    bool near_rest() const {
+        const auto& now = response_.nodes.back();
+        return std::abs(now.y - steady_.y) < kFloor * largest_y_ && std::abs(now.u - steady_.u) < kFloor * largest_u_;
     }
 
     /// Of the cubic over the last two steps, relative to the local distance from rest.
@@ -268,7 +269,6 @@ private:
     }
 
     double slack() const { return kSameInstant * propagator_.h0(); }
-
     /// The delayed signal at the start of a step, after a jump there.
     Signal delayed_to(double t) {
         if (delayed_ && std::abs(delayed_->t - t) <= slack()) return delayed_->limits.after;

@@ -53,7 +53,7 @@ ResponseSystem make_response_system(const LinearPlant& plant, const ParallelPid&
         // v is the load alone here, with the algebraic loop solved.
         for (int i = 0; i < system.n; ++i) system.b[Index(i)] += system.G[Index(i)] * in.d;
         // The error's integral also sees what the set point feeds through the plant's direct term.
-        system.b[Index(n)] = s.Z * (s.R * in.r + in.d) - in.r;
+        system.b[Index(n)] = s.Z * in.d + s.Y_r * in.r - in.r;
     }
     return system;
 }
@@ -85,9 +85,8 @@ ResponseNode node_at(const ResponseSystem& system, double t, const std::vector<d
     node.t = t;
     node.u = s.N * v.value + s.R * system.in.r;
     node.u_slope = system.MG * v.value + system.MH + s.N * v.slope;
-    node.y = s.Z * v.value;
+    node.y = s.Z * v.value + s.Y_r * system.in.r;
     node.y_slope = system.YG * v.value + system.YH + s.Z * v.slope;
-    if (!system.delayed) node.y += s.Z * s.R * system.in.r;
     // One loop: with four calls of dot() a whole response takes 3 to 4 % longer.
     for (int i = 0; i < s.n; ++i) {
         const double xi = x[Index(i)];

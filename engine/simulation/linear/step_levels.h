@@ -37,6 +37,7 @@ public:
 
     void repeat(int level) { level_ = level; }  ///< of an earlier run
     void lower() { --level_; }                  ///< the step was too long
+    void go_no_higher() { most_ = level_; }     ///< steps longer than the present level's amplify their own errors
     void choose(Smoothness smoothness);         ///< the next step's
 
     /// A step of the present level has been taken. True: it ended a segment whose successor may start with a jump.
@@ -45,8 +46,7 @@ public:
     void note_jump() { equal_steps_ = 0; }
 
 private:
-    static constexpr int kFirstEchoes = 2;  // the kinks at L and 2L are always met with the shortest step
-    static constexpr int kMaxLevel = 60;
+    static constexpr int kFirstEchoes = 2;          // the kinks at L and 2L are always met with the shortest step
     static constexpr int kStepsBeforeLongOnes = 4;  // equal steps before the first one that is longer than L
 
     static double ticks_of(int level) { return static_cast<double>(1ULL << level); }  // quicker than ldexp
@@ -56,7 +56,7 @@ private:
 
     Setting set_;
     int segment_ = 0;
-    int level_ = 0, last_level_ = -1, equal_steps_ = 0;
+    int level_ = 0, most_ = 60, last_level_ = -1, equal_steps_ = 0;
     bool segment_started_ = true, climb_blocked_ = false;
     int restart_level_ = 0, top_level_ = 0;
     long offset_ = 0;  // from the segment's start, in units of h0
@@ -91,7 +91,7 @@ inline void StepLevels::restart() {
 }
 
 inline bool StepLevels::may_double() const {
-    if (level_ >= kMaxLevel) return false;
+    if (level_ >= most_) return false;
     if (!set_.delayed) return true;
     if (set_.h0 * ticks_of(level_ + 1) > set_.longest) return false;
     return level_ + 1 <= set_.level_of_L || (echoes_are_over() && equal_steps_ >= kStepsBeforeLongOnes);

@@ -137,6 +137,12 @@ double read_number(Cursor& cursor, Commas commas) {
         return 0;
     }
     const std::string joined = word.text + "." + fraction.text;
+    constexpr std::size_t kGroup = 3;  // digits of a thousand
+    if (fraction.text.size() == kGroup && word.text.size() <= kGroup && word.text.front() != '0') {
+        cursor.fail(word.position, word.text + "," + fraction.text + " may be " + joined + " or " + word.text +
+                                       fraction.text + "; write it with a point, or without a sign.");
+        return 0;
+    }
     double value = 0;
     const auto [end, problem] = std::from_chars(joined.data(), joined.data() + joined.size(), value);
     if (problem != std::errc{} || end != joined.data() + joined.size())

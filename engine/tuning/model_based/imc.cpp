@@ -71,6 +71,9 @@ std::optional<Error> unfit(const ReducedModel& model) {
 
 Error no_pid(const IdealPid& pid, const ImcFilter& f) {
     const bool is_default_order = f.n == 1;
+    if (!std::isfinite(pid.Kp) || !std::isfinite(pid.Ti) || !std::isfinite(pid.Td))
+        return {ErrorKind::no_feasible_controller, "plant",
+                "The plant's direct term leaves this method no PID: its settings would not be finite. Use robust."};
     return {ErrorKind::no_feasible_controller, "lambda",
             "lambda = " + text(f.lambda) + " with filter_order " + std::to_string(f.n) + " gives Kp = " + text(pid.Kp) +
                 ", Ti = " + text(pid.Ti) + ", Td = " + text(pid.Td) +

@@ -44,12 +44,6 @@ bool has_setpoint(const DesignProblem& problem) {
     return problem.objective == Objective::setpoint_iae || problem.objective == Objective::weighted;
 }
 
-bool is_resonant(const LinearPlant& plant) {
-    return std::ranges::any_of(plant.poles(), [](std::complex<double> pole) {
-        return pole.imag() > 0 && std::abs(pole.real()) < kResonant * std::abs(pole);
-    });
-}
-
 bool has_resonant_plant(const DesignProblem& problem) {
     if (problem.measured) return false;
     for (std::size_t i = 0; i < problem.plants(); ++i)
@@ -192,6 +186,12 @@ void look_for_valleys(Runs& runs, const Sweep& sweep, const DesignProblem& probl
 }
 
 }  // namespace
+
+bool is_resonant(const LinearPlant& plant) {
+    return std::ranges::any_of(plant.poles(), [](std::complex<double> pole) {
+        return pole.imag() > 0 && std::abs(pole.real()) < kResonant * std::abs(pole);
+    });
+}
 
 std::optional<Found> fast_search(const Sweep& sweep, const DesignProblem& problem, const Report& report) {
     std::vector<ScanPoint> points;

@@ -14,6 +14,9 @@ namespace tunewright::robust {
 /// further starts where there may be more than one valley. Empty: no feasible controller was seen.
 std::optional<Found> fast_search(const Sweep& sweep, const DesignProblem& problem, const Report& report);
 
+/// Whether a pair of poles is damped so little that designs may lie in several valleys.
+bool is_resonant(const LinearPlant& plant);
+
 /// The cheapest feasible gain for one (Ti, Td), moved onto the limit exactly; empty where no gain is feasible.
 std::optional<Found> best_gain(const Sweep& sweep, const DesignProblem& problem, double Ti, double Td,
                                double tolerance);

@@ -174,11 +174,15 @@ Error why_infeasible(const DesignProblem& problem, const std::optional<LeastPeak
                 "Controllers within the limits exist, but none whose response could be computed. Check the units of "
                 "the time constants and the dead time: "
                 "they lie very far apart."};
+    constexpr double kGreatest = 4;  // that may be asked for
+    const double named = workable.value_or(least->M * 1.01);
     return {ErrorKind::no_feasible_controller, "",
             "No " + name + " controller keeps Ms <= " + text(problem.limits.Ms) +
                 " and Mt <= " + text(problem.limits.Mt) + on_plants(problem) +
                 (problem.limits.Mks ? " with Mks <= " + text(*problem.limits.Mks) : std::string()) +
-                std::string(kNamesLimit) + text(workable.value_or(least->M * 1.01)) + "; use that or more."};
+                (named > kGreatest ? ", nor was one found for any common limit up to " + text(kGreatest) +
+                                         ". Shorten the dead time, or stabilise the plant by an inner loop."
+                                   : std::string(kNamesLimit) + text(named) + "; use that or more.")};
 }
 
 }  // namespace

@@ -153,6 +153,8 @@ TEST(TypedPlant, WhatMayMeanTwoThingsIsRefused) {
     EXPECT_THAT(fault("2e-3s/(10s+1)"), HasSubstr("2e-3s may be 0.002 s or 2 e^(-3 s)"));
     EXPECT_THAT(fault("poles -1,2 -3, gain 2"), HasSubstr("may be one number or several"));
     EXPECT_THAT(fault("FOPDT 2,10,3"), HasSubstr("may be one number or several"));
+    EXPECT_THAT(fault("1,000 e^(-3s)/(10s+1)"), HasSubstr("1,000 may be 1.000 or 1000"));
+    EXPECT_EQ(read_as("0,125/(10s+1)"), read_as("0.125/(10s+1)"));
 }
 
 /// max |P1 - P2|/|P1| over frequencies around the plants' own.

@@ -41,13 +41,15 @@ TEST_P(FrontOf, EachPointIsTheOptimumAlone) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Plants, FrontOf,
-                         testing::Values(Fopdt{.K = 2, .T = 10, .L = 3}, Fopdt{.K = -1, .T = 1, .L = 0.02},
-                                         Fopdt{.K = 1, .T = 1, .L = 5}, Ipdt{.K = 0.3, .L = 2},
-                                         Sopdt{.K = 1, .T1 = 5, .T2 = 4, .L = 0.5},
-                                         OscillatorySopdt{.K = 1, .T = 1, .zeta = 0.2, .L = 0.3},
-                                         TransferFunction{.num = {-1, 1}, .den = {1, 3, 3, 1}, .L = 0},
-                                         Fopdt{.K = -1, .T = -1, .L = 0.1}));
+INSTANTIATE_TEST_SUITE_P(
+    Plants, FrontOf,
+    testing::Values(Fopdt{.K = 2, .T = 10, .L = 3}, Fopdt{.K = -1, .T = 1, .L = 0.02}, Fopdt{.K = 1, .T = 1, .L = 5},
+                    Ipdt{.K = 0.3, .L = 2}, Sopdt{.K = 1, .T1 = 5, .T2 = 4, .L = 0.5},
+                    OscillatorySopdt{.K = 1, .T = 1, .zeta = 0.2, .L = 0.3},
+                    TransferFunction{.num = {-1, 1}, .den = {1, 3, 3, 1}, .L = 0},
+                    // Two resonances: a neighbour's valley is not the deepest.
+                    Zpk{.K = 7, .zeros = {}, .poles = {{-0.03, 1}, {-0.03, -1}, {-0.05, 2.7}, {-0.05, -2.7}}, .L = 0.3},
+                    Fopdt{.K = -1, .T = -1, .L = 0.1}));
 
 TEST(RobustFront, TellsWhyAPointIsMissing) {
     const TuningProblem problem = problem_of(Fopdt{.K = -1, .T = -1, .L = 0.2});

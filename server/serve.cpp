@@ -26,6 +26,7 @@
 #include "server/notify/notifier.h"
 #include "server/routes/job_json.h"
 #include "server/routes/routes.h"
+#include "server/spare_cores.h"
 #include "server/store/open_store.h"
 
 namespace tunewright::server {
@@ -86,6 +87,7 @@ public:
         : config_(config),
           store_(metered(std::move(store), [this](std::string_view operation, double seconds,
                                                   bool done) { metrics_.count_store(operation, seconds, done); })),
+          spare_cores_(computations(config)),
           jobs_(*store_, timer_, settings(config)),
           turns_(core_count(), kWaitingComputations),
           places_(places_of(limits(config))),
@@ -143,17 +145,23 @@ public:
     }
 
 private:
+    static std::size_t workers(const Config& config) { return config.workers == 0 ? core_count() : config.workers; }
+
+    /// Helpers included: no more than jobs at the same time, and than there are cores.
+    static std::size_t computations(const Config& config) { return std::min(workers(config), core_count()); }
+
     JobSettings settings(const Config& config) {
         JobSettings made;
-        const bool computes = parse_role(config.role) != Role::api;
-        made.workers = !computes ? 0 : config.workers == 0 ? core_count() : config.workers;
+        made.workers = parse_role(config.role) == Role::api ? 0 : workers(config);
         made.queue_limit = config.queue_limit;
         made.entry_limit = config.entry_limit;
         made.most_attempts = config.max_attempts;
         made.lease = std::chrono::milliseconds(static_cast<std::int64_t>(config.lease_s * 1e3));
         made.retention = retention_of(config);
         made.version = TUNEWRIGHT_VERSION;
-        made.run = [](const api::StoredRequest& request, const RunControl& control) {
+        made.run = [this](const api::StoredRequest& request, RunControl control) {
+            SpareCores::Computation computation(spare_cores_);
+            control.spread = computation.spread();
             return api::run_job(request, control);
         };
         made.now = [this] { return now(); };
@@ -240,7 +248,7 @@ private:
         add_queue_routes(router_, jobs_);
         add_batch_routes(router_, batches_, jobs_, places_, batch_lane_, policy_,
                          {{config_.job_timeout_s, config_.max_timeout_s}, config_.max_body});
-        add_synchronous_routes(router_, turns_, timer_, closing_.get_token());
+        add_synchronous_routes(router_, turns_, timer_, spare_cores_, closing_.get_token());
         add_description_routes(router_);
         router_.otherwise([this](const http::Request& request) { return page_.find(request); });
     }
@@ -279,6 +287,7 @@ private:
     Timer timer_;
     Metrics metrics_{TUNEWRIGHT_VERSION};
     std::unique_ptr<JobStore> store_;
+    SpareCores spare_cores_;
     JobService jobs_;
     Turns turns_;
     Places places_;

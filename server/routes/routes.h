@@ -14,6 +14,7 @@
 #include "server/jobs/service.h"
 #include "server/jobs/timer.h"
 #include "server/notify/policy.h"
+#include "server/spare_cores.h"
 
 namespace tunewright::server {
 
@@ -49,7 +50,8 @@ void add_batch_routes(http::Router& router, Batches& batches, JobService& jobs, 
 /// /v1/evaluate, /v1/design, /v1/frontier, /v1/range, /v1/identify, /v1/experiments/... and the conversions below
 /// /v1/controllers: computed while the client waits, when its turn has come, with a deadline, or until `closing`.
 /// /v1/plants/parse: at once.
-void add_synchronous_routes(http::Router& router, Turns& turns, Timer& timer, const std::stop_token& closing);
+void add_synchronous_routes(http::Router& router, Turns& turns, Timer& timer, SpareCores& spare_cores,
+                            const std::stop_token& closing);
 
 /// /v1/methods, /v1/controllers, /v1/examples, /openapi.json: the same for the life of the process.
 void add_description_routes(http::Router& router);

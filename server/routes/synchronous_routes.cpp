@@ -79,12 +79,14 @@ private:
 };
 
 /// The answer of `work`, which runs on this thread. Its turn has come.
-Response compute(const SyncCall& work, const Call& call, std::chrono::seconds limit,
+Response compute(const SyncCall& work, const Call& call, std::chrono::seconds limit, SpareCores& spare_cores,
                  const std::shared_ptr<Overseer>& overseer, const std::stop_token& closing) {
     const std::stop_callback on_closing(closing, [overseer] { overseer->stop(); });
     RunControl control;
     control.stop = overseer->token();
     control.now_ms = monotonic_ms;
+    SpareCores::Computation computation(spare_cores);
+    control.spread = computation.spread();
     const double start = monotonic_ms();
     api::Answer answer = work(call, control);
     if (answer.status >= 400 && closing.stop_requested()) return closing_down();
@@ -108,8 +110,8 @@ api::Answer preview(const Call& call, const RunControl&) {
 
 /// The time counts from the arrival of the request, waiting for its turn included.
 http::Handler synchronous(const SyncCall& work, std::chrono::seconds limit, Turns& turns, Timer& timer,
-                          const std::stop_token& closing, Refusal refuse) {
-    return [=, &turns, &timer](const Call& call) {
+                          SpareCores& spare_cores, const std::stop_token& closing, Refusal refuse) {
+    return [=, &turns, &timer, &spare_cores](const Call& call) {
         const auto deadline = Turns::Clock::now() + limit;
         if (auto refusal = refuse(call.request)) return *std::move(refusal);
         if (closing.stop_requested()) return closing_down();
@@ -126,7 +128,7 @@ http::Handler synchronous(const SyncCall& work, std::chrono::seconds limit, Turn
             overseer->end();
             turns.give_back();
         });
-        return compute(work, call, limit, overseer, closing);
+        return compute(work, call, limit, spare_cores, overseer, closing);
     };
 }
 
@@ -148,10 +150,11 @@ Response parse_plant(const Call& call) {
 
 }  // namespace
 
-void add_synchronous_routes(http::Router& router, Turns& turns, Timer& timer, const std::stop_token& closing) {
+void add_synchronous_routes(http::Router& router, Turns& turns, Timer& timer, SpareCores& spare_cores,
+                            const std::stop_token& closing) {
     const auto add = [&](const char* path, const SyncCall& work, std::chrono::seconds limit,
                          Refusal refuse = refuse_call) {
-        router.add("POST", path, synchronous(work, limit, turns, timer, closing, refuse));
+        router.add("POST", path, synchronous(work, limit, turns, timer, spare_cores, closing, refuse));
     };
     router.add("POST", "/v1/plants/parse", parse_plant);
     add("/v1/evaluate", of_body(api::evaluate_call), kEvaluateTime);

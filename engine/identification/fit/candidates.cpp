@@ -123,7 +123,7 @@ std::vector<ModelForm> other_starts(const FitContext& context, const Fit& from_r
 
 }  // namespace
 
-FitContext fit_context(CleanRecord record, bool relay, const std::stop_token& stop) {
+FitContext fit_context(CleanRecord record, bool relay, const RunControl& control) {
     FitContext context;
     context.grid = quantisation_step(record.y);
     context.noise = std::max(noise_std(record.y), context.grid / std::sqrt(12.0));
@@ -132,7 +132,8 @@ FitContext fit_context(CleanRecord record, bool relay, const std::stop_token& st
     context.record = std::move(record);
     context.start = start_of(context.record, relay, context.noise);
     context.relay = relay;
-    context.stop = stop;
+    context.stop = control.stop;
+    context.spread = control.spread;
     return context;
 }
 
@@ -169,6 +170,30 @@ Fit fit_structure(const FitContext& context, Structure structure, const Disturba
     return best;
 }
 
+int depth(Structure structure) {
+    switch (structure) {
+        case Structure::ipdt:
+        case Structure::fopdt: return 0;
+        case Structure::ipdt_lag:
+        case Structure::sopdt:
+        case Structure::unstable: return 1;
+        case Structure::sopdt_zero:
+        case Structure::third:
+        case Structure::ipdt_second: return 2;
+    }
+    return 0;
+}
+
+std::vector<Fit> fit_structures(const FitContext& context, const std::vector<Structure>& structures,
+                                const Disturbances& disturbances, const std::vector<Fit>& simpler) {
+    std::vector<Fit> fits(structures.size());
+    run_each(context.spread, static_cast<int>(structures.size()), [&](int i) {
+        const auto at = static_cast<std::size_t>(i);
+        fits[at] = fit_structure(context, structures[at], disturbances, simpler);
+    });
+    return fits;
+}
+
 void polish(const FitContext& context, Fit& fit) {
     Fit again = fit_shape(context.all(), fit.form, fit.shape, kFinal, context.stop);
     if (again.determined && again.sse <= fit.sse) fit = std::move(again);
@@ -176,22 +201,27 @@ void polish(const FitContext& context, Fit& fit) {
 
 void finish_fits(const FitContext& context, std::vector<Fit>& fits) {
     if (context.record.samples() == context.medium.samples()) return;
-    double best = std::numeric_limits<double>::max();
-    for (Fit& fit : fits) {
+    const auto each = [&](const std::function<void(Fit&)>& work) {
+        run_each(context.spread, static_cast<int>(fits.size()),
+                 [&](int i) { work(fits[static_cast<std::size_t>(i)]); });
+    };
+    each([&](Fit& fit) {
         const bool determined = fit.determined;
         fit = project(context.all(), fit.form, fit.shape);
         fit.determined = fit.determined && determined;
+    });
+    double best = std::numeric_limits<double>::max();
+    for (const Fit& fit : fits)
         if (fit.determined) best = std::min(best, fit.sse);
-    }
     // What the errors of the parameters from fewer samples can cost, several times over.
     const double n = context.record.samples();
     const double noise = best / n + kVarianceFloor;
     constexpr double kSeveralTimes = 100, kNearBest = 1.02;
     const double reach = kSeveralTimes * noise * n / context.medium.samples();
-    for (Fit& fit : fits) {
+    each([&](Fit& fit) {
         if (fit.determined && fit.sse < best * kNearBest + reach)
             fit = fit_shape(context.all(), fit.form, fit.shape, kOneStep, context.stop);
-    }
+    });
 }
 
 double level_of_rest(const Fit& fit) {

@@ -8,6 +8,7 @@
 #include "engine/identification/fit/output_error.h"
 #include "engine/identification/identify.h"
 #include "engine/identification/record/record_kind.h"
+#include "engine/progress.h"
 
 namespace tunewright {
 
@@ -21,6 +22,7 @@ struct FitContext {
     RecordStart start = RecordStart::at_rest;
     std::vector<FrequencyConstraint> anchors;  ///< that every model is held to
     std::stop_token stop;
+    Spread spread = {};  ///< of fits that do not need one another
 
     FitData all() const { return {&record, anchors}; }
     FitData some() const { return {&medium, anchors}; }
@@ -29,7 +31,7 @@ struct FitContext {
 
 inline constexpr int kMediumSamples = 600;
 
-FitContext fit_context(CleanRecord record, bool relay, const std::stop_token& stop);
+FitContext fit_context(CleanRecord record, bool relay, const RunControl& control);
 
 /// What else than u moved y, and is looked for in every structure.
 struct Disturbances {
@@ -42,6 +44,14 @@ struct Disturbances {
 /// nothing is seen before u moves if it lowers it by 6, and beside a drift by 10.
 Fit fit_structure(const FitContext& context, Structure structure, const Disturbances& disturbances,
                   const std::vector<Fit>& simpler);
+
+/// How many structures lie between this one and the simplest that its starting values come from: structures of one
+/// depth do not need one another's fits.
+int depth(Structure structure);
+
+/// The structures of one depth, or of the deepest, fitted at once as fit_structure() does each.
+std::vector<Fit> fit_structures(const FitContext& context, const std::vector<Structure>& structures,
+                                const Disturbances& disturbances, const std::vector<Fit>& simpler);
 
 /// The same fits on the whole record; those that cannot be chosen any more keep their parameters.
 void finish_fits(const FitContext& context, std::vector<Fit>& fits);

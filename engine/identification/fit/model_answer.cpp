@@ -177,14 +177,16 @@ IdentifiedModel searched_model(ModelSearch search, const CleanRecord& recorded) 
     const auto may_be_answered = [&](std::size_t i) {
         return i == chosen || std::ranges::find(open, i, &OpenChoice::index) != open.end();
     };
-    std::vector<FittedPlant> plants;
-    for (std::size_t i = 0; i < search.fits.size(); ++i) {
+    std::vector<FittedPlant> plants(search.fits.size());
+    run_each(search.context.spread, static_cast<int>(plants.size()), [&](int index) {
+        const auto i = static_cast<std::size_t>(index);
         Fit& fit = search.fits[i];
-        if (fit.determined) jacobian(data, fit);
+        if (!fit.determined) return;
+        jacobian(data, fit);
         const LoadDoubt load = may_be_answered(i) ? LoadDoubt::counted : LoadDoubt::left_out;
-        plants.push_back(fit.determined ? fitted_plant(record, fit, grid, noise, load) : FittedPlant{});
+        plants[i] = fitted_plant(record, fit, grid, noise, load);
         fit.J.clear();
-    }
+    });
     std::erase_if(open, [&](const OpenChoice& other) { return !knows_gain(plants[other.index]); });
     for (const OpenChoice& other : open) model.alternatives.push_back(plants[other.index].plant);
     if (!open.empty()) widen_gain(plants[chosen], open_choice_variance(plants[chosen], plants, open));

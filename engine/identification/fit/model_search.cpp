@@ -94,21 +94,29 @@ bool wants_richer(const FitContext& context, const std::vector<Fit>& fits) {
            correlation_time(best->residual) > kNotWhite;
 }
 
+std::string names_of(const std::vector<Structure>& structures) {
+    std::string names;
+    for (const Structure structure : structures) names += (names.empty() ? "" : ", ") + std::string(name_of(structure));
+    return names;
+}
+
 ModelSearch fit_all(FitContext context, ModelChoice model, const Disturbances& disturbances,
                     const RunControl& control) {
+    constexpr int kDeepest = 2;
     const Plan plan = plan_for(model, context.record);
     std::vector<Fit> fits;
-    for (std::size_t i = 0; i < plan.fitted.size() && !control.stop.stop_requested(); ++i) {
-        report(control, static_cast<double>(i) / static_cast<double>(plan.fitted.size()),
-               std::string("fitting ") + name_of(plan.fitted[i]));
-        fits.push_back(fit_structure(context, plan.fitted[i], disturbances, fits));
+    const auto fit = [&](const std::vector<Structure>& structures, double fraction) {
+        if (structures.empty() || control.stop.stop_requested()) return;
+        report(control, fraction, "fitting " + names_of(structures));
+        std::ranges::move(fit_structures(context, structures, disturbances, fits), std::back_inserter(fits));
+    };
+    for (int level = 0; level <= kDeepest; ++level) {
+        std::vector<Structure> here;
+        std::ranges::copy_if(plan.fitted, std::back_inserter(here), [&](Structure s) { return depth(s) == level; });
+        fit(here, static_cast<double>(fits.size()) / static_cast<double>(plan.fitted.size()));
     }
-    if (!plan.richer.empty() && wants_richer(context, fits)) {
-        report(control, 0.9, "fitting higher orders");
-        for (const Structure structure : plan.richer) {
-            if (!control.stop.stop_requested()) fits.push_back(fit_structure(context, structure, disturbances, fits));
-        }
-    }
+    std::ranges::stable_sort(fits, {}, [&](const Fit& f) { return std::ranges::find(plan.fitted, f.form.structure); });
+    if (!plan.richer.empty() && wants_richer(context, fits)) fit(plan.richer, 0.9);
     return ranked(std::move(context), std::move(fits), plan, disturbances);
 }
 
@@ -150,7 +158,7 @@ void try_between_rows(ModelSearch& search, ModelChoice model, const RunControl& 
     // Rows written at the changes would leave no pattern: late ones are the likelier, unless the fit says otherwise.
     constexpr double kMuchWorse = 1.5;
     if (!fit.determined || fit.sse > kMuchWorse * now.sse) return;
-    ModelSearch other = fit_all(fit_context(moved, search.context.relay, control.stop), model, {}, control);
+    ModelSearch other = fit_all(fit_context(moved, search.context.relay, control), model, {}, control);
     if (!usable(other) || other.chosen().sse > kMuchWorse * now.sse) return;
     search = std::move(other);
 }
@@ -168,8 +176,7 @@ void try_gap_moves(ModelSearch& search, ModelChoice model, const RunControl& con
     ModelSearch other = search;
     for (int round = 0; round < 2; ++round) {
         CleanRecord placed = with_gap_moves_placed(search.context.record, other.chosen(), moves, control.stop);
-        ModelSearch next =
-            fit_all(fit_context(std::move(placed), search.context.relay, control.stop), model, {}, control);
+        ModelSearch next = fit_all(fit_context(std::move(placed), search.context.relay, control), model, {}, control);
         if (!usable(next) || next.chosen().sse >= other.chosen().sse) break;
         other = std::move(next);
     }
@@ -188,7 +195,7 @@ void try_switches_between_rows(ModelSearch& search, ModelChoice model, const Run
     const double rows = record.samples(), changes = record.changes();
     if (rows > kFewRows * changes || rows * changes > kMostWork) return;
     const auto fitted = [&](CleanRecord placed, ModelChoice choice) {
-        return fit_all(fit_context(std::move(placed), true, control.stop), choice, {}, control);
+        return fit_all(fit_context(std::move(placed), true, control), choice, {}, control);
     };
     // A model of few parameters places them: one of more would explain the misplaced ones too.
     ModelSearch other = fitted(changed_between_rows(record), ModelChoice::fopdt);
@@ -317,7 +324,7 @@ void try_beginning(ModelSearch& search, const CleanRecord& record, ModelChoice m
         if (control.stop.stop_requested()) return;
         const CleanRecord beginning = first_part(record, part);
         if (beginning.changes() < kMinChanges || beginning.samples() < kMinBeginning) return;
-        ModelSearch other = fit_all(fit_context(beginning, true, control.stop), model, {}, control);
+        ModelSearch other = fit_all(fit_context(beginning, true, control), model, {}, control);
         if (!usable(other) || other.chosen().form.structure != Structure::unstable) continue;
         if (at_shortest_lag(other.chosen()) || leaves_a_pattern(other.context, other.chosen())) continue;
         search = std::move(other);
@@ -343,7 +350,7 @@ double unexplained_share(const FitContext& context, const Fit& fit) {
 
 ModelSearch search_models(const CleanRecord& record, ModelChoice model, bool relay, const RunControl& control) {
     const std::optional<CleanRecord> unseen = with_unseen_moves(record);
-    ModelSearch search = fit_all(fit_context(unseen.value_or(record), relay, control.stop), model, {}, control);
+    ModelSearch search = fit_all(fit_context(unseen.value_or(record), relay, control), model, {}, control);
     auto unexplained = [&] {
         return usable(search) && !control.stop.stop_requested() && leaves_a_pattern(search.context, search.chosen());
     };

@@ -1,0 +1,204 @@
+#include "engine/request/rows.h"
+
+#include <algorithm>
+
+#include "engine/evaluation/evaluate.h"
+#include "engine/evaluation/longest_sample_time.h"
+#include "engine/request/identified_region.h"
+
+namespace tunewright {
+namespace {
+
+bool in_plant(const Error& error) { return error.where == "plant" || error.where.starts_with("plant/"); }
+
+double now_of(const RunControl& control) { return control.now_ms ? control.now_ms() : 0; }
+
+}  // namespace
+
+bool MadeRow::cancelled() const {
+    return std::ranges::any_of(
+        entries, [](const TuningEntry& entry) { return entry.error && entry.error->kind == ErrorKind::cancelled; });
+}
+
+Rows::Rows(const TuningRequest& request, const Subject& subject, const std::optional<TuningProblem>& problem,
+           const IdentifiedModel* model)
+    : request_(request), subject_(subject), problem_(problem), model_(model) {}
+
+// Methods name an option or a field of the plant; the request has the one under the method's place, and the other only
+// if it gave a plant.
+Error Rows::placed(Error error, const std::string& where) const {
+    if (in_plant(error)) {
+        if (request_.record) error.where = "record";
+    } else if (!error.where.empty()) {
+        error.where = where + "/" + error.where;
+    }
+    return error;
+}
+
+Expected<Evaluation> Rows::evaluated(const Controller& controller) {
+    const IdealPid* pid = std::get_if<IdealPid>(&controller);
+    if (pid == nullptr) return evaluate(subject_, controller, request_.evaluate);
+    Evaluated* kept = nullptr;
+    {
+        const std::lock_guard locked(lock_);
+        const auto known = std::ranges::find(evaluated_, *pid, &Evaluated::pid);
+        kept = known != evaluated_.end() ? &*known : &evaluated_.emplace_back(*pid);
+    }
+    std::call_once(kept->once, [&] { kept->evaluation = evaluate(subject_, controller, request_.evaluate); });
+    return kept->evaluation;
+}
+
+void Rows::evaluate_into(TuningEntry& entry, const Controller& controller, std::vector<Warning> warnings) {
+    auto evaluation = evaluated(controller);
+    if (!evaluation) {
+        entry.error = evaluation.error();
+        return;
+    }
+    warnings.insert(warnings.end(), evaluation->warnings.begin(), evaluation->warnings.end());
+    evaluation->warnings = std::move(warnings);
+    entry.evaluation = std::move(*evaluation);
+}
+
+// The method's own, completed, and what was asked for of every controller.
+void Rows::add_reports(TuningEntry& entry, std::shared_ptr<MethodReport> own) {
+    if (!entry.evaluation || !(own || request_.evaluate.tradeoff)) return;
+    const std::lock_guard locked(tradeoffs_lock_);
+    if (!tradeoffs_) tradeoffs_.emplace(subject_.nominal(), request_.evaluate);
+    if (own) {
+        own->complete({subject_, request_.evaluate, *tradeoffs_}, *entry.evaluation);
+        entry.reports.push_back(std::move(own));
+    }
+    if (request_.evaluate.tradeoff && entry.report_as<TradeoffReport>() == nullptr)
+        entry.reports.push_back(
+            std::make_shared<TradeoffReport>(tradeoffs_->of(entry.evaluation->controller, entry.reduced_model)));
+}
+
+// `fitted`: the settings, where the method designs for the controller as it is built.
+Expected<TunedController> Rows::tuned_with(const PlannedRow& planned, const std::optional<TuningProblem>& problem,
+                                           const SetpointOptions& setpoint, const RunControl& control,
+                                           std::optional<built::Fitted>& fitted) const {
+    const TuningMethod& method = *planned.method;
+    const MethodOptions& options = planned.options;
+    if (planned.refusal) return *planned.refusal;
+    if (problem && request_.implement && method.tune_as_built) {
+        auto design = method.tune_as_built(*problem, options, *request_.implement, control);
+        if (!design) return design.error();
+        fitted = std::move(design->fitted);
+        weigh_setpoint(*fitted, *request_.implement, problem->linear, setpoint, design->tuned);
+        return std::move(design->tuned);
+    }
+    if (problem) {
+        auto tuned = method.tune(*problem, options, control);
+        if (tuned) weigh_setpoint(problem->linear, setpoint, *tuned);
+        return tuned;
+    }
+    if (method.tune_on_points) return method.tune_on_points(*subject_.measured(), options, control);
+    return Error{ErrorKind::unsupported, "",
+                 "The method " + method.id +
+                     " needs a model of the plant; points of a frequency response serve the method robust."};
+}
+
+void Rows::add_as_built(TuningEntry& entry, std::optional<built::Fitted> fitted, const RunControl& control) const {
+    if (!request_.implement || !entry.evaluation) return;
+    const built::Build& build = *request_.implement;
+    Evaluation& ideal = *entry.evaluation;
+    take_as_built(fitted ? judge_as_built(subject_, build, std::move(*fitted), request_.evaluate, ideal)
+                         : built_from(subject_, build, request_.evaluate, ideal, control),
+                  ideal, entry.as_built);
+}
+
+// Settings that were given as typed are judged as they stand, whatever the others are made for.
+void Rows::add_baseline_as_built(TuningEntry& entry, const RunControl& control) const {
+    if (!request_.baseline_settings || !entry.evaluation) return add_as_built(entry, std::nullopt, control);
+    const auto& [build, settings] = *request_.baseline_settings;
+    auto fitted = built::fit(build, settings);
+    Evaluation& ideal = *entry.evaluation;
+    take_as_built(fitted ? judge_as_built(subject_, build, std::move(*fitted), request_.evaluate, ideal)
+                         : Expected<AsBuilt>(fitted.error()),
+                  ideal, entry.as_built);
+}
+
+// What is said of a design, and of no controller that was given.
+void Rows::add_to_design(const PlannedRow& planned, const std::optional<TuningProblem>& problem,
+                         const RunControl& control, TuningEntry& entry) const {
+    entry.longest_sample_time = longest_sample_time_of(subject_, *entry.evaluation);
+    warn_of_region(*entry.evaluation, entry.Ms_limit, model_ != nullptr);
+    if (model_ != nullptr) warn_of_band(*entry.evaluation, model_->excited_band);
+    if (problem && !planned.of_all && !request_.implement && entry.method == "robust" &&
+        entry.options.text("controller") == "PID")
+        entry.best_PI_load_IAE = best_PI_load_IAE(*problem, entry.options, request_.evaluate, control);
+}
+
+TuningEntry Rows::entry(const PlannedRow& planned, const std::optional<TuningProblem>& problem,
+                        const RunControl& control, bool& partial) {
+    TuningEntry entry;
+    entry.method = planned.method->id;
+    entry.title = planned.title;
+    entry.source = planned.method->source;
+    const auto& on_points = planned.method->options_on_points;
+    entry.options = with_defaults(problem || on_points.empty() ? planned.method->options : on_points, planned.options);
+    const SetpointOptions setpoint = problem ? wanted_setpoint(*planned.method, entry.options) : SetpointOptions{};
+    const double started = now_of(control);
+    std::optional<built::Fitted> fitted;
+    auto tuned = tuned_with(planned, problem, setpoint, control, fitted);
+    if (!tuned) {
+        entry.error = placed(tuned.error(), planned.where);
+        return entry;
+    }
+    entry.reduced_model = tuned->reduced_model;
+    entry.Ms_limit = tuned->Ms_limit;
+    if (planned.Ms_asked) entry.asked_Ms = tuned->Ms_limit;
+    partial = partial || tuned->partial;
+    evaluate_into(entry, controller_of(*tuned), tuned->warnings);
+    add_reports(entry, tuned->report);
+    add_as_built(entry, std::move(fitted), control);
+    if (entry.evaluation) {
+        add_to_design(planned, problem, control, entry);
+        entry.evaluation->compute_ms = now_of(control) - started;
+    }
+    if (entry.error && entry.error->where.starts_with("controller")) entry.error->where.clear();
+    return entry;
+}
+
+// The method's entry, and before it one that holds on the record's region, where that is needed and can be had.
+MadeRow Rows::of(const PlannedRow& planned, const RunControl& control) {
+    MadeRow made;
+    made.entries.push_back(entry(planned, problem_, control, made.partial));
+    const bool may = model_ != nullptr && request_.identified_region == IdentifiedRegion::where_needed &&
+                     planned.method->holds_family && subject_.family() != nullptr;
+    TuningEntry& first = made.entries.front();
+    if (!may || !first.evaluation || made.partial || control.stop.stop_requested() ||
+        !breaks_limit(*first.evaluation, first.Ms_limit))
+        return made;
+    std::optional<TuningProblem> on_region = problem_;
+    on_region->family = *subject_.family();
+    TuningEntry held = entry(planned, on_region, control, made.partial);
+    if (!held.evaluation || made.partial) return made;
+    held.over_region = true;
+    held.title = with_variant(held.title, "region");
+    first.title = with_variant(first.title, "model alone");
+    say_choice(*held.evaluation, *first.evaluation);
+    made.entries.insert(made.entries.begin(), std::move(held));
+    return made;
+}
+
+TuningEntry Rows::baseline(const RunControl& control) {
+    TuningEntry entry;
+    entry.method = "baseline";
+    entry.title = "Baseline";
+    entry.source = "the settings given in the request";
+    const double started = now_of(control);
+    Controller given = *request_.baseline;
+    if (auto* pid = std::get_if<IdealPid>(&given); pid != nullptr && request_.baseline_settings)
+        *pid = built::continuous(*pid);
+    evaluate_into(entry, given, {});
+    add_reports(entry, nullptr);
+    add_baseline_as_built(entry, control);
+    if (entry.evaluation && model_ != nullptr) warn_of_band(*entry.evaluation, model_->excited_band);
+    if (entry.evaluation) entry.evaluation->compute_ms = now_of(control) - started;
+    if (entry.error && entry.error->where.starts_with("controller"))
+        entry.error->where.replace(0, std::string("controller").size(), "baseline");
+    return entry;
+}
+
+}  // namespace tunewright

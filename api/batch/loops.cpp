@@ -238,7 +238,8 @@ void Loops::find_sign() {
     DecimalSignFinder finder;
     for (const Held& held : held_) {
         split(held.text);
-        for (const Column column : {kGain, kLag, kDelay}) finder.look_at(cell(column));
+        for (const Column column : {kGain, kLag, kDelay})
+            finder.look_at(cell(column), static_cast<std::size_t>(column));
     }
     sign_ = finder.found();
     sign_known_ = true;

@@ -80,27 +80,45 @@ bool parse_signs(std::string text, DecimalSign sign, double& value) {
 
 }  // namespace
 
-void DecimalSignFinder::look_at(std::string_view cell) {
+void DecimalSignFinder::look_at(std::string_view cell, std::size_t column) {
     double value = 0;
-    if (cell.find_first_of(".,") == cell.npos || !read_cell_number(cell, value, DecimalSign::either, unit_suffix(cell)))
+    if (column >= columns_.size()) columns_.resize(column + 1);
+    Column& here = columns_[column];
+    if (cell.find_first_of(".,") == cell.npos) {
+        const std::string_view digits = without_sign(cell);
+        if (digits.empty() || !std::ranges::all_of(digits, is_digit) || digits.front() == '0') return;
+        here.hundreds = here.hundreds || digits.size() == 3;
+        here.thousands = here.thousands || digits.size() > 3;
         return;
+    }
+    if (!read_cell_number(cell, value, DecimalSign::either, unit_suffix(cell))) return;
     const bool points = cell.find('.') != cell.npos, commas = cell.find(',') != cell.npos;
     if (points && commas) {
         (cell.rfind(',') > cell.rfind('.') ? comma_ : point_) = true;
-    } else if (points) {
-        const bool grouped = is_grouped(cell, '.');
-        if (!grouped) point_ = true;
-        if (grouped && std::count(cell.begin(), cell.end(), '.') > 1) comma_ = true;
+        return;
+    }
+    const char sign = points ? '.' : ',';
+    if (!is_grouped(cell, sign)) {
+        (points ? point_ : comma_) = true;
+    } else if (std::count(cell.begin(), cell.end(), sign) > 1) {
+        (points ? comma_ : point_) = true;
     } else {
-        const bool grouped = is_grouped(cell, ',');
-        if (!grouped) comma_ = true;
-        if (grouped && std::count(cell.begin(), cell.end(), ',') > 1) point_ = true;
+        (points ? here.points : here.commas) = true;
+        if (open_.empty()) open_ = std::string(cell);
     }
 }
 
 DecimalSign DecimalSignFinder::found() const {
-    if (point_ == comma_) return DecimalSign::either;
-    return point_ ? DecimalSign::point : DecimalSign::comma;
+    if (point_ != comma_) return point_ ? DecimalSign::point : DecimalSign::comma;
+    if (point_) return DecimalSign::either;
+    // Who writes 950 without decimals would write 1 so: 1.050 is a thousand.
+    const auto groups = [](bool points) {
+        return [points](const Column& column) { return column.of_groups() && column.points == points; };
+    };
+    const bool by_points = std::ranges::any_of(columns_, groups(true));
+    const bool by_commas = std::ranges::any_of(columns_, groups(false));
+    if (by_points == by_commas) return DecimalSign::either;
+    return by_points ? DecimalSign::comma : DecimalSign::point;
 }
 
 bool read_cell_number(std::string_view cell, double& value, DecimalSign sign, std::string_view suffix) {

@@ -15,14 +15,27 @@ enum class DecimalSign {
     either,  ///< a lone . or , is the decimal sign: the file shows both, or neither plainly
 };
 
-/// Reads the evidence of the cells: "20,25" needs a decimal comma, "0.5" a point, "1,234" may be either.
+/// Reads the evidence of the cells: "20,25" needs a decimal comma, "0.5" a point, "1,234" may be either; in a column of
+/// whole numbers up to 999 it is a thousand.
 class DecimalSignFinder {
 public:
-    void look_at(std::string_view cell);
+    void look_at(std::string_view cell, std::size_t column);
     DecimalSign found() const;
+    /// Whether a cell showed it; what columns show is seen at the end.
+    bool certain() const { return point_ || comma_; }
+    /// The first cell that may be either, where no cell is certain; "" if there is none.
+    std::string open_example() const { return certain() ? "" : open_; }
 
 private:
+    struct Column {
+        bool points = false, commas = false;       ///< cells that may be either
+        bool hundreds = false, thousands = false;  ///< whole numbers without a sign: 100 to 999, and beyond
+        bool of_groups() const { return points != commas && hundreds && !thousands; }
+    };
+
     bool point_ = false, comma_ = false;
+    std::vector<Column> columns_;
+    std::string open_;
 };
 
 /// A number with decimal sign, grouped thousands (by . , ' or a blank) and the unit `suffix` behind it, if that is not

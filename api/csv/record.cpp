@@ -273,6 +273,22 @@ private:
                                        ". The gain is per switch, not per unit of power.");
     }
 
+    void note_sign() {
+        auto& notes = record_.notes;
+        const std::string& open = layout_.open_number;
+        const bool comma = open.find(',') != std::string::npos;
+        const bool of_thousands = layout_.sign == (comma ? DecimalSign::point : DecimalSign::comma);
+        if (!open.empty() && layout_.sign == DecimalSign::either)
+            notes.push_back("Numbers such as " + in_quotes(open) +
+                            " are read with three decimals. If they are thousands, write them without the " +
+                            (comma ? "comma." : "point."));
+        else if (!open.empty() && of_thousands)
+            notes.push_back("Numbers such as " + in_quotes(open) +
+                            " are read as thousands: whole numbers stand beside them in the column.");
+        else if (layout_.sign == DecimalSign::comma)
+            notes.emplace_back("Numbers have a decimal comma.");
+    }
+
     void note_unit(Role role, const std::string& given) {
         const std::size_t column = *columns_.at[role];
         std::string unit = column < layout_.headings.size() ? split_heading(layout_.headings[column]).unit : "";
@@ -303,7 +319,7 @@ private:
                                ".");
         if (layout_.numbered) notes.emplace_back("The first column, which has no heading, numbers the rows.");
         note_switch();
-        if (layout_.sign == DecimalSign::comma) notes.emplace_back("Numbers have a decimal comma.");
+        note_sign();
         if (unread_ > 0) {
             const std::string& first = unread_faults_.front().message;
             record_.unread = std::to_string(unread_) + (unread_ == 1 ? " line" : " lines") + " could not be read and " +

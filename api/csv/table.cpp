@@ -55,6 +55,32 @@ struct Head {
     bool comment = false;
 };
 
+/// Whether a quote that begins a cell of this line is not closed in it.
+bool opens_cell(std::string_view line) {
+    const auto quotes = std::count(line.begin(), line.end(), '"');
+    if (quotes % 2 == 0) return false;
+    const std::size_t last = line.rfind('"');
+    return last == 0 || std::string_view(",;\t| ").find(line[last - 1]) != std::string_view::npos;
+}
+
+/// A cell such as "Time<line break>(min)", as spreadsheets write headings: `content`, which begins at `start`, takes in
+/// the lines up to the quote that closes it. Returns their number; 0 where none of the next few closes it.
+int take_rest_of_cell(std::string_view text, std::size_t start, std::size_t& at, std::string_view& content) {
+    constexpr int kMost = 6;
+    std::size_t next = at;
+    for (int more = 1; more <= kMost; ++more) {
+        const std::size_t begin = next;
+        const auto line = next_line(text, next);
+        if (!line) return 0;
+        const std::string_view whole = text.substr(start, begin - start + line->size());
+        if (opens_cell(whole) || std::count(whole.begin(), whole.end(), '"') % 2 != 0) continue;
+        content = whole;
+        at = next;
+        return more;
+    }
+    return 0;
+}
+
 std::vector<Head> first_lines(std::string_view text) {
     std::vector<Head> lines;
     std::size_t at = 0, start = 0;
@@ -65,6 +91,7 @@ std::vector<Head> first_lines(std::string_view text) {
         const std::string_view content = trimmed(*line);
         if (content.empty()) continue;
         lines.push_back({number, start, *line, is_comment(content)});
+        if (opens_cell(content)) number += take_rest_of_cell(text, start, at, lines.back().content);
     }
     return lines;
 }
@@ -140,6 +167,30 @@ void find_commented_headings(const std::vector<Head>& heads, std::vector<Head>::
     }
 }
 
+// Of a file whose first lines hold whole numbers alone, the rest is looked at too.
+void find_sign(std::string_view text, const std::vector<CsvLine>& rows, const std::vector<Head>& heads,
+               CsvLayout& layout) {
+    DecimalSignFinder finder;
+    const auto look = [&](const std::vector<std::string_view>& cells) {
+        for (std::size_t column = 0; column < cells.size(); ++column) finder.look_at(cells[column], column);
+    };
+    for (const CsvLine& row : rows) look(row.cells);
+    const char* const signs = layout.separator == ',' ? ".\"" : ".,";
+    std::size_t at = heads.empty() ? text.size() : heads.back().at;
+    std::deque<std::string> storage;
+    std::vector<std::string_view> cells;
+    while (!finder.certain()) {
+        const auto line = next_line(text, at);
+        if (!line) break;
+        if (line->find_first_of(signs) == line->npos) continue;
+        split_line(*line, layout.separator, cells, storage);
+        look(cells);
+        storage.clear();
+    }
+    layout.sign = finder.found();
+    layout.open_number = finder.open_example();
+}
+
 CsvLayout table_layout(std::string_view text) {
     CsvLayout layout;
     std::vector<Head> heads = first_lines(text);
@@ -156,11 +207,10 @@ CsvLayout table_layout(std::string_view text) {
     layout.lines_of_text = static_cast<int>(lines.size());
     const std::size_t usual = layout.width = usual_width(lines);
     widen_to_headings(lines, layout);
-    const auto data = std::find_if(lines.begin(), lines.end(),
-                                   [&](const CsvLine& line) { return is_data_of(line, usual, layout.width); });
-    const std::vector<CsvLine> rows(data, lines.end());
-    find_headings({lines.begin(), data}, rows, layout);
-    if (data != lines.end()) {
+    const auto data = first_data(lines, usual, layout.width);
+    const std::vector<CsvLine> rows(data, lines.cend());
+    find_headings(filled_lines({lines.cbegin(), data}), rows, layout);
+    if (data != lines.cend()) {
         layout.data_line = data->number;
         for (const std::string_view cell : data->cells) layout.first.emplace_back(cell);
         const auto head =
@@ -170,11 +220,7 @@ CsvLayout table_layout(std::string_view text) {
     }
     if (!layout.headings.empty()) layout.width = layout.headings.size();
 
-    DecimalSignFinder finder;
-    for (const CsvLine& row : rows) {
-        for (const std::string_view cell : row.cells) finder.look_at(cell);
-    }
-    layout.sign = finder.found();
+    find_sign(text, rows, heads, layout);
     return layout;
 }
 

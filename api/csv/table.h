@@ -36,6 +36,7 @@ struct CsvLayout {
     std::size_t narrow_heading_cells = 0;
     int skipped = 0;  ///< lines before the headings that are neither comment nor blank
     DecimalSign sign = DecimalSign::either;
+    std::string open_number = {};      ///< the first that is three decimals or a thousand, as `sign` has it; "": none
     std::deque<std::string> unquoted;  ///< storage of cells that held doubled quotes
 };
 

@@ -61,7 +61,11 @@ int roles_named(const std::vector<std::string_view>& cells) {
 
 void take_headings(const CsvLine& line, CsvLayout& layout) {
     layout.heading_line = line.number;
-    for (const std::string_view cell : line.cells) layout.headings.emplace_back(cell);
+    for (const std::string_view cell : line.cells) {
+        layout.headings.emplace_back(cell);
+        std::ranges::replace_if(
+            layout.headings.back(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+    }
 }
 
 std::size_t filled(const std::vector<std::string_view>& cells) {
@@ -102,6 +106,23 @@ bool is_text(const CsvLine& line) {
         text = text || !is_missing(cell);
     }
     return text;
+}
+
+std::vector<CsvLine> filled_lines(std::vector<CsvLine> lines) {
+    std::erase_if(lines, [](const CsvLine& line) { return filled(line.cells) == 0; });
+    return lines;
+}
+
+std::vector<CsvLine>::const_iterator first_data(const std::vector<CsvLine>& lines, std::size_t usual,
+                                                std::size_t width) {
+    constexpr std::ptrdiff_t kLinesOfTitle = 10;
+    const auto is_row = [&](const CsvLine& line) { return is_data_of(line, usual, width); };
+    const auto is_heading = [](const CsvLine& line) { return is_text(line) && roles_named(line.cells) > 1; };
+    const auto first = std::find_if(lines.begin(), lines.end(), is_row);
+    if (std::any_of(lines.begin(), first, is_heading)) return first;
+    const auto last_title = first + std::min(kLinesOfTitle, lines.end() - first);
+    const auto heading = std::find_if(first, last_title, is_heading);
+    return heading == last_title ? first : std::find_if(heading, lines.end(), is_row);
 }
 
 void find_headings(const std::vector<CsvLine>& above, const std::vector<CsvLine>& data, CsvLayout& layout) {

@@ -23,6 +23,13 @@ bool is_data_of(const CsvLine& line, std::size_t usual, std::size_t width);
 /// No cell holds a number or a time, and not all are missing.
 bool is_text(const CsvLine& line);
 
+/// Those that have a cell which is not empty.
+std::vector<CsvLine> filled_lines(std::vector<CsvLine> lines);
+
+/// The first line of data. A date or a number among the lines of a title is none: headings come behind it.
+std::vector<CsvLine>::const_iterator first_data(const std::vector<CsvLine>& lines, std::size_t usual,
+                                                std::size_t width);
+
 /// How many of the cells name a role, as headings.
 int roles_named(const std::vector<std::string_view>& cells);
 

@@ -155,10 +155,11 @@ void TimeColumn::find_unit(std::string_view text, const CsvLayout& layout, const
         if (!seconds_per(unit) && unit.size() > 2 && (unit.front() == '[' || unit.front() == '('))
             unit = unit.substr(1, unit.size() - 2);
     }
-    if (!seconds_per(unit) && column < layout.headings.size() &&
-        match(split_heading(layout.headings[column]), kTimeRole)) {
+    if (!seconds_per(unit) && column < layout.headings.size()) {
         const std::string name = split_heading(layout.headings[column]).name;
-        if (seconds_per(name) && name != "m" && name != "d") unit = name;
+        constexpr std::size_t kWord = 5;  // letters from which on a name is no symbol
+        const bool of_time = name.size() >= kWord || match(split_heading(layout.headings[column]), kTimeRole);
+        if (seconds_per(name) && of_time && name != "m" && name != "d") unit = name;
         if (name == "millis" || name == "millis()") unit = "ms";
         if (name == "micros") unit = "us";
     }
@@ -180,6 +181,9 @@ void TimeColumn::find_unit(std::string_view text, const CsvLayout& layout, const
     const auto given = seconds_per(unit), answer = seconds_per(options.time_unit);
     unit_known_ = given.has_value() || options.time_unit_given;
     if (!unit_known_) note_unknown_unit(profile, options);
+    if (!given && options.time_unit_given && options.time_unit != "s")
+        notes_.push_back("The file names no unit of time: the times are taken to be in " + options.time_unit +
+                         ", the unit of the answer.");
     if (!given || !answer) return;
     if (by_size)
         notes_.push_back("Times count " + std::string(unit == "d" ? "days, as spreadsheets do" : unit + " since 1970") +

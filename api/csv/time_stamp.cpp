@@ -166,6 +166,25 @@ std::optional<Date> dated(std::optional<double> seconds) {
     return Date{*seconds, false};
 }
 
+std::size_t leading_digits(std::string_view text) {
+    return std::min(text.find_first_not_of("0123456789"), text.size());
+}
+
+// 20240301120000: the first eight of its digits.
+constexpr std::size_t kDateDigits = 8, kCompactDigits = 14;
+
+std::optional<Date> take_compact_date(std::string_view& text) {
+    if (leading_digits(text) != kCompactDigits || (text.substr(0, 2) != "19" && text.substr(0, 2) != "20"))
+        return std::nullopt;
+    std::string_view rest = text;
+    const auto year = take_digits(rest, 4, 4), month = take_digits(rest, 2, 2), day = take_digits(rest, 2, 2);
+    constexpr int kFirstYear = 1970;
+    if (!year || *year < kFirstYear || !month || !day) return std::nullopt;
+    const auto seconds = days_as_seconds(*year, *month, *day);
+    if (seconds) text.remove_prefix(kDateDigits);
+    return dated(seconds);
+}
+
 // 2024-03-01, 2024/3/1, 2024.03.01, 20240301
 std::optional<Date> take_year_first(std::string_view& text) {
     std::string_view rest = text;
@@ -243,20 +262,22 @@ std::optional<TimeStamp> read_time_stamp(std::string_view text, DateOrder order)
     std::string_view rest = text;
     if (!is_digit(rest.front())) skip_weekday(rest);
     TimeStamp stamp;
-    auto date = take_year_first(rest);
+    auto date = take_compact_date(rest);
+    const bool compact = date.has_value();
+    if (!date) date = take_year_first(rest);
     if (!date) date = take_year_last(rest, order);
     if (!date) date = take_named_month(rest);
     if (date) {
         stamp.seconds = date->seconds;
         stamp.has_date = true;
         stamp.order_matters = date->order_matters;
-        if (rest.empty()) {
+        if (!compact && rest.empty()) {
             // Eight digits alone are a number.
             if (text.find_first_not_of("0123456789") == text.npos) return std::nullopt;
             return stamp;
         }
         take(rest, ",");
-        if (!take(rest, "Tt :_") && rest.substr(0, 2) != "\xC2\xA0") return std::nullopt;
+        if (!compact && !take(rest, "Tt :_") && rest.substr(0, 2) != "\xC2\xA0") return std::nullopt;
         take_blanks(rest);
     } else if (!is_digit(text.front()) || text.find(':') == text.npos) {
         return std::nullopt;
@@ -271,8 +292,12 @@ std::optional<TimeStamp> read_time_stamp(std::string_view text, DateOrder order)
     return stamp;
 }
 
+bool is_compact_stamp(std::string_view text) {
+    return leading_digits(text) == kCompactDigits && read_time_stamp(text).has_value();
+}
+
 std::optional<double> seconds_per(std::string_view unit) {
-    static constexpr std::array<std::pair<std::string_view, double>, 36> kUnits = {{{"s", 1},
+    static constexpr std::array<std::pair<std::string_view, double>, 43> kUnits = {{{"s", 1},
                                                                                     {"sec", 1},
                                                                                     {"secs", 1},
                                                                                     {"second", 1},
@@ -307,6 +332,13 @@ std::optional<double> seconds_per(std::string_view unit) {
                                                                                     {"nsec", 1e-9},
                                                                                     {"minuten", 60},
                                                                                     {"segundos", 1},
+                                                                                    {"secondi", 1},
+                                                                                    {"seconden", 1},
+                                                                                    {"minutos", 60},
+                                                                                    {"minuti", 60},
+                                                                                    {"heures", 3600},
+                                                                                    {"horas", 3600},
+                                                                                    {"uren", 3600},
                                                                                     {"secondes", 1}}};
     std::string lower;
     for (const char c : unit) lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));

@@ -16,7 +16,7 @@ void look_at(std::string_view cell, DecimalSign sign, double& last, ColumnProfil
     }
     double value = 0;
     if (profile.numbers == 0) profile.suffix = std::string(unit_suffix(cell));
-    if (read_cell_number(cell, value, sign, profile.suffix)) {
+    if (!is_compact_stamp(cell) && read_cell_number(cell, value, sign, profile.suffix)) {
         if (profile.numbers > 0) {
             profile.changes += value != last ? 1 : 0;
             profile.rises = profile.rises && value > last;

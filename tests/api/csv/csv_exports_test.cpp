@@ -229,6 +229,36 @@ const std::vector<Export> kExports = {
      {0, 1, 3601},
      {1, 1, 1},
      {2, 3, 3}},
+    {"compact_stamps",
+     "Zeit;u;y\n20260304235958;1;2\n20260304235959;1;3\n20260305000001;1;3\n",
+     {0, 1, 3},
+     {1, 1, 1},
+     {2, 3, 3}},
+    {"thousands_beside_whole_numbers",
+     "Zeit;OP;PV\n0;950;980\n1;1.050;999\n2;1.050;1.045\n",
+     {0, 1, 2},
+     {950, 1050, 1050},
+     {980, 999, 1045}},
+    {"thousands_with_commas", "Time,OP,PV\n0,35,980\n1,47,\"1,045\"\n", {0, 1}, {35, 47}, {980, 1045}},
+    {"three_decimals_beside_fewer", "Zeit;OP;PV\n0;950;9,5\n1;951;9,045\n", {0, 1}, {950, 951}, {9.5, 9.045}},
+    {"empty_row_below_the_headings",
+     "Time [min],OP [%],PV [degC]\n,,\n0,35,20\n1,47,21\n",
+     {0, 60},
+     {35, 47},
+     {20, 21}},
+    {"empty_row_below_the_units", "Time;OP;PV\nmin;%;degC\n;;\n0;35;20\n1;47;21\n", {0, 60}, {35, 47}, {20, 21}},
+    {"line_break_in_the_headings", "\"Time\n(min)\",\"OP\n(%)\",PV\n0,35,20\n1,47,21\n", {0, 60}, {35, 47}, {20, 21}},
+    {"unit_as_the_heading", "Minuten;OP;PV\n0;35;20\n1;47;21\n", {0, 60}, {35, 47}, {20, 21}},
+    {"title_with_a_date",
+     "Trend Kessel 3;;\nExport;26.11.2026;\nTime;OP;PV\n0;35;20\n1;47;21\n",
+     {0, 1},
+     {35, 47},
+     {20, 21}},
+    {"long_counter_is_no_stamp",
+     "t,u,y\n20260399000000,1,2\n20260399000001,1,3\n20260399000002,1,3\n",
+     {20260399000000, 20260399000001, 20260399000002},
+     {1, 1, 1},
+     {2, 3, 3}},
 };
 
 INSTANTIATE_TEST_SUITE_P(Csv, Exports, testing::ValuesIn(kExports),
@@ -293,17 +323,39 @@ TEST(Csv, WhatWasAssumedAboutTimesIsTold) {
     EXPECT_THAT(std::get<CsvRecord>(epoch).notes, Contains(HasSubstr("Times count ms since 1970")));
 }
 
+TEST(Csv, WhatMayBeThousandsIsTold) {
+    const auto notes = [](const std::string& text) { return std::get<CsvRecord>(read_csv_record(text, {})).notes; };
+    EXPECT_THAT(notes("t,u,y\n0,35,\"14,250\"\n1,47,\"14,252\"\n"),
+                Contains(HasSubstr("\"14,250\" are read with three decimals")));
+    EXPECT_THAT(notes("t;u;y\n0;950;5\n1;1.050;6\n"), Contains(HasSubstr("\"1.050\" are read as thousands")));
+    // Evidence may come late.
+    std::string late = "t,u,y\n";
+    for (int i = 0; i < 300; ++i) late += std::to_string(i) + ",35,\"1,234\"\n";
+    const auto read = std::get<CsvRecord>(read_csv_record(late + "300,47,0.5\n", {}));
+    EXPECT_EQ(read.y.front(), 1234);
+    EXPECT_EQ(read.y.back(), 0.5);
+}
+
+TEST(Csv, TimesWithoutAUnitAreTakenInTheAnswersAndThatIsTold) {
+    const auto read = std::get<CsvRecord>(read_csv_record("Time,u,y\n0,1,2\n1,1,3\n", minutes()));
+    EXPECT_EQ(read.t.back(), 1);
+    EXPECT_THAT(read.notes, Contains(HasSubstr("taken to be in min")));
+}
+
 TEST(TimeStamps, AreReadInManySpellings) {
     const double noon = 1795262400;  // date -u -d "2026-11-21 12:00" +%s
     for (const char* text :
-         {"2026-11-21T12:00:00Z", "20261121T120000", "21.11.2026 12:00:00", "21.11.26 12:00", "11/21/2026 12:00 PM",
-          "21/11/2026 12:00:00.000", "21-Nov-2026 12:00:00", "21-NOV-26 12:00:00.0", "Nov 21, 2026 12:00:00 PM",
-          "November 21, 2026, 12:00 p.m.", "21. November 2026 12:00", "Sat, 21 Nov 2026 12:00:00 GMT",
-          "2026/11/21 12:00:00:000", "2026-11-21 13:00:00+01:00", "21 nov. 2026 12:00"}) {
+         {"2026-11-21T12:00:00Z", "20261121T120000", "20261121120000", "20261121120000.000", "21.11.2026 12:00:00",
+          "21.11.26 12:00", "11/21/2026 12:00 PM", "21/11/2026 12:00:00.000", "21-Nov-2026 12:00:00",
+          "21-NOV-26 12:00:00.0", "Nov 21, 2026 12:00:00 PM", "November 21, 2026, 12:00 p.m.",
+          "21. November 2026 12:00", "Sat, 21 Nov 2026 12:00:00 GMT", "2026/11/21 12:00:00:000",
+          "2026-11-21 13:00:00+01:00", "21 nov. 2026 12:00"}) {
         const auto stamp = read_time_stamp(text);
         ASSERT_TRUE(stamp) << text;
         EXPECT_DOUBLE_EQ(stamp->seconds, noon) << text;
     }
+    for (const char* text : {"20261321120000", "20261121250000", "19001121120000", "2026112112000", "202611211200000"})
+        EXPECT_FALSE(read_time_stamp(text)) << text;
     EXPECT_DOUBLE_EQ(read_time_stamp("05-Dez-26 00:00")->seconds, noon + 13.5 * 86400);
 }
 

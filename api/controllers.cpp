@@ -16,8 +16,12 @@ Answer no_such_controller(std::string_view id) {
     std::vector<std::string> ids;
     for (const Product& product : product::catalogue()) ids.emplace_back(product.id);
     Problem problem{404, "not-found", "There is no such controller", "", {}, {}};
-    const std::string meant = nearest(id, ids);
-    problem.detail = meant.empty() ? "GET /v1/controllers lists them." : "Did you mean " + meant + "?";
+    std::vector<std::string> meant;
+    for (const std::string& known : ids)
+        if (!id.empty() && known.find(id) != known.npos) meant.push_back(known);
+    if (const std::string near = nearest(id, ids); meant.empty() && !near.empty()) meant.push_back(near);
+    problem.detail = meant.empty() ? "GET /v1/controllers, or tunewright controllers, lists them."
+                                   : "Did you mean " + listed(meant) + "?";
     return refusal(problem);
 }
 

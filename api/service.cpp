@@ -194,6 +194,24 @@ std::variant<PreparedJob, Problem> prepare_entry(std::string_view body, const Jo
     return job;
 }
 
+std::variant<std::string, Problem> request_of_result(std::string_view result, const std::string& request) {
+    const auto text = request_text(request);
+    auto job = prepare_job(text ? *text : request);
+    if (auto* problem = std::get_if<Problem>(&job)) return std::move(*problem);
+    auto& prepared = std::get<PreparedJob>(job);
+    const Json answer = Json::parse(result, nullptr, false);
+    for (const char* place : {"/request_hash", "/result/request_hash"}) {
+        const Json::json_pointer hash(place);
+        if (!answer.is_object() || !answer.contains(hash) || answer.at(hash) == prepared.request_hash) continue;
+        Problem problem{422, "invalid-request", "The request is not valid", {}, {}, {}};
+        problem.detail =
+            "This is not the request of the result, whose request_hash is another. Give the one that was sent, without "
+            "words of the command line beside it, or leave it out.";
+        return problem;
+    }
+    return std::move(prepared.request_json);
+}
+
 JobOutcome run_job(const PreparedJob& job, const RunControl& control) {
     if (job.range) return range_outcome(*job.range, job.request_hash, control);
     return computed(*job.request, job.request_hash, control);

@@ -71,6 +71,10 @@ std::variant<PreparedJob, Problem> prepare_range(std::string_view body, const Jo
 std::variant<PreparedJob, Problem> prepare_entry(std::string_view body, const JobLimits& limits = {});
 
 /// Runs a prepared request to its end. Never throws for anything in the request.
+/// The request of a result, as a job keeps it, from the text of its file. Problems: those of prepare_job(); 422 where
+/// the result names another.
+std::variant<std::string, Problem> request_of_result(std::string_view result, const std::string& request);
+
 JobOutcome run_job(const PreparedJob& job, const RunControl& control);
 JobOutcome run_job(const StoredRequest& stored, const RunControl& control);
 

@@ -35,8 +35,9 @@ std::variant<Json, Problem> subject(const TuneWords& words, const std::optional<
         return unclear("Both a plant and a file are given; the file says which plant. Leave one of them out.");
     if (!words.plant.empty()) return Json{{"plant", words.plant}};
     if (!file) return unclear("There is nothing to tune: name a file, or give --plant \"2 e^(-3s)/(10s+1)\".");
-    // A file of blanks is as little a request as it is a record; it is refused as the body of a call would be.
-    if (is_request(*file) || file->find_first_not_of(kBlank) == file->npos) return parse(*file);
+    if (file->find_first_not_of(kBlank) == file->npos)
+        return unclear("The file is empty: give a recorded test as CSV, or a request as JSON.");
+    if (const auto request = request_text(*file)) return parse(*request);
     std::string storage;
     return Json{{"record", record_of(words.record, std::string(utf8_text(*file, storage)))}};
 }
@@ -79,13 +80,16 @@ Json record_of(const CsvRequest& question, std::string csv) {
     return record;
 }
 
-bool is_request(const std::string& text) {
+std::optional<std::string> request_text(const std::string& file) {
+    std::string storage;
+    const std::string_view text = utf8_text(file, storage);
     const std::size_t first = text.find_first_not_of(kBlank);
-    if (first == text.npos || text[first] != '{') return false;
+    if (first == text.npos || text[first] != '{') return std::nullopt;
     const std::size_t end = text.find('\n', first);
-    if (end == text.npos) return true;
+    if (end == text.npos) return std::string(text);
     const std::size_t last = text.find_last_not_of(kBlank, end), next = text.find_first_not_of(kBlank, end);
-    return !(text[last] == '}' && next != text.npos && text[next] == '{');
+    if (text[last] == '}' && next != text.npos && text[next] == '{') return std::nullopt;
+    return std::string(text);
 }
 
 std::variant<std::string, Problem> tuning_request(const TuneWords& words, std::optional<std::string> file) {
@@ -93,6 +97,11 @@ std::variant<std::string, Problem> tuning_request(const TuneWords& words, std::o
     if (auto* problem = std::get_if<Problem>(&found)) return std::move(*problem);
     Json& request = std::get<Json>(found);
     put_methods(words, request);
+    if (!words.record.model.empty()) {
+        if (!request.contains("record"))
+            return unclear("--model chooses the model of a recorded test, and there is none. Leave it out.");
+        if (request.value("identify", Json::object()).is_object()) request["identify"]["model"] = words.record.model;
+    }
     if (!words.record.time_unit.empty() && request.value("units", Json::object()).is_object())
         request["units"]["time"] = words.record.time_unit;
     if (!words.baseline.empty()) {

@@ -31,8 +31,8 @@ struct TuneWords {
 /// The member `record` of a request, with that text.
 Json record_of(const CsvRequest& question, std::string csv);
 
-/// Whether a text is one JSON object, which a log with one in each line is not.
-bool is_request(const std::string& text);
+/// A text in any encoding that is one JSON object, which a log with one in each line is not, as UTF-8; else nothing.
+std::optional<std::string> request_text(const std::string& text);
 
 /// The request as JSON. `file`: a request, a recorded test as CSV or as JSON lines in any encoding; none where the
 /// words have a plant. Words stand above what the file says. Problems: 400 for a request that is not JSON; 422 where

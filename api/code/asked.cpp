@@ -1,5 +1,7 @@
 #include "api/code/parts.h"
 
+#include <limits>
+
 #include "api/csv/text.h"
 #include "engine/code/settings.h"
 #include "engine/number_text.h"
@@ -55,17 +57,25 @@ AskedCode read_asked(const CodeWords& words, const Json& result, Reader& reader)
     return asked;
 }
 
-std::variant<SampleTime, Problem> sample_time_of(const AskedCode& asked, const Json& request,
-                                                 const ParallelPid& gains) {
-    if (asked.question.sample_time) return SampleTime{*asked.question.sample_time * asked.unit, "as asked for"};
+std::variant<SampleTime, Problem> sample_time_of(const AskedCode& asked, const Json& request, const ParallelPid& gains,
+                                                 const std::optional<double>& longest) {
+    const auto chosen = [&](double seconds, std::string origin) {
+        if (longest && seconds > *longest)
+            origin += "; beyond " + tunewright::text(*longest, 3) + " s it raises Ms by more than 5 %";
+        return SampleTime{seconds, std::move(origin)};
+    };
+    if (asked.question.sample_time) return chosen(*asked.question.sample_time * asked.unit, "as asked for");
     const Json::json_pointer place("/implement/sample_time");
     if (request.is_object() && request.contains(place) && request.at(place).is_number() &&
         request.at(place).get<double>() > 0)
-        return SampleTime{request.at(place).get<double>() * asked.unit, "as the request says"};
-    if (const auto proposed = code::proposed_sample_time(gains))
-        return SampleTime{*proposed,
-                          "proposed, as none was asked for: a tenth of the shorter of Ti and Td, no more than Tf, "
-                          "rounded down"};
+        return chosen(request.at(place).get<double>() * asked.unit, "as the request says");
+    constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+    if (const auto proposed = code::proposed_sample_time(gains, longest.value_or(kNoLimit)))
+        return SampleTime{*proposed, proposed == code::proposed_sample_time(gains)
+                                         ? "proposed, as none was asked for: a tenth of the shorter of Ti and Td, no "
+                                           "more than Tf, rounded down"
+                                         : "proposed, as none was asked for: the longest that raises Ms by no more "
+                                           "than 5 %, rounded down"};
     Reader reader;
     reader.fault_at("sample_time",
                     "sample_time is missing; this controller has no time of its own to propose one from.");

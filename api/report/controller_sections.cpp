@@ -134,6 +134,10 @@ Html figure_table(const char* caption, const FigureRow (&rows)[n], const std::st
     if (s.today) {
         heads.push_back("Today");
         columns.push_back(places(*s.today));
+        if (s.today->at("implemented").exists()) {
+            heads.push_back("Today, as built");
+            columns.push_back(places(s.today->at("implemented")));
+        }
     }
     if (!columns.front().exists()) return {};
     std::vector<Row> out;

@@ -85,8 +85,9 @@ std::optional<double> tracking_time(const ParallelPid& gains) {
     return Td > 0 ? std::sqrt(Ti * Td) : Ti;
 }
 
-std::optional<double> proposed_sample_time(const ParallelPid& gains) {
-    double longest = std::min(shortest_time(integral_time(gains)), shortest_time(derivative_time(gains))) / 10;
+std::optional<double> proposed_sample_time(const ParallelPid& gains, double longest) {
+    longest =
+        std::min(longest, std::min(shortest_time(integral_time(gains)), shortest_time(derivative_time(gains))) / 10);
     if (gains.filter.type != FilterType::none) longest = std::min(longest, gains.filter.Tf);
     if (!std::isfinite(longest)) return std::nullopt;
     return one_two_five_below(longest);

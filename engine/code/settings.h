@@ -1,6 +1,7 @@
 // The numbers that a controller's program starts with, in seconds and with the sign of the action apart.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -30,8 +31,9 @@ Settings settings_of(const ParallelPid& gains);
 /// time of its own. Source: Astrom and Hagglund, Advanced PID Control (2006), section 3.5.
 std::optional<double> tracking_time(const ParallelPid& gains);
 
-/// A tenth of the shorter of Ti and Td, and no more than the filter's Tf, as the next 1, 2 or 5 times a power of ten
-/// below. Times in seconds. Nothing where the controller has none of these times.
-std::optional<double> proposed_sample_time(const ParallelPid& gains);
+/// A tenth of the shorter of Ti and Td, and no more than the filter's Tf and `longest`, what the loop bears, as the
+/// next 1, 2 or 5 times a power of ten below. Times in seconds. Nothing where none of these times is known.
+std::optional<double> proposed_sample_time(const ParallelPid& gains,
+                                           double longest = std::numeric_limits<double>::infinity());
 
 }  // namespace tunewright::code

@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <iostream>
-#include <iterator>
 #include <stdexcept>
 
 #include "api/json/digest.h"
@@ -44,9 +42,8 @@ constexpr int kFailed = 1;
 constexpr int kBadName = 2;
 
 bool has_key(const std::string& file, const std::string& name) {
-    std::ifstream stream(file, std::ios::binary);
-    const std::string text(std::istreambuf_iterator<char>(stream), {});
-    const auto lines = named_lines(text);
+    const auto text = text_of_lines(file);
+    const auto lines = named_lines(text ? *text : "");
     return std::any_of(lines.begin(), lines.end(), [&](const NamedLine& line) { return line.name == name; });
 }
 
@@ -110,7 +107,10 @@ int make_key(const KeyCommand& command) {
         return kFailed;
     }
     std::cout << key << std::endl;
-    return 0;
+    if (std::cout) return 0;
+    std::cerr << "tunewright: the key cannot be written to standard output. Delete its line again"
+              << (command.file.empty() ? "" : ", the last of " + command.file) << ", and make another.\n";
+    return kFailed;
 }
 
 }  // namespace tunewright::server

@@ -18,16 +18,21 @@ constexpr std::string_view kBlanks = " \t\r";  // a file may come from another s
 constexpr std::size_t kMaxNameLength = 64;
 constexpr std::chrono::seconds kLookInterval{1};
 
-/// The text of the file; nothing where it cannot be read.
-std::optional<std::string> read_file(const std::string& path) {
+}  // namespace
+
+std::optional<std::string> text_of_lines(const std::string& path) {
+    constexpr std::size_t kLongest = 16 << 20;
     std::ifstream file(path, std::ios::binary);
     if (!file) return std::nullopt;
-    std::string text{std::istreambuf_iterator<char>(file), {}};
+    std::string text;
+    // A device may have no end.
+    for (std::istreambuf_iterator<char> at(file), end; at != end; ++at) {
+        if (text.size() == kLongest) return std::nullopt;
+        text += *at;
+    }
     if (file.bad()) return std::nullopt;
     return text;
 }
-
-}  // namespace
 
 bool is_key_name(std::string_view name) {
     return !name.empty() && name.size() <= kMaxNameLength && std::ranges::all_of(name, [](char c) {
@@ -54,7 +59,16 @@ std::vector<NamedLine> named_lines(std::string_view text) {
 bool append_line(const std::string& path, const std::string& line) {
     const int fd = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0600);
     if (fd < 0) return false;
-    const bool written = ::write(fd, line.data(), line.size()) == static_cast<ssize_t>(line.size());
+    // Whoever edited it may have left the last line without its end.
+    char last = '\n';
+    const int reading = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (reading >= 0) {
+        const off_t end = ::lseek(reading, 0, SEEK_END);
+        if (end > 0 && ::pread(reading, &last, 1, end - 1) != 1) last = '\n';
+        ::close(reading);
+    }
+    const std::string text = (last == '\n' ? "" : "\n") + line;
+    const bool written = ::write(fd, text.data(), text.size()) == static_cast<ssize_t>(text.size());
     return ::close(fd) == 0 && written;
 }
 
@@ -64,7 +78,7 @@ WatchedFile::WatchedFile(std::string path, Meaning meaning, std::function<Clock:
         throw std::invalid_argument("The " + meaning_.what + " " + path_ + " cannot be used: " + why + ".");
     };
     stamp_ = stamp_of(path_);
-    const auto text = read_file(path_);
+    const auto text = text_of_lines(path_);
     if (!text) refuse("it cannot be read");
     try {
         meaning_.take(*text);
@@ -94,7 +108,7 @@ void WatchedFile::look() {
 
 void WatchedFile::read_again(const std::optional<Stamp>& stamp) {
     stamp_ = stamp;
-    const auto text = stamp ? read_file(path_) : std::nullopt;
+    const auto text = stamp ? text_of_lines(path_) : std::nullopt;
     if (!text) return hold_nothing("it cannot be read");
     try {
         const std::size_t count = meaning_.take(*text);

@@ -25,6 +25,9 @@ struct NamedLine {
     std::string_view name, value;
 };
 
+/// The text of such a file; nothing where it cannot be read or is longer than 16 MiB.
+std::optional<std::string> text_of_lines(const std::string& path);
+
 /// The lines of such a file but for blank ones and those that start with #. What is no name is for the caller to see.
 std::vector<NamedLine> named_lines(std::string_view text);
 

@@ -12,8 +12,10 @@
 #include "api/report/terminal.h"
 #include "api/service.h"
 #include "server/clock.h"
+#include "server/config.h"
 #include "server/jobs/timer.h"
 #include "server/json_text.h"
+#include "server/spare_cores.h"
 
 namespace tunewright::server {
 namespace {
@@ -28,9 +30,12 @@ Tuned tuned(const api::PreparedJob& job) {
     std::stop_source stop;
     Timer timer;
     timer.after(std::chrono::duration<double>(job.timeout_s), [&stop] { stop.request_stop(); });
+    SpareCores cores(core_count());
+    SpareCores::Computation computation(cores);
     RunControl control;
     control.stop = stop.get_token();
     control.now_ms = monotonic_ms;
+    control.spread = computation.spread();
     api::JobOutcome outcome = api::run_job(job, control);
     timer.stop();
     if (outcome.status == api::JobOutcome::Status::succeeded) return {true, std::move(outcome.result_json)};
@@ -70,12 +75,16 @@ int draw(const TuneCommand& command, const std::string& result, const std::strin
     return write_drawing(command.svg, std::get<std::string>(drawn), command.output);
 }
 
-/// The text of a result's file and of its request's, or the file that cannot be read.
-std::variant<std::pair<std::string, std::string>, std::string> texts_of(const ResultWords& words) {
-    std::pair<std::string, std::string> texts;
-    if (!read_input(words.file, texts.first)) return words.file;
-    if (!words.request.empty() && !read_input(words.request, texts.second)) return words.request;
-    return texts;
+/// The text of a result's file, and of its request's as the service keeps it. What is written with their problem, where
+/// one of them is none.
+std::optional<int> read_texts(const ResultWords& words, std::string& result, std::string& request) {
+    if (!read_input(words.file, result)) return write_problem(unreadable(words.file), {});
+    if (words.request.empty()) return std::nullopt;
+    if (!read_input(words.request, request)) return write_problem(unreadable(words.request), {});
+    auto kept = api::request_of_result(result, request);
+    if (const auto* problem = std::get_if<api::Problem>(&kept)) return write_problem(*problem, {}, words.request);
+    request = std::move(std::get<std::string>(kept));
+    return std::nullopt;
 }
 
 }  // namespace
@@ -97,7 +106,11 @@ int tune(const TuneCommand& command) {
     if (!answer.succeeded) return write_problem(answer.json, command.output, command.file);
     OutputWords output = command.output;
     output.table = output.table || command.plot;
-    const int written = write_answer(answer.json, output, api::result_text);
+    const std::string& kept = std::get<api::PreparedJob>(prepared).request_json;
+    const int written =
+        command.with_request
+            ? write_answer(std::move(JsonObject().raw("request", kept).raw("result", answer.json)).str(), output)
+            : write_answer(answer.json, output, api::result_text);
     return written != 0 ? written : draw(command, answer.json, asked);
 }
 
@@ -115,8 +128,13 @@ int range(const RangeCommand& command) {
 int identify(const IdentifyCommand& command) {
     std::string text;
     if (!read_input(command.file, text)) return write_problem(unreadable(command.file), command.output);
+    SpareCores cores(core_count());
+    SpareCores::Computation computation(cores);
+    RunControl control;
+    control.spread = computation.spread();
+    const auto request = api::request_text(text);
     const api::Answer answer =
-        api::is_request(text) ? api::identify_call(text, {}) : api::identify_csv(std::move(text), command.question, {});
+        request ? api::identify_call(*request, control) : api::identify_csv(std::move(text), command.question, control);
     return answered(answer, command.output, api::model_text, command.file);
 }
 
@@ -130,24 +148,20 @@ int plant(const PlantCommand& command) {
 }
 
 int code(const CodeCommand& command) {
-    const auto texts = texts_of(command.result);
-    if (const auto* file = std::get_if<std::string>(&texts)) return write_problem(unreadable(*file), {});
-    const auto& [result, request] = std::get<0>(texts);
+    std::string result, request;
+    if (const auto refused = read_texts(command.result, result, request)) return *refused;
     const auto written = api::controller_code({result, request}, command.result.controller, command.words);
     if (const auto* problem = std::get_if<api::Problem>(&written))
         return write_problem(*problem, {}, command.result.file);
-    std::cout << std::get<api::ControllerCode>(written).text;
-    return 0;
+    return write_text(std::get<api::ControllerCode>(written).text);
 }
 
 int report(const ResultWords& command) {
-    const auto texts = texts_of(command);
-    if (const auto* file = std::get_if<std::string>(&texts)) return write_problem(unreadable(*file), {});
-    const auto& [result, request] = std::get<0>(texts);
+    std::string result, request;
+    if (const auto refused = read_texts(command, result, request)) return *refused;
     const auto written = api::report_html({result, request}, command.controller, {});
     if (const auto* problem = std::get_if<api::Problem>(&written)) return write_problem(*problem, {}, command.file);
-    std::cout << std::get<std::string>(written);
-    return 0;
+    return write_text(std::get<std::string>(written));
 }
 
 int methods(const ListCommand& command) {

@@ -15,9 +15,10 @@ namespace tunewright::server {
 struct TuneCommand {
     std::string file;  ///< a request, a recorded test, "-": standard input; "": the words have a plant
     api::TuneWords words;
-    bool all = false;   ///< every method that applies, whatever the file names
-    bool plot = false;  ///< the table, and the responses drawn below it
-    std::string svg;    ///< file that the responses are drawn into; "": none
+    bool all = false;           ///< every method that applies, whatever the file names
+    bool plot = false;          ///< the table, and the responses drawn below it
+    std::string svg;            ///< file that the responses are drawn into; "": none
+    bool with_request = false;  ///< the answer is {request, result}, not the result alone
     OutputWords output;
 };
 int tune(const TuneCommand& command);

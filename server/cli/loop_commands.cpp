@@ -29,7 +29,8 @@ void add_record_options(CLI::App& app, api::CsvRequest& question) {
     app.add_option("--u-limits", question.u_limits, "CSV: the ends of the actuator, low and high")
         ->expected(2)
         ->type_name("NUMBER");
-    app.add_option("--time-unit", question.time_unit, "Unit of every time of the answer; s if not given")
+    app.add_option("--time-unit", question.time_unit,
+                   "Unit of every time of the answer, and of a file's where it names none; s if not given")
         ->type_name("UNIT");
 }
 
@@ -49,6 +50,8 @@ void add_tune_options(CLI::App& app, TuneCommand& command) {
     add_record_options(app, command.words.record);
     CLI::Option* plot = app.add_flag("--plot", command.plot, "The table, and below it the best one's responses drawn");
     app.add_option("--svg", command.svg, "A file that those responses are drawn into, as SVG")->type_name("FILE");
+    app.add_flag("--with-request", command.with_request,
+                 "JSON of the result and its request, from which code and report say whose settings they are");
     add_output_options(app, command.output, true);
     plot->excludes(app.get_option("--json"))->excludes(app.get_option("--pretty"));
 }

@@ -1,5 +1,7 @@
 // The commands of whoever runs the service: keys, secrets, stores, health.
+#include <exception>
 #include <iostream>
+#include <stdexcept>
 
 #include "server/access/keys.h"
 #include "server/cli/command_tree.h"
@@ -33,11 +35,25 @@ void add_secret_command(CommandTree& tree) {
         ->type_name("FILE");
 }
 
+// As `serve` ends where its settings or its store cannot be used.
+constexpr int kBadConfiguration = 2, kNoStore = 4;
+
+int failed(int code, const std::exception& fault) {
+    std::cerr << "tunewright: " << fault.what() << "\n";
+    return code;
+}
+
 void add_migrate_command(CommandTree& tree) {
     MigrateCommand& words = tree.keep<MigrateCommand>();
     words.store = Config{}.store;
     CLI::App& app = tree.add("migrate", "Bring the tables of a store up to date, and say what was done", [&] {
-        migrate_store(words, std::cout);
+        try {
+            migrate_store(words, std::cout);
+        } catch (const std::invalid_argument& error) {
+            return failed(kBadConfiguration, error);
+        } catch (const std::exception& fault) {
+            return failed(kNoStore, fault);
+        }
         return 0;
     });
     option(app, "store", words.store, "The store, as `serve` has it")->capture_default_str();

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -29,12 +30,12 @@ bool wants_table(const OutputWords& words) { return form_of(words, STDOUT_FILENO
 
 int write_answer(std::string_view json, const OutputWords& words, const Table& table) {
     const Form form = form_of(words, STDOUT_FILENO);
-    if (form == Form::compact) {
-        std::cout << json << "\n";
-    } else {
-        std::cout << (form == Form::table && table ? table(json) : api::indented(json));
-    }
-    std::cout.flush();
+    if (form == Form::compact) return write_text(std::string(json) + "\n");
+    return write_text(form == Form::table && table ? table(json) : api::indented(json));
+}
+
+int write_text(std::string_view text) {
+    std::cout << text << std::flush;
     if (std::cout) return 0;
     std::cerr << "tunewright: the answer cannot be written to standard output.\n";
     return 1;
@@ -61,18 +62,14 @@ bool read_input(const std::string& file, std::string& text) {
     }
     std::error_code unknown;
     if (std::filesystem::is_directory(file, unknown)) return false;
-    std::ifstream stream(file, std::ios::binary | std::ios::ate);
+    std::ifstream stream(file, std::ios::binary);
     if (!stream) return false;
-    const std::streamoff size = stream.tellg();
-    if (size < 0) {  // a pipe has no size
-        stream.clear();
-        text.assign(std::istreambuf_iterator<char>(stream), {});
-        return !stream.bad();
-    }
-    text.resize(static_cast<std::size_t>(size));
-    stream.seekg(0);
-    stream.read(text.data(), size);
-    return static_cast<bool>(stream);
+    // A pipe has neither a size nor an end to go to.
+    if (std::filesystem::is_regular_file(file, unknown)) text.reserve(std::filesystem::file_size(file, unknown));
+    std::array<char, 1 << 16> piece;
+    while (stream.read(piece.data(), piece.size()) || stream.gcount() > 0)
+        text.append(piece.data(), static_cast<std::size_t>(stream.gcount()));
+    return stream.eof();
 }
 
 api::Problem unreadable(const std::string& file) { return http::problem(404, "The file " + file + " cannot be read."); }

@@ -25,6 +25,9 @@ bool wants_table(const OutputWords& words);
 /// Writes an answer to standard output and returns 0. `table`: none where the answer has no shorter form than JSON.
 int write_answer(std::string_view json, const OutputWords& words, const Table& table = {});
 
+/// Writes a text to standard output as it is and returns 0; 1, with a sentence, where it cannot be written.
+int write_text(std::string_view text);
+
 /// Writes a problem to standard error, as sentences on a terminal and as JSON elsewhere, and returns 1. `file`: whose
 /// text it is about, "-" for standard input, "" for none.
 int write_problem(std::string_view problem_json, const OutputWords& words, const std::string& file = "");

@@ -1,9 +1,10 @@
 // `tunewright completion` and `tunewright manual`: what a shell and man know of the commands, written from the tree
 // itself, so that neither can say anything else than what is there.
 #include <algorithm>
-#include <iostream>
+#include <sstream>
 
 #include "server/cli/command_tree.h"
+#include "server/cli/output.h"
 
 namespace tunewright::server {
 namespace {
@@ -99,7 +100,11 @@ void write_zsh(const CLI::App& app, std::ostream& out) {
     }
     out << "    esac\n"
            "}\n"
-           "_tunewright \"$@\"\n";
+           "if [ \"$funcstack[1]\" = _tunewright ]; then\n"
+           "    _tunewright \"$@\"\n"
+           "else\n"  // it is sourced
+           "    compdef _tunewright tunewright\n"
+           "fi\n";
 }
 
 /// For a line of troff: a backslash and a hyphen are letters, a dot at the beginning is no request.
@@ -173,15 +178,17 @@ void add_tree_commands(CommandTree& tree) {
     std::string& shell = tree.keep<std::string>();
     tree.add("completion", "What a shell needs to complete the command line",
              [&] {
-                 shell == "zsh" ? write_zsh(app, std::cout) : write_bash(app, std::cout);
-                 return 0;
+                 std::ostringstream out;
+                 shell == "zsh" ? write_zsh(app, out) : write_bash(app, out);
+                 return write_text(out.str());
              })
         .add_option("shell", shell, "bash or zsh")
         ->required()
         ->check(CLI::IsMember({"bash", "zsh"}));
     tree.add("manual", "The manual page, for man: tunewright manual | man -l -", [&] {
-        write_manual(app, std::cout);
-        return 0;
+        std::ostringstream out;
+        write_manual(app, out);
+        return write_text(out.str());
     });
 }
 

@@ -67,7 +67,9 @@ int make_secret(const SecretCommand& command) {
         return kFailed;
     }
     std::cout << secret << std::endl;
-    return 0;
+    if (std::cout) return 0;
+    std::cerr << "tunewright: the secret cannot be written to standard output.\n";
+    return kFailed;
 }
 
 }  // namespace tunewright::server

@@ -56,6 +56,20 @@ TEST(Shorthand, ATestInAFileBecomesTheRecord) {
     EXPECT_FALSE(request_of({}, "{\n\"plant\": \"1/(s+1)\"}").contains("record"));
 }
 
+TEST(Shorthand, TheModelIsThatOfTheRecord) {
+    TuneWords words;
+    words.record.model = "sopdt";
+    EXPECT_EQ(request_of(words, "t,u,y\n0,1,2\n").at("identify"), Json::parse(R"({"model": "sopdt"})"));
+    EXPECT_NE(refusal_of(words, R"x({"plant": "1/(s+1)"})x").find("--model"), std::string::npos);
+}
+
+TEST(Shorthand, ARequestMayBeInAnyEncoding) {
+    const std::string text = R"x({"plant": "1/(s+1)"})x";
+    std::string wide = "\xFF\xFE";
+    for (const char c : text) wide += {c, '\0'};
+    for (const std::string& file : {"\xEF\xBB\xBF" + text, wide}) EXPECT_EQ(request_of({}, file), Json::parse(text));
+}
+
 TEST(Shorthand, NothingAndTwoThingsToTuneAreRefused) {
     TuneWords both;
     both.plant = "1/(s+1)";

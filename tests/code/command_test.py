@@ -2,6 +2,7 @@
 
 import json
 import subprocess
+import tempfile
 import unittest
 
 from languages import BINARY, code, command, ideal, result_of
@@ -72,6 +73,41 @@ class CommandTest(unittest.TestCase):
             text = command(result, "--language", "st", *arguments).stdout
             self.assertIn(words, text)
             self.assertEqual(FunctionBlock(text)["Ts"], Ts)
+
+    def test_the_sample_time_proposed_is_one_that_the_loop_bears(self):
+        # 1.0 s, a tenth of Ti, would leave the loop unstable: the dead time is 0.1 s.
+        request = {"plant": "1 e^(-0.1s)/(10s+1)", "tune": [{"method": "haalman"}], "evaluate": {"points": 0}}
+        tuned = subprocess.run([BINARY, "tune", "-"], input=json.dumps(request), capture_output=True, text=True)
+        result = json.loads(tuned.stdout)
+        longest = result["controllers"][0]["longest_sample_time"]
+        text = command(result, "--language", "st").stdout
+        self.assertIn("the longest that raises Ms by no more than 5 %", text)
+        self.assertLessEqual(FunctionBlock(text)["Ts"], longest)
+        self.assertGreater(FunctionBlock(text)["Ts"], longest / 2.5)
+        asked = command(result, "--language", "st", "--sample-time", "1").stdout
+        self.assertIn("1 s, as asked for; beyond", asked)
+
+    def test_the_request_beside_it_is_the_results_own(self):
+        request = {"plant": "2 e^(-3s)/(10s+1)", "evaluate": {"points": 0}}
+        tuned = subprocess.run([BINARY, "tune", "-"], input=json.dumps(request), capture_output=True, text=True)
+        with tempfile.TemporaryDirectory() as folder:
+            for name, value in (("own", request), ("other", {"plant": "5/(3s+1)"}), ("none", "no request")):
+                with open(f"{folder}/{name}.json", "w", encoding="utf-8") as file:
+                    json.dump(value, file)
+            result = json.loads(tuned.stdout)
+            text = command(result, "--language", "c", "--request", f"{folder}/own.json").stdout
+            self.assertIn("fopdt, K 2, T 10, L 3", text)
+            problem = self.refused(result, "--language", "c", "--request", f"{folder}/other.json")
+            self.assertIn("not the request of the result", problem["detail"])
+            self.assertIn("none.json", self.refused(result, "--language", "c", "--request", f"{folder}/none.json")["detail"])
+
+    def test_an_output_that_cannot_be_written_is_no_success(self):
+        with open("/dev/full", "w", encoding="utf-8") as full:
+            for arguments in (("code", "-", "--language", "c"), ("report", "-"), ("completion", "bash"), ("manual",)):
+                done = subprocess.run([BINARY, *arguments], input=json.dumps(result_of(ideal())), stdout=full,
+                                      stderr=subprocess.PIPE, text=True)
+                self.assertEqual(done.returncode, 1, arguments)
+                self.assertIn("cannot be written", done.stderr)
 
     def test_the_head_says_where_the_controller_comes_from(self):
         request = {"name": "TIC-101 */ x", "units": {"time": "min", "u": "%"}, "plant": {"type": "fopdt", "K": 2, "T": 10, "L": 3},

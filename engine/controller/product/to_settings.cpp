@@ -199,6 +199,11 @@ std::optional<Error> add_settings(Work& work) {
                               "by " +
                                   std::string(action.name) + ". " + std::string(action.text)});
     }
+    // A switch that is left as it comes, at 0, would act the wrong way.
+    const double* reverse = std::get_if<double>(&action.reverse);
+    if (action.kind == Action::Kind::switched && work.pid.Kp > 0 && reverse != nullptr && *reverse != 0)
+        work.notes.push_back({"action", "Kp is positive, so " + std::string(action.name) + " must be " +
+                                            text(*reverse) + ". " + std::string(action.text)});
     return std::nullopt;
 }
 

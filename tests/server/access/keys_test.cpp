@@ -91,6 +91,19 @@ TEST_F(KeyRingTest, EachFurtherFaultyWriteDoesNotGrantMoreTime) {
     EXPECT_FALSE(admits("bob"));
 }
 
+TEST(NamedLines, WhatIsAddedStandsOnALineOfItsOwn) {
+    const std::string path = testing::TempDir() + "/keys_without_end";
+    for (const char* before : {"", "a 1", "a 1\n"}) {
+        std::ofstream(path, std::ios::binary) << before;
+        ASSERT_TRUE(append_line(path, "b 2\n"));
+        const std::string text = text_of_lines(path).value_or("");
+        const auto lines = named_lines(text);
+        ASSERT_EQ(lines.size(), std::string_view(before).empty() ? 1u : 2u) << before;
+        EXPECT_EQ(lines.back().name, "b");
+    }
+    EXPECT_FALSE(text_of_lines("/dev/zero"));
+}
+
 TEST_F(KeyRingTest, TheServiceDoesNotStartWithoutAKey) {
     write("");
     EXPECT_THROW(KeyRing{path()}, std::invalid_argument);

@@ -81,19 +81,19 @@ class CommandTest(unittest.TestCase):
         result = json.loads(tuned.stdout)
         longest = result["controllers"][0]["longest_sample_time"]
         text = command(result, "--language", "st").stdout
-        self.assertIn("the longest that raises Ms by no more than 5 %", text)
+        self.assertIn("the longest that raises Ms by no more than 5 %", " ".join(text.split()))
         self.assertLessEqual(FunctionBlock(text)["Ts"], longest)
         self.assertGreater(FunctionBlock(text)["Ts"], longest / 2.5)
         asked = command(result, "--language", "st", "--sample-time", "1").stdout
-        self.assertIn("1 s, as asked for; beyond", asked)
+        self.assertIn("1 s, as asked for; beyond", " ".join(asked.split()))
 
     def test_the_request_beside_it_is_the_results_own(self):
         request = {"plant": "2 e^(-3s)/(10s+1)", "evaluate": {"points": 0}}
         tuned = subprocess.run([BINARY, "tune", "-"], input=json.dumps(request), capture_output=True, text=True)
         with tempfile.TemporaryDirectory() as folder:
-            for name, value in (("own", request), ("other", {"plant": "5/(3s+1)"}), ("none", "no request")):
+            for name, text in (("own", json.dumps(request)), ("other", '{"plant": "5/(3s+1)"}'), ("none", "no request")):
                 with open(f"{folder}/{name}.json", "w", encoding="utf-8") as file:
-                    json.dump(value, file)
+                    file.write(text)
             result = json.loads(tuned.stdout)
             text = command(result, "--language", "c", "--request", f"{folder}/own.json").stdout
             self.assertIn("fopdt, K 2, T 10, L 3", text)

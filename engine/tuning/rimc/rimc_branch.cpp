@@ -26,6 +26,7 @@ constexpr int kPointsPerDecade = 60;                  // of the sweep that finds
 constexpr double kLowestSwept = 0.03, kHighestSwept = 300;
 constexpr double kShortestSwept = 1e-3;  // of L/T: a shorter dead time shows nothing more
 constexpr int kMaxHalvings = 60;         // of ln lambda: more than its digits
+constexpr double kLeastFilter = 0.01;    // of Td: a linear fraction's filter time
 constexpr double kOpenEnd = 1e-9;        // relative: where the admissible range excludes its end
 constexpr double kFirstStep = 1e-4;      // relative, from the sweep's answer to a bracket of the true one
 
@@ -124,9 +125,15 @@ void RimcBranch::find_least_Ms() {
 }
 
 void RimcBranch::find_stability_limit() {
-    const double lowest = std::max(scaled_admissible_.low * (1 + kOpenEnd), kSmallest);
-    const auto stable = [&](double x) { return stable_loop(x).has_value(); };
     double& low = scaled_branch_->low;
+    double lowest = std::max(scaled_admissible_.low * (1 + kOpenEnd), kSmallest);
+    // A linear fraction's filter time goes to 0 at that end, where noise passes without end.
+    const auto filtered = [&](double x) {
+        const auto settings = pid(x);
+        return settings && settings->filter.Tf >= kLeastFilter * settings->Td;
+    };
+    if (filter_.linear_fraction && filtered(low) && !filtered(lowest)) lowest = boundary(filtered, low, lowest);
+    const auto stable = [&](double x) { return stable_loop(x).has_value(); };
     while (low * kStep > lowest) {
         if (!stable(low * kStep)) {
             has_stability_limit_ = true;

@@ -222,6 +222,22 @@ TEST(Rimc, LinearFractionalIsTheSamePidWithTheFilterThatMatchesTheFourthTerm) {
     EXPECT_EQ(doubled.error().where, "Tf_over_Td");
 }
 
+TEST(Rimc, AnEasyTargetLeavesTheLinearFractionAFilter) {
+    // Its filter time ends at 0, where noise passes without end: the paper's least share, 0.01, is the end.
+    for (const double L : {0.5, 1.0, 3.0, 8.0}) {
+        const Fopdt model{.K = 1, .T = 10, .L = L};
+        const auto tuned =
+            rimc_tuned(model, {{"dead_time_error", 0.05}, {"approximation", std::string("linear_fractional")}});
+        ASSERT_TRUE(tuned) << L;
+        const IdealPid& pid = tuned->controller;
+        EXPECT_GE(pid.filter.Tf, 0.01 * pid.Td * (1 - 1e-6)) << L;
+        const auto evaluation = evaluate(model, pid, {});
+        ASSERT_TRUE(evaluation);
+        EXPECT_TRUE(evaluation->performance.load.IAE) << L;
+        EXPECT_GT(*evaluation->performance.load.peak, 1 - std::exp(-L / 10)) << "no controller acts before L";
+    }
+}
+
 TEST(Rimc, WarnsNearTheLimitAndBeyondTheLeastMs) {
     const Fopdt model{.K = 1, .T = 1, .L = 0.5};
     const double limit = *RimcBranch(model, {}).stability_limit();

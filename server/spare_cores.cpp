@@ -5,11 +5,6 @@
 #include <mutex>
 
 namespace tunewright::server {
-namespace {
-
-constexpr int kNiceness = 10;  // of the workers'
-
-}  // namespace
 
 /// What is shared out. Helpers may look at it after the call has returned, but not at `f`.
 struct SpareCores::Share {
@@ -34,9 +29,9 @@ struct SpareCores::Share {
     }
 };
 
+// Not at a lower priority than the computation that waits for them.
 SpareCores::SpareCores(std::size_t cores)
-    : cores_(static_cast<int>(std::max<std::size_t>(1, cores))),
-      helpers_(static_cast<std::size_t>(cores_) - 1, kNiceness) {}
+    : cores_(static_cast<int>(std::max<std::size_t>(1, cores))), helpers_(static_cast<std::size_t>(cores_) - 1) {}
 
 Spread SpareCores::Computation::spread() {
     return [&cores = cores_](int n, const std::function<void(int)>& f) { cores.spread(n, f); };

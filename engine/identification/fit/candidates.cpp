@@ -21,16 +21,18 @@ constexpr Effort kComparison{60, 1e-7};
 constexpr Effort kOneStep{4, 1e-2};
 constexpr Effort kFinal{60, 1e-11};
 
-Fit best_from(const FitData& data, const ModelForm& form, const std::vector<ModelShape>& starts, const Effort& effort,
-              const std::stop_token& stop) {
+Fit best_from(const FitContext& context, const FitData& data, const ModelForm& form,
+              const std::vector<ModelShape>& starts, const Effort& effort) {
     Fit best;
     best.form = form;
-    bool first = true;
-    for (const ModelShape& start : starts) {
-        Fit fit = fit_shape(data, form, start, effort, stop);
-        if (first || (fit.determined && (!best.determined || fit.sse < best.sse))) best = std::move(fit);
-        first = false;
-    }
+    std::vector<Fit> fits(starts.size());
+    run_each(context.spread, static_cast<int>(starts.size()), [&](int i) {
+        const auto at = static_cast<std::size_t>(i);
+        fits[at] = fit_shape(data, form, starts[at], effort, context.stop);
+    });
+    for (Fit& fit : fits)
+        if (&fit == &fits.front() || (fit.determined && (!best.determined || fit.sse < best.sse)))
+            best = std::move(fit);
     return best;
 }
 
@@ -64,13 +66,13 @@ Fit fit_form(const FitContext& context, const ModelForm& form, const std::vector
         const std::vector<ModelShape> best = most_promising(context, form, extended);
         starts.insert(starts.end(), best.begin(), best.end());
     }
-    Fit fit = best_from(context.few(), form, starts, kCoarse, context.stop);
+    Fit fit = best_from(context, context.few(), form, starts, kCoarse);
     fit = fit_shape(context.some(), form, fit.shape, kComparison, context.stop);
     const bool worse = std::any_of(simpler.begin(), simpler.end(), [&](const Fit& s) {
         return same_form(s.form, form) && !extend_shape(s.shape, form.structure).empty() && fit.sse > s.sse;
     });
     if (worse && !nested.empty()) {
-        Fit again = best_from(context.some(), form, nested, kComparison, context.stop);
+        Fit again = best_from(context, context.some(), form, nested, kComparison);
         if (again.sse < fit.sse) fit = std::move(again);
     }
     return fit;

@@ -43,7 +43,7 @@ private:
             http::add_common_headers(response);
             return response;
         };
-        made.refuse = [](int status, const std::string& detail, const std::string&) {
+        made.refuse = [](int status, const std::string& detail, http::Request&) {
             return http::problem_response(status, detail);
         };
         return made;

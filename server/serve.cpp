@@ -37,6 +37,9 @@ constexpr int kPortFailed = 3;
 constexpr int kStoreFailed = 4;
 constexpr std::chrono::seconds kStopPatience{2};  // for computations and for the store, which have been asked to end
 constexpr std::size_t kWaitingComputations = 64;
+constexpr std::size_t kForOthers = 4;  // computations, for clients that have none while others fill the cores
+// Answers with a whole job that are made at the same time; each may take a hundred megabytes for some moments.
+constexpr std::size_t kReaders = 2, kWaitingReaders = 1024;
 // Batches come and go without keeping others from being answered.
 constexpr std::size_t kBatchThreads = 2;
 constexpr int kBatchNiceness = 5;
@@ -89,7 +92,8 @@ public:
                                                   bool done) { metrics_.count_store(operation, seconds, done); })),
           spare_cores_(computations(config)),
           jobs_(*store_, timer_, settings(config)),
-          turns_(core_count(), kWaitingComputations),
+          turns_(core_count(), std::max(core_count(), kForOthers), kWaitingComputations),
+          readers_(std::max(kReaders, core_count()), kReaders, kWaitingReaders),
           places_(places_of(limits(config))),
           batch_lane_(kBatchThreads, kBatchNiceness),
           batches_(*store_, jobs_, batch_lane_, [this] { return now(); }),
@@ -240,11 +244,11 @@ private:
 
     /// What a process that only computes does not answer.
     void add_public_routes() {
-        add_job_routes(router_, jobs_, places_, policy_, {config_.job_timeout_s, config_.max_timeout_s});
+        add_job_routes(router_, jobs_, places_, readers_, policy_, {config_.job_timeout_s, config_.max_timeout_s});
         add_event_routes(router_, jobs_, places_);
-        add_trace_routes(router_, jobs_);
-        add_code_routes(router_, jobs_);
-        add_report_routes(router_, jobs_);
+        add_trace_routes(router_, jobs_, readers_);
+        add_code_routes(router_, jobs_, readers_);
+        add_report_routes(router_, jobs_, readers_);
         add_queue_routes(router_, jobs_);
         add_batch_routes(router_, batches_, jobs_, places_, batch_lane_, policy_,
                          {{config_.job_timeout_s, config_.max_timeout_s}, config_.max_body});
@@ -264,20 +268,24 @@ private:
         made.admit = [&router](http::Request& request) { return router.admit(request); };
         made.streams = [&router](const http::Request& head) { return router.streams(head); };
         made.handle = [&router](http::Request request) { return router.handle(std::move(request)); };
-        made.refuse = [this](int status, const std::string& detail, const std::string& from) {
-            return refusal(status, detail, from);
+        made.refuse = [this](int status, const std::string& detail, http::Request& request) {
+            return refusal(status, detail, request);
         };
         return made;
     }
 
-    http::Response refusal(int status, const std::string& detail, const std::string& from) {
+    http::Response refusal(int status, const std::string& detail, http::Request& request) {
+        if (request.request_id.empty()) gate_.name_refused(request);
         http::Answered answered;
         answered.method = "refused";
-        answered.client = from;
+        answered.client = request.client;
+        answered.request_id = request.request_id;
+        answered.traceparent = request.traceparent;
         answered.status = status;
         metrics_.count(answered);
         log_answer(answered);
         http::Response response = http::problem_response(status, detail);
+        for (const auto& [name, value] : request.answer_headers) response.set(name, value);
         http::add_common_headers(response);
         return response;
     }
@@ -290,6 +298,7 @@ private:
     SpareCores spare_cores_;
     JobService jobs_;
     Turns turns_;
+    Turns readers_;
     Places places_;
     Executor batch_lane_;
     Batches batches_;

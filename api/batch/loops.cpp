@@ -1,6 +1,7 @@
 #include "api/batch/loops.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "api/csv/columns/heading.h"
 #include "api/csv/table.h"
@@ -153,19 +154,69 @@ std::string Loops::request(std::string_view name, const std::array<double, 3>& p
 }
 
 std::optional<Problem> Loops::feed(long number, std::string_view line, std::vector<RawEntry>& entries) {
+    if (!open_.empty()) return gather(number, line, entries), std::nullopt;
     const std::string_view content = trimmed(line);
     if (content.empty() || is_comment(content)) return std::nullopt;
     if (!headed_) return read_headings(number, line);
-    if (sign_known_) return read_line(number, line, entries), std::nullopt;
-    held_.push_back({number, std::string(line)});
-    held_bytes_ += line.size();
-    if (held_.size() >= kLookedLines || held_bytes_ >= kLookedBytes) finish(entries);
+    if (stays_open(line))
+        gather(number, line, entries);
+    else
+        take({number, std::string(line)}, entries);
     return std::nullopt;
 }
 
+/// Whether a cell that begins with quotes goes on in the next line. Quotes within a cell are inches.
+bool Loops::stays_open(std::string_view text) const {
+    if (separator_ == ' ') return false;
+    bool quoted = false, begins = true;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const bool quotes = text[i] == '"';
+        if (quoted && quotes && i + 1 < text.size() && text[i + 1] == '"')
+            ++i;
+        else if (quoted || text[i] == separator_)
+            begins = !quoted, quoted = quoted && !quotes;
+        else if (text[i] != ' ')
+            quoted = begins && quotes, begins = false;
+    }
+    return quoted;
+}
+
+void Loops::gather(long number, std::string_view line, std::vector<RawEntry>& entries) {
+    constexpr std::size_t kMostLines = 20;
+    open_.push_back({number, std::string(line)});
+    Held row = open_.front();
+    for (std::size_t i = 1; i < open_.size(); ++i) row.text.append("\n").append(open_[i].text);
+    if (!stays_open(row.text)) {
+        open_.clear();
+        take(std::move(row), entries);
+    } else if (open_.size() >= kMostLines) {
+        give_up(entries);
+    }
+}
+
+/// The first of the lines is a row of its own, which cannot be read; the others are looked at anew.
+void Loops::give_up(std::vector<RawEntry>& entries) {
+    std::vector<Held> lines = std::exchange(open_, {});
+    lines.front().unclosed = true;
+    take(std::move(lines.front()), entries);
+    for (std::size_t i = 1; i < lines.size(); ++i) feed(lines[i].number, lines[i].text, entries);
+}
+
+void Loops::take(Held row, std::vector<RawEntry>& entries) {
+    if (sign_known_) return read_row(row, entries);
+    held_bytes_ += row.text.size();
+    held_.push_back(std::move(row));
+    if (held_.size() >= kLookedLines || held_bytes_ >= kLookedBytes) release(entries);
+}
+
 void Loops::finish(std::vector<RawEntry>& entries) {
+    while (!open_.empty()) give_up(entries);
+    release(entries);
+}
+
+void Loops::release(std::vector<RawEntry>& entries) {
     if (!sign_known_) find_sign();
-    for (const Held& held : held_) read_line(held.number, held.text, entries);
+    for (const Held& held : held_) read_row(held, entries);
     held_.clear();
 }
 
@@ -238,8 +289,7 @@ void Loops::find_sign() {
     DecimalSignFinder finder;
     for (const Held& held : held_) {
         split(held.text);
-        for (const Column column : {kGain, kLag, kDelay})
-            finder.look_at(cell(column), static_cast<std::size_t>(column));
+        for (const Column column : {kGain, kLag, kDelay}) finder.look_at(cell(column), column);
     }
     sign_ = finder.found();
     sign_known_ = true;
@@ -264,14 +314,21 @@ double Loops::read_number(std::string_view cell, const char* name, std::vector<F
     return 0;
 }
 
-void Loops::read_line(long number, std::string_view line, std::vector<RawEntry>& entries) {
+void Loops::read_row(const Held& row, std::vector<RawEntry>& entries) {
     constexpr const char* kTitle = "The line is no loop";
-    split(line);
+    split(row.text);
     if (is_blank(cells_)) return;
-    RawEntry entry{number, {}, {}, {}};
+    RawEntry entry{row.number, {}, {}, {}};
+    std::string name(cell(kName));
+    std::ranges::replace(name, '\n', ' ');
     std::size_t filled = cells_.size();
     while (filled > 0 && cells_[filled - 1].empty()) --filled;
-    if (filled > width_) {
+    if (row.unclosed) {
+        entry.fault =
+            not_valid(kTitle, {{"",
+                                "A cell begins with a quotation mark, and none ends it within 20 lines. Write "
+                                "\"...\" around the cell, and \"\" for a mark inside, or leave it out."}});
+    } else if (filled > width_) {
         entry.fault = not_valid(
             kTitle, {{"", "It has " + std::to_string(filled) + " cells, the headings are " + std::to_string(width_) +
                               ". Numbers with a decimal comma need ; or tab as separator, or quotes."}});
@@ -281,11 +338,11 @@ void Loops::read_line(long number, std::string_view line, std::vector<RawEntry>&
         for (const Column column : {kGain, kLag, kDelay})
             plant[column - kGain] = read_number(cell(column), kTitles[column], faults);
         if (faults.empty())
-            entry.text = request(cell(kName), plant);
+            entry.text = request(name, plant);
         else
             entry.fault = not_valid(kTitle, std::move(faults));
     }
-    if (entry.fault) entry.name = std::string(cell(kName));
+    if (entry.fault) entry.name = std::move(name);
     entries.push_back(std::move(entry));
 }
 

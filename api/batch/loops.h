@@ -25,8 +25,9 @@ public:
     /// What is wrong with the options, whatever the loops: 422, with the parameters' names as pointers.
     std::optional<Problem> check_options() const;
 
-    /// The next line as UTF-8, its line end apart. Requests are appended once the file's first lines have shown what .
-    /// and , mean in its numbers. 422 where the headings leave open which column is which.
+    /// The next line as UTF-8, its line end apart. A cell in quotes may go on over several lines. Requests are appended
+    /// once the file's first lines have shown what . and , mean in its numbers. 422 where the headings leave open which
+    /// column is which.
     std::optional<Problem> feed(long number, std::string_view line, std::vector<RawEntry>& entries);
     void finish(std::vector<RawEntry>& entries);
 
@@ -35,12 +36,18 @@ private:
     struct Held {
         long number;
         std::string text;
+        bool unclosed = false;  ///< a cell in quotes begins there and does not end soon
     };
 
     std::optional<Problem> read_headings(long number, std::string_view line);
     std::optional<Problem> find_columns(long number, const std::vector<std::string_view>& headings);
+    bool stays_open(std::string_view text) const;
+    void gather(long number, std::string_view line, std::vector<RawEntry>& entries);
+    void give_up(std::vector<RawEntry>& entries);
+    void take(Held row, std::vector<RawEntry>& entries);
+    void release(std::vector<RawEntry>& entries);
     void find_sign();
-    void read_line(long number, std::string_view line, std::vector<RawEntry>& entries);
+    void read_row(const Held& row, std::vector<RawEntry>& entries);
     double read_number(std::string_view cell, const char* name, std::vector<FieldError>& faults) const;
     std::string request(std::string_view name, const std::array<double, 3>& plant) const;
     std::string_view cell(Column column) const;
@@ -58,6 +65,7 @@ private:
     std::size_t width_ = 0;
     std::string time_unit_;
 
+    std::vector<Held> open_;  ///< lines of a row with a cell whose quotes have not ended
     std::vector<Held> held_;  ///< the first lines, until the sign is known
     std::size_t held_bytes_ = 0;
     bool sign_known_ = false;

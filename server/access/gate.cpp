@@ -71,7 +71,8 @@ Response preflight() {
     response.status = 204;
     return response.set("Access-Control-Allow-Methods", "GET, HEAD, POST, DELETE")
         .set("Access-Control-Allow-Headers",
-             "Authorization, Content-Type, Idempotency-Key, If-None-Match, Last-Event-ID, Prefer, Traceparent, "
+             "Authorization, Content-Type, Idempotency-Key, If-Match, If-None-Match, Last-Event-ID, Prefer, "
+             "Traceparent, "
              "X-Request-Id")
         .set("Access-Control-Max-Age", "600");
 }
@@ -92,6 +93,11 @@ std::optional<Response> Gate::admit(Request& request) {
     // Who tries keys is slowed down too, under his address.
     if (auto refusal = check_rate(request)) return refusal;
     return no_key;
+}
+
+void Gate::name_refused(Request& request) {
+    name(request);
+    allow_site(request);
 }
 
 void Gate::name(Request& request) {
@@ -120,12 +126,19 @@ std::optional<Response> Gate::check_host(const Request& request) const {
                             "start it with --allowed-host and that name.");
 }
 
-std::optional<Response> Gate::check_site(Request& request) const {
+/// True where a page of another site calls that may read the answers, which say so from now on.
+bool Gate::allow_site(Request& request) const {
     if (!settings_.sites.cors_origins.empty()) request.answer_headers.emplace_back("Vary", "Origin");
     const std::string_view origin = request.header("Origin");
-    if (!origin.empty() && sites_.is_allowed_site(origin)) {
-        request.answer_headers.emplace_back("Access-Control-Allow-Origin", origin);
-        request.answer_headers.emplace_back("Access-Control-Expose-Headers", kExposed);
+    if (origin.empty() || !sites_.is_allowed_site(origin)) return false;
+    request.answer_headers.emplace_back("Access-Control-Allow-Origin", origin);
+    request.answer_headers.emplace_back("Access-Control-Expose-Headers", kExposed);
+    return true;
+}
+
+std::optional<Response> Gate::check_site(Request& request) const {
+    const std::string_view origin = request.header("Origin");
+    if (allow_site(request)) {
         if (request.method == "OPTIONS" && request.has_header("Access-Control-Request-Method")) return preflight();
         return std::nullopt;
     }
@@ -134,9 +147,11 @@ std::optional<Response> Gate::check_site(Request& request) const {
     const std::string_view site = request.header("Sec-Fetch-Site");
     const bool crossing = changes(request) && (site == "cross-site" || site == "same-site");
     if (!foreign && !crossing) return std::nullopt;
-    return problem_response(403,
-                            "Pages of other sites may not use this service through a visitor's browser. "
-                            "--cors-origin allows a site.");
+    api::Problem problem = http::problem(403,
+                                         "Pages of other sites may not use this service through a visitor's browser. "
+                                         "--cors-origin allows a site.");
+    problem.type = "cross-site-request";
+    return problem_response(problem);
 }
 
 std::optional<Response> Gate::check_key(Request& request) {
@@ -150,6 +165,7 @@ std::optional<Response> Gate::check_key(Request& request) {
         request.client = "key:" + holder->name;
         request.owner = std::move(holder->name);
         request.admin = holder->admin;
+        request.admitted = [this, given = std::string(key)] { return keys_->holder_of(given).has_value(); };
         return std::nullopt;
     }
     Response response =

@@ -33,6 +33,9 @@ public:
     /// preflight of an allowed site is answered here too.
     std::optional<http::Response> admit(http::Request& request);
 
+    /// Fills in client, request_id and answer_headers of a request that was refused before it came here.
+    void name_refused(http::Request& request);
+
     /// Whether the file of keys can be used; true where no keys are asked for.
     bool ready() { return !keys_ || keys_->usable(); }
 
@@ -40,6 +43,7 @@ private:
     void name(http::Request& request);
     std::optional<http::Response> check_host(const http::Request& request) const;
     std::optional<http::Response> check_site(http::Request& request) const;
+    bool allow_site(http::Request& request) const;
     std::optional<http::Response> check_key(http::Request& request);
     std::optional<http::Response> check_rate(const http::Request& request);
 

@@ -65,7 +65,7 @@ KeyRing::KeyRing(const std::string& path, std::function<Clock::time_point()> now
 }
 
 WatchedFile::Meaning KeyRing::meaning() {
-    WatchedFile::Meaning made{"file of keys", "nobody is admitted", "key", {}, {}};
+    WatchedFile::Meaning made{"file of keys", "nobody is admitted", "key", "--keys", {}, {}};
     made.take = [this](std::string_view text) {
         holders_ = holders_by_digest(text);
         return holders_.size();

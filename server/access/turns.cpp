@@ -11,10 +11,8 @@ constexpr std::chrono::milliseconds kLook{100};  // for clients that have gone
 
 Turns::Wait Turns::take(const std::string& client, Clock::time_point deadline, const std::function<bool()>& left) {
     std::unique_lock lock(mutex_);
-    if (free_ > 0 && waiting_ == 0) {
-        free_--;
-        return Wait::granted;
-    }
+    // Who waits may not begin, or would have: nobody is overtaken whose turn it was.
+    if (may_begin(client)) return begin(client), Wait::granted;
     const auto own = queues_.find(client);
     if (waiting_ >= most_waiting_ || (own != queues_.end() && 2 * own->second.size() >= most_waiting_))
         return Wait::full;
@@ -31,9 +29,11 @@ Turns::Wait Turns::take(const std::string& client, Clock::time_point deadline, c
     return Wait::granted;
 }
 
-void Turns::give_back() {
+void Turns::give_back(const std::string& client) {
     const std::lock_guard lock(mutex_);
-    free_++;
+    under_way_--;
+    const auto held = held_.find(client);
+    if (--held->second == 0) held_.erase(held);
     grant();
 }
 
@@ -42,11 +42,22 @@ std::size_t Turns::waiting() const {
     return waiting_;
 }
 
-/// Gives what is free to the client whose turn it is.
+bool Turns::may_begin(const std::string& client) const {
+    return under_way_ < at_once_ || (under_way_ < at_most_ && !held_.contains(client));
+}
+
+void Turns::begin(const std::string& client) {
+    under_way_++;
+    held_[client]++;
+}
+
+/// Gives what is free to the clients whose turn it is.
 void Turns::grant() {
-    while (free_ > 0 && !order_.empty()) {
-        const std::string client = std::move(order_.front());
-        order_.pop_front();
+    for (;;) {
+        const auto next_client = std::ranges::find_if(order_, [this](const auto& each) { return may_begin(each); });
+        if (next_client == order_.end()) return;
+        const std::string client = std::move(*next_client);
+        order_.erase(next_client);
         const auto queue = queues_.find(client);
         Ticket& next = *queue->second.front();
         queue->second.pop_front();
@@ -55,7 +66,7 @@ void Turns::grant() {
         else
             order_.push_back(client);
         waiting_--;
-        free_--;
+        begin(client);
         next.granted = true;
         next.called.notify_one();
     }

@@ -22,6 +22,8 @@ constexpr std::chrono::seconds kLookInterval{1};
 
 std::optional<std::string> text_of_lines(const std::string& path) {
     constexpr std::size_t kLongest = 16 << 20;
+    std::error_code error;
+    if (std::filesystem::is_directory(path, error)) return std::nullopt;
     std::ifstream file(path, std::ios::binary);
     if (!file) return std::nullopt;
     std::string text;
@@ -45,9 +47,11 @@ std::vector<NamedLine> named_lines(std::string_view text) {
     std::vector<NamedLine> lines;
     for (std::size_t number = 1; !text.empty(); number++) {
         const std::size_t end = text.find('\n');
-        const std::string_view line = http::trim(text.substr(0, end), kBlanks);
+        const std::string_view whole = text.substr(0, end);
         text = end == std::string_view::npos ? std::string_view{} : text.substr(end + 1);
-        if (line.empty() || line.front() == '#') continue;
+        // Neither a name nor a value has this sign.
+        const std::string_view line = http::trim(whole.substr(0, whole.find('#')), kBlanks);
+        if (line.empty()) continue;
         const std::size_t blank = line.find_first_of(" \t");
         const std::string_view rest =
             blank == std::string_view::npos ? std::string_view{} : http::trim(line.substr(blank), kBlanks);
@@ -79,7 +83,9 @@ WatchedFile::WatchedFile(std::string path, Meaning meaning, std::function<Clock:
     };
     stamp_ = stamp_of(path_);
     const auto text = text_of_lines(path_);
-    if (!text) refuse("it cannot be read");
+    if (std::error_code none; std::filesystem::is_directory(path_, none))
+        refuse("it is a folder; " + meaning_.option + " names a file");
+    if (!text) refuse("it cannot be read; " + meaning_.option + " names it");
     try {
         meaning_.take(*text);
     } catch (const std::invalid_argument& error) {

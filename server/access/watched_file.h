@@ -28,7 +28,7 @@ struct NamedLine {
 /// The text of such a file; nothing where it cannot be read or is longer than 16 MiB.
 std::optional<std::string> text_of_lines(const std::string& path);
 
-/// The lines of such a file but for blank ones and those that start with #. What is no name is for the caller to see.
+/// The lines of such a file but for blank ones and, from a # on, comments. What is no name is for the caller to see.
 std::vector<NamedLine> named_lines(std::string_view text);
 
 /// Appends the line in one write, so that who reads meanwhile sees it or not. A new file is readable by its owner
@@ -44,6 +44,7 @@ public:
         std::string what;                                        ///< for sentences: "file of keys"
         std::string consequence;                                 ///< of holding nothing: "nobody is admitted"
         std::string kind;                                        ///< of what stands in its lines: "key"
+        std::string option;                                      ///< that names it: "--keys"
         std::function<std::size_t(std::string_view text)> take;  ///< how many; throws std::invalid_argument
         std::function<void()> forget;
     };

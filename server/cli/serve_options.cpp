@@ -1,4 +1,7 @@
 // `tunewright serve` with its options.
+#include <fmt/format.h>
+
+#include <charconv>
 #include <stdexcept>
 #include <utility>
 
@@ -27,6 +30,17 @@ void quantity(CLI::App& app, const std::string& name, T& value, T (*read)(const 
             throw CLI::ValidationError("--" + name, "\"" + text + "\" is out of range");
     };
     app.add_option_function<std::string>("--" + name, take, help)->envname(variable_of(name))->default_str(shown);
+}
+
+/// CLI::Range takes what is no number, as nan is neither below nor above.
+CLI::Validator number_within(double least, double most) {
+    const auto judge = [least, most](const std::string& text) -> std::string {
+        double value = 0;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+        if (error == std::errc{} && end == text.data() + text.size() && value >= least && value <= most) return {};
+        return fmt::format("\"{}\" must be a number from {:g} to {:g}", text, least, most);
+    };
+    return {judge, fmt::format("{:g} to {:g}", least, most)};
 }
 
 void duration(CLI::App& app, const std::string& name, double& seconds, const std::string& shown,
@@ -100,11 +114,12 @@ void add_port_options(CLI::App& app, Config& config) {
     option(app, "keys", config.keys, "File of keys, made by `tunewright key`");
     flag(app, "allow-anonymous", config.allow_anonymous, "Listen beyond loopback without keys");
     option(app, "rate-limit", config.rate_limit, "Calls a second that one client may make; 0: no limit")
-        ->check(CLI::Range(0.0, 1e6))
+        ->check(number_within(0, 1e6))
         ->capture_default_str();
     option(app, "allowed-host", config.allowed_hosts,
            "A name by which it is called, beside its address; may be repeated")
-        ->type_name("NAME");
+        ->type_name("NAME")
+        ->delimiter(',');
     option(app, "cors-origin", config.cors_origins, "Another site whose pages may call; may be repeated")
         ->delimiter(',');
     flag(app, "behind-proxy", config.behind_proxy, "A client is the last address of X-Forwarded-For");

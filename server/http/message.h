@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -23,8 +24,11 @@ public:
     /// Returns when the client or its socket has taken the piece; false where the client has gone, or takes nothing for
     /// too long: nothing more is sent then.
     virtual bool write(std::string_view piece) = 0;
-    /// True where the client has gone. The end of what it sends counts as that.
+    /// True where the client has gone.
     virtual bool gone() const = 0;
+    /// So many bytes are about to be written: they count as held for the client until the next call. Waits where
+    /// clients hold too much, until some have given way.
+    virtual void hold(std::size_t bytes) = 0;
 };
 
 /// Writes a whole body; false where it is broken off, which the client sees, as the body then lacks its end.
@@ -44,7 +48,8 @@ struct Request {
     /// body does not come to its end (too large, malformed, too slow, or the client has gone): the answer is then the
     /// transport's.
     std::function<bool(const BodyTaker&)> read_body;
-    std::function<bool()> left;  ///< true where the client has gone and nobody waits for the answer; may be empty
+    std::function<bool()> left;      ///< true where the client has gone and nobody waits for the answer; may be empty
+    std::function<bool()> admitted;  ///< false where the caller's key is known no longer; may be empty
     std::string remote_addr;
     std::string client;  ///< whom it counts for where clients share something: the key's name, else the address
     std::optional<std::string> owner;  ///< name of the API key; nothing where none is asked for: everybody sees all
@@ -72,8 +77,9 @@ struct Response {
     int status = 200;
     std::vector<std::pair<std::string, std::string>> headers;  ///< one whose value has a control character is left out
     std::string body;
-    BodyProducer stream;  ///< instead of `body`: sent as it is written
-    bool close = false;   ///< close the connection after this answer
+    BodyProducer stream;         ///< instead of `body`: sent as it is written
+    bool close = false;          ///< close the connection after this answer
+    std::shared_ptr<void> turn;  ///< to make it; goes when the body counts among those that clients have not taken
 
     Response& set(std::string name, std::string value);
 };

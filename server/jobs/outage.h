@@ -1,8 +1,9 @@
 // Notes in the log when the store cannot be used any more and when it can be used again: one line each, however many
-// calls fail.
+// calls fail, and though some work in between, as they do on a full disk.
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <string_view>
 
 #include "server/log.h"
@@ -15,17 +16,21 @@ class Outage {
 public:
     /// A call has failed while doing `what`.
     void failed(std::string_view what, const StoreFault& fault) {
+        failed_at_ = Clock::now();
         if (!down_.exchange(true)) log_error("the store cannot be used, " + std::string(what) + ": " + fault.detail);
     }
     /// A call has been done.
     void worked() {
-        if (down_.load(std::memory_order_relaxed) && down_.exchange(false)) log_info("the store can be used again");
+        if (!down_.load(std::memory_order_relaxed) || Clock::now() - failed_at_.load() < kQuiet) return;
+        if (down_.exchange(false)) log_info("the store can be used again");
     }
-    /// Whether the last call that was noted has failed.
-    bool down() const { return down_; }
 
 private:
+    using Clock = std::chrono::steady_clock;
+    static constexpr std::chrono::seconds kQuiet{5};
+
     std::atomic<bool> down_ = false;
+    std::atomic<Clock::time_point> failed_at_{};
 };
 
 }  // namespace tunewright::server

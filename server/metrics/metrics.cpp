@@ -128,7 +128,7 @@ struct Metrics::Families {
     Gauge& workers = gauge("tunewright_workers", "Threads that compute jobs");
     Gauge& connections = gauge("tunewright_http_connections", "Open connections of clients");
     Gauge& body_bytes = gauge("tunewright_http_body_bytes", "Bytes of requests that are not answered yet");
-    Gauge& unsent_bytes = gauge("tunewright_http_unsent_bytes", "Bytes of answers that clients do not take");
+    Gauge& unsent_bytes = gauge("tunewright_http_unsent_bytes", "Bytes of answers that clients have not taken");
     Gauge& streams = gauge("tunewright_event_streams", "Followers of jobs by server-sent events");
     Gauge& synchronous = gauge("tunewright_synchronous_waiting", "Synchronous calls that wait to be computed");
     Gauge& batch_tasks = gauge("tunewright_batch_tasks_waiting", "Pieces of batches that wait for a thread");

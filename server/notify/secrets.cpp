@@ -24,7 +24,7 @@ Secrets::Secrets(const std::string& path, std::function<Clock::time_point()> now
 }
 
 WatchedFile::Meaning Secrets::meaning() {
-    WatchedFile::Meaning made{"file of secrets", "nobody is told of an end", "secret", {}, {}};
+    WatchedFile::Meaning made{"file of secrets", "nobody is told of an end", "secret", "--notify-secrets", {}, {}};
     made.take = [this](std::string_view text) {
         std::vector<std::pair<std::string, std::string>> lines;
         for (const NamedLine& line : named_lines(text)) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <thread>
+#include <utility>
 
 #include "api/batch/rows.h"
 #include "server/jobs/await.h"
@@ -10,7 +11,7 @@
 namespace tunewright::server {
 namespace {
 
-constexpr std::size_t kMaxRows = 200, kFirstRows = 20;
+constexpr std::size_t kMaxRows = 200, kFirstRows = 20;  // the store gives fewer where they are long
 constexpr std::size_t kPageBytes = 512 * 1024;
 constexpr std::chrono::seconds kPatience{10};  // for one job; then the client and the row are looked at again
 constexpr std::chrono::milliseconds kPause{500};
@@ -27,7 +28,9 @@ public:
             std::string text;
             Next next = Next::broken;
             lane.run([&] { next = page(text); });
-            if (!out_.write(text) || next == Next::broken) return false;
+            const bool taken = out_.write(text);
+            out_.hold(0);
+            if (!taken || next == Next::broken) return false;
             if (next == Next::end) return true;
             if (next == Next::wait && !wait()) return false;
         }
@@ -36,9 +39,12 @@ public:
 private:
     enum class Next { page, wait, end, broken };
 
+    /// On the lane, which is held until there is room for the page: no others are made meanwhile.
     Next page(std::string& text) {
         try {
-            return read_page(text);
+            const Next next = read_page(text);
+            out_.hold(text.capacity());
+            return next;
         } catch (const StoreError& error) {
             log_error(std::string("results of a batch are broken off: ") + error.what());
             return Next::broken;
@@ -50,28 +56,37 @@ private:
         const std::vector<BatchRow> rows = batches_.rows(question_.batch, next_, most);
         std::size_t taken = 0;
         for (; taken < rows.size(); ++taken) {
+            // A batch that is being deleted loses its first rows first.
+            if (rows[taken].index != next_) return deleted();
             if (question_.follow && !has_ended(rows[taken].status)) break;
             append(rows[taken], text);
+            next_++;
         }
-        if (taken > 0) {
-            next_ = rows[taken - 1].index + 1;
-            rows_ = std::clamp<std::size_t>(kPageBytes * taken / (text.size() + 1), 1, kMaxRows);
-        }
+        if (taken > 0) rows_ = std::clamp<std::size_t>(kPageBytes * taken / (text.size() + 1), 1, kMaxRows);
         awaited_ = taken < rows.size() ? rows[taken].id : "";
         if (taken < rows.size()) return Next::wait;
-        if (rows.size() == most) return Next::page;
-        return question_.follow && !all_came() ? Next::wait : Next::end;
+        return !rows.empty() && rows.size() == most ? Next::page : after_last(!rows.empty());
     }
 
-    bool all_came() {
+    /// The store has given fewer rows than were asked for: they were long, or there are no more.
+    Next after_last(bool some) {
         const auto batch = batches_.find(question_.batch);
-        return !batch || (batch->sealed && next_ >= static_cast<std::int64_t>(batch->total));
+        if (!batch) return deleted();
+        if (next_ < static_cast<std::int64_t>(batch->total))
+            // Entries may have come between the two looks; not seen at the second one either, they are gone.
+            return std::exchange(missed_, !some) && !some ? deleted() : Next::page;
+        return question_.follow && !batch->sealed ? Next::wait : Next::end;
+    }
+
+    Next deleted() const {
+        log_info("results of the batch " + question_.batch + " are broken off: it was deleted meanwhile");
+        return Next::broken;
     }
 
     /// For the job before whose row nothing may be sent, or for entries that have not come. False where the client has
     /// gone, or the service stops and rows are missing: the client is to see that.
     bool wait() {
-        if (jobs_.draining() || out_.gone()) return false;
+        if (jobs_.draining() || out_.gone() || (question_.admitted && !question_.admitted())) return false;
         if (awaited_.empty())
             std::this_thread::sleep_for(kPause);
         else
@@ -92,6 +107,7 @@ private:
     http::BodyWriter& out_;
     std::int64_t next_;
     std::size_t rows_ = kFirstRows;
+    bool missed_ = false;  ///< the last look found no row where the batch has some
     std::string awaited_;  ///< the job that is waited for
 };
 

@@ -215,6 +215,7 @@ std::optional<Response> read_results_question(const http::Request& request, Resu
 Response get_results(Batches& batches, JobService& jobs, Places& places, Executor& lane, const Call& call) {
     ResultsQuestion question;
     question.batch = call.path.at("id");
+    question.admitted = call.request.admitted;
     if (auto refusal = read_results_question(call.request, question)) return *std::move(refusal);
     if (auto refusal = refuse_stranger(batches, call)) return *std::move(refusal);
     Response response;

@@ -35,9 +35,10 @@ Response code_of(const JobRecord& job, const Call& call, const std::function<Wri
     return response.set("Content-Disposition", "attachment; filename=\"" + code.file_name + "\"");
 }
 
-Response get_code(JobService& jobs, const Call& call, const std::function<Written(const JobRecord&)>& write) {
+Response get_code(JobService& jobs, Turns& readers, const Call& call,
+                  const std::function<Written(const JobRecord&)>& write) {
     const std::string& id = call.path.at("id");
-    return guarded([&] {
+    return in_turn(readers, call.request, [&] {
         const std::optional<JobView> view = jobs.find(id);
         if (!view || !may_see(call.request, view->job)) return no_such_job(id);
         return code_of(view->job, call, write);
@@ -46,14 +47,14 @@ Response get_code(JobService& jobs, const Call& call, const std::function<Writte
 
 }  // namespace
 
-void add_code_routes(http::Router& router, JobService& jobs) {
+void add_code_routes(http::Router& router, JobService& jobs, Turns& readers) {
     router.add("GET", "/v1/jobs/{id}/controllers/{index}/code", [&](const Call& call) {
-        return get_code(jobs, call, [&](const JobRecord& job) {
+        return get_code(jobs, readers, call, [&](const JobRecord& job) {
             return api::controller_code({job.result, job.request}, call.path.at("index"), words_of(call));
         });
     });
     router.add("GET", "/v1/jobs/{id}/schedule/code", [&](const Call& call) {
-        return get_code(jobs, call, [&](const JobRecord& job) {
+        return get_code(jobs, readers, call, [&](const JobRecord& job) {
             return api::schedule_code({job.result, job.request}, words_of(call));
         });
     });

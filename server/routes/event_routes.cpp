@@ -1,5 +1,7 @@
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -60,8 +62,8 @@ private:
 /// One client that follows one job, for as long as it is there.
 class EventStream {
 public:
-    EventStream(JobService& jobs, std::string job, std::string known)
-        : jobs_(jobs), job_(std::move(job)), known_(std::move(known)) {}
+    EventStream(JobService& jobs, std::string job, std::string known, std::function<bool()> admitted)
+        : jobs_(jobs), job_(std::move(job)), known_(std::move(known)), admitted_(std::move(admitted)) {}
 
     void send(http::BodyWriter& out) {
         const auto news = std::make_shared<News>();
@@ -74,13 +76,21 @@ public:
 
 private:
     bool goes_on(http::BodyWriter& out, const std::optional<JobNews>& news, int& silent) {
-        if (out.gone()) return false;
+        if (out.gone() || !is_admitted()) return false;
         silent = news ? 0 : silent + 1;
         // Proxies close connections on which nothing comes.
         if (!news) return silent % kHeartbeat != 0 || out.write(": still here\n\n");
         if (news->kind == JobNews::Kind::present) return send_progress(out, *news->view);
         if (news->kind == JobNews::Kind::ended) out.write(event("done", "done", job_news_json(*news->view)));
         return false;
+    }
+
+    /// Asked once a second: a key may be taken away while its owner follows.
+    bool is_admitted() {
+        const auto now = std::chrono::steady_clock::now();
+        if (!admitted_ || now - asked_ < kLook) return true;
+        asked_ = now;
+        return admitted_();
     }
 
     bool send_progress(http::BodyWriter& out, const JobView& view) {
@@ -95,6 +105,8 @@ private:
     JobService& jobs_;
     std::string job_;
     std::string known_;  ///< what the client has
+    std::function<bool()> admitted_;
+    std::chrono::steady_clock::time_point asked_ = std::chrono::steady_clock::now();
 };
 
 /// What forbids to follow the job; 204 where the client has seen its end, which stops its trying again.
@@ -104,11 +116,13 @@ std::optional<Response> refuse_events(JobService& jobs, const Call& call) {
     const std::string& id = call.path.at("id");
     Response found = guarded([&] {
         const std::optional<JobState> state = jobs.state(id);
-        return state && may_see(call.request, *state) ? Response() : no_such_job(id);
+        if (!state || !may_see(call.request, *state)) return no_such_job(id);
+        Response answer;
+        // A job that has been queued again since then has another end to come.
+        if (call.request.header("Last-Event-ID") == "done" && has_ended(state->status)) answer.status = 204;
+        return answer;
     });
-    if (found.status != 200) return found;
-    if (call.request.header("Last-Event-ID") != "done") return std::nullopt;
-    found.status = 204;
+    if (found.status == 200) return std::nullopt;
     return found;
 }
 
@@ -121,9 +135,9 @@ Response follow_job(JobService& jobs, Places& places, const Call& call) {
     response.set("Cache-Control", "no-store");
     // nginx would gather events before it passes them on.
     response.set("X-Accel-Buffering", "no");
-    response.stream = [&jobs, place, id = call.path.at("id"),
-                       known = std::string(call.request.header("Last-Event-ID"))](http::BodyWriter& out) {
-        EventStream(jobs, id, known).send(out);
+    response.stream = [&jobs, place, id = call.path.at("id"), known = std::string(call.request.header("Last-Event-ID")),
+                       admitted = call.request.admitted](http::BodyWriter& out) {
+        EventStream(jobs, id, known, admitted).send(out);
         return true;
     };
     return response;

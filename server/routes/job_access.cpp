@@ -1,6 +1,10 @@
 #include "server/routes/job_access.h"
 
+#include <chrono>
+#include <memory>
+
 #include "server/http/app/problems.h"
+#include "server/routes/request_checks.h"
 
 namespace tunewright::server {
 
@@ -20,6 +24,21 @@ Response store_failed(const StoreFault& fault) {
                                 "The store was lost while it made this durable: whether it is kept is not known. Look "
                                 "it up, or send it again with the same Idempotency-Key, which makes it happen once.");
     return problem_response(503, "The store of the service cannot be used just now; nothing was changed. Try again.");
+}
+
+Response in_turn(Turns& readers, const http::Request& request, const std::function<Response()>& work) {
+    constexpr std::chrono::seconds longest{10};
+    switch (readers.take(request.client, Turns::Clock::now() + longest, request.left)) {
+        case Turns::Wait::full:
+        case Turns::Wait::late: return problem_response(503, "Too many jobs are being read. Try again in a moment.");
+        case Turns::Wait::left: return client_gone();
+        case Turns::Wait::granted: break;
+    }
+    const std::shared_ptr<void> turn(nullptr,
+                                     [&readers, client = request.client](void*) { readers.give_back(client); });
+    Response response = guarded(work);
+    response.turn = turn;
+    return response;
 }
 
 std::optional<std::string> visible_owner(const http::Request& request) {

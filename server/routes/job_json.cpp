@@ -19,7 +19,7 @@ std::string links(const JobSummary& job) {
     JsonObject object;
     object.text("self", self);
     if (!has_ended(job.status)) object.text("cancel", self + "/cancel");
-    if (transition(job.status, JobEvent::requeue)) object.text("requeue", self + "/requeue");
+    if (transition(job.status, JobEvent::requeue) && !job.settled) object.text("requeue", self + "/requeue");
     if (!job.batch.empty()) object.text("batch", "/v1/batches/" + job.batch);
     return std::move(object).str();
 }

@@ -17,8 +17,9 @@ using http::Call;
 using http::problem_response;
 using http::Response;
 
-Response job_response(JobService& jobs, const http::Request& request, const std::string& id, int status) {
-    return guarded([&] {
+Response job_response(JobService& jobs, Turns& readers, const http::Request& request, const std::string& id,
+                      int status) {
+    return in_turn(readers, request, [&] {
         const std::optional<JobView> view = jobs.find(id);
         if (!view || !may_see(request, view->job)) return no_such_job(id);
         return http::json_response(job_json(*view), status);
@@ -57,22 +58,24 @@ Response waited(const JobView& view, std::optional<std::chrono::seconds> wait) {
     return response.set("Location", "/v1/jobs/" + view.job.id);
 }
 
-Response waited(JobService& jobs, const std::string& id, std::optional<std::chrono::seconds> wait) {
-    return guarded([&] {
+Response waited(JobService& jobs, Turns& readers, const http::Request& request, const std::string& id,
+                std::optional<std::chrono::seconds> wait) {
+    return in_turn(readers, request, [&] {
         const std::optional<JobView> view = jobs.find(id);
         return view ? waited(*view, wait) : no_such_job(id);
     });
 }
 
 /// What becomes of a job that is there: at once, or when it has ended or the wait is over.
-Response after_wait(JobService& jobs, const std::string& id, std::chrono::seconds wait) {
-    if (wait.count() == 0) return waited(jobs, id, std::nullopt);
+Response after_wait(JobService& jobs, Turns& readers, const http::Request& request, const std::string& id,
+                    std::chrono::seconds wait) {
+    if (wait.count() == 0) return waited(jobs, readers, request, id, std::nullopt);
     try {
         await_end([&](const std::function<void()>& ended) { jobs.wait(id, wait, [ended](const auto&) { ended(); }); });
     } catch (const StoreError& error) {
         return store_failed({error.kind, error.what()});
     }
-    return waited(jobs, id, wait);
+    return waited(jobs, readers, request, id, wait);
 }
 
 /// What came of an order: the job as it was accepted and, where it was waited for and ended here, as it ended.
@@ -98,7 +101,7 @@ Submitted submit(JobService& jobs, Order order) {
     return std::move(*made);
 }
 
-Response post_job(JobService& jobs, Places& places, NotifyPolicy& policy, const api::JobLimits& limits,
+Response post_job(JobService& jobs, Places& places, Turns& readers, NotifyPolicy& policy, const api::JobLimits& limits,
                   const Call& call) {
     if (auto refusal = refuse_call(call.request)) return *std::move(refusal);
     const std::string key(call.request.header("Idempotency-Key"));
@@ -120,10 +123,11 @@ Response post_job(JobService& jobs, Places& places, NotifyPolicy& policy, const 
     if (wait.count() > 0 && !(place = places.take(call.request.client))) wait = {};
     order.wait = wait;
     const auto [submission, ended] = submit(jobs, std::move(order));
-    if (submission.kind == Submission::Kind::existing) return after_wait(jobs, submission.job.id, wait);
+    if (submission.kind == Submission::Kind::existing)
+        return after_wait(jobs, readers, call.request, submission.job.id, wait);
     if (submission.kind != Submission::Kind::created || wait.count() == 0) return submitted(jobs, submission);
     if (ended) return waited(JobView{*ended, std::nullopt}, wait);
-    return waited(jobs, submission.job.id, wait);
+    return waited(jobs, readers, call.request, submission.job.id, wait);
 }
 
 /// Of a job that has ended nothing changes any more, so that its tag needs no look at its result.
@@ -144,10 +148,10 @@ std::optional<Response> unchanged(JobService& jobs, const Call& call) {
     return response;
 }
 
-Response get_job(JobService& jobs, const Call& call) {
+Response get_job(JobService& jobs, Turns& readers, const Call& call) {
     if (auto refusal = refuse_form(call.request)) return *std::move(refusal);
     const std::string& id = call.path.at("id");
-    Response response = guarded([&] {
+    Response response = in_turn(readers, call.request, [&] {
         if (auto same = unchanged(jobs, call)) return *std::move(same);
         const std::optional<JobView> view = jobs.find(id);
         if (!view || !may_see(call.request, view->job)) return no_such_job(id);
@@ -200,16 +204,16 @@ Response list_jobs(JobService& jobs, const Call& call) {
     return guarded([&] { return http::json_response(job_page_json(jobs.list(query), query, call.request.admin)); });
 }
 
-Response cancel_job(JobService& jobs, const Call& call) {
+Response cancel_job(JobService& jobs, Turns& readers, const Call& call) {
     if (auto refusal = refuse_call(call.request)) return *std::move(refusal);
     if (auto refusal = refuse_stranger(jobs, call)) return *std::move(refusal);
     const std::string& id = call.path.at("id");
     const auto outcome = await<Outcome<CancelEffect>>([&](const Done<CancelEffect>& done) { jobs.cancel(id, done); });
     if (const auto* fault = std::get_if<StoreFault>(&outcome)) return store_failed(*fault);
-    return job_response(jobs, call.request, id, 202);
+    return job_response(jobs, readers, call.request, id, 202);
 }
 
-Response requeue_job(JobService& jobs, const Call& call) {
+Response requeue_job(JobService& jobs, Turns& readers, const Call& call) {
     if (auto refusal = refuse_call(call.request)) return *std::move(refusal);
     if (auto refusal = refuse_stranger(jobs, call)) return *std::move(refusal);
     const std::string& id = call.path.at("id");
@@ -226,13 +230,31 @@ Response requeue_job(JobService& jobs, const Call& call) {
             return problem_response(409, "The batch of this job was cancelled as a whole. Post its request anew.");
         case RequeueEffect::requeued: break;
     }
-    return job_response(jobs, call.request, id, 202);
+    return job_response(jobs, readers, call.request, id, 202);
+}
+
+/// 412 where If-Match names another state of the job than that which it ended with.
+std::optional<Response> refuse_other_state(JobService& jobs, const Call& call) {
+    if (!call.request.has_header("If-Match")) return std::nullopt;
+    const std::string& id = call.path.at("id");
+    Response found = guarded([&] {
+        const std::optional<JobState> state = jobs.state(id);
+        if (!state) return no_such_job(id);
+        // One that has not ended is not deleted whatever its tag.
+        if (!has_ended(state->status) || http::matches_entity_tag(call.request, entity_tag_of(*state, "")))
+            return Response();
+        return problem_response(412,
+                                "The job has changed since the answer whose ETag is in If-Match. Look at it again.");
+    });
+    if (found.status == 200) return std::nullopt;
+    return found;
 }
 
 Response delete_job(JobService& jobs, const Call& call) {
     if (auto refusal = refuse_call(call.request)) return *std::move(refusal);
     if (auto refusal = refuse_stranger(jobs, call)) return *std::move(refusal);
     const std::string& id = call.path.at("id");
+    if (auto refusal = refuse_other_state(jobs, call)) return *std::move(refusal);
     const auto outcome = await<Outcome<RemoveEffect>>([&](const Done<RemoveEffect>& done) { jobs.remove(id, done); });
     if (const auto* fault = std::get_if<StoreFault>(&outcome)) return store_failed(*fault);
     Response response;
@@ -250,16 +272,16 @@ Response delete_job(JobService& jobs, const Call& call) {
 
 }  // namespace
 
-void add_job_routes(http::Router& router, JobService& jobs, Places& places, NotifyPolicy& policy,
+void add_job_routes(http::Router& router, JobService& jobs, Places& places, Turns& readers, NotifyPolicy& policy,
                     const api::JobLimits& limits) {
-    router.add("POST", "/v1/jobs", [&jobs, &places, &policy, limits](const Call& call) {
-        return post_job(jobs, places, policy, limits, call);
+    router.add("POST", "/v1/jobs", [&jobs, &places, &readers, &policy, limits](const Call& call) {
+        return post_job(jobs, places, readers, policy, limits, call);
     });
     router.add("GET", "/v1/jobs", [&](const Call& call) { return list_jobs(jobs, call); });
-    router.add("GET", "/v1/jobs/{id}", [&](const Call& call) { return get_job(jobs, call); });
+    router.add("GET", "/v1/jobs/{id}", [&](const Call& call) { return get_job(jobs, readers, call); });
     router.add("DELETE", "/v1/jobs/{id}", [&](const Call& call) { return delete_job(jobs, call); });
-    router.add("POST", "/v1/jobs/{id}/cancel", [&](const Call& call) { return cancel_job(jobs, call); });
-    router.add("POST", "/v1/jobs/{id}/requeue", [&](const Call& call) { return requeue_job(jobs, call); });
+    router.add("POST", "/v1/jobs/{id}/cancel", [&](const Call& call) { return cancel_job(jobs, readers, call); });
+    router.add("POST", "/v1/jobs/{id}/requeue", [&](const Call& call) { return requeue_job(jobs, readers, call); });
 }
 
 }  // namespace tunewright::server

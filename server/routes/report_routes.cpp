@@ -52,13 +52,13 @@ Response report_of(const JobRecord& job, const Call& call, const std::string& co
     return response.set("Content-Security-Policy", api::report_policy());
 }
 
-Response get_report(JobService& jobs, const Call& call) {
+Response get_report(JobService& jobs, Turns& readers, const Call& call) {
     if (!http::accepts(call.request, "text/html"))
         return problem_response(406, "The answer is text/html, which the Accept field does not allow.");
     std::string controller;
     if (auto refusal = read_controller(call.request, controller)) return *std::move(refusal);
     const std::string& id = call.path.at("id");
-    return guarded([&] {
+    return in_turn(readers, call.request, [&] {
         const std::optional<JobView> view = jobs.find(id);
         if (!view || !may_see(call.request, view->job)) return no_such_job(id);
         return report_of(view->job, call, controller);
@@ -67,8 +67,8 @@ Response get_report(JobService& jobs, const Call& call) {
 
 }  // namespace
 
-void add_report_routes(http::Router& router, JobService& jobs) {
-    router.add("GET", "/v1/jobs/{id}/report.html", [&](const Call& call) { return get_report(jobs, call); });
+void add_report_routes(http::Router& router, JobService& jobs, Turns& readers) {
+    router.add("GET", "/v1/jobs/{id}/report.html", [&](const Call& call) { return get_report(jobs, readers, call); });
 }
 
 }  // namespace tunewright::server

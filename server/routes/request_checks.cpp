@@ -32,6 +32,12 @@ std::optional<http::Response> refuse_key(const std::string& key) {
                                            " characters; at most " + std::to_string(kMaxKeyLength) + " are accepted.");
 }
 
+http::Response client_gone() {
+    http::Response response = http::problem_response(499, "The client closed its connection before the answer.");
+    response.close = true;
+    return response;
+}
+
 http::Response response_of(api::Answer answer) {
     http::Response response;
     response.status = answer.status;

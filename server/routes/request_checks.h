@@ -21,6 +21,9 @@ std::optional<http::Response> refuse_form(const http::Request& request);
 /// 422 for an Idempotency-Key that is too long.
 std::optional<http::Response> refuse_key(const std::string& key);
 
+/// For the log and the counts: nobody is there to read it. 499, as others call it.
+http::Response client_gone();
+
 /// What the facade answers, as JSON or as a problem.
 http::Response response_of(api::Answer answer);
 

@@ -19,21 +19,21 @@
 namespace tunewright::server {
 
 /// /v1/jobs and what is below it. Who waits for a job takes one of `places`; whom a job may tell of its end, `policy`
-/// says.
-void add_job_routes(http::Router& router, JobService& jobs, Places& places, NotifyPolicy& policy,
+/// says. Here and below, what answers with a job as a whole takes one of the turns of `readers`.
+void add_job_routes(http::Router& router, JobService& jobs, Places& places, Turns& readers, NotifyPolicy& policy,
                     const api::JobLimits& limits);
 
 /// /v1/jobs/{id}/events: progress as server-sent events.
 void add_event_routes(http::Router& router, JobService& jobs, Places& places);
 
 /// /v1/jobs/{id}/result.csv
-void add_trace_routes(http::Router& router, JobService& jobs);
+void add_trace_routes(http::Router& router, JobService& jobs, Turns& readers);
 
 /// /v1/jobs/{id}/controllers/{index}/code
-void add_code_routes(http::Router& router, JobService& jobs);
+void add_code_routes(http::Router& router, JobService& jobs, Turns& readers);
 
 /// /v1/jobs/{id}/report.html
-void add_report_routes(http::Router& router, JobService& jobs);
+void add_report_routes(http::Router& router, JobService& jobs, Turns& readers);
 
 /// /v1/queue and what is below it, for whoever runs the service.
 void add_queue_routes(http::Router& router, JobService& jobs);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <atomic>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -45,6 +46,13 @@ Response too_slow(std::chrono::seconds limit) {
     return http::problem_response(api::to_problem(error));
 }
 
+/// It was never begun.
+Response too_busy(std::chrono::seconds limit) {
+    return problem_response(503, "The service was busy with other computations for " + std::to_string(limit.count()) +
+                                     " s, and this one was not begun. Try again in a moment, or post it as a job, "
+                                     "which waits for its turn.");
+}
+
 Response closing_down() { return problem_response(503, "The service is being stopped. Try again shortly."); }
 
 /// Stops a computation at its deadline, when the service stops, or when nobody waits for it any more.
@@ -56,7 +64,12 @@ public:
     void look() {
         const std::lock_guard lock(mutex_);
         if (over_) return;
-        if (Turns::Clock::now() >= deadline_ || (left_ && left_())) return stop();
+        gone_ = left_ && left_();
+        if (gone_ || Turns::Clock::now() >= deadline_) return stop();
+        look_later();
+    }
+    /// What is over soon is not looked after: the first look comes after a while.
+    void look_later() {
         const std::chrono::duration<double> rest = deadline_ - Turns::Clock::now();
         timer_.after(std::min<std::chrono::duration<double>>(kGoneLook, rest),
                      [self = shared_from_this()] { self->look(); });
@@ -67,6 +80,8 @@ public:
         const std::lock_guard lock(mutex_);
         over_ = true;
     }
+    /// True where it was stopped because nobody waits for it.
+    bool gone() const { return gone_; }
     std::stop_token token() const { return stop_.get_token(); }
 
 private:
@@ -76,6 +91,7 @@ private:
     std::stop_source stop_;
     std::mutex mutex_;
     bool over_ = false;
+    std::atomic<bool> gone_ = false;
 };
 
 /// The answer of `work`, which runs on this thread. Its turn has come.
@@ -90,6 +106,7 @@ Response compute(const SyncCall& work, const Call& call, std::chrono::seconds li
     const double start = monotonic_ms();
     api::Answer answer = work(call, control);
     if (answer.status >= 400 && closing.stop_requested()) return closing_down();
+    if (answer.status >= 400 && overseer->gone()) return client_gone();
     if (answer.status >= 400 && control.stop.stop_requested()) return too_slow(limit);
 
     Response response = response_of(std::move(answer));
@@ -118,15 +135,15 @@ http::Handler synchronous(const SyncCall& work, std::chrono::seconds limit, Turn
         switch (turns.take(call.request.client, deadline, call.request.left)) {
             case Turns::Wait::full:
                 return problem_response(429, "Too many computations are waiting. Try again after a moment.");
-            case Turns::Wait::late: return too_slow(limit);
-            case Turns::Wait::left: return Response();
+            case Turns::Wait::late: return too_busy(limit);
+            case Turns::Wait::left: return client_gone();
             case Turns::Wait::granted: break;
         }
         const auto overseer = std::make_shared<Overseer>(timer, deadline, call.request.left);
-        overseer->look();
-        const std::shared_ptr<void> ended(nullptr, [&](void*) {
+        overseer->look_later();
+        const std::shared_ptr<void> ended(nullptr, [&, client = call.request.client](void*) {
             overseer->end();
-            turns.give_back();
+            turns.give_back(client);
         });
         return compute(work, call, limit, spare_cores, overseer, closing);
     };

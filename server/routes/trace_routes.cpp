@@ -50,13 +50,13 @@ Response traces_of(const JobRecord& job, api::Traces traces) {
     return response.set("Content-Disposition", "attachment; filename=\"job-" + job.id + ".csv\"");
 }
 
-Response get_traces(JobService& jobs, const Call& call) {
+Response get_traces(JobService& jobs, Turns& readers, const Call& call) {
     if (!http::accepts(call.request, "text/csv"))
         return problem_response(406, "The answer is text/csv, which the Accept field does not allow.");
     api::Traces traces = api::Traces::responses;
     if (auto refusal = read_traces(call.request, traces)) return *std::move(refusal);
     const std::string& id = call.path.at("id");
-    return guarded([&] {
+    return in_turn(readers, call.request, [&] {
         const std::optional<JobView> view = jobs.find(id);
         if (!view || !may_see(call.request, view->job)) return no_such_job(id);
         return traces_of(view->job, traces);
@@ -65,8 +65,8 @@ Response get_traces(JobService& jobs, const Call& call) {
 
 }  // namespace
 
-void add_trace_routes(http::Router& router, JobService& jobs) {
-    router.add("GET", "/v1/jobs/{id}/result.csv", [&](const Call& call) { return get_traces(jobs, call); });
+void add_trace_routes(http::Router& router, JobService& jobs, Turns& readers) {
+    router.add("GET", "/v1/jobs/{id}/result.csv", [&](const Call& call) { return get_traces(jobs, readers, call); });
 }
 
 }  // namespace tunewright::server

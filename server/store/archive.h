@@ -35,6 +35,7 @@ struct JobSummary {
     std::string outline;      ///< JSON: what an ended job was about and what came out, in a line; "" if none
     std::string request_id;   ///< of the call that posted it; "" if unknown
     std::string traceparent;  ///< of that call; "" if it had none
+    bool settled = false;     ///< cannot be queued again: its request could not be read, or its batch was cancelled
 };
 
 /// What somebody who follows a job needs.

@@ -98,7 +98,9 @@ public:
     virtual std::optional<std::string> batch_of_key(const std::string& owner, const std::string& idempotency_key) = 0;
     virtual BatchPage list_batches(const std::optional<std::string>& owner, int limit,
                                    std::optional<std::int64_t> before_seq) = 0;
-    /// At most `limit` rows with index >= from, in order.
+    /// At most `limit` rows with index >= from, in order. Fewer where these have come to `kRowsBytes`; one in any case,
+    /// where there is one.
+    static constexpr std::size_t kRowsBytes = 1024 * 1024;
     virtual std::vector<BatchRow> batch_rows(const std::string& id, std::int64_t from, std::size_t limit) = 0;
     /// Waiting jobs are cancelled, running ones asked to stop: their ids. Nothing where there is no such batch.
     virtual void cancel_batch(std::string id, UnixMs now, Done<std::optional<std::vector<std::string>>> done) = 0;

@@ -16,6 +16,11 @@ bool is_shared_store(const std::string& address) {
 
 void check_store_address(const std::string& address) {
     if (is_shared_store(address)) return;
+    if (address == "sqlite::memory:" || address.starts_with("sqlite:file:"))
+        throw std::invalid_argument(
+            "--store is \"" + address +
+            "\"; it must name a file, such as sqlite:tunewright.db: several connections and the "
+            "next start are to find the same jobs.");
     if (address.starts_with(kSqlite) && address.size() > kSqlite.size()) return;
     // What looks like user:password@host is not repeated.
     const std::string shown = address.find('@') == std::string::npos ? "\"" + address + "\"" : "no address of a store";

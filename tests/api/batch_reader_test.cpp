@@ -259,6 +259,24 @@ TEST(BatchReader, ABadLoopFailsAloneWithItsLine) {
     EXPECT_TRUE(std::holds_alternative<PreparedJob>(out.entries[5].job));
 }
 
+TEST(BatchReader, ACellInQuotesMayHaveLineBreaks) {
+    const Outcome out = read(loops(),
+                             "name,K,T,L\n\"TIC\n101 \"\"old\"\"\n\",1,2,3\npipe 5\",1,2,3\n\"b\r\nx\",no,2,3\n"
+                             "\"open,1,2,3\nc,1,2,3\n");
+    ASSERT_FALSE(out.problem) << out.problem->detail;
+    ASSERT_EQ(out.entries.size(), 5u);
+    EXPECT_EQ(out.entries[0].name, "TIC 101 \"old\"");
+    EXPECT_EQ(out.entries[2].name, "b x");
+    EXPECT_THAT(problem_of(out.entries[2]).detail, HasSubstr("Request 3, line 6: K is \"no\""));
+    EXPECT_THAT(problem_of(out.entries[3]).detail, HasSubstr("Request 4, line 8: A cell begins with a quotation mark"));
+    EXPECT_EQ(out.entries[4].name, "c");
+    EXPECT_TRUE(std::holds_alternative<PreparedJob>(out.entries[4].job));
+
+    std::string body = "name,K,T,L\n\"a,1,2,3\n";
+    for (int i = 0; i < 300; ++i) body += "b,1,2,3\n";
+    EXPECT_EQ(read(loops(), body).entries.size(), 301u);
+}
+
 TEST(BatchReader, SaysWhichColumnsAreMissing) {
     EXPECT_THAT(refusal(loops(), "name,K,L\na,1,3\n"),
                 HasSubstr("422 Line 1 must name the columns, such as name,K,T,L: T is missing."));

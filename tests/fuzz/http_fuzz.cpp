@@ -51,7 +51,7 @@ std::string understood(std::string_view bytes, const Cut& next_size) {
     Limits limits;
     limits.max_batch_body = kMaxStreamedBody;
     const CutBytes client(bytes, next_size);
-    Connection connection(client.socket(), "", "", limits, [](const Connection&) { return true; });
+    Connection connection(client.socket(), "", "", limits);
     std::string text;
     while (read_request(connection, text)) {
     }

@@ -10,7 +10,7 @@ import tempfile
 import time
 import unittest
 
-from service import BINARY, QUICK, Service
+from service import BINARY, LONG, QUICK, Service
 
 
 def make_key(name, path):
@@ -100,6 +100,33 @@ class KeysTest(unittest.TestCase):
             time.sleep(0.1)
         self.assertEqual(service.get("/v1/jobs", bearer(eve)).status, 200)
         self.assertEqual(service.get("/v1/jobs", bearer(self.ann)).status, 200)
+
+    def test_a_comment_may_stand_behind_a_key(self):
+        with open(self.path) as file:
+            lines = file.read().splitlines()
+        with open(self.path, "w") as file:
+            file.write("# keys of the plant\n%s  # shift A\n%s admin # who runs it\n" % tuple(lines))
+        service = self.serve()
+        self.assertEqual(service.get("/v1/jobs", bearer(self.ann)).status, 200)
+        self.assertEqual(service.get("/v1/queue", bearer(self.bob)).status, 200)
+
+    def test_streams_end_soon_after_their_key_is_deleted(self):
+        service = self.serve("--workers", "1")
+        job = service.post("/v1/jobs", LONG, bearer(self.ann)).json["id"]
+        batch = service.post("/v1/batches", {"jobs": [LONG]}, bearer(self.ann)).json["id"]
+        streams = []
+        for path in ("/v1/jobs/%s/events" % job, "/v1/batches/%s/results?follow=true" % batch):
+            connection = http.client.HTTPConnection("127.0.0.1", service.port, timeout=30)
+            self.addCleanup(connection.close)
+            connection.request("GET", path, headers=bearer(self.ann))
+            streams.append(connection.getresponse())
+        with open(self.path) as file:
+            rest = [line for line in file.read().splitlines(True) if not line.startswith("ann ")]
+        with open(self.path, "w") as file:
+            file.writelines(rest)
+        self.assertNotIn(b"event: done", streams[0].read())
+        with self.assertRaises(http.client.IncompleteRead):
+            streams[1].read()
 
     def test_a_key_never_appears_in_the_log(self):
         service = self.serve("--log-level", "debug")

@@ -77,6 +77,7 @@ class BatchesTest(unittest.TestCase):
         unread = self.service.job(rows[2]["id"])
         self.check(unread, "Job")
         self.assertIsNone(unread["request"])
+        self.assertNotIn("requeue", unread["links"])
         listed = self.service.get("/v1/jobs?batch=" + batch).json["jobs"]
         self.assertEqual({job["id"] for job in listed}, {row["id"] for row in rows})
         self.assertNotIn(job["id"], [job["id"] for job in self.service.get("/v1/jobs?limit=200").json["jobs"]])
@@ -186,6 +187,11 @@ class BatchesTest(unittest.TestCase):
         self.assertEqual(shown["counts"]["cancelled"], 300)
         follower.join(30)
         self.assertEqual([row["status"] for row in self.followed], ["cancelled"] * 300)
+        # What a batch that was cancelled as a whole had cannot be queued again, and no link says so.
+        for job in self.service.get("/v1/jobs?batch=" + batch).json["jobs"][:3]:
+            self.assertNotIn("requeue", job["links"])
+            self.assertNotIn("requeue", self.service.job(job["id"])["links"])
+            self.assertEqual(self.service.post("/v1/jobs/%s/requeue" % job["id"], "").status, 409)
         # Once more changes nothing; then it can be deleted, with its jobs.
         self.assertEqual(self.service.post("/v1/batches/%s/cancel" % batch, "").status, 202)
         self.assertEqual(self.service.call("DELETE", "/v1/batches/" + batch).status, 204)

@@ -97,6 +97,19 @@ class EventsTest(unittest.TestCase):
         with Stream(self.service, job_id, "done") as stream:
             self.assertEqual((stream.response.status, stream.response.read()), (204, b""))
 
+    def test_after_done_the_next_run_of_a_job_that_is_queued_again_comes(self):
+        busy = self.running()
+        job_id = self.service.post_job(LONG)["id"]
+        self.cancel(job_id)
+        with Stream(self.service, job_id, "done") as stream:
+            self.assertEqual(stream.response.status, 204)
+        self.assertEqual(self.service.post("/v1/jobs/%s/requeue" % job_id, "").status, 202)
+        with Stream(self.service, job_id, "done") as stream:
+            self.assertEqual(stream.response.status, 200)
+            self.assertEqual(next(iter(stream))[0], "progress")
+        self.cancel(job_id)
+        self.cancel(busy)
+
     def test_a_finished_job_is_done_at_once(self):
         job_id = self.service.post_job(QUICK, wait=30)["id"]
         with Stream(self.service, job_id) as stream:

@@ -22,7 +22,7 @@ def statuses(received):
 class HttpTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.service = Service()
+        cls.service = Service("--cors-origin", "https://plant.example")
         cls.addClassCleanup(cls.service.__exit__)
 
     def assertProblem(self, answer, status):
@@ -87,7 +87,9 @@ class HttpTest(unittest.TestCase):
         self.assertEqual(self.service.post("/v1/jobs", body).status, 202)
 
     def test_pages_of_other_sites_cannot_post(self):
-        self.assertProblem(self.service.post("/v1/jobs", QUICK, {"Sec-Fetch-Site": "cross-site"}), 403)
+        refused = self.service.post("/v1/jobs", QUICK, {"Sec-Fetch-Site": "cross-site"})
+        self.assertProblem(refused, 403)
+        self.assertEqual(refused.json["type"], "cross-site-request")
         self.assertEqual(self.service.post("/v1/jobs", QUICK, {"Sec-Fetch-Site": "same-origin"}).status, 202)
 
     def test_the_page_has_its_policy_and_everything_is_nosniff(self):
@@ -96,6 +98,34 @@ class HttpTest(unittest.TestCase):
         self.assertIn("require-trusted-types-for 'script'", page.headers["Content-Security-Policy"])
         for path in ("/", "/healthz", "/nothing", "/v1/methods"):
             self.assertEqual(self.service.get(path).headers["X-Content-Type-Options"], "nosniff")
+
+    def test_what_is_refused_before_it_is_read_is_named_too(self):
+        long_target = b"GET /" + b"x" * 9000 + b" HTTP/1.1\r\n"
+        for status, head in ((400, b"GET / HTTP/1.1\r\n" + HOST + b"Bad Field: x\r\n"), (414, long_target + HOST),
+                             (411, b"POST /v1/jobs HTTP/1.1\r\n" + HOST + b"Transfer-Encoding: chunked\r\n"),
+                             (413, b"POST /v1/jobs HTTP/1.1\r\n" + HOST + b"Content-Length: 99999999\r\n"),
+                             (415, b"POST /v1/jobs HTTP/1.1\r\n" + HOST + b"Content-Encoding: gzip\r\n"),
+                             (417, b"POST /v1/jobs HTTP/1.1\r\n" + HOST + b"Expect: much\r\n"),
+                             (431, b"GET / HTTP/1.1\r\n" + HOST + b"A: b\r\n" * 101),
+                             (505, b"GET / HTTP/3.0\r\n" + HOST)):
+            name = b"early-%d" % status
+            received = self.service.raw(head + b"Origin: https://plant.example\r\nX-Request-Id: " + name + b"\r\n\r\n")
+            self.assertEqual(statuses(received), [status])
+            self.assertIn(b"X-Request-Id: " + name, received)
+            self.assertIn(b"Access-Control-Allow-Origin: https://plant.example", received)
+            self.assertIn("request %s refused" % name.decode(), self.service.read_log())
+        self.assertRegex(self.service.raw(b"GET / HTTP/3.0\r\n\r\n"), rb"X-Request-Id: [0-9a-f]{8}-[0-9a-f]{8}")
+
+    def test_hosts_queries_and_methods_that_are_none_are_refused(self):
+        for status, head in ((400, b"GET /healthz HTTP/1.1\r\nHost: localhost:abc\r\n\r\n"),
+                             (400, b"GET /v1/jobs?q=%zz HTTP/1.1\r\n" + HOST + b"\r\n"),
+                             (400, b"GET /v1/jobs?q=x%2 HTTP/1.1\r\n" + HOST + b"\r\n"),
+                             (501, b"BREW / HTTP/1.1\r\n" + HOST + b"\r\n")):
+            self.assertEqual(statuses(self.service.raw(head)), [status], head)
+        for field in (b"localhost:80", b"localhost:", b"[::1]:8080", b"[::1]"):
+            received = self.service.raw(b"GET /healthz HTTP/1.1\r\nHost: " + field + b"\r\nConnection: close\r\n\r\n")
+            self.assertEqual(statuses(received), [200], field)
+        self.assertEqual(self.service.get("/v1/jobs?q=%25zz").status, 200)
 
     def test_files_are_304_when_unchanged(self):
         tag = self.service.get("/").headers["ETag"]

@@ -117,6 +117,15 @@ class JobTest(unittest.TestCase):
         self.assertEqual((answer.status, answer.body, answer.headers["ETag"]), (304, b"", tag))
         self.assertEqual(self.service.get("/v1/jobs/" + job["id"], {"If-None-Match": '"other"'}).status, 200)
 
+    def test_a_job_is_deleted_only_in_the_state_that_is_named(self):
+        job = self.service.post_job(QUICK, wait=30)
+        path = "/v1/jobs/" + job["id"]
+        refused = self.service.call("DELETE", path, headers={"If-Match": '"other"'})
+        self.assertEqual((refused.status, refused.json["type"]), (412, "precondition-failed"))
+        tag = self.service.get(path, {"Accept-Encoding": "gzip"}).headers["ETag"]
+        self.assertEqual(self.service.call("DELETE", path, headers={"If-Match": '"other", ' + tag}).status, 204)
+        self.assertEqual(self.service.call("DELETE", path, headers={"If-Match": "*"}).status, 404)
+
     def test_the_tag_of_a_job_changes_when_the_job_does(self):
         job_id = self.service.post_job(LONG)["id"]
         self.service.wait_for(job_id, ("running",))

@@ -26,6 +26,7 @@ public:
     explicit GzipWriter(BodyWriter& out) : out_(out) {}
     bool write(std::string_view piece) override { return piece.empty() || out_.write(packer_.piece(piece)); }
     bool gone() const override { return out_.gone(); }
+    void hold(std::size_t bytes) override { out_.hold(bytes); }
     bool end() { return out_.write(packer_.end()); }
 
 private:

@@ -117,6 +117,14 @@ std::string text_sum(std::string_view text) {
 
 std::string entity_tag(std::string_view body) { return '"' + text_sum(body) + '"'; }
 
+bool matches_entity_tag(const Request& request, const std::string& tag) {
+    if (!request.has_header("If-Match")) return true;
+    const auto tags = split(request.header("If-Match"), ',');
+    return std::ranges::any_of(tags, [&](std::string_view candidate) {
+        return candidate == "*" || without_weakness(candidate) == without_weakness(tag);
+    });
+}
+
 void apply_entity_tag(const Request& request, Response& response, const std::string& tag) {
     response.set("ETag", tag);
     const auto tags = split(request.header("If-None-Match"), ',');

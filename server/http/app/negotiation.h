@@ -36,6 +36,10 @@ std::string text_sum(std::string_view text);
 /// A strong entity tag of the bytes, with its quotes: their sum.
 std::string entity_tag(std::string_view body);
 
+/// False where the request has If-Match and none of its tags is this one, weak or strong: a compressed answer has the
+/// weak one.
+bool matches_entity_tag(const Request& request, const std::string& tag);
+
 /// Sets ETag, and turns the answer into 304 where the request has that tag already, as a weak or a strong one.
 void apply_entity_tag(const Request& request, Response& response, const std::string& tag);
 

@@ -14,13 +14,29 @@ struct Kind {
 };
 
 constexpr std::array kKinds{
-    Kind{400, "malformed-request"},  Kind{401, "unauthorized"},       Kind{403, "cross-site-request"},
-    Kind{404, "not-found"},          Kind{405, "method-not-allowed"}, Kind{406, "not-acceptable"},
-    Kind{408, "request-timeout"},    Kind{409, "conflict"},           Kind{411, "length-required"},
-    Kind{413, "too-large"},          Kind{414, "uri-too-long"},       Kind{415, "unsupported-media-type"},
-    Kind{417, "expectation-failed"}, Kind{421, "unknown-host"},       Kind{422, "invalid-request"},
-    Kind{429, "queue-full"},         Kind{431, "head-too-large"},     Kind{500, "internal"},
-    Kind{503, "unavailable"},        Kind{505, "http-version"},       Kind{507, "disk-full"},
+    Kind{400, "malformed-request"},
+    Kind{401, "unauthorized"},
+    Kind{403, "forbidden"},
+    Kind{404, "not-found"},
+    Kind{405, "method-not-allowed"},
+    Kind{406, "not-acceptable"},
+    Kind{408, "request-timeout"},
+    Kind{409, "conflict"},
+    Kind{411, "length-required"},
+    Kind{412, "precondition-failed"},
+    Kind{413, "too-large"},
+    Kind{414, "uri-too-long"},
+    Kind{415, "unsupported-media-type"},
+    Kind{417, "expectation-failed"},
+    Kind{421, "unknown-host"},
+    Kind{422, "invalid-request"},
+    Kind{429, "queue-full"},
+    Kind{431, "head-too-large"},
+    Kind{500, "internal"},
+    Kind{501, "not-implemented"},
+    Kind{503, "unavailable"},
+    Kind{505, "http-version"},
+    Kind{507, "disk-full"},
 };
 
 }  // namespace

@@ -32,14 +32,13 @@ bool wait_for(int fd, short what, nanoseconds patience) {
 
 }  // namespace
 
-Connection::Connection(int fd, std::string client, std::string of_network, const Limits& limits,
-                       std::function<bool(const Connection&)> gives_way)
+Connection::Connection(int fd, std::string client, std::string of_network, const Limits& limits)
     : address(std::move(client)),
       network(std::move(of_network)),
       since(Clock::now()),
+      moved(Clock::now()),
       fd_(fd),
-      limits_(limits),
-      gives_way_(std::move(gives_way)) {}
+      limits_(limits) {}
 
 Connection::~Connection() { ::close(fd_); }
 
@@ -93,6 +92,8 @@ void Connection::start(const Head& head, std::string_view text) {
     asks_first_ = head.expects_continue;
     failed_ = false;
     gathers_ = true;
+    http_1_0_ = head.http_1_0;
+    asked_ = false;
 }
 
 void Connection::expect_body(bool as_it_arrives) {
@@ -192,21 +193,31 @@ bool Connection::send(std::string_view bytes) {
         const ssize_t n = ::send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
         if (n >= 0) {
             bytes.remove_prefix(static_cast<std::size_t>(n));
+            moved = Clock::now();
         } else if (errno == EAGAIN) {
-            unsent = bytes.size();
-            const auto left = end - Clock::now();
-            gone_ = !wait_for(fd_, POLLOUT, std::min<nanoseconds>(left, kLook)) && (left <= kLook || gives_way_(*this));
+            gone_ = !wait_for(fd_, POLLOUT, end - Clock::now());
         } else {
             gone_ = errno != EINTR;
         }
     }
-    unsent = 0;
     return !gone_;
 }
 
-bool Connection::gone() const {
+/// Both directions are closed, by a reset or by us.
+bool Connection::reset() const {
+    pollfd entry{fd_, 0, 0};
+    return ::poll(&entry, 1, 0) > 0 && (entry.revents & (POLLHUP | POLLERR)) != 0;
+}
+
+bool Connection::gone() {
+    if (gone_ || reset()) return true;
     pollfd entry{fd_, POLLRDHUP, 0};
-    return gone_ || (::poll(&entry, 1, 0) > 0 && (entry.revents & (POLLRDHUP | POLLHUP | POLLERR)) != 0);
+    if (::poll(&entry, 1, 0) <= 0 || http_1_0_ || !body_done() || !out_.empty()) return false;
+    if (asked_.exchange(true)) return false;
+    // An interim answer may come at any time before the answer; a chunk's size may begin with any number of zeros.
+    const std::string_view nothing = gathers_ ? "HTTP/1.1 100 Continue\r\n\r\n" : "0";
+    ::send(fd_, nothing.data(), nothing.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+    return reset();
 }
 
 void Connection::linger() {

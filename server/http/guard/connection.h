@@ -20,9 +20,7 @@ class Connection : public httplib::Stream {
 public:
     using Clock = std::chrono::steady_clock;
 
-    /// `gives_way` is asked each second in which the client takes nothing of an answer.
-    Connection(int fd, std::string address, std::string network, const Limits& limits,
-               std::function<bool(const Connection&)> gives_way);
+    Connection(int fd, std::string address, std::string network, const Limits& limits);
     ~Connection() override;
     Connection(const Connection&) = delete;
     Connection& operator=(const Connection&) = delete;
@@ -46,7 +44,10 @@ public:
     /// From now on each write goes out at once.
     void pass_on() { gathers_ = false; }
     bool flush();
-    bool gone() const;
+    /// True where the client has gone, between two pieces of a stream or before an answer begins. The end of what it
+    /// sends is no sign of that: it may read on. Where that end has come, it is sent what changes nothing, once, to
+    /// which the system of a client that has closed its socket answers with a reset.
+    bool gone();
     /// The last answer is out. What still comes is dropped for a while, so that the answer survives.
     void linger();
     /// From any thread: wakes who waits on the socket.
@@ -66,7 +67,7 @@ public:
     std::atomic<bool> begun = false;       ///< and some of the head has come
     bool leaving = false;                  ///< gives way to another; of the guard
     std::atomic<Clock::time_point> since;  ///< when the wait, or else the request, began
-    std::atomic<std::size_t> unsent = 0;   ///< bytes of an answer that the client does not take
+    std::atomic<Clock::time_point> moved;  ///< when the client took something of an answer
 
     /// What its socket waits for by itself (SO_RCVTIMEO).
     static constexpr std::chrono::milliseconds kLook{1000};
@@ -78,11 +79,11 @@ private:
     bool next_chunk();
     bool take_line(std::string& line, std::size_t most, const char* rule);
     bool send(std::string_view bytes);
+    bool reset() const;
     bool fail(int status, std::string detail);
 
     const int fd_;
     const Limits& limits_;
-    const std::function<bool(const Connection&)> gives_way_;
     std::string in_;  ///< received and not used up
 
     std::string_view head_;  ///< what the library has not read of it
@@ -100,6 +101,8 @@ private:
 
     std::string out_;
     bool gathers_ = true;
+    bool http_1_0_ = false;            ///< the client knows neither interim answers nor chunks
+    std::atomic<bool> asked_ = false;  ///< has been sent what shows whether it has gone
     bool gone_ = false;
 };
 

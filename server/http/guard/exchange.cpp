@@ -8,6 +8,7 @@ namespace tunewright::server::http {
 namespace {
 
 constexpr std::size_t kPiece = 256 * 1024;
+constexpr std::size_t kChunk = 64 * 1024;
 constexpr std::size_t kCopies =
     6;  // of a body, at the peak: itself, its JSON, its texts on the way to the store or back
 
@@ -34,25 +35,38 @@ const std::string& http_date() {
 /// The library's sink as our handlers see it.
 class SinkWriter : public BodyWriter {
 public:
-    SinkWriter(httplib::DataSink& sink, const Connection& stream) : sink_(sink), stream_(stream) {}
-    // An empty chunk would be the end of the body.
-    bool write(std::string_view piece) override { return piece.empty() || sink_.write(piece.data(), piece.size()); }
+    SinkWriter(httplib::DataSink& sink, Connection& stream, Answers& answers)
+        : sink_(sink), stream_(stream), answers_(answers) {}
+    // An empty chunk would be the end of the body; the library copies each, so none is large.
+    bool write(std::string_view piece) override {
+        bool taken = true;
+        for (; taken && !piece.empty(); piece.remove_prefix(std::min(piece.size(), kChunk)))
+            taken = sink_.write(piece.data(), std::min(piece.size(), kChunk));
+        return taken;
+    }
     bool gone() const override { return stream_.gone(); }
+    void hold(std::size_t bytes) override {
+        held_ = {};
+        held_ = answers_.hold(stream_, bytes);
+    }
 
 private:
     httplib::DataSink& sink_;
-    const Connection& stream_;
+    Connection& stream_;
+    Answers& answers_;
+    Answers::Share held_;
 };
 
 }  // namespace
 
 Exchange::Exchange(Connection& connection, const Head& head, const Application& application, const Limits& limits,
-                   Budget& bodies, const std::atomic<bool>& stopping)
+                   Budget& bodies, Answers& answers, const std::atomic<bool>& stopping)
     : connection_(connection),
       head_(head),
       application_(application),
       limits_(limits),
       bodies_(bodies),
+      answers_(answers),
       stopping_(stopping),
       keep_(head.keep_alive && head.state == Head::State::complete) {
     // The library never sees a head that is refused, but writes the refusal as an answer to this.
@@ -137,7 +151,14 @@ void Exchange::answer(httplib::Response& out, const httplib::ContentReader& body
 }
 
 Response Exchange::handled() {
+    // What a refusal says of the request, should the rest of its body not come.
+    Request named;
+    named.client = request_.client;
+    named.request_id = request_.request_id;
+    named.traceparent = request_.traceparent;
+    named.answer_headers = request_.answer_headers;
     Response response = application_.handle(std::move(request_));
+    request_ = std::move(named);
     share_ = {};
     return response;
 }
@@ -146,7 +167,8 @@ Response Exchange::refused(int status, const std::string& detail) {
     keep_ = false;
     // Nobody is there to read it.
     if (status == 0) return {};
-    return application_.refuse(status, detail, connection_.address);
+    request_.remote_addr = connection_.address;
+    return application_.refuse(status, detail, request_);
 }
 
 void Exchange::give(Response response, httplib::Response& out) {
@@ -160,15 +182,15 @@ void Exchange::give(Response response, httplib::Response& out) {
         else
             out.headers.emplace(std::move(name), std::move(value));
     }
-    if (response.stream)
-        give_stream(std::move(response.stream), type, out);
-    else
-        out.body = std::move(response.body);
+    if (response.stream) return give_stream(std::move(response.stream), type, out);
+    held_ = {};
+    held_ = answers_.hold(connection_, response.body.size());
+    out.body = std::move(response.body);
 }
 
 void Exchange::give_stream(BodyProducer producer, const std::string& type, httplib::Response& out) {
     const auto provider = [this, producer = std::move(producer)](std::size_t, httplib::DataSink& sink) {
-        SinkWriter writer(sink, connection_);
+        SinkWriter writer(sink, connection_, answers_);
         if (!connection_.flush()) return false;
         connection_.pass_on();
         const bool whole = producer(writer);

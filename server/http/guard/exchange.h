@@ -4,6 +4,7 @@
 
 #include <httplib.h>
 
+#include "server/http/guard/answers.h"
 #include "server/http/guard/budget.h"
 #include "server/http/guard/connection.h"
 #include "server/http/guard/server.h"
@@ -13,7 +14,7 @@ namespace tunewright::server::http {
 class Exchange {
 public:
     Exchange(Connection& connection, const Head& head, const Application& application, const Limits& limits,
-             Budget& bodies, const std::atomic<bool>& stopping);
+             Budget& bodies, Answers& answers, const std::atomic<bool>& stopping);
 
     /// Gives the connection to `process`, which is the library's process_request with the hooks below. True where
     /// another request may follow on it.
@@ -49,10 +50,12 @@ private:
     const Application& application_;
     const Limits& limits_;
     Budget& bodies_;
+    Answers& answers_;
     const std::atomic<bool>& stopping_;
     Request request_;
     Budget::Share share_;
-    bool taken_ = false;  ///< the library could read the head
+    Answers::Share held_;  ///< the body of the answer; the library has it until the end of the exchange
+    bool taken_ = false;   ///< the library could read the head
     bool streamed_ = false;
     bool keep_;
 };

@@ -68,7 +68,11 @@ private:
 };
 
 Server::Guard::Guard(const Limits& limits, Application application)
-    : limits_(limits), application_(std::move(application)), bodies_(limits.bodies), crew_(limits.connections) {
+    : limits_(limits),
+      application_(std::move(application)),
+      bodies_(limits.bodies),
+      answers_(limits.unsent),
+      crew_(limits.connections) {
     new_task_queue = [this] { return new Queue(*this); };
     set_tcp_nodelay(true);
     // SO_REUSEADDR alone: a port that another process listens on is an error, never shared.
@@ -208,34 +212,14 @@ void Server::Guard::leave(Connection& connection) {
     if (all->second.empty()) neighbours_.erase(all);
 }
 
-/// Where clients do not take more bytes of answers than may be held for them, the oldest answer is given up.
-bool Server::Guard::gives_way(const Connection& connection) {
-    std::size_t sum = 0;
-    bool oldest = true;
-    const std::lock_guard lock(mutex_);
-    any([&](const Connection* other) {
-        sum += other->unsent;
-        oldest = oldest && (other->unsent == 0 || connection.since.load() <= other->since.load());
-        return false;
-    });
-    return oldest && sum > limits_.unsent;
-}
-
 Occupancy Server::Guard::occupancy() const {
-    Occupancy now{.body_bytes = bodies_.taken()};
     const std::lock_guard lock(mutex_);
-    now.connections = connections_;
-    any([&](const Connection* connection) {
-        now.unsent_bytes += connection->unsent;
-        return false;
-    });
-    return now;
+    return {.connections = connections_, .body_bytes = bodies_.taken(), .unsent_bytes = answers_.bytes()};
 }
 
 bool Server::Guard::process_and_close_socket(socket_t socket) {
     const sockaddr_storage peer = peer_of(socket);
-    Connection connection(socket, text_of(peer), network_of(peer), limits_,
-                          [this](const Connection& held_up) { return gives_way(held_up); });
+    Connection connection(socket, text_of(peer), network_of(peer), limits_);
     const bool allowed = enter(connection);
     const std::shared_ptr<void> leaving(nullptr, [&](void*) { leave(connection); });
     while (allowed && converse(connection)) {
@@ -247,7 +231,7 @@ bool Server::Guard::process_and_close_socket(socket_t socket) {
 bool Server::Guard::converse(Connection& connection) {
     const std::optional<Head> head = connection.next_head();
     if (!head) return false;
-    Exchange exchange(connection, *head, application_, limits_, bodies_, stopping_);
+    Exchange exchange(connection, *head, application_, limits_, bodies_, answers_, stopping_);
     const bool goes_on = exchange.run([this](httplib::Stream& stream) {
         bool closed = false;
         return process_request(stream, false, closed, Exchange::on_head);

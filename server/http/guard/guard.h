@@ -8,6 +8,7 @@
 #include <set>
 #include <string>
 
+#include "server/http/guard/answers.h"
 #include "server/http/guard/budget.h"
 #include "server/http/guard/connection.h"
 #include "server/http/guard/crew.h"
@@ -38,7 +39,6 @@ private:
     bool enter(Connection& connection);
     void leave(Connection& connection);
     bool make_room(const Neighbours& among);
-    bool gives_way(const Connection& connection);
     bool converse(Connection& connection);
     void finish_under_way();
     template <class Which>
@@ -47,6 +47,7 @@ private:
     const Limits limits_;
     const Application application_;
     Budget bodies_;
+    Answers answers_;
     std::atomic<bool> stopping_ = false;  ///< answers say that they are the last
     std::atomic<bool> closed_ = false;    ///< nobody is accepted any more
     int listener_ = -1;                   ///< the port, open for longer than the library holds it

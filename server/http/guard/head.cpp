@@ -3,6 +3,7 @@
 #include <strings.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 
 #include "server/http/message.h"
@@ -50,10 +51,40 @@ bool read_length(std::string_view value, std::size_t& length) {
     return error == std::errc{} && end == value.data() + value.size();
 }
 
+/// NAME, NAME:PORT, [V6] or [V6]:PORT, as far as the port goes.
+bool is_authority(std::string_view value) {
+    const std::size_t end = value.starts_with('[') ? value.find(']') : 0;
+    if (end == std::string_view::npos) return false;
+    const std::size_t colon = value.find(':', end);
+    if (colon == std::string_view::npos) return true;
+    const std::string_view port = value.substr(colon + 1);
+    return port.size() <= 5 && std::ranges::all_of(port, [](char c) { return c >= '0' && c <= '9'; });
+}
+
+/// Each % of the query stands before two hexadecimal digits.
+bool is_encoded(std::string_view target) {
+    const auto hex = [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F'); };
+    for (std::size_t at = target.find('?'); at < target.size(); ++at)
+        if (target[at] == '%' && (at + 2 >= target.size() || !hex(target[at + 1]) || !hex(target[at + 2])))
+            return false;
+    return true;
+}
+
+/// The methods that the serving library takes.
+bool is_known(std::string_view method) {
+    constexpr std::array<std::string_view, 9> known = {"GET",     "HEAD",    "POST",  "PUT",  "DELETE",
+                                                       "CONNECT", "OPTIONS", "TRACE", "PATCH"};
+    return std::ranges::find(known, method) != known.end();
+}
+
 /// False after filling `head` with a refusal.
 bool take_field(std::string_view name, std::string_view value, Fields& seen, Head& head) {
     if (equals(name, "Host")) {
         seen.hosts++;
+        if (!is_authority(value)) {
+            head = refuse(400, "The field Host must be NAME or NAME:PORT, the port a number.");
+            return false;
+        }
     } else if (equals(name, "Content-Length")) {
         if (++seen.lengths > 1 || !read_length(value, head.content_length)) {
             head = refuse(400, "Content-Length must be given once, as a whole number of bytes.");
@@ -96,6 +127,14 @@ bool read_request_line(std::string_view line, Head& head) {
     const bool plain = std::ranges::all_of(target, [](unsigned char c) { return c > 0x20 && c < 0x7f; });
     if (!plain || target.empty() || (target.front() != '/' && target != "*")) {
         head = refuse(400, "The target must be an absolute path of printable ASCII characters.");
+        return false;
+    }
+    if (!is_encoded(target)) {
+        head = refuse(400, "The query has a % that is not followed by two hexadecimal digits; a plain % is %25.");
+        return false;
+    }
+    if (!is_known(line.substr(0, first))) {
+        head = refuse(501, "There is no such method here; /openapi.json lists what can be done.");
         return false;
     }
     head.http_1_0 = version == "HTTP/1.0";
@@ -147,7 +186,9 @@ Head refuse(int status, std::string detail) {
     return head;
 }
 
-Head read_head(std::string_view input) {
+namespace {
+
+Head read_strictly(std::string_view input) {
     // Each of these limits is found at the same byte however the input is cut.
     if (std::min(input.find('\n'), input.size()) > kMaxLineBytes + 1)
         return refuse(414, "The request line may have at most 8,000 bytes.");
@@ -176,6 +217,29 @@ Head read_head(std::string_view input) {
     head.size = end + 4;
     head.keep_alive = head.http_1_0 ? has_word(seen.connection, "keep-alive") : !has_word(seen.connection, "close");
     head.state = Head::State::complete;
+    return head;
+}
+
+/// Of a head that is refused: what its answer is to carry, if that can be read.
+void keep_names(std::string_view input, Head& head) {
+    head.fields.clear();
+    input = input.substr(0, std::min(input.find("\r\n\r\n"), kMaxHeadBytes));
+    for (std::size_t end = input.find("\r\n"); end != std::string_view::npos; end = input.find("\r\n")) {
+        input.remove_prefix(end + 2);
+        const std::string_view line = input.substr(0, input.find("\r\n"));
+        const std::size_t colon = std::min(line.find(':'), line.size());
+        const std::string_view name = line.substr(0, colon);
+        if (colon == line.size() || has_control(line) || (!equals(name, "Origin") && !equals(name, "X-Request-Id")))
+            continue;
+        head.fields.emplace_back(name, trim(line.substr(colon + 1)));
+    }
+}
+
+}  // namespace
+
+Head read_head(std::string_view input) {
+    Head head = read_strictly(input);
+    if (head.state == Head::State::refused) keep_names(input, head);
     return head;
 }
 

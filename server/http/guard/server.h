@@ -18,7 +18,7 @@ struct Limits {
     std::size_t bodies =
         128 * 1024 * 1024;  ///< bytes for all requests that are not answered yet: six times those of a body
     std::size_t arriving = 12 * 1024 * 1024;  ///< what a body that is read as it arrives counts for, at most
-    std::size_t unsent = 256 * 1024 * 1024;   ///< bytes of answers that clients do not take; the oldest go first
+    std::size_t unsent = 256 * 1024 * 1024;   ///< bytes of answers that clients have not taken; see Answers
     std::size_t connections = 2048;           ///< beyond it the longest waiting one of whoever has the most gives way
     std::size_t of_one_network = 512;         ///< an address, of IPv6 a /64; loopback and proxies have no such limit
     bool behind_proxy = false;                ///< addresses are a proxy's
@@ -41,15 +41,16 @@ struct Application {
     /// True where the body is to be read as it arrives (Request::read_body). May be empty.
     std::function<bool(const Request&)> streams;
     std::function<Response(Request)> handle;
-    /// The answer to what never becomes a request (malformed, too large, too slow).
-    std::function<Response(int status, const std::string& detail, const std::string& remote_addr)> refuse;
+    /// The answer to what never becomes a request (malformed, too large, too slow). Of the request it has what is
+    /// known: where its head was refused, no more than the address and the fields Origin and X-Request-Id.
+    std::function<Response(int status, const std::string& detail, Request& request)> refuse;
 };
 
 /// What clients hold at this moment.
 struct Occupancy {
     std::size_t connections = 0;
     std::size_t body_bytes = 0;    ///< of requests that are not answered yet
-    std::size_t unsent_bytes = 0;  ///< of answers that clients do not take
+    std::size_t unsent_bytes = 0;  ///< of answers that clients have not taken
 };
 
 class Server {

@@ -7,7 +7,7 @@
 namespace tunewright::server::postgres {
 namespace {
 
-constexpr int kSummaryCount = 18;
+constexpr int kSummaryCount = 19;
 
 std::optional<UnixMs> moment(const pqxx::field& field) {
     return field.is_null() ? std::nullopt : std::optional<UnixMs>(field.as<UnixMs>());
@@ -31,6 +31,7 @@ void fill_summary(const pqxx::row& row, JobSummary& job) {
     job.outline = text_of(row[14]);
     job.request_id = text_of(row[15]);
     job.traceparent = text_of(row[16]);
+    job.settled = row[17].as<bool>();
 }
 
 }  // namespace
@@ -40,7 +41,8 @@ const std::string kSummaryColumns = "j.seq, j.id, j.name, " + kStatus +
                                     ", j.created_at, coalesce(e.started_at, r.started_at), e.finished_at, "
                                     "coalesce(e.attempts, r.attempts, w.attempts, 0), j.timeout_s, j.request_hash, "
                                     "coalesce(e.cancel_requested, r.cancel_requested, false), j.owner, b.id, "
-                                    "j.batch_index, e.outline, j.request_id, j.traceparent, r.progress";
+                                    "j.batch_index, e.outline, j.request_id, j.traceparent, "
+                                    "j.request IS NULL OR coalesce(b.cancel_requested, false), r.progress";
 const std::string kRecordColumns = kSummaryColumns + ", j.request, e.result, e.error";
 // A job that has ended is in no other place: those are not looked into then.
 const std::string kEnded = " LEFT JOIN ended e ON e.seq = j.seq";
@@ -299,14 +301,25 @@ BatchPage list_batches(Session& session, const std::optional<std::string>& owner
 }
 
 std::vector<BatchRow> find_rows(Session& session, const std::string& batch, std::int64_t from, std::size_t limit) {
+    // The lengths of texts are known without reading them.
     static const std::string sql =
-        "SELECT j.batch_index, j.id, j.name, " + kStatus +
-        ", e.result, e.error FROM jobs j LEFT JOIN ended e ON e.seq = j.seq LEFT JOIN running r ON r.seq = j.seq "
-        "WHERE j.batch = " +
-        kBatchOfId + "$1) AND j.batch_index >= $2 ORDER BY j.batch_index LIMIT $3";
+        "SELECT place, id, name, status, result, error FROM (SELECT p.*, "
+        "sum(coalesce(octet_length(p.result), 0) + coalesce(octet_length(p.error), 0)) "
+        "OVER (ORDER BY p.place ROWS BETWEEN UNBOUNDED PRECEDING AND 1 PRECEDING) AS before FROM ("
+        "SELECT j.batch_index AS place, j.id, j.name, " +
+        kStatus +
+        " AS status, e.result, e.error FROM jobs j LEFT JOIN ended e ON e.seq = j.seq "
+        "LEFT JOIN running r ON r.seq = j.seq WHERE j.batch = " +
+        kBatchOfId +
+        "$1) AND j.batch_index >= $2 ORDER BY j.batch_index LIMIT $3) p) b "
+        "WHERE coalesce(before, 0) < $4 ORDER BY place";
+    const Values values = std::move(Values()
+                                        .text(batch)
+                                        .number(from)
+                                        .number(static_cast<std::int64_t>(limit))
+                                        .number(static_cast<std::int64_t>(BatchStore::kRowsBytes)));
     std::vector<BatchRow> rows;
-    for (const pqxx::row& row :
-         session.run(sql, Values().text(batch).number(from).number(static_cast<std::int64_t>(limit))))
+    for (const pqxx::row& row : session.run(sql, values))
         rows.push_back({row[0].as<std::int64_t>(), text_of(row[1]), text_of(row[2]), job_status(row[3].c_str()).value(),
                         text_of(row[4]), text_of(row[5])});
     return rows;

@@ -7,7 +7,7 @@
 namespace tunewright::server {
 namespace {
 
-constexpr int kSummaryCount = 18;
+constexpr int kSummaryCount = 19;
 
 void fill_summary(const Connection::Use& row, JobSummary& job) {
     job.seq = row.integer(0);
@@ -27,6 +27,7 @@ void fill_summary(const Connection::Use& row, JobSummary& job) {
     job.outline = row.text(14);
     job.request_id = row.text(15);
     job.traceparent = row.text(16);
+    job.settled = row.integer(17) != 0;
 }
 
 }  // namespace
@@ -38,7 +39,7 @@ const std::string kSummaryColumns = "j.seq, j.id, j.name, " + kStatus +
                                     kAttempts +
                                     ", j.timeout_s, j.request_hash, coalesce(e.cancel_requested, r.cancel_requested, "
                                     "0), j.owner, b.id, j.batch_index, e.outline, j.request_id, j.traceparent, "
-                                    "r.progress";
+                                    "j.request IS NULL OR coalesce(b.cancel_requested, 0), r.progress";
 const std::string kRecordColumns = kSummaryColumns + ", j.request, e.result, e.error";
 const std::string kJobTables =
     " FROM jobs j LEFT JOIN ended e ON e.seq = j.seq LEFT JOIN running r ON r.seq = j.seq "
@@ -275,9 +276,10 @@ std::vector<BatchRow> find_rows(Connection& store, const std::string& batch, std
     Connection::Use row = store.use(sql);
     row.with(batch, from, static_cast<std::int64_t>(limit));
     std::vector<BatchRow> rows;
-    while (row.next()) {
+    for (std::size_t bytes = 0; bytes < BatchStore::kRowsBytes && row.next();) {
         BatchRow entry{row.integer(0), row.text(1), row.text(2), job_status(row.text(3)).value(),
                        row.text(4),    row.text(5)};
+        bytes += entry.result.size() + entry.error.size();
         rows.push_back(std::move(entry));
     }
     return rows;

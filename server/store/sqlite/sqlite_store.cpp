@@ -81,8 +81,10 @@ public:
     QueueDepth depth() override { return read(count_waiting); }
 
     void accept(NewJob job, Done<Accepted> done) override {
+        const std::size_t bytes = job.request.size();
         write<Accepted>(
-            kDurable, [job = std::move(job)](Connection& store) { return accept_job(store, job); }, std::move(done));
+            kDurable, [job = std::move(job)](Connection& store) { return accept_job(store, job); }, std::move(done),
+            bytes);
     }
     void claim(Claim claim, Done<std::vector<JobRecord>> done) override {
         // Not waiting for the disk: after a power cut the job is queued again, which is where it belongs anyway.
@@ -95,8 +97,10 @@ public:
             kQuick, [beat = std::move(beat)](Connection& store) { return beat_worker(store, beat); }, std::move(done));
     }
     void finish(JobEnd end, Done<bool> done) override {
+        const std::size_t bytes = end.result.size() + end.error.size();
         write<bool>(
-            kDurable, [end = std::move(end)](Connection& store) { return finish_job(store, end); }, std::move(done));
+            kDurable, [end = std::move(end)](Connection& store) { return finish_job(store, end); }, std::move(done),
+            bytes);
     }
     void release(std::int64_t seq, int attempts, Done<bool> done) override {
         write<bool>(
@@ -131,12 +135,14 @@ public:
             std::move(done));
     }
     void add_entries(std::string batch, std::vector<NewEntry> entries, UnixMs now, Done<bool> done) override {
+        std::size_t bytes = 0;
+        for (const NewEntry& entry : entries) bytes += entry.request.size() + entry.error.size();
         write<bool>(
             kBulky,
             [batch = std::move(batch), entries = std::move(entries), now](Connection& store) {
                 return server::add_entries(store, batch, entries, now);
             },
-            std::move(done));
+            std::move(done), bytes);
     }
     void seal_batch(BatchSeal seal, Done<Sealed> done) override { slices_.seal(std::move(seal), std::move(done)); }
     void drop_batch(std::string batch, Done<bool> done) override { slices_.drop(std::move(batch), std::move(done)); }
@@ -181,9 +187,9 @@ private:
     /// Idle: bulky, and not waiting for the disk: after a power cut it is done again.
     enum Manner { kDurable, kQuick, kBulky, kIdle };
 
-    /// Queues `work` for the writer and passes its value on after the commit.
+    /// Queues `work`, which stores texts of so many bytes, for the writer and passes its value on after the commit.
     template <class T, class Work>
-    void write(Manner manner, Work work, Done<T> done) {
+    void write(Manner manner, Work work, Done<T> done, std::size_t bytes = 0) {
         auto value = std::make_shared<T>();
         SqliteWriter::Change change;
         change.apply = [value, work = std::move(work)](Connection& store) { *value = work(store); };
@@ -192,6 +198,7 @@ private:
         };
         change.durable = manner == kDurable || manner == kBulky;
         change.bulky = manner == kBulky || manner == kIdle;
+        change.bytes = bytes;
         writer_->submit(std::move(change));
     }
 
@@ -274,10 +281,15 @@ void SqliteStore::reclaim(Reclaim what, Done<Recovery> done) {
 
 namespace {
 
-/// A file that is to be made needs its folder.
+/// A file that is to be made needs its folder. More than one is perhaps a word that was mistyped, or a disk that is not
+/// mounted: an empty store there would look as if all jobs were gone.
 void make_folder(const std::string& path) {
-    const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-    if (!folder.empty()) std::filesystem::create_directories(folder);
+    const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+    if (std::filesystem::exists(folder)) return;
+    if (!std::filesystem::exists(folder.parent_path()) || folder.parent_path() == folder.root_path())
+        throw StoreError({StoreFault::Kind::unavailable,
+                          "there is no folder " + folder.string() + "; make it, or correct the path"});
+    std::filesystem::create_directory(folder);
 }
 
 }  // namespace

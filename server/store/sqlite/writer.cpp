@@ -1,9 +1,12 @@
 #include "server/store/sqlite/writer.h"
 
+#include <fcntl.h>
 #include <sqlite3.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <string>
 #include <utility>
 
 #include "server/log.h"
@@ -15,6 +18,8 @@ namespace {
 /// Keeps the time that one transaction holds the others up, and the log it writes, within bounds.
 constexpr std::size_t kLargestGroup = 256;
 constexpr std::chrono::milliseconds kProbePause{500};
+constexpr std::chrono::seconds kQuiet{30};
+constexpr std::size_t kRow = 4096;  // what a change without texts may take
 
 }  // namespace
 
@@ -99,20 +104,51 @@ void SqliteWriter::probe() {
     nothing[0].apply = [](Connection& store) {
         store.database().exec("PRAGMA user_version = " + std::to_string(store.number("PRAGMA user_version")));
     };
-    healthy_ = !try_commit(nothing, 0, 1);
+    if (try_commit(nothing, 0, 1)) return;
+    worked(0);
+}
+
+/// Whether the file system gives so much beside what it has; where it cannot say, it has none.
+bool SqliteWriter::has_room(std::size_t bytes) {
+    if (bytes == 0) return true;
+    const std::string path = connection_.database().getFilename() + "-room";
+    const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
+    if (fd < 0) return false;
+    // The text comes into the log of changes first, and then into the tables.
+    const bool room = ::posix_fallocate(fd, 0, static_cast<off_t>(2 * bytes)) == 0;
+    ::close(fd);
+    ::unlink(path.c_str());
+    return room;
+}
+
+void SqliteWriter::failed(const StoreFault& fault, std::size_t bytes) {
+    failed_at_ = std::chrono::steady_clock::now();
+    if (fault.kind == StoreFault::Kind::full) awaited_ = std::max(awaited_, bytes);
+    if (healthy_.exchange(false)) log_error("the store cannot write: " + fault.detail);
+}
+
+void SqliteWriter::worked(std::size_t bytes) {
+    if (healthy_) return;
+    const bool quiet = std::chrono::steady_clock::now() - failed_at_ > kQuiet;
+    if (bytes < awaited_ && !quiet && !has_room(awaited_)) return;
+    awaited_ = 0;
+    healthy_ = true;
+    log_info("the store can write again");
 }
 
 void SqliteWriter::write_group(std::vector<Change>& group) {
+    const auto size_of = [](const Change& change) { return change.bytes + kRow; };
     if (!try_commit(group, 0, group.size())) {
-        healthy_ = true;
+        std::size_t bytes = 0;
+        for (const Change& change : group) bytes += size_of(change);
+        worked(bytes);
         for (Change& change : group) change.done(std::nullopt);
         return;
     }
     // Somebody's change cannot be made: each alone, so that the others are not lost with it.
     for (std::size_t i = 0; i < group.size(); i++) {
         const std::optional<StoreFault> fault = try_commit(group, i, 1);
-        healthy_ = !fault;
-        if (fault) log_error("the store cannot write: " + fault->detail);
+        fault ? failed(*fault, size_of(group[i])) : worked(size_of(group[i]));
         group[i].done(fault);
     }
 }

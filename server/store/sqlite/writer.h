@@ -5,6 +5,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <functional>
@@ -32,6 +33,8 @@ public:
         bool durable = true;
         /// Touches many rows. Bulky changes keep their order among themselves, as do durable ones, and the others.
         bool bulky = false;
+        /// Of the texts that it stores.
+        std::size_t bytes = 0;
     };
 
     explicit SqliteWriter(Connection& connection);
@@ -44,6 +47,8 @@ public:
     /// The same as the destructor, while whoever owns it can still be asked for more: what is reported at the end may
     /// ask for further changes.
     void stop();
+    /// False from a change that failed until one of its size has worked, or there is room for it, or for half a minute
+    /// none has failed: on a full disk what is small often fits still.
     bool healthy() const { return healthy_; }
 
 private:
@@ -55,6 +60,9 @@ private:
     std::vector<Change> next_group();
     void write_group(std::vector<Change>& group);
     std::optional<StoreFault> try_commit(std::vector<Change>& group, std::size_t first, std::size_t count);
+    void failed(const StoreFault& fault, std::size_t bytes);
+    void worked(std::size_t bytes);
+    bool has_room(std::size_t bytes);
 
     Connection& connection_;
     std::optional<bool> waits_for_disk_;  ///< how the connection is set, once it is
@@ -66,6 +74,8 @@ private:
     bool quick_went_ = false;  ///< the last group was of quick ones
     bool stopping_ = false;
     std::atomic<bool> healthy_ = true;
+    std::size_t awaited_ = 0;  ///< bytes of the largest change that has found no room since it was healthy
+    std::chrono::steady_clock::time_point failed_at_;
     std::jthread thread_;
 };
 

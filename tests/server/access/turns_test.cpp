@@ -25,41 +25,63 @@ protected:
                 const std::lock_guard lock(mutex_);
                 order_.push_back(client);
             }
-            turns_.give_back();
+            turns_.give_back(client);
         });
         // Until it stands in the queue: one more is refused then, or it would have been granted.
         std::this_thread::sleep_for(20ms * (already + 1));
     }
 
-    Turns turns_{1, 8};
+    /// All places that there are, by clients that have nothing else to do with the test.
+    void fill() {
+        ASSERT_EQ(turns_.take("first", far(), {}), Turns::Wait::granted);
+        ASSERT_EQ(turns_.take("second", far(), {}), Turns::Wait::granted);
+    }
+
+    Turns turns_{1, 1, 8};
     std::mutex mutex_;
     std::vector<std::string> order_;
     std::vector<std::jthread> threads_;
 };
 
 TEST_F(TurnsTest, ClientsTakeTurnsHoweverManyOneOfThemAsksFor) {
-    ASSERT_EQ(turns_.take("first", far(), {}), Turns::Wait::granted);
+    fill();
     for (const char* client : {"a", "a", "a", "b", "c"}) wait_for_turn(client, 0);
-    turns_.give_back();
+    turns_.give_back("first");
     threads_.clear();
     EXPECT_THAT(order_, testing::ElementsAre("a", "b", "c", "a", "a"));
 }
 
 TEST_F(TurnsTest, OneClientMayHaveHalfOfThoseWhoWait) {
-    ASSERT_EQ(turns_.take("first", far(), {}), Turns::Wait::granted);
+    fill();
     for (std::size_t i = 0; i < 4; i++) wait_for_turn("a", 0);
     EXPECT_EQ(turns_.take("a", far(), {}), Turns::Wait::full);
     EXPECT_EQ(turns_.take("b", Turns::Clock::now() + 1ms, {}), Turns::Wait::late) << "it may wait";
-    turns_.give_back();
+    turns_.give_back("first");
+    turns_.give_back("second");
 }
 
 TEST_F(TurnsTest, WhoHasLeftOrIsTooLateGivesHisPlaceUp) {
-    ASSERT_EQ(turns_.take("first", far(), {}), Turns::Wait::granted);
+    fill();
     EXPECT_EQ(turns_.take("a", far(), [] { return true; }), Turns::Wait::left);
     EXPECT_EQ(turns_.take("a", Turns::Clock::now(), {}), Turns::Wait::late);
-    turns_.give_back();
+    turns_.give_back("first");
     EXPECT_EQ(turns_.take("b", far(), {}), Turns::Wait::granted);
-    turns_.give_back();
+    turns_.give_back("b");
+}
+
+TEST(Turns, WhoHasNoneUnderWayGetsOneWhileAnotherFillsThePlaces) {
+    Turns turns(2, 2, 8);
+    const auto soon = [] { return Turns::Clock::now() + 1ms; };
+    ASSERT_EQ(turns.take("a", soon(), {}), Turns::Wait::granted);
+    ASSERT_EQ(turns.take("a", soon(), {}), Turns::Wait::granted);
+    EXPECT_EQ(turns.take("a", soon(), {}), Turns::Wait::late) << "all are taken, by this client";
+    EXPECT_EQ(turns.take("b", soon(), {}), Turns::Wait::granted);
+    EXPECT_EQ(turns.take("b", soon(), {}), Turns::Wait::late) << "it has one";
+    EXPECT_EQ(turns.take("c", soon(), {}), Turns::Wait::granted);
+    EXPECT_EQ(turns.take("d", soon(), {}), Turns::Wait::late) << "as many again, and no more";
+    turns.give_back("b");
+    EXPECT_EQ(turns.take("a", soon(), {}), Turns::Wait::late);
+    EXPECT_EQ(turns.take("d", soon(), {}), Turns::Wait::granted);
 }
 
 TEST(Places, AreLimitedAltogetherAndForOneClientAndComeBack) {

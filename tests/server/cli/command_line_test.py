@@ -94,6 +94,23 @@ class CommandLineTest(unittest.TestCase):
             self.assertEqual(done.returncode, 4, done.stderr)
             self.assertIn("Cannot open the store", done.stderr)
 
+    def test_a_store_whose_folders_are_missing_is_told_and_makes_none(self):
+        with tempfile.TemporaryDirectory() as folder:
+            done = run("serve", "--listen", "127.0.0.1:0", "--store", "sqlite:" + folder + "/a/b/jobs.db")
+            self.assertEqual(done.returncode, 4, done.stderr)
+            self.assertIn("there is no folder %s/a/b; make it, or correct the path" % folder, done.stderr)
+            self.assertEqual(os.listdir(folder), [])
+        done = run("serve", "--listen", "127.0.0.1:0", "--store", "sqlite:/tunewright-none/jobs.db")
+        self.assertEqual(done.returncode, 4, done.stderr)
+        self.assertFalse(os.path.exists("/tunewright-none"))
+
+    def test_a_folder_for_a_file_is_told_with_its_option(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for arguments in (("--auth", "keys", "--keys", folder), ("--notify-secrets", folder)):
+                done = run("serve", "--listen", "127.0.0.1:0", "--store", "sqlite:" + folder + "/jobs.db", *arguments)
+                self.assertEqual(done.returncode, 2, done.stderr)
+                self.assertIn("cannot be used: it is a folder; %s names a file" % arguments[-2], done.stderr)
+
     def test_a_file_that_is_no_database_is_told(self):
         with tempfile.TemporaryDirectory() as folder:
             path = folder + "/jobs.db"
@@ -168,7 +185,7 @@ class CommandLineTest(unittest.TestCase):
 
     def test_wrong_options_are_told(self):
         for arguments in (("--listen", "nowhere"), ("--listen", "127.0.0.1:99999"), ("--store", "mysql:x"),
-                          ("--log-format", "xml")):
+                          ("--log-format", "xml"), ("--store", "sqlite::memory:"), ("--rate-limit", "nan")):
             done = run("serve", *arguments)
             self.assertEqual(done.returncode, 2, arguments)
             self.assertIn(arguments[1], done.stderr)
@@ -180,6 +197,12 @@ class CommandLineTest(unittest.TestCase):
             done = run("serve", environment={"TUNEWRIGHT_LISTEN": "nowhere", "TUNEWRIGHT_STORE": "sqlite:" + folder})
             self.assertEqual(done.returncode, 2)
             self.assertIn("nowhere", done.stderr)
+
+    def test_a_variable_of_an_option_that_may_be_repeated_is_a_list(self):
+        hosts = {"TUNEWRIGHT_ALLOWED_HOST": "a.example,b.example"}
+        with Service(environment=hosts) as service:
+            for host, expected in (("a.example", 200), ("b.example", 200), ("c.example", 421)):
+                self.assertEqual(service.get("/v1/methods", {"Host": host}).status, expected, host)
 
     def test_the_log_has_one_json_line_for_each_request_and_job(self):
         with Service("--log-format", "json") as service:

@@ -27,7 +27,7 @@ Outcome body_of(const std::string& head, const std::string& bytes, std::size_t s
     limits.max_batch_body = limit;
     const std::string all = head + bytes;
     const CutBytes client(all, [&] { return split; });
-    Connection connection(client.socket(), "", "", limits, [](const Connection&) { return false; });
+    Connection connection(client.socket(), "", "", limits);
     const std::optional<Head> found = connection.next_head();
     EXPECT_TRUE(found && found->state == Head::State::complete) << all;
     connection.start(*found, "");

@@ -49,9 +49,7 @@ private:
         Application made;
         made.handle = std::move(handle);
         made.streams = std::move(streams);
-        made.refuse = [](int status, const std::string& detail, const std::string&) {
-            return problem_response(status, detail);
-        };
+        made.refuse = [](int status, const std::string& detail, Request&) { return problem_response(status, detail); };
         return made;
     }
 

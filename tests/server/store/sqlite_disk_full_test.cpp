@@ -68,6 +68,32 @@ TEST(SqliteDiskFull, AcceptsFailAsFullReadsGoOnAndNothingIsLostWhenThereIsRoomAg
     EXPECT_EQ(run_sqlite(folder.file(), "SELECT count(*) FROM jobs"), std::to_string(accepted.size()));
 }
 
+TEST(SqliteDiskFull, IsNotHealthyForAsLongAsOnlySmallChangesFit) {
+    const TemporaryFolder folder;
+    const SmallDisk disk(folder.path());
+    if (!disk.mounted()) GTEST_SKIP() << "this user may not mount a file system";
+    const auto store = open_sqlite_store(folder.file(), SchemaSteps::take);
+    const auto accept = [&](const std::string& id, std::size_t bytes) {
+        NewJob job;
+        job.id = id;
+        job.request.assign(bytes, 'x');
+        std::promise<bool> kept;
+        store->accept(
+            job, [&](const Outcome<Accepted>& outcome) { kept.set_value(std::holds_alternative<Accepted>(outcome)); });
+        return kept.get_future().get();
+    };
+    ASSERT_TRUE(accept("small", 10));
+    ASSERT_FALSE(accept("large", 4'000'000));
+    for (int i = 0; i < 30; i++) {
+        ASSERT_TRUE(accept("small" + std::to_string(i), 10));
+        ASSERT_FALSE(store->healthy());
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));  // room is looked for twice a second
+    }
+    disk.grow();
+    while (!store->healthy()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    EXPECT_TRUE(accept("large", 4'000'000));
+}
+
 TEST(SqliteDiskFull, AnEndThatFoundNoRoomIsTakenWhenItIsOfferedAgain) {
     const TemporaryFolder folder;
     const SmallDisk disk(folder.path());

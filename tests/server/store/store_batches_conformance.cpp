@@ -138,6 +138,16 @@ TEST_P(StoreConformance, RowsComeInOrderAndPageByPage) {
     EXPECT_THAT(store_->batch_rows("nobody", 0, 10), IsEmpty());
 }
 
+TEST_P(StoreConformance, LongRowsComeFewAtATime) {
+    open_batch("x");
+    const std::string longest(BatchStore::kRowsBytes * 2 / 3, 'e');
+    for (int i = 0; i < 4; i++) add_entries("x", {entry("x", i, longest)});
+    EXPECT_EQ(store_->batch_rows("x", 0, 10).size(), 2U) << "the second goes beyond the bound";
+    EXPECT_EQ(store_->batch_rows("x", 3, 10).size(), 1U);
+    EXPECT_EQ(store_->batch_rows("x", 0, 1).size(), 1U);
+    EXPECT_EQ(store_->batch_rows("x", 0, 10).at(1).error, longest);
+}
+
 TEST_P(StoreConformance, EntriesAreListedWithTheirBatchOnly) {
     accept(job("single"));
     make_batch("x", 5);

@@ -1,0 +1,67 @@
+#include "server/http/guard/answers.h"
+
+namespace tunewright::server::http {
+namespace {
+
+using Clock = Connection::Clock;
+
+constexpr std::size_t kSmall = 16 * 1024;  // goes out at once, or fits what the system buffers
+constexpr std::chrono::milliseconds kStalled{500};
+constexpr std::chrono::milliseconds kPatience{2000};  // with clients that take something, if too little
+constexpr std::chrono::milliseconds kLook{50};
+
+}  // namespace
+
+Answers::Share Answers::hold(Connection& connection, std::size_t bytes) {
+    if (bytes <= kSmall) return {};
+    std::unique_lock lock(mutex_);
+    const Place place = entries_.insert(entries_.end(), Entry{&connection, bytes});
+    sum_ += bytes;
+    make_room(lock, *place);
+    place->sending = true;
+    connection.moved = Clock::now();
+    return {*this, place};
+}
+
+std::size_t Answers::bytes() const {
+    const std::lock_guard lock(mutex_);
+    return sum_;
+}
+
+void Answers::give_back(Place place) {
+    {
+        const std::lock_guard lock(mutex_);
+        sum_ -= place->bytes;
+        if (place->leaving) leaving_ -= place->bytes;
+        entries_.erase(place);
+    }
+    freed_.notify_all();
+}
+
+/// Under the lock, which is free while it waits. The threads of those who are cut off free what they held.
+void Answers::make_room(std::unique_lock<std::mutex>& lock, const Entry& own) {
+    const auto start = Clock::now();
+    while (sum_ > most_ && sum_ > own.bytes && Clock::now() < start + 2 * kPatience) {
+        const bool patient = Clock::now() < start + kPatience;
+        Entry* victim = sum_ - leaving_ > most_ ? oldest(Clock::now() - (patient ? kStalled : -kPatience)) : nullptr;
+        if (victim != nullptr) {
+            victim->leaving = true;
+            leaving_ += victim->bytes;
+            victim->connection->cut_off();
+        } else {
+            freed_.wait_for(lock, kLook);
+        }
+    }
+}
+
+/// Of those that are being sent, and whose clients have taken nothing since then.
+Answers::Entry* Answers::oldest(Clock::time_point moved_before) {
+    Entry* found = nullptr;
+    for (Entry& entry : entries_)
+        if (entry.sending && !entry.leaving && entry.connection->moved.load() <= moved_before &&
+            (found == nullptr || entry.connection->since.load() < found->connection->since.load()))
+            found = &entry;
+    return found;
+}
+
+}  // namespace tunewright::server::http

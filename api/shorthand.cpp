@@ -36,7 +36,7 @@ std::variant<Json, Problem> subject(const TuneWords& words, const std::optional<
     if (!words.plant.empty()) return Json{{"plant", words.plant}};
     if (!file) return unclear("There is nothing to tune: name a file, or give --plant \"2 e^(-3s)/(10s+1)\".");
     if (file->find_first_not_of(kBlank) == file->npos)
-        return unclear("The file is empty: give a recorded test as CSV, or a request as JSON.");
+        return unclear("The body is empty; give a recorded test as CSV, or a request as JSON.");
     if (const auto request = request_text(*file)) return parse(*request);
     std::string storage;
     return Json{{"record", record_of(words.record, std::string(utf8_text(*file, storage)))}};

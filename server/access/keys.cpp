@@ -43,7 +43,8 @@ constexpr int kBadName = 2;
 
 bool has_key(const std::string& file, const std::string& name) {
     const auto text = text_of_lines(file);
-    const auto lines = named_lines(text ? *text : "");
+    if (!text) return false;
+    const auto lines = named_lines(*text);
     return std::any_of(lines.begin(), lines.end(), [&](const NamedLine& line) { return line.name == name; });
 }
 

@@ -32,9 +32,6 @@
 namespace tunewright::server {
 namespace {
 
-constexpr int kBadConfiguration = 2;
-constexpr int kPortFailed = 3;
-constexpr int kStoreFailed = 4;
 constexpr std::chrono::seconds kStopPatience{2};  // for computations and for the store, which have been asked to end
 constexpr std::size_t kWaitingComputations = 64;
 constexpr std::size_t kForOthers = 4;  // computations, for clients that have none while others fill the cores

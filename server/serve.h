@@ -5,12 +5,11 @@
 
 namespace tunewright::server {
 
-/// Serves until SIGTERM or SIGINT; a second signal ends the process at once. Returns the exit code:
-///   0  stopped as asked
-///   2  the configuration cannot be used
-///   3  the port cannot be opened
-///   4  the store cannot be opened
-/// In the last three cases standard error has the sentence that says why.
+/// How a process ends whose configuration, port or store cannot be used.
+constexpr int kBadConfiguration = 2, kPortFailed = 3, kStoreFailed = 4;
+
+/// Serves until SIGTERM or SIGINT; a second signal ends the process at once. Returns 0 where it stopped as asked;
+/// one of those codes where not, and standard error has the sentence that says why.
 int serve(const Config& config);
 
 }  // namespace tunewright::server

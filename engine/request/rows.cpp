@@ -15,6 +15,15 @@ double now_of(const RunControl& control) { return control.now_ms ? control.now_m
 
 }  // namespace
 
+Error placed(const TuningRequest& request, Error error, const std::string& where) {
+    if (in_plant(error)) {
+        if (request.record) error.where = "record";
+    } else if (!error.where.empty()) {
+        error.where = where + "/" + error.where;
+    }
+    return error;
+}
+
 bool MadeRow::cancelled() const {
     return std::ranges::any_of(
         entries, [](const TuningEntry& entry) { return entry.error && entry.error->kind == ErrorKind::cancelled; });
@@ -23,17 +32,6 @@ bool MadeRow::cancelled() const {
 Rows::Rows(const TuningRequest& request, const Subject& subject, const std::optional<TuningProblem>& problem,
            const IdentifiedModel* model)
     : request_(request), subject_(subject), problem_(problem), model_(model) {}
-
-// Methods name an option or a field of the plant; the request has the one under the method's place, and the other only
-// if it gave a plant.
-Error Rows::placed(Error error, const std::string& where) const {
-    if (in_plant(error)) {
-        if (request_.record) error.where = "record";
-    } else if (!error.where.empty()) {
-        error.where = where + "/" + error.where;
-    }
-    return error;
-}
 
 Expected<Evaluation> Rows::evaluated(const Controller& controller) {
     const IdealPid* pid = std::get_if<IdealPid>(&controller);
@@ -142,7 +140,7 @@ TuningEntry Rows::entry(const PlannedRow& planned, const std::optional<TuningPro
     std::optional<built::Fitted> fitted;
     auto tuned = tuned_with(planned, problem, setpoint, control, fitted);
     if (!tuned) {
-        entry.error = placed(tuned.error(), planned.where);
+        entry.error = placed(request_, tuned.error(), planned.where);
         return entry;
     }
     entry.reduced_model = tuned->reduced_model;

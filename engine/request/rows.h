@@ -25,6 +25,10 @@ struct MadeRow {
     bool cancelled() const;            ///< stopped before there was a design
 };
 
+/// Methods name an option or a field of the plant; the request has the one under the method's place, `where`, and the
+/// other only if it gave a plant.
+Error placed(const TuningRequest& request, Error error, const std::string& where);
+
 /// Makes the rows of one request; several at once, if wanted. What it is made from must outlive it.
 class Rows {
 public:
@@ -58,7 +62,6 @@ private:
     void add_baseline_as_built(TuningEntry& entry, const RunControl& control) const;
     void add_to_design(const PlannedRow& planned, const std::optional<TuningProblem>& problem,
                        const RunControl& control, TuningEntry& entry) const;
-    Error placed(Error error, const std::string& where) const;
 
     const TuningRequest& request_;
     const Subject& subject_;

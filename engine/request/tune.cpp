@@ -82,11 +82,7 @@ std::optional<Error> TuningRun::take_record() {
     auto region = identified_region(*model);
     if (!region && request_.identified_region == IdentifiedRegion::held) return region.error();
     auto subject = Subject::of_family(region ? *region : family_of(model->plant));
-    if (!subject) {
-        Error error = subject.error();
-        if (error.where == "plant" || error.where.starts_with("plant/")) error.where = "record";
-        return error;
-    }
+    if (!subject) return placed(request_, subject.error(), "");
     subject_ = std::move(*subject);
     if (request_.identified_region == IdentifiedRegion::held) held_ = *region;
     if (const auto at = model->standard_errors.find("L"); at != model->standard_errors.end())

@@ -20,6 +20,12 @@
 namespace tunewright::server {
 namespace {
 
+/// For the one computation of a command.
+struct AllCores {
+    SpareCores cores{core_count()};
+    SpareCores::Computation computation{cores};
+};
+
 /// The result as JSON, or the problem as JSON.
 struct Tuned {
     bool succeeded = false;
@@ -30,12 +36,11 @@ Tuned tuned(const api::PreparedJob& job) {
     std::stop_source stop;
     Timer timer;
     timer.after(std::chrono::duration<double>(job.timeout_s), [&stop] { stop.request_stop(); });
-    SpareCores cores(core_count());
-    SpareCores::Computation computation(cores);
+    AllCores all;
     RunControl control;
     control.stop = stop.get_token();
     control.now_ms = monotonic_ms;
-    control.spread = computation.spread();
+    control.spread = all.computation.spread();
     api::JobOutcome outcome = api::run_job(job, control);
     timer.stop();
     if (outcome.status == api::JobOutcome::Status::succeeded) return {true, std::move(outcome.result_json)};
@@ -128,10 +133,9 @@ int range(const RangeCommand& command) {
 int identify(const IdentifyCommand& command) {
     std::string text;
     if (!read_input(command.file, text)) return write_problem(unreadable(command.file), command.output);
-    SpareCores cores(core_count());
-    SpareCores::Computation computation(cores);
+    AllCores all;
     RunControl control;
-    control.spread = computation.spread();
+    control.spread = all.computation.spread();
     const auto request = api::request_text(text);
     const api::Answer answer =
         request ? api::identify_call(*request, control) : api::identify_csv(std::move(text), command.question, control);

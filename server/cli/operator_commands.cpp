@@ -8,6 +8,7 @@
 #include "server/cli/commands.h"
 #include "server/config.h"
 #include "server/notify/secrets.h"
+#include "server/serve.h"
 #include "server/store/open_store.h"
 
 namespace tunewright::server {
@@ -35,9 +36,6 @@ void add_secret_command(CommandTree& tree) {
         ->type_name("FILE");
 }
 
-// As `serve` ends where its settings or its store cannot be used.
-constexpr int kBadConfiguration = 2, kNoStore = 4;
-
 int failed(int code, const std::exception& fault) {
     std::cerr << "tunewright: " << fault.what() << "\n";
     return code;
@@ -52,7 +50,7 @@ void add_migrate_command(CommandTree& tree) {
         } catch (const std::invalid_argument& error) {
             return failed(kBadConfiguration, error);
         } catch (const std::exception& fault) {
-            return failed(kNoStore, fault);
+            return failed(kStoreFailed, fault);
         }
         return 0;
     });

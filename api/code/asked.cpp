@@ -58,7 +58,10 @@ AskedCode read_asked(const CodeWords& words, const Json& result, Reader& reader)
 }
 
 std::variant<SampleTime, Problem> sample_time_of(const AskedCode& asked, const Json& request, const ParallelPid& gains,
-                                                 const std::optional<double>& longest) {
+                                                 const Json& design) {
+    const auto given = design.find("longest_sample_time");
+    std::optional<double> longest;
+    if (given != design.end() && given->is_number()) longest = given->get<double>() * asked.unit;
     const auto chosen = [&](double seconds, std::string origin) {
         if (longest && seconds > *longest)
             origin += "; beyond " + tunewright::text(*longest, 3) + " s it raises Ms by more than 5 %";

@@ -17,17 +17,10 @@ Controller controller_of(const Json& entry, Reader& reader) {
     return controller;
 }
 
-/// What the loop bears, in seconds.
-std::optional<double> longest_sample_time(const Json& entry, double unit) {
-    const auto at = entry.find("longest_sample_time");
-    return at != entry.end() && at->is_number() ? std::optional(at->get<double>() * unit) : std::nullopt;
-}
-
 std::variant<ControllerCode, Problem> written(const ChosenEntry& found, const AskedCode& asked,
                                               const Controller& controller) {
     SampledPid law = law_of(asked, gains(controller));
-    const auto sample_time =
-        sample_time_of(asked, found.request, law.gains, longest_sample_time(found.entry(), asked.unit));
+    const auto sample_time = sample_time_of(asked, found.request, law.gains, found.entry());
     if (const auto* problem = std::get_if<Problem>(&sample_time)) return *problem;
     law.Ts = std::get<SampleTime>(sample_time).seconds;
     code::CodeOptions options = options_of(asked, found.result);

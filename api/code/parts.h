@@ -42,10 +42,10 @@ struct SampleTime {
 };
 
 /// As asked for, else as the request says how the controller runs, else from the controller's own times (gains with
-/// their times in seconds) and `longest`, the longest that the loop bears in seconds, where that is known. A fault of
-/// `sample_time` where there is none.
+/// their times in seconds) and the `longest_sample_time` of the design, an entry or a schedule, where that says one. A
+/// fault of `sample_time` where there is none.
 std::variant<SampleTime, Problem> sample_time_of(const AskedCode& asked, const Json& request, const ParallelPid& gains,
-                                                 const std::optional<double>& longest = {});
+                                                 const Json& design);
 
 /// In seconds; the sample time is still to be set.
 SampledPid law_of(const AskedCode& asked, const ParallelPid& gains);

@@ -37,7 +37,7 @@ std::variant<ControllerCode, Problem> written_schedule(const ChosenEntry& found,
     if (auto problem = reader.problem()) return *std::move(problem);
     SampledPid law = law_of(asked, {});
     law.gains = to_parallel(controller_of(code::leading_row(schedule)));  // which are in seconds already
-    const auto sample_time = sample_time_of(asked, found.request, law.gains);
+    const auto sample_time = sample_time_of(asked, found.request, law.gains, answer.at("schedule"));
     if (const auto* problem = std::get_if<Problem>(&sample_time)) return *problem;
     law.Ts = std::get<SampleTime>(sample_time).seconds;
     const auto program =

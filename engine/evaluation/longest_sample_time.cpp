@@ -137,12 +137,11 @@ std::optional<double> longest_sample_time(const LinearPlant& plant, const Parall
 }
 
 std::optional<Figure> longest_sample_time_of(const Subject& subject, const Evaluation& evaluation) {
-    constexpr double kWithin = 1.05;
     const LinearPlant* plant = subject.linear();
     const Robustness& r = evaluation.robustness;
     if (plant == nullptr || std::holds_alternative<Npid>(evaluation.controller)) return std::nullopt;
     if (!r.stable || !r.Ms || !r.omega_Ms || !(*r.omega_Ms > 0)) return std::nullopt;
-    return Figure(longest_sample_time(*plant, gains(evaluation.controller), *r.Ms, *r.omega_Ms, kWithin),
+    return Figure(longest_sample_time(*plant, gains(evaluation.controller), *r.Ms, *r.omega_Ms, kMsAsSampled),
                   "No sample time was found that keeps Ms within 5 % and a longer one that does not.");
 }
 

@@ -2,7 +2,7 @@
 // that acts all the time; one that acts once every sample time holds its output, which is half a sample of dead time
 // more, and sums and differences stand for its integral and derivative.
 //
-//   const auto Ts = longest_sample_time(plant, gains, Ms, omega_Ms, 1.05);   // 5 % of Ms at most
+//   const auto Ts = longest_sample_time(plant, gains, Ms, omega_Ms, kMsAsSampled);
 #pragma once
 
 #include <optional>
@@ -14,6 +14,9 @@
 
 namespace tunewright {
 
+/// What sampling may make of Ms: 5 % more.
+constexpr double kMsAsSampled = 1.05;
+
 /// The longest sample time that leaves Ms within `factor` > 1 times `Ms`, the continuous loop's, whose peak lies at
 /// `omega_Ms` (rad/time): of the program with the backward rules. All shorter ones that were looked at do so
 /// too; where the plant resonates they are looked at in steps of a tenth. Ms there is that to 1e-3. Empty where even a
@@ -23,7 +26,7 @@ namespace tunewright {
 std::optional<double> longest_sample_time(const LinearPlant& plant, const ParallelPid& gains, double Ms,
                                           double omega_Ms, double factor);
 
-/// The one that keeps Ms within 5 %, of an evaluated controller. Empty where the question makes no sense: an
+/// The one for kMsAsSampled, of an evaluated controller. Empty where the question makes no sense: an
 /// unstable loop, a nonlinear integral, a plant known by points alone.
 std::optional<Figure> longest_sample_time_of(const Subject& subject, const Evaluation& evaluation);
 

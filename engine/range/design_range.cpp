@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/number_text.h"
+#include "engine/range/schedule/sample_time.h"
 
 namespace tunewright::range {
 namespace {
@@ -122,6 +123,15 @@ private:
     }
 
     std::optional<Error> find_schedule() {
+        if (auto error = search_schedule()) return error;
+        if (!design_.schedule) return std::nullopt;
+        const auto longest = longest_sample_time(*problem_.model, design_.schedule->schedule);
+        if (!longest) return longest.error();
+        design_.schedule->longest_sample_time = *longest;
+        return std::nullopt;
+    }
+
+    std::optional<Error> search_schedule() {
         if (design_.partial || (stopped() && design_.one)) {
             design_.partial = true;
             design_.why_no_schedule = "The design was stopped before a schedule was looked for.";

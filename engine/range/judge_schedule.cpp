@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "engine/range/design_range.h"
+#include "engine/range/schedule/sample_time.h"
 
 namespace tunewright::range {
 namespace {
@@ -36,6 +37,9 @@ Expected<RangeDesign> judge_schedule(const RangeProblem& problem, const Schedule
     given.holds_limits = largest_excess(*curve) <= kAllowedExcess;
     given.worst_relative_IAE = largest_relative_IAE(*curve);
     given.within_allowance = given.worst_relative_IAE <= 1 + problem.options.allowance;
+    const auto longest = longest_sample_time(model, schedule);
+    if (!longest) return longest.error();
+    given.longest_sample_time = *longest;
     design.schedule_curve = std::move(*curve);
     return design;
 }

@@ -41,6 +41,13 @@ std::string_view bearer(const Request& request) {
     return first == std::string_view::npos ? std::string_view{} : text.substr(first);
 }
 
+/// Some proxies add the port, which differs from call to call, and write an address of IPv6 in brackets.
+std::string_view without_port(std::string_view address) {
+    if (address.starts_with('[')) return address.substr(1, address.find(']') - 1);
+    const std::size_t colon = address.find(':');
+    return colon == address.rfind(':') ? address.substr(0, colon) : address;
+}
+
 /// What the nearest proxy wrote: the last address of the field.
 std::string_view forwarded(const Request& request) {
     std::string_view last;
@@ -49,6 +56,7 @@ std::string_view forwarded(const Request& request) {
     last = last.substr(last.find_last_of(',') + 1);
     while (!last.empty() && last.front() == ' ') last.remove_prefix(1);
     while (!last.empty() && last.back() == ' ') last.remove_suffix(1);
+    last = without_port(last);
     constexpr std::size_t longest = 45;
     return last.size() <= longest ? last : std::string_view{};
 }

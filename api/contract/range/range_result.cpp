@@ -94,7 +94,18 @@ const Description<range::ScheduleDesign>& schedule_contract() {
                 [](SchemaBook&) {
                     return Json{{"type", {"number", "null"}}};
                 },
-                "The largest that was met; null where some loop is not stable.");
+                "The largest that was met; null where some loop is not stable.")
+            .field(
+                "longest_sample_time", {},
+                [](const S& s, Writer& out) {
+                    s.longest_sample_time ? out.number(*s.longest_sample_time) : out.null();
+                },
+                [](SchemaBook&) {
+                    return Json{{"type", {"number", "null"}}};
+                },
+                "The longest sample time of a program with backward rules that keeps Ms within 5 % of the continuous "
+                "loop's at the range's points and at the rows; null: none was found.",
+                {.unit = "time"});
         return d;
     }();
     return description;

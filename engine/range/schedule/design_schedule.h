@@ -15,11 +15,12 @@ namespace tunewright::range {
 
 struct ScheduleDesign {
     Schedule schedule;
-    bool holds_limits = false;      ///< at every place that was looked at
-    bool within_allowance = false;  ///< IAE everywhere within the allowance of the place's own optimum
-    double worst_relative_IAE = 0;  ///< over all places that were looked at
-    bool partial = false;           ///< stopped early
-    std::vector<Warning> warnings;  ///< "schedule-over-allowance"
+    bool holds_limits = false;                       ///< at every place that was looked at
+    bool within_allowance = false;                   ///< IAE everywhere within the allowance of the place's own optimum
+    double worst_relative_IAE = 0;                   ///< over all places that were looked at
+    std::optional<double> longest_sample_time = {};  ///< schedule/sample_time.h
+    bool partial = false;                            ///< stopped early
+    std::vector<Warning> warnings;                   ///< "schedule-over-allowance"
 };
 
 /// The rows' places are those of OwnOptima::layout. Their settings are designed together: all are unknowns of one

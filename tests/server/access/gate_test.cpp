@@ -272,5 +272,23 @@ TEST(Gate, OnlyBehindAProxyTheLastForwardedAddressIsTheClient) {
     EXPECT_EQ(proxied.client, "192.0.2.9");
 }
 
+TEST(Gate, AProxysPortIsNoPartOfTheClientsAddress) {
+    GateSettings settings;
+    settings.behind_proxy = true;
+    Gate gate(settings);
+    const std::vector<std::pair<std::string, std::string>> forms = {{"192.0.2.9:51234", "192.0.2.9"},
+                                                                    {"[2001:db8::7]:443", "2001:db8::7"},
+                                                                    {"[2001:db8::7]", "2001:db8::7"},
+                                                                    {"2001:db8::7", "2001:db8::7"},
+                                                                    {"1.2.3.4, 192.0.2.9:7 ", "192.0.2.9"},
+                                                                    {"[", "10.0.0.7"},
+                                                                    {":80", "10.0.0.7"}};
+    for (const auto& [written, client] : forms) {
+        http::Request call = with(request("GET", "/v1/jobs"), "X-Forwarded-For", written);
+        gate.admit(call);
+        EXPECT_EQ(call.client, client) << written;
+    }
+}
+
 }  // namespace
 }  // namespace tunewright::server

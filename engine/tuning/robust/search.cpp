@@ -55,6 +55,8 @@ bool has_kinks(const DesignProblem& problem) {
     return has_setpoint(problem) || (problem.objective == Objective::load_iae && has_resonant_plant(problem));
 }
 
+double short_Td(const Sweep& sweep) { return std::log(kShortTd / sweep.reference()); }
+
 /// Runs of the quadratic programming from one start after the other; the cheapest design counts.
 class Runs {
 public:
@@ -63,17 +65,21 @@ public:
 
     /// A start without a settled response may be given: nothing then comes of it.
     void from(const std::optional<Candidate>& start) {
-        if (start && !stopped()) run(*start, SqpOptions{}.cost_tolerance);
+        if (start && !stopped()) run(*start, {.stable_start = start->stable}, &Runs::at_known_end);
     }
 
     /// The same of a valley that is likely not the deepest: it is followed to its end only where it may be.
     void explore(const std::optional<Candidate>& start) {
-        if (!start || stopped()) return;
+        if (!start || stopped() || in_known_valley(start->x)) return;
         const double before = best_ ? best_->log_cost : kNoDesign;
-        const SqpResult rough = run(*start, kRoughTolerance, kSameValley, before + kWorthFollowing);
+        const SqpResult rough =
+            run(*start,
+                {.cost_tolerance = kRoughTolerance, .stable_start = start->stable, .wanted = before + kWorthFollowing},
+                &Runs::in_known_valley);
         if (stopped() || !rough.converged || rough.log_cost > before + kWorthFollowing) return;
         ends_.pop_back();
-        run({rough.x, rough.log_cost, rough.stable}, SqpOptions{}.cost_tolerance);
+        run({rough.x, rough.log_cost, rough.stable}, {.stable_start = rough.stable, .curvature = rough.curvature},
+            &Runs::at_known_end);
     }
 
     /// By simplices, from the best so far: the integral of |e| has kinks where a slow tail after a set-point step, or a
@@ -90,15 +96,14 @@ public:
     const std::optional<Found>& best() const { return best_; }
 
 private:
-    SqpResult run(const Candidate& start, double cost_tolerance, double same = kSameDesign,
-                  double wanted = std::numeric_limits<double>::infinity()) {
+    /// `arrived`: nothing more is to be learnt from here on.
+    SqpResult run(const Candidate& start, const SqpOptions& options, bool (Runs::*arrived)(const DesignPoint&) const) {
         bool stop = false;
         const Report watch = [&](const DesignPoint& x, double cost) {
             stop =
                 report_ && !(best_ && best_->log_cost < cost ? report_(best_->x, best_->log_cost) : report_(x, cost));
-            return !stop && !known(x, same);
+            return !stop && !(this->*arrived)(x);
         };
-        const SqpOptions options{.cost_tolerance = cost_tolerance, .stable_start = start.stable, .wanted = wanted};
         const SqpResult result = minimise(sweep_, problem_, start.x, options, watch);
         const double cost = std::isfinite(result.log_cost) ? result.log_cost : start.log_cost;
         ends_.push_back(result.x);
@@ -133,11 +138,15 @@ private:
         best_->stopped = stop;
     }
 
+    bool at_known_end(const DesignPoint& x) const { return known(x, kSameDesign); }
+    bool in_known_valley(const DesignPoint& x) const { return known(x, kSameValley); }
+
+    /// Near an end in all logarithms; all short Td are one.
     bool known(const DesignPoint& x, double same) const {
+        const double least_Td = short_Td(sweep_);
         return std::ranges::any_of(ends_, [&](const DesignPoint& end) {
-            for (std::size_t i = 0; i < 3; ++i)
-                if (std::abs(x[i] - end[i]) > same) return false;
-            return true;
+            return std::abs(x[0] - end[0]) <= same && std::abs(x[1] - end[1]) <= same &&
+                   std::abs(std::max(x[2], least_Td) - std::max(end[2], least_Td)) <= same;
         });
     }
 
@@ -151,7 +160,7 @@ private:
 /// A run that ends at a short Td may have been led there by the flatness of the cost alone: Td has to prove itself
 /// against the least one and against a long one.
 void look_beyond_short_Td(Runs& runs, const Sweep& sweep, const DesignProblem& problem, std::vector<ScanPoint> points) {
-    const double shortest = std::log(kMinTd / sweep.reference()), ordinary = std::log(kShortTd / sweep.reference());
+    const double shortest = std::log(kMinTd / sweep.reference()), ordinary = short_Td(sweep);
     const DesignPoint end = runs.best()->x;
     if (end[2] > ordinary) return;
     const DesignPoint nearly_PI = {end[0], end[1], shortest};
@@ -179,7 +188,7 @@ void look_for_valleys(Runs& runs, const Sweep& sweep, const DesignProblem& probl
     if (has_setpoint(problem)) look_at_long_Ti(runs, sweep, problem);
     if (!has_resonant_plant(problem)) return;
     const double hopeless = runs.best()->log_cost + kHopeless;
-    for (const auto& valley : valley_starts(problem, scan(sweep, kWideBox, Stability::told, hopeless)))
+    for (const auto& valley : valley_starts(problem, scan(sweep, kWideBox, Stability::told, hopeless), short_Td(sweep)))
         runs.explore(valley);
     runs.explore(cheapest(problem, scan(sweep, kIntegralBox), runs.best()->log_cost + kHopeless));
     runs.explore(cheapest_island(sweep, problem, runs.best()->log_cost));

@@ -17,6 +17,7 @@ constexpr int kMaxCompared = 12;
 constexpr std::size_t kMaxValleys = 4;
 constexpr double kSameTd = 1e-9;      // of ln Td: rounding of one value of the scan
 constexpr double kWiderLimits = 1.4;  // times M - 1
+constexpr double kMainland = 0.7;     // of ln Kp
 constexpr ScanBox kIslandBox = {
     .Ti_points = 12, .Td_points = 12, .Ti_low = 0.01, .Ti_high = 1000, .Td_low = 0.02, .Td_high = 60};
 
@@ -62,10 +63,13 @@ std::optional<Candidate> best_start(const Sweep& sweep, const DesignProblem& pro
     return std::nullopt;
 }
 
-std::vector<Candidate> valley_starts(const DesignProblem& problem, const std::vector<ScanPoint>& points) {
+std::vector<Candidate> valley_starts(const DesignProblem& problem, const std::vector<ScanPoint>& points,
+                                     double short_Td) {
     std::vector<Candidate> starts;
     for (const auto& point : points) {
-        const auto same_Td = [&](const Candidate& c) { return std::abs(c.x[2] - point.x[2]) < kSameTd; };
+        const auto same_Td = [&](const Candidate& c) {
+            return std::abs(std::max(c.x[2], short_Td) - std::max(point.x[2], short_Td)) < kSameTd;
+        };
         auto at = std::find_if(starts.begin(), starts.end(), same_Td);
         if (at == starts.end()) at = starts.insert(starts.end(), Candidate{.x = point.x});
         consider(*at, problem, point);
@@ -81,17 +85,6 @@ std::vector<Candidate> valley_starts(const DesignProblem& problem, const std::ve
 std::optional<Candidate> cheapest(const DesignProblem& problem, const std::vector<ScanPoint>& points, double below) {
     Candidate best{.log_cost = below};
     for (const auto& point : points) consider(best, problem, point);
-    return if_below(best, below);
-}
-
-std::optional<Candidate> cheapest_island(const Sweep& sweep, const DesignProblem& problem, double below) {
-    DesignProblem wider = problem;
-    for (double* limit : {&wider.limits.Ms, &wider.limits.Mt}) *limit = 1 + (*limit - 1) * kWiderLimits;
-    Candidate best{.log_cost = below};
-    for (const auto& point : scan(Sweep(wider, sweep.reference()), kIslandBox, Stability::told, below)) {
-        if (log_cost_bound(problem, point.x) >= best.log_cost) continue;
-        if (const auto inside = feasible_near(sweep, point.x)) consider(best, problem, {.x = *inside, .proved = true});
-    }
     return if_below(best, below);
 }
 
@@ -159,6 +152,27 @@ std::vector<ScanPoint> scan(const Sweep& sweep, const ScanBox& box, Stability wa
             if (const auto point = point_at(sweep, Ti, Td, wanted, below)) found.push_back(*point);
     std::sort(found.begin(), found.end(), [](const ScanPoint& a, const ScanPoint& b) { return a.log_ie < b.log_ie; });
     return found;
+}
+
+namespace {
+
+/// Whether the true limits leave nearly as high a gain at the same Ti and Td: other scans have been near there.
+bool on_mainland(const Sweep& sweep, const DesignPoint& x) {
+    const auto gains = feasible_gains(sweep, std::exp(x[1]), std::exp(x[2]), Stability::told);
+    return !gains.empty() && std::log(gains.front().Kp) > x[0] - kMainland;
+}
+
+}  // namespace
+
+std::optional<Candidate> cheapest_island(const Sweep& sweep, const DesignProblem& problem, double below) {
+    DesignProblem wider = problem;
+    for (double* limit : {&wider.limits.Ms, &wider.limits.Mt}) *limit = 1 + (*limit - 1) * kWiderLimits;
+    Candidate best{.log_cost = below};
+    for (const auto& point : scan(Sweep(wider, sweep.reference()), kIslandBox, Stability::told, below)) {
+        if (log_cost_bound(problem, point.x) >= best.log_cost || on_mainland(sweep, point.x)) continue;
+        if (const auto inside = feasible_near(sweep, point.x)) consider(best, problem, {.x = *inside, .proved = true});
+    }
+    return if_below(best, below);
 }
 
 }  // namespace tunewright::robust

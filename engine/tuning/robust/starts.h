@@ -56,8 +56,10 @@ struct Candidate {
 std::optional<Candidate> best_start(const Sweep& sweep, const DesignProblem& problem,
                                     const std::vector<ScanPoint>& points);
 
-/// The cheapest point of each Td, cheapest first: four at most where the cost needs simulations.
-std::vector<Candidate> valley_starts(const DesignProblem& problem, const std::vector<ScanPoint>& points);
+/// The cheapest point of each Td, cheapest first: four at most where the cost needs simulations. All ln Td up to
+/// `short_Td` are one.
+std::vector<Candidate> valley_starts(const DesignProblem& problem, const std::vector<ScanPoint>& points,
+                                     double short_Td = -std::numeric_limits<double>::infinity());
 
 /// The cheapest point whose ln of the cost is less than `below`; empty if there is none.
 std::optional<Candidate> cheapest(const DesignProblem& problem, const std::vector<ScanPoint>& points,

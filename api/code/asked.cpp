@@ -1,5 +1,6 @@
 #include "api/code/parts.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "api/csv/text.h"
@@ -20,6 +21,27 @@ void read_words(const CodeWords& words, CodeQuestion& question, Reader& reader) 
         given[key] = number.is_number() ? std::move(number) : Json(value);
     }
     code_contract().read(given, question, reader);
+}
+
+/// The rules by which the request has judged its program, where the words name no others.
+void take_implemented(const CodeWords& words, const Json& request, CodeQuestion& question) {
+    const Json::json_pointer place("/implement");
+    if (!request.is_object() || !request.contains(place) || !request.at(place).is_object()) return;
+    const Json& implement = request.at(place);
+    if (implement.contains("product")) return;  // which has rules of its own
+    const auto asked = [&](const char* name) {
+        return std::ranges::any_of(words, [&](const auto& word) { return word.first == name; });
+    };
+    const auto says = [&](const char* name, const char* value) {
+        return implement.contains(name) && implement.at(name) == value;
+    };
+    if (!asked("integral")) {
+        if (says("integral", "forward")) question.integral = IntegralRule::forward;
+        if (says("integral", "trapezoidal")) question.integral = IntegralRule::trapezoidal;
+    }
+    if (!asked("derivative") && says("derivative", "backward")) question.derivative = DerivativeRule::difference;
+    if (!asked("form") && !asked("anti_windup") && !asked("tracking_time") && says("algorithm", "velocity"))
+        question.velocity = true;
 }
 
 /// Seconds in the result's unit of time.
@@ -50,10 +72,11 @@ ControllerCode file_of(code::Language language, std::string text) {
 
 }  // namespace
 
-AskedCode read_asked(const CodeWords& words, const Json& result, Reader& reader) {
+AskedCode read_asked(const CodeWords& words, const ChosenEntry& found, Reader& reader) {
     AskedCode asked;
     read_words(words, asked.question, reader);
-    asked.unit = unit_of(result, reader);
+    take_implemented(words, found.request, asked.question);
+    asked.unit = unit_of(found.result, reader);
     return asked;
 }
 

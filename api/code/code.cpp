@@ -33,7 +33,7 @@ std::variant<ControllerCode, Problem> written(const ChosenEntry& found, const As
 
 std::variant<ControllerCode, Problem> written_entry(const ChosenEntry& found, const CodeWords& words) {
     Reader reader;
-    const AskedCode asked = read_asked(words, found.result, reader);
+    const AskedCode asked = read_asked(words, found, reader);
     const Controller controller = controller_of(found.entry(), reader);
     if (auto problem = reader.problem()) return *std::move(problem);
     return written(found, asked, controller);

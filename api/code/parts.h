@@ -29,12 +29,13 @@ struct CodeQuestion {
 /// Read from an object of the parameters as they were typed, numbers as numbers.
 const Description<CodeQuestion>& code_contract();
 
-/// The parameters as they were typed, and what the result says of units: both read before anything is computed.
+/// The parameters as they were typed, rules that are not among them from the request's `implement`, and what the result
+/// says of units: all read before anything is computed.
 struct AskedCode {
     CodeQuestion question;
     double unit = 1;  ///< seconds in the result's unit of time
 };
-AskedCode read_asked(const CodeWords& words, const Json& result, Reader& reader);
+AskedCode read_asked(const CodeWords& words, const ChosenEntry& found, Reader& reader);
 
 struct SampleTime {
     double seconds = 0;

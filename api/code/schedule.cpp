@@ -31,7 +31,7 @@ std::string named(const Json& scheduling) {
 
 std::variant<ControllerCode, Problem> written_schedule(const ChosenEntry& found, const CodeWords& words) {
     Reader reader;
-    const AskedCode asked = read_asked(words, found.result, reader);
+    const AskedCode asked = read_asked(words, found, reader);
     const Json& answer = found.result.at("range");
     const Schedule schedule = schedule_of(answer.at("schedule"), asked.unit, reader);
     if (auto problem = reader.problem()) return *std::move(problem);

@@ -13,8 +13,16 @@ namespace {
 
 constexpr std::size_t kMaxNumberLength = 64;
 
+constexpr std::string_view kMinusSign = "\xE2\x88\x92", kEnDash = "\xE2\x80\x93";
+
+/// The length of a minus as type setters write it.
+std::size_t typeset_minus(std::string_view cell) {
+    return cell.starts_with(kMinusSign) || cell.starts_with(kEnDash) ? kMinusSign.size() : 0;
+}
+
 std::string_view without_sign(std::string_view cell) {
     if (!cell.empty() && (cell.front() == '-' || cell.front() == '+')) cell.remove_prefix(1);
+    cell.remove_prefix(typeset_minus(cell));
     return cell;
 }
 
@@ -127,6 +135,8 @@ bool read_cell_number(std::string_view cell, double& value, DecimalSign sign, st
         cell = trimmed(cell);
     }
     if (!cell.empty() && cell.front() == '+') cell.remove_prefix(1);
+    std::string plain;
+    if (const std::size_t minus = typeset_minus(cell); minus > 0) cell = plain = "-" + std::string(cell.substr(minus));
     if (cell.empty() || !(is_digit(cell.front()) || cell.front() == '-' || cell.front() == '.' || cell.front() == ','))
         return false;
     const bool comma = cell.find(',') != cell.npos;

@@ -43,6 +43,15 @@ std::size_t heading_among(const std::vector<CsvLine>& above, std::size_t first) 
     return best;
 }
 
+/// Tags in one line and descriptions in another: what the headings' line leaves empty stands in the other one.
+void fill_from(const std::vector<CsvLine>& above, std::size_t first, std::size_t at, CsvLayout& layout) {
+    for (std::size_t column = 0; column < layout.headings.size(); ++column) {
+        if (!layout.headings[column].empty()) continue;
+        for (std::size_t line = at; line-- > first && layout.headings[column].empty();)
+            if (column < above[line].cells.size()) layout.headings[column] = std::string(above[line].cells[column]);
+    }
+}
+
 }  // namespace
 
 int roles_named(const std::vector<std::string_view>& cells) {
@@ -154,6 +163,7 @@ void find_headings(const std::vector<CsvLine>& above, const std::vector<CsvLine>
     const std::size_t at = heading_among(above, first);
     layout.skipped = static_cast<int>(at);
     take_headings(above[at], layout);
+    fill_from(above, first, at, layout);
     layout.below.assign(above.begin() + static_cast<std::ptrdiff_t>(at) + 1, above.end());
     if (above[at].cells.size() + 1 != layout.width || !counts_rows(data) || data.front().cells.back().empty()) return;
     layout.numbered = true;

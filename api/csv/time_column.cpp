@@ -8,11 +8,24 @@
 namespace tunewright::api {
 namespace {
 
-constexpr double kDay = 86400, kHour = 3600, kMinute = 60;
+constexpr double kMinute = 60;
+
+/// Whether it is "12:05", of which the two numbers may be hours and minutes or minutes and seconds.
+bool is_short(const TimeStamp& stamp, std::string_view cell) {
+    return !stamp.has_date && !stamp.minutes && std::ranges::count(cell, ':') == 1;
+}
 
 /// Whether a number is a day of the years 1954 to 2119 as spreadsheets count them, or from 1916 to 2190 by MATLAB's
 /// datenum.
 bool is_day(double value) { return (value > 20000 && value < 80000) || (value > 700000 && value < 800000); }
+
+/// Whether steps are as long as those of logs, counted in days: seconds that divide a minute, or minutes.
+bool steps_of_a_log(double days) {
+    constexpr double kOff = 0.02;  // seconds
+    const double seconds = days * kDay, whole = std::round(seconds);
+    if (std::abs(seconds - whole) > kOff || whole < 1 || whole > kHour) return false;
+    return std::fmod(whole < kMinute ? kMinute : whole, whole < kMinute ? whole : kMinute) == 0;
+}
 
 /// Whether steps are whole seconds, or whole minutes where they are longer, counted in days: their decimals do not end,
 /// as those of a sample time in seconds do.
@@ -40,23 +53,32 @@ TimeColumn::TimeColumn(std::string_view text, const CsvLayout& layout, const Fou
         return;
     }
     factor_ = 1 / *answer;
-    note_short_clock(text, layout, *columns.at[kTimeRole]);
+    read_short_clock(text, layout, *columns.at[kTimeRole]);
     find_order(text, layout, columns);
 }
 
-// "00:05" may also be minutes and seconds.
-void TimeColumn::note_short_clock(std::string_view text, const CsvLayout& layout, std::size_t column) {
+// "00:05" may also be minutes and seconds: it is where one of them counts beyond the hours of a day.
+void TimeColumn::read_short_clock(std::string_view text, const CsvLayout& layout, std::size_t column) {
     CsvLines lines(text, layout);
     CsvLine line;
-    while (lines.next(line)) {
+    std::string first;
+    while (!short_is_minutes_ && lines.next(line)) {
         if (column >= line.cells.size() || is_missing(line.cells[column])) continue;
         const std::string_view cell = line.cells[column];
         const auto stamp = read_time_stamp(cell);
-        if (stamp && !stamp->has_date && std::count(cell.begin(), cell.end(), ':') == 1)
-            notes_.push_back("Times such as " + in_quotes(cell) + " are read as hours and minutes; write 0:" +
-                             std::string(cell) + " for minutes and seconds.");
-        return;
+        if (!stamp) continue;
+        if (stamp->minutes) notes_.push_back("Times such as " + in_quotes(cell) + " are read as minutes and seconds.");
+        if (!is_short(*stamp, cell)) return;
+        if (first.empty()) first = std::string(cell);
+        short_is_minutes_ = stamp->seconds > kDay;
+        if (short_is_minutes_)
+            notes_.push_back("Times such as " + in_quotes(first) + " are read as minutes and seconds, because " +
+                             in_quotes(cell) + " is no time of day; write " + std::string(cell) +
+                             ":00 for hours and minutes.");
     }
+    if (short_is_minutes_ || first.empty()) return;
+    notes_.push_back("Times such as " + in_quotes(first) + " are read as hours and minutes; write 0:" + first +
+                     " for minutes and seconds.");
 }
 
 // Of the two readings of 03/04/2026 the one is right in which time runs on: the other jumps by months.
@@ -104,6 +126,7 @@ std::optional<std::string> TimeColumn::unit_by_size(std::string_view text, const
     }
     if (!first || steps < 1) return std::nullopt;
     constexpr double kFrom = 3e8, kTo = 5e9;  // seconds since 1970: 1979 to 2128
+    constexpr double kFromMidnight = 20;      // steps
     for (const auto& [unit, scale] : {std::pair{"ms", 1e3}, {"us", 1e6}, {"ns", 1e9}}) {
         if (*first > kFrom * scale && *first < kTo * scale) return unit;
     }
@@ -112,6 +135,9 @@ std::optional<std::string> TimeColumn::unit_by_size(std::string_view text, const
                        name.find("datum") != name.npos || name.find("zeitstempel") != name.npos;
     const double mean_step = std::abs(*last - *first) / steps;
     if (is_day(*first) && mean_step > 0 && mean_step < 0.05 && (dated || steps_of_a_clock(mean_step))) return "d";
+    // A time of day alone, as spreadsheets hold it; a record in seconds begins at 0 or near it.
+    const bool of_day = *first > kFromMidnight * mean_step && *last < 1 && *last > *first;
+    if (of_day && steps_of_a_clock(mean_step) && steps_of_a_log(mean_step)) return "d";
     return std::nullopt;
 }
 
@@ -194,17 +220,21 @@ void TimeColumn::find_unit(std::string_view text, const CsvLayout& layout, const
     notes_.push_back("Times are converted from " + unit + " to " + options.time_unit + ".");
 }
 
-// A number of milliseconds is read as seconds where nothing names its unit; a usual spacing of seconds is no reason to
-// ask.
+// A number of milliseconds, or of days, is read as seconds where nothing names its unit; a usual spacing of seconds is
+// no reason to ask.
 void TimeColumn::note_unknown_unit(const ColumnProfile& profile, const CsvOptions& options) {
-    constexpr double kUsual = 5;
-    if (profile.changes < 1 || !profile.rises || profile.least_step < kUsual) return;
+    constexpr double kUsual = 5, kFast = 1e-3;
+    if (profile.changes < 1 || !profile.rises || (profile.least_step < kUsual && profile.least_step >= kFast)) return;
     notes_.push_back("The file names no unit of time: the times are read as " + options.time_unit + ", " +
                      tunewright::text(profile.least_step) + " or more apart. Choose their unit if it is another.");
 }
 
 std::optional<TimeStamp> TimeColumn::stamp(std::string_view cell, std::string_view clock, DateOrder order) const {
     auto now = read_time_stamp(cell, order);
+    if (now && short_is_minutes_ && is_short(*now, cell)) {
+        now->seconds /= kMinute;
+        now->minutes = true;
+    }
     if (!now || clock.empty()) return now;
     const auto of_day = read_time_stamp(clock, order);
     if (!of_day || of_day->has_date) return std::nullopt;
@@ -214,23 +244,9 @@ std::optional<TimeStamp> TimeColumn::stamp(std::string_view cell, std::string_vi
     return now;
 }
 
-double TimeColumn::continued(const TimeStamp& stamp, int line) {
-    double seconds = stamp.seconds + set_back_;
-    if (last_ && seconds < *last_) {
-        const double back = *last_ - seconds;
-        constexpr double kMax = 120;
-        if (!stamp.has_date && back > kDay / 2) {
-            set_back_ += kDay;
-            seconds += kDay;
-        } else if (!stamp.has_zone && back <= kHour && back > kHour - kMax) {
-            set_back_ += kHour;
-            seconds += kHour;
-            notes_.push_back("The clock goes back by an hour at line " + std::to_string(line) +
-                             ", as at the end of summer time; the times go on.");
-        }
-    }
-    last_ = seconds;
-    return seconds;
+std::vector<std::string> TimeColumn::take_notes() {
+    for (std::string& note : clock_.take_notes()) notes_.push_back(std::move(note));
+    return std::move(notes_);
 }
 
 bool TimeColumn::read(std::string_view cell, std::string_view clock, int line, double& time) {
@@ -238,7 +254,7 @@ bool TimeColumn::read(std::string_view cell, std::string_view clock, int line, d
     if (stamps_) {
         const auto now = stamp(cell, clock, order_);
         if (!now) return false;
-        value = continued(*now, line);
+        value = clock_.seconds(*now, line);
     } else if (!read_cell_number(cell, value, sign_, suffix_)) {
         return false;
     }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "api/csv/columns/columns.h"
+#include "api/csv/running_clock.h"
 #include "api/csv/time_stamp.h"
 
 namespace tunewright::api {
@@ -25,18 +26,17 @@ public:
     bool stamps() const { return stamps_; }
     /// The file, or the one who asks, says in which unit its times are.
     bool unit_known() const { return stamps_ || unit_known_; }
-    std::vector<std::string> take_notes() { return std::move(notes_); }
+    std::vector<std::string> take_notes();
 
 private:
     void note_unknown_unit(const ColumnProfile& profile, const CsvOptions& options);
-    void note_short_clock(std::string_view text, const CsvLayout& layout, std::size_t column);
+    void read_short_clock(std::string_view text, const CsvLayout& layout, std::size_t column);
     void find_order(std::string_view text, const CsvLayout& layout, const FoundColumns& columns);
     void find_unit(std::string_view text, const CsvLayout& layout, const FoundColumns& columns,
                    const ColumnProfile& profile, const CsvOptions& options);
     std::optional<std::string> unit_by_size(std::string_view text, const CsvLayout& layout, std::size_t column) const;
     std::optional<std::string> unit_by_clock(std::string_view text, const CsvLayout& layout, std::size_t column) const;
     std::optional<TimeStamp> stamp(std::string_view cell, std::string_view clock, DateOrder order) const;
-    double continued(const TimeStamp& stamp, int line);
 
     bool stamps_ = false;
     DateOrder order_ = DateOrder::day_first;
@@ -44,8 +44,9 @@ private:
     std::string suffix_;
     double factor_ = 1;
     bool from_zero_ = false, unit_known_ = false;
-    double set_back_ = 0;
-    std::optional<double> first_, last_;
+    bool short_is_minutes_ = false;  // "75:20" is minutes and seconds
+    RunningClock clock_;
+    std::optional<double> first_;
     std::vector<std::string> notes_;
 };
 

@@ -70,13 +70,28 @@ std::optional<bool> take_half_of_day(std::string_view& text) {
     return half == 'p';
 }
 
+/// 07:20.5, as spreadsheets show times below an hour; the rest after it must be nothing.
+std::optional<double> take_minutes(std::string_view& text) {
+    std::string_view rest = text;
+    const auto minute = take_digits(rest, 1, 2);
+    if (!minute || !take(rest, ":")) return std::nullopt;
+    const auto second = take_digits(rest, 2, 2);
+    if (!second || *second > 59 || rest.size() < 2 || (rest.front() != '.' && rest.front() != ',')) return std::nullopt;
+    const auto fraction = take_fraction(rest);
+    if (!fraction || !rest.empty()) return std::nullopt;
+    text = rest;
+    return 60.0 * *minute + *second + *fraction;
+}
+
+constexpr int kHoursOfDay = 24;
+
 std::optional<double> take_clock(std::string_view& text) {
     std::string_view rest = text;
     const bool basic = rest.size() >= 6 && rest.find(':') == rest.npos;
     const auto hour = take_digits(rest, basic ? 2 : 1, 2);
-    if (!hour || *hour > 24 || (!basic && !take(rest, ":"))) return std::nullopt;
+    if (!hour || (!basic && !take(rest, ":"))) return std::nullopt;
     const auto minute = take_digits(rest, 2, 2);
-    if (!minute || *minute > 59) return std::nullopt;
+    if (!minute || *minute > 59 || (*hour > kHoursOfDay && !rest.empty())) return std::nullopt;
     double seconds = 3600.0 * *hour + 60.0 * *minute;
     if (basic || take(rest, ":")) {
         const auto second = take_digits(rest, 2, 2);
@@ -282,8 +297,10 @@ std::optional<TimeStamp> read_time_stamp(std::string_view text, DateOrder order)
     } else if (!is_digit(text.front()) || text.find(':') == text.npos) {
         return std::nullopt;
     }
-    const auto clock = take_clock(rest);
-    if (!clock) return std::nullopt;
+    auto clock = date ? std::nullopt : take_minutes(rest);
+    stamp.minutes = clock.has_value();
+    if (!clock) clock = take_clock(rest);
+    if (!clock || (date && *clock > kHoursOfDay * 3600.0)) return std::nullopt;
     const auto zone = take_zone(rest);
     if (!zone || !rest.empty()) return std::nullopt;
     stamp.has_clock = true;

@@ -6,6 +6,8 @@
 
 namespace tunewright::api {
 
+constexpr double kDay = 86400, kHour = 3600;  ///< s
+
 /// Of dates in numbers that do not begin with the year.
 enum class DateOrder { day_first, month_first };
 
@@ -15,13 +17,15 @@ struct TimeStamp {
     bool has_clock = false;
     bool has_zone = false;
     bool order_matters = false;  ///< 03/04/2026: another order would be another date
+    bool minutes = false;        ///< 07:20.5: minutes and seconds, without the hour
 };
 
 /// ISO 8601 "2024-03-01T12:00:00.5Z", "2024-03-01 12:00:00,5 +02:00", "2024-03-01", "20240301T120000Z",
 /// "20240301120000"; "1.3.2024 12:00:00", "3/1/2024 2:05:06.5 PM", "01-Mar-24 12:00:00", "Mar 1, 2024 2:05 PM" (months
-/// also in German, French, Spanish, Italian, Dutch); or a time of day "12:00:00.5", "12:00", "2:05 PM". Points stand
-/// between day and month, slashes and dashes between what `order` says, unless only one order makes a date. Two-digit
-/// years are 2000 to 2079 and 1980 to 1999.
+/// also in German, French, Spanish, Italian, Dutch); or a time of day "12:00:00.5", "12:00", "2:05 PM"; or minutes and
+/// seconds "07:20.5". Of "75:20" the first is taken for hours, as of "12:00"; up to 99. Points stand between day and
+/// month, slashes and dashes between what `order` says, unless only one order makes a date. Two-digit years are 2000 to
+/// 2079 and 1980 to 1999.
 std::optional<TimeStamp> read_time_stamp(std::string_view text, DateOrder order = DateOrder::day_first);
 
 /// Whether fourteen digits alone are a date of 1970 to 2099 and a time of day, 20240301120000.

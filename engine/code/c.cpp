@@ -1,4 +1,7 @@
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cstdint>
 
 #include "engine/code/print.h"
 
@@ -93,6 +96,18 @@ void add_step(const Program& program, std::string& out) {
 
 bool uses_exponential(const std::string& text) { return text.find("exp(") != text.npos; }
 
+/// The same text may come twice. Another one with the same names must not be passed over in silence, for its loop would
+/// then run with the first one's settings.
+std::string open_guard(const std::string& functions) {
+    std::uint64_t sum = 0xcbf29ce484222325;  // FNV-1a, 64 bits (Fowler, Noll and Vo, 1991)
+    for (const unsigned char byte : functions) sum = (sum ^ byte) * 0x100000001b3;
+    const std::string own = fmt::format("TUNEWRIGHT_PID_{:016X}", sum);
+    return "#ifndef " + own + "\n#define " + own + "\n#ifdef TUNEWRIGHT_PID_H\n" +
+           "#error \"Two programs of Tunewright in one source: include each in a source of its own, or keep one and "
+           "set "
+           "the other loop's numbers after tunewright_pid_init.\"\n#endif\n#define TUNEWRIGHT_PID_H\n\n";
+}
+
 std::string c_argument(const Declaration& input) {
     return input.name == "manual" ? "false" : input.name == "manual_output" ? "0.0" : input.name;
 }
@@ -115,9 +130,9 @@ std::string print_c(const Program& program, const Provenance& provenance) {
     add_init(program, functions);
     std::string step;
     add_step(program, step);
+    functions += step;
     const char* math = uses_exponential(step) ? "#include <math.h>\n" : "";
-    return head + " */\n#ifndef TUNEWRIGHT_PID_H\n#define TUNEWRIGHT_PID_H\n\n" + math + "#include <stdbool.h>\n\n" +
-           functions + step + "\n#endif\n";
+    return head + " */\n" + open_guard(functions) + math + "#include <stdbool.h>\n\n" + functions + "\n#endif\n";
 }
 
 }  // namespace tunewright::code

@@ -100,7 +100,7 @@ std::string change_note(const Plan& plan) {
     return "Changes: " + names +
            " and b may be changed between two calls, and u does not jump. The limits may be changed too, and u obeys "
            "them at once. Change " +
-           fixed + " only with a restart.";
+           fixed + " only with a restart, in manual at the present u.";
 }
 
 std::string start_note(const Plan& plan) {

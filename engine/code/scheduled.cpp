@@ -178,7 +178,7 @@ Expected<Program> scheduled_algorithm(const Schedule& schedule, const SampledPid
         if (note.starts_with("Changes:"))
             note =
                 "Changes: the limits may be changed between two calls, and u obeys them at once. Change Ts and c "
-                "only with a restart; the other settings are the schedule's.";
+                "only with a restart, in manual at the present u; the other settings are the schedule's.";
     program->notes.insert(program->notes.begin(), schedule_note(schedule, named));
     return program;
 }

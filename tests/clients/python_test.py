@@ -224,6 +224,15 @@ class ClientTest(unittest.TestCase):
         compile(self.client.code(result.job["id"], "python", sample_time=0.5), "controller.py", "exec")
         self.assertIn("amigo", self.client.code(result, "st", controller=1).lower())
 
+    def test_an_operating_range_has_a_schedule_in_place_of_a_best(self):
+        result = self.client.run({"scheduling": {"name": "load", "unit": "%"},
+                                  "points": [{"at": 20, "plant": "2 e^(-s)/(10s+1)"},
+                                             {"at": 80, "plant": "1 e^(-s)/(3s+1)"}]})
+        with self.assertRaisesRegex(LookupError, "range"):
+            result.best
+        for job in (result, result.job["id"]):
+            self.assertIn("scheduling", self.client.code(job, "c", sample_time=0.1))
+
     def test_who_has_a_key_is_let_in(self):
         with tempfile.TemporaryDirectory() as folder:
             keys = os.path.join(folder, "keys")

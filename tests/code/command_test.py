@@ -87,6 +87,20 @@ class CommandTest(unittest.TestCase):
         asked = command(result, "--language", "st", "--sample-time", "1").stdout
         self.assertIn("1 s, as asked for; beyond", " ".join(asked.split()))
 
+    def test_the_rules_are_those_that_the_request_was_judged_with(self):
+        request = {"plant": "2 e^(-3s)/(10s+1)", "evaluate": {"points": 0}, "tune": [{"method": "robust", "Ms": 1.4}],
+                   "implement": {"sample_time": 1.5, "integral": "trapezoidal", "derivative": "backward"}}
+        tuned = subprocess.run([BINARY, "tune", "-"], input=json.dumps(request), capture_output=True, text=True)
+        result = json.loads(tuned.stdout)
+        implemented = result["controllers"][0]["implemented"]["robustness"]["Ms"]
+        both = {"result": result, "request": request}
+        text = command(both, "--language", "python").stdout
+        same = command(both, "--language", "python", "--integral", "trapezoidal", "--derivative", "difference").stdout
+        other = command(both, "--language", "python", "--integral", "backward").stdout
+        self.assertEqual(text, same)
+        self.assertNotEqual(text, other)
+        self.assertIn("%.5g" % implemented, text)
+
     def test_the_request_beside_it_is_the_results_own(self):
         request = {"plant": "2 e^(-3s)/(10s+1)", "evaluate": {"points": 0}}
         tuned = subprocess.run([BINARY, "tune", "-"], input=json.dumps(request), capture_output=True, text=True)

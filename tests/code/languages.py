@@ -4,6 +4,7 @@ import array
 import json
 import os
 import pathlib
+import re
 import subprocess
 import tempfile
 
@@ -77,7 +78,8 @@ class CProgram:
                 file.write(text)
             for name in ("tunewright_pid", "tunewright_pid_init", "tunewright_pid_step"):
                 source += ["#undef " + name, "#define %s %s_%d" % (name, name, i)]
-            source += ["#undef TUNEWRIGHT_PID_H", '#include "pid_%d.h"' % i, self.runner(text, i)]
+            guards = ["#undef TUNEWRIGHT_PID_H", "#undef " + re.search(r"#ifndef (\w+)", text).group(1)]
+            source += [*guards, '#include "pid_%d.h"' % i, self.runner(text, i)]
         source.append(self.main(len(texts)))
         with open(self.path("main.c"), "w") as file:
             file.write("\n".join(source))

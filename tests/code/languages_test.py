@@ -149,6 +149,20 @@ class LanguagesTest(unittest.TestCase):
         for optimisation in ("-O0", "-O3"):
             binary.compile(["-x", "c", optimisation, "-fsyntax-only", "pid_0.h"])
 
+    def test_two_programs_do_not_pass_for_one(self):
+        texts = [code(result_of(ideal("derivative")), "c", {"sample_time": Ts}) for Ts in (0.5, 0.25)]
+        binary = CProgram(texts, COLUMNS, sanitized=False)
+        self.addCleanup(binary.folder.cleanup)
+        for second, refused in (("pid_0.h", False), ("pid_1.h", True)):
+            with open(binary.path("both.c"), "w") as file:
+                file.write('#include "pid_0.h"\n#include "%s"\n' % second)
+            with self.subTest(second=second):
+                if refused:
+                    with self.assertRaisesRegex(AssertionError, "Two programs of Tunewright"):
+                        binary.compile(["-fsyntax-only", "-Wno-unused-function", "both.c"])
+                else:
+                    binary.compile(["-fsyntax-only", "-Wno-unused-function", "both.c"])
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -69,7 +69,10 @@ class Result(Dict[str, Any]):
 
     @property
     def best(self) -> Json:
-        """The entry that ranks first."""
+        """The entry that ranks first. An operating range has none: its answer stands in result["range"]."""
+        if "ranking" not in self:
+            raise LookupError('This result has no ranking: an operating range is answered in result["range"], with '
+                              'its one setting ("one") and its rows ("schedule").')
         entry: Json = self["controllers"][self["ranking"][0]]
         return entry
 
@@ -171,11 +174,13 @@ class Client:
         return self._body(_job(job) + "/report.html" + _query({"controller": controller}))
 
     def code(self, job: Union[str, Result], language: str, controller: Optional[int] = None, **options: Any) -> str:
-        """A controller of a job as a program: language "st", "c" or "python"; options such as sample_time=0.5."""
+        """A controller of a job as a program: language "st", "c" or "python"; options such as sample_time=0.5. Of an
+        operating range it is the schedule's."""
+        place = "controllers/%s" % controller
         if controller is None:
-            controller = (job if isinstance(job, Result) else self.job(job)["result"])["ranking"][0]
-        query = _query({"language": language, **options})
-        return self._body("%s/controllers/%d/code%s" % (_job(job), controller, query))
+            result = job if isinstance(job, Result) else self.job(job)["result"]
+            place = "controllers/%d" % result["ranking"][0] if "ranking" in result else "schedule"
+        return self._body("%s/%s/code%s" % (_job(job), place, _query({"language": language, **options})))
 
     # Many at once.
 

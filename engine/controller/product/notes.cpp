@@ -11,7 +11,10 @@ namespace {
 
 constexpr double kSame = 1e-9;
 
-bool same(double a, double b) { return a == b || std::abs(a - b) <= kSame * std::max(std::abs(a), std::abs(b)); }
+bool same(double a, double b) {
+    return a == b ||
+           (std::isfinite(a) && std::isfinite(b) && std::abs(a - b) <= kSame * std::max(std::abs(a), std::abs(b)));
+}
 
 std::string with_text(const std::string& sentence, std::string_view text) {
     return text.empty() ? sentence : sentence + " " + std::string(text);
@@ -129,6 +132,18 @@ const char* rule_name(IntegralRule rule) {
     return "backward";
 }
 
+/// A first-order lag by forward differences: 1 - Ts/Tf of it is left after a sample.
+void note_unstable_filter(const Comparison& it, std::vector<Note>& notes) {
+    const auto Ts = clocks_of(it.product, it.context).sample_time;
+    const double unit = it.context.seconds_per_time, Tf = it.realised.filter.Tf;
+    if (!Ts || it.product.algorithm.derivative != DerivativeRule::filtered_forward || it.realised.Td == 0) return;
+    if (it.realised.filter.type != FilterType::derivative || !(Tf > 0) || Tf * unit > *Ts / 2) return;
+    notes.push_back(
+        {"unstable-filter", "The block filters its derivative by forward differences, which is unstable with Tf = " +
+                                text(Tf) + " at a sample time of " + text(*Ts / unit) +
+                                ": Tf must be above half of it. Take a longer Tf, or a shorter sample time."});
+}
+
 void note_algorithm(const Comparison& it, std::vector<Note>& notes) {
     const Algorithm& algorithm = it.product.algorithm;
     if (!algorithm.published) {
@@ -140,10 +155,24 @@ void note_algorithm(const Comparison& it, std::vector<Note>& notes) {
                                                " rule; that changes the loop where the sample time is not small "
                                                "against Ti."});
     }
+    note_unstable_filter(it, notes);
     if (uses_firmware_clock(it.product) && !it.context.loop_clock_s) {
         notes.push_back({"clock", "Computed with the clock of the firmware, " + text(*algorithm.sample_time_s) +
                                       " s. " + std::string(algorithm.sample_time_text)});
     }
+}
+
+/// A block whose output is in percent, and a u that is not.
+void note_percent(const Comparison& it, std::vector<Note>& notes) {
+    constexpr double kPercent = 100;
+    const double span = it.context.spans.u_high - it.context.spans.u_low;
+    if (!it.product.in_percent || !it.context.u_span_given || same(span, kPercent)) return;
+    const Parameter& gain = *parameter_of(it.product, Role::gain);
+    notes.push_back({"percent", "The output of the block is in percent, and u spans " + text(span) +
+                                    " here: where u is "
+                                    "what the percent stand for, type " +
+                                    std::string(gain.name) + " times " + text(kPercent / span) +
+                                    ", or tune with u in percent."});
 }
 
 void note_evidence(const Comparison& it, std::vector<Note>& notes) {
@@ -158,6 +187,9 @@ void note_evidence(const Comparison& it, std::vector<Note>& notes) {
 
 std::string setpoint_prefilter(const IdealPid& asked, const IdealPid& realised) {
     if (!asked.has_integral() || !same(asked.Ti, realised.Ti) || !same(asked.Kp, realised.Kp)) return "";
+    // What the set point's derivative becomes is as far from the design's as the filters are from each other.
+    const bool kicks = (asked.c != 0 && asked.Td != 0) || (realised.c != 0 && realised.Td != 0);
+    if (kicks && (asked.filter.type != realised.filter.type || !same(asked.filter.Tf, realised.filter.Tf))) return "";
     // Degrees: a part of the block's set point has to be at least as steep as the design's.
     const bool filtered = realised.filter.type == FilterType::derivative;
     const auto degree = [&](double b, double c) {
@@ -173,6 +205,7 @@ void add_notes(const Comparison& comparison, std::vector<Note>& notes) {
     note_filter(comparison, notes);
     if (!same(comparison.asked.filter.Tf, comparison.realised.filter.Tf)) note_other_ratio(comparison, notes);
     note_rounding(comparison, notes);
+    note_percent(comparison, notes);
     note_algorithm(comparison, notes);
     note_evidence(comparison, notes);
 }

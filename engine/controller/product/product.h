@@ -102,6 +102,7 @@ struct Parameter {
     std::string_view zero_remark = "";  ///< what 0 does where it does not mean: no such part
     std::vector<Option> options = {};   ///< the first is the maker's default
     bool always = true;                 ///< false: written only where it differs from its default
+    bool compiled_in = false;           ///< changed by building the firmware anew alone: a design keeps `standard`
     bool elsewhere = false;             ///< read, but decided elsewhere than by a design (mode, variant of the block)
     std::string_view remark = "";
 };
@@ -182,6 +183,8 @@ struct Product {
     std::string_view law = "";  ///< formula over the parameters' names
     std::string_view gain_basis = "";
     std::vector<Parameter> parameters = {};
+    bool in_percent =
+        false;  ///< the gain's output is in percent and no parameter scales it: u has to be in percent too
     double series_alpha = 0;  ///< of a series form, where no parameter's setting is given
     FilterRule filter = {};
     Weights weights = {};

@@ -28,11 +28,38 @@ void note_scheduling(const Product& product, const Schedule& schedule, std::vect
     notes.push_back({"interpolation", std::move(detail)});
 }
 
-bool same(const Note& a, const Note& b) { return a.code == b.code && a.detail == b.detail; }
-
-bool holds(const std::vector<Note>& notes, const Note& note) {
-    return std::any_of(notes.begin(), notes.end(), [&](const Note& other) { return same(other, note); });
+bool is_switched(const Product& product, const std::string& name) {
+    const Parameter* parameter = parameter_named(product, name);
+    if (parameter == nullptr) return true;
+    using enum Role;
+    return parameter->role == gain || parameter->role == integral || parameter->role == derivative;
 }
+
+/// What comes with the known products for a schedule switches gain and times alone.
+void note_held(const Product& product, ConvertedSchedule& answer) {
+    if (!product.scheduling) return;
+    std::vector<std::string> held;
+    for (const RowSettings& row : answer.rows)
+        for (const Setting& setting : row.converted.settings) {
+            const bool differs = std::ranges::any_of(answer.rows, [&](const RowSettings& other) {
+                return std::ranges::any_of(other.converted.settings, [&](const Setting& its) {
+                    return its.name == setting.name && its.value != setting.value;
+                });
+            });
+            if (differs && !is_switched(product, setting.name) && std::ranges::find(held, setting.name) == held.end())
+                held.push_back(setting.name);
+        }
+    if (held.empty()) return;
+    std::string names;
+    for (const std::string& name : held) names += (names.empty() ? "" : ", ") + name;
+    answer.notes.push_back({"held-between-rows",
+                            "The rows differ in " + names + ", which the product's gain scheduling does not switch: " +
+                                std::string(product.scheduling->text) +
+                                " Give all rows the same filter and set-point weight, or write these values by a "
+                                "program of your own."});
+}
+
+bool holds(const std::vector<Note>& notes, const Note& note) { return std::ranges::find(notes, note) != notes.end(); }
 
 /// What every row says is said once.
 void lift_common_notes(ConvertedSchedule& answer) {
@@ -63,6 +90,7 @@ Expected<ConvertedSchedule> to_settings(const Product& product, const Schedule& 
         answer.rows.push_back({row.at, *std::move(converted)});
     }
     lift_common_notes(answer);
+    note_held(product, answer);
     return answer;
 }
 

@@ -35,6 +35,8 @@ struct Context {
 struct Note {
     std::string code;    ///< kebab-case, stable
     std::string detail;  ///< a sentence with the figures
+
+    bool operator==(const Note&) const = default;
 };
 
 struct Converted {
@@ -82,6 +84,10 @@ std::string typed_text(const Product& product, const Setting& setting);
 SampledPid sampled_law(const Product& product, const Settings& settings, const Context& context, double Ts);
 
 std::optional<double> default_sample_time_s(const Product& product);
+
+/// Tf in seconds of a filter that is compiled into the firmware, as it is published; empty: it can be set, or there is
+/// none.
+std::optional<double> compiled_filter_time(const Product& product, const Context& context);
 
 /// A numeric parameter that a search may vary: `to_controller` of the varied settings is what it designs with.
 struct Tunable {

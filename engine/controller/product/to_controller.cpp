@@ -190,6 +190,19 @@ void note_outsiders(const Product& product, const Settings& settings, std::vecto
     }
 }
 
+void note_zeros(const Product& product, const Settings& settings, std::vector<Note>& notes) {
+    for (const Parameter& parameter : product.parameters) {
+        const Value* given = setting_named(settings, parameter.name);
+        if (given && *given == Value(0.0) && !parameter.zero_remark.empty())
+            notes.push_back({"integral-off", std::string(parameter.zero_remark)});
+    }
+    const Parameter* integral = parameter_of(product, Role::integral);
+    if (integral && !number_of(*integral, settings))
+        notes.push_back({"integral-off", std::string(integral->name) +
+                                             " is not given and no default of it is known: the twin has no integral "
+                                             "action."});
+}
+
 // The series form's filter stands over its whole lead: its twin's weights, times and filter come from one conversion.
 IdealPid twin(const Product& product, const Law& law) {
     if (product.form == Form::series && law.filter.type == FilterType::derivative) {
@@ -254,6 +267,7 @@ Expected<IdealPid> to_controller(const Product& product, const Settings& setting
     pid.filter.Tf /= unit;
     reading.note_defaults(notes);
     note_outsiders(product, settings, notes);
+    note_zeros(product, settings, notes);
     return pid;
 }
 

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <utility>
 
 #include "engine/controller/product/needs.h"
 #include "engine/controller/product/notes.h"
@@ -82,15 +83,21 @@ bool law_role(Role role) {
            role == Role::sample_time;
 }
 
+constexpr double kHardlyAny = 1e6;  // s, of an integral time
+
 // The law has no integral action: what stands for that, or what comes nearest to it.
 std::optional<double> without_integral(const Parameter& parameter, Work& work) {
     if (parameter.off) return *parameter.off;
-    const bool bounded = std::isfinite(parameter.range.high);
-    const double longest = bounded ? parameter.range.high : 1e6;
+    Quantities slow = work.own;
+    slow.Ti = kHardlyAny;
+    const double longest = rounded(parameter, value_of(parameter.term, slow));
+    slow.Ti = solved(parameter.term, work.own, &Quantities::Ti, parameter.term.Ti, longest);
     work.refusals.push_back(std::string(parameter.name) +
                             " has no value that is known to switch integral action off, "
                             "and the design has none. The nearest: " +
-                            std::string(parameter.name) + " = " + text(longest, 6) + ", hardly any integral action.");
+                            std::string(parameter.name) + " = " + text(longest, 6) + ", an integral time of " +
+                            text(slow.Ti / work.context.seconds_per_time, 3) +
+                            ". On a plant that is as slow as that it counts: judge the loop by what is realised.");
     return longest;
 }
 
@@ -114,6 +121,13 @@ double within_range(const Parameter& parameter, double value, Work& work) {
     return typed;
 }
 
+/// Back-calculation's time, sqrt(Ti Td), is Ti where there is no derivative.
+Term term_of(const Parameter& parameter, const Quantities& own) {
+    Term term = parameter.term;
+    if (parameter.role == Role::limit && own.Td == 0) term.Ti += std::exchange(term.Td, 0);
+    return term;
+}
+
 std::optional<double> number_for(const Parameter& parameter, Work& work) {
     if (parameter.role == Role::integral && !work.pid.has_integral() && work.own.Ti > 0) {
         const double value = value_of(parameter.term, work.own);
@@ -122,8 +136,8 @@ std::optional<double> number_for(const Parameter& parameter, Work& work) {
     }
     const Clocks clocks = clocks_of(work.product, work.context);
     const double clock = work.product.algorithm.firmware_clock ? clocks.firmware : work.own.Ts;
-    const double value =
-        parameter.role == Role::filter ? filter_value(parameter, work.own, clock) : value_of(parameter.term, work.own);
+    const double value = parameter.role == Role::filter ? filter_value(parameter, work.own, clock)
+                                                        : value_of(term_of(parameter, work.own), work.own);
     if (std::isfinite(value) && !(parameter.role == Role::filter && work.own.Td == 0 &&
                                   work.product.filter.kind == FilterKind::parameter && parameter.standard))
         return within_range(parameter, value, work);
@@ -176,6 +190,12 @@ void add_setting(const Parameter& parameter, Work& work) {
     }
     const auto value = number_for(parameter, work);
     if (parameter.role == Role::multiplier && value) work.own.K = *value;
+    if (parameter.compiled_in && value && parameter.standard && Value(*value) != *parameter.standard)
+        work.notes.push_back({"compiled-in", std::string(parameter.name) + " is " + text(*value, 4) + " here and " +
+                                                 text_of(*parameter.standard) +
+                                                 " in the firmware as it is published; without a firmware that was "
+                                                 "built anew this is another loop. Tune for this product, and the "
+                                                 "design keeps the published one."});
     if (value) add(parameter, *value, work);
 }
 
@@ -251,6 +271,14 @@ Expected<Converted> to_settings(const Product& product, const IdealPid& pid, con
 }
 
 std::optional<double> default_sample_time_s(const Product& product) { return product.algorithm.sample_time_s; }
+
+std::optional<double> compiled_filter_time(const Product& product, const Context& context) {
+    const Parameter* parameter = parameter_of(product, Role::filter);
+    if (parameter == nullptr || !parameter->compiled_in) return std::nullopt;
+    const double* published = std::get_if<double>(&*parameter->standard);
+    const Quantities quantities = quantities_of(product, context);
+    return filter_time(*parameter, quantities, clocks_of(product, context).firmware, *published);
+}
 
 std::vector<Tunable> tunable_parameters(const Product& product) {
     std::vector<Tunable> tunable;

@@ -83,7 +83,10 @@ Expected<Fitted> fit(const Build& build, const IdealPid& pid, bool nearest) {
     auto fitted = fit(build, product::as_typed(*build.product, converted->settings));
     if (!fitted) return fitted;
     fitted->settings = std::move(converted->settings);
-    fitted->notes.insert(fitted->notes.begin(), converted->notes.begin(), converted->notes.end());
+    for (product::Note& note : fitted->notes)
+        if (std::ranges::find(converted->notes, note) == converted->notes.end())
+            converted->notes.push_back(std::move(note));
+    fitted->notes = std::move(converted->notes);
     return fitted;
 }
 

@@ -18,6 +18,7 @@ namespace {
 constexpr double kTolerance = 1e-5, kSettled = 1e-6;  // of the responses that the choice is made on
 constexpr double kSameInstant = 1e-12;
 constexpr double kSpare = 2e-3;             // percentage points of overshoot, for the figures' own error
+constexpr double kWorthSaying = 0.5;        // of them, beyond what was asked for
 constexpr double kDigits = 1e4;             // b is answered to four decimals
 constexpr int kLongestFilter = 24;          // doublings of the first filter tried
 constexpr double kFirstFilter = 1.0 / 64;   // of the integral of the error
@@ -60,8 +61,8 @@ public:
             integral = *zero_.error_integral_final + b * (*IE_of_one_ - *zero_.error_integral_final);
         return integral_of_absolute_error(weighted(b), 1, integral);
     }
-    /// With b = 0 behind a filter.
-    double overshoot_filtered(double T) const { return excess(filtered(T)); }
+    /// Behind a filter.
+    double overshoot_filtered(double T, double b) const { return excess(filtered(weighted(b), T)); }
     double time() const { return std::abs(zero_.error_integral_final.value_or(1)); }
 
 private:
@@ -98,14 +99,14 @@ private:
     }
 
     /// T z' = y - z, exact for the cubic y between nodes: z = p - T p' + T^2 p'' - T^3 p''' plus an exponential.
-    std::vector<ResponseNode> filtered(double T) const {
-        std::vector<ResponseNode> nodes = zero_.nodes;
+    static std::vector<ResponseNode> filtered(const std::vector<ResponseNode>& of, double T) {
+        std::vector<ResponseNode> nodes = of;
         double z = 0;
         nodes.front().y = nodes.front().y_slope = 0;
         for (std::size_t i = 1; i < nodes.size(); ++i) {
-            const ResponseNode &a = zero_.nodes[i - 1], &b = zero_.nodes[i];
+            const ResponseNode &a = of[i - 1], &b = of[i];
             const double h = b.t - a.t;
-            if (!jumps_after(zero_.nodes, i - 1)) {
+            if (!jumps_after(of, i - 1)) {
                 const double slope = (b.y - a.y) / h;
                 const double curve = (3 * slope - 2 * a.y_slope - b.y_slope) / h,
                              twist = (a.y_slope + b.y_slope - 2 * slope) / (h * h);
@@ -166,9 +167,9 @@ double down(double b) { return std::floor(b * kDigits) / kDigits; }
 bool same_digits(double a, double b) { return down(a) == down(b); }
 bool never(double, double) { return false; }
 
-/// The shortest filter that keeps the limit, with b = 0; empty: none that was looked at does.
-std::optional<double> shortest_filter(const StepResponses& responses, double limit) {
-    const auto beyond = [&](double T) { return responses.overshoot_filtered(T) - limit; };
+/// The shortest filter that keeps the limit, with this b; empty: none that was looked at does.
+std::optional<double> shortest_filter(const StepResponses& responses, double limit, double b) {
+    const auto beyond = [&](double T) { return responses.overshoot_filtered(T, b) - limit; };
     double T = kFirstFilter * responses.time(), here = beyond(T);
     if (here <= 0) return T;
     for (int i = 0; i < kLongestFilter; ++i, T *= 2) {
@@ -198,7 +199,7 @@ std::vector<Warning> keep_overshoot(const StepResponses& responses, double asked
         return {};
     }
     pid.b = 0;
-    if (const auto T = shortest_filter(responses, limit)) {
+    if (const auto T = shortest_filter(responses, limit, 0)) {
         pid.setpoint_lag = *T;
         return {};
     }
@@ -278,9 +279,11 @@ void weigh_setpoint(const LinearPlant& plant, const SetpointOptions& options, Tu
     tuned.warnings.insert(tuned.warnings.end(), remarks.begin(), remarks.end());
 }
 
-void weigh_setpoint(built::Fitted& fitted, const built::Build& build, const LinearPlant& plant,
-                    const SetpointOptions& options, TunedController& tuned) {
-    if (!options.given()) return;
+namespace {
+
+/// The block with the weight that keeps the wish, if it has one to set and nothing else of it moves.
+void settle_weight(built::Fitted& fitted, const built::Build& build, const LinearPlant& plant,
+                   const SetpointOptions& options, TunedController& tuned) {
     IdealPid wished = fitted.controller;
     TunedController twin;
     twin.controller = built::continuous(wished);
@@ -296,6 +299,35 @@ void weigh_setpoint(built::Fitted& fitted, const built::Build& build, const Line
     fitted = std::move(*again);
     tuned.controller = built::continuous(fitted.controller);
     tuned.warnings.insert(tuned.warnings.end(), twin.warnings.begin(), twin.warnings.end());
+}
+
+/// What the block's own weight leaves of a wished overshoot: it may have no weight to set, and has no filter of the set
+/// point.
+std::vector<Warning> remark_overshoot(const LinearPlant& plant, double asked, const IdealPid& pid) {
+    if (!pid.has_integral() || pid.setpoint_lag > 0) return {};
+    const auto loop = Loop::make(plant, to_parallel(pid));
+    if (!loop || !count_unstable_poles(*loop).stable()) return {};
+    const StepResponses responses(plant, pid);
+    if (!responses.usable()) return {};
+    const double is = responses.overshoot(pid.b);
+    if (is <= asked + kWorthSaying) return {};
+    const auto T = shortest_filter(responses, std::max(asked - kSpare, kSpare), pid.b);
+    return {{"overshoot-not-held",
+             "With the controller's own set-point weight, b = " + text(pid.b) + ", a set-point step overshoots by " +
+                 text(is, 3) + " %, more than " + text(asked, 3) + " %. " +
+                 (T ? "A lag of " + text(*T, 3) + " before its set point keeps that; or raise" : std::string("Raise")) +
+                 " the set point slowly instead of in a step."}};
+}
+
+}  // namespace
+
+void weigh_setpoint(built::Fitted& fitted, const built::Build& build, const LinearPlant& plant,
+                    const SetpointOptions& options, TunedController& tuned) {
+    if (!options.given()) return;
+    settle_weight(fitted, build, plant, options, tuned);
+    if (!options.overshoot) return;
+    const auto remarks = remark_overshoot(plant, *options.overshoot, tuned.controller);
+    tuned.warnings.insert(tuned.warnings.end(), remarks.begin(), remarks.end());
 }
 
 }  // namespace tunewright

@@ -1,5 +1,6 @@
 #include "engine/tuning/robust/robust.h"
 
+#include <algorithm>
 #include <cmath>
 #include <deque>
 #include <limits>
@@ -32,12 +33,34 @@ Expected<TuningProblem> delayed(const TuningProblem& tuning, const built::Build&
     return later;
 }
 
-std::function<double(double)> filter_time(const TuningProblem& tuning, const RobustOptions& options, bool sampled) {
+/// What the product makes of a filter that nobody asked for: the firmware's own where it is compiled in, and none
+/// shorter than a sample time where forward differences would let it ring or blow up.
+struct OwnFilter {
+    std::optional<double> fixed = {};
+    double shortest = 0;
+};
+
+OwnFilter filter_of(const built::Build& build) {
+    if (build.product == nullptr) return {};
+    const double unit = build.context.seconds_per_time;
+    OwnFilter own;
+    if (const auto Tf = product::compiled_filter_time(*build.product, build.context)) own.fixed = *Tf / unit;
+    if (build.product->algorithm.derivative == DerivativeRule::filtered_forward) own.shortest = build.Ts;
+    return own;
+}
+
+std::function<double(double)> filter_time(const TuningProblem& tuning, const RobustOptions& options,
+                                          const built::Build& build) {
+    const bool sampled = build.sampled();
+    const auto given = explicit_filter(options.filter, options.controller == ControllerKind::PID);
+    const OwnFilter own = given && *given ? OwnFilter{} : filter_of(build);
+    if (own.fixed) return [Tf = *own.fixed](double) { return Tf; };
     const auto rule = filter_rule(tuning, options.filter, options.controller == ControllerKind::PID);
     if (!rule && !sampled) return {};
     const FilterRule held = rule ? *rule : FilterRule{.Tf = {}, .Tf_over_Td = kTiedFilter};
-    if (held.Tf) return [Tf = *held.Tf](double) { return Tf; };
-    if (held.Tf_over_Td) return [ratio = *held.Tf_over_Td](double Td) { return ratio * Td; };
+    if (held.Tf) return [Tf = std::max(*held.Tf, own.shortest)](double) { return Tf; };
+    if (held.Tf_over_Td)
+        return [ratio = *held.Tf_over_Td, least = own.shortest](double Td) { return std::max(ratio * Td, least); };
     return {};
 }
 
@@ -84,7 +107,7 @@ Expected<BuiltDesign> tune_robust_as_built(const TuningProblem& tuning, const Ro
     wish.limits = {options.Ms, options.Mt, options.Mks};
     wish.pid = options.controller == ControllerKind::PID;
     wish.sign = start->controller.Kp < 0 ? -1 : 1;
-    wish.filter_time = filter_time(tuning, options, build.sampled());
+    wish.filter_time = filter_time(tuning, options, build);
     wish.filter = wish.filter_time ? FilterType::measurement_second_order : FilterType::none;
     wish.start = start->controller;
     auto fitted = built::design(build, plants, wish, control);

@@ -200,8 +200,8 @@ TEST(TimeStamps, AreSecondsSinceTheEpoch) {
 }
 
 TEST(TimeStamps, OtherTextsAreNone) {
-    for (const char* text : {"", "2024", "20.5", "2024-13-01", "2023-02-29", "25:00", "12:60", "2024-01-01T",
-                             "2024-01-01T10", "12:00:00Q", "noon"}) {
+    for (const char* text : {"", "2024", "20.5", "2024-13-01", "2023-02-29", "25:00:00", "100:00", "12:60",
+                             "2024-01-01T", "2024-01-01T10", "12:00:00Q", "noon"}) {
         EXPECT_FALSE(read_time_stamp(text).has_value()) << text;
     }
 }

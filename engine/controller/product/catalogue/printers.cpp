@@ -46,6 +46,7 @@ Product marlin() {
                             .shape = Shape::lag_per_sample,
                             .range = {0, 0.9999},
                             .standard = 0.95,
+                            .compiled_in = true,
                             .remark = "changed by compiling anew alone; 0.95 is a Tf of 19 periods"}),
         .filter = {FilterKind::parameter, 0,
                    "First order with PID_K1 of the firmware's source; 0.95 makes Tf = 19 periods, 3.1 s."},

@@ -57,6 +57,7 @@ Product pid_compact() {
                  .shape = Shape::weight,
                  .range = kShare},
             },
+        .in_percent = true,
         .filter = {FilterKind::parameter, 0, "First order, T1 = TdFiltRatio Td."},
         .weights = {1, 0, "PWeighting and DWeighting are free."},
         .action = {.kind = Action::Kind::switched,

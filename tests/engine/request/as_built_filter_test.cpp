@@ -1,0 +1,73 @@
+// Designs for products whose filter or set-point weight is not free.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "engine/controller/product/catalogue.h"
+#include "tests/engine/request/as_built_cases.h"
+
+namespace tunewright {
+namespace {
+
+TuningRequest fixed_request(const std::string& product, const Plant& plant, double Ts, double Ms) {
+    TuningRequest request;
+    request.subject = test::subject_of(plant);
+    request.tune = {MethodRequest{.method = "robust", .options = {}}};
+    request.tune.front().options.set("Ms", Ms);
+    request.tune.front().options.set("Mt", Ms);
+    request.evaluate.points = 0;
+    built::Build build;
+    build.product = product::find(product);
+    build.context = product::Context::with_spans({.y_low = 0, .y_high = 200, .u_low = 0, .u_high = 100}, Ts);
+    build.context.loop_clock_s = Ts;
+    build.Ts = Ts;
+    request.implement = build;
+    return request;
+}
+
+const product::Setting& setting(const built::Fitted& fitted, const std::string& name) {
+    const auto found = std::ranges::find(fitted.typed, name, &product::Setting::name);
+    EXPECT_NE(found, fitted.typed.end()) << name;
+    return *found;
+}
+
+// A filter of Td/10 would ring at half a sample time, and every design with it exceed the limits.
+TEST(AsBuiltFilter, OfForwardDifferencesIsNoShorterThanASample) {
+    for (const std::string product : {"matlab_pid", "simulink_pid_parallel", "simulink_pid_ideal"}) {
+        const auto result = tune(fixed_request(product, Fopdt{2, 10, 3}, 0.5, 1.6), {});
+        ASSERT_TRUE(result) << product << ": " << result.error().message;
+        const TuningEntry& entry = result->controllers.front();
+        ASSERT_TRUE(entry.as_built) << product;
+        EXPECT_GE(entry.as_built->fitted.controller.filter.Tf, 0.5 * (1 - 1e-6));
+        // Settings found by hand with Tf 0.5 have a load IAE of 8.84 within Ms 1.54.
+        EXPECT_LT(*entry.as_built->loop.performance.load.IAE, 8.84) << product;
+        EXPECT_LE(*entry.as_built->loop.robustness.Ms, 1.6 * (1 + 1e-4)) << product;
+    }
+}
+
+TEST(AsBuiltFilter, ThatIsCompiledInStaysAsItIsPublished) {
+    const auto result = tune(fixed_request("marlin", Fopdt{300, 150, 4}, 0.1638, 1.4), {});
+    ASSERT_TRUE(result) << result.error().message;
+    const TuningEntry& entry = result->controllers.front();
+    ASSERT_TRUE(entry.as_built);
+    EXPECT_NEAR(std::get<double>(setting(entry.as_built->fitted, "PID_K1").value), 0.95, 1e-4);
+    EXPECT_LE(*entry.as_built->loop.robustness.Ms, 1.4 * (1 + 1e-4));
+}
+
+TEST(AsBuiltSetpoint, OfAFixedWeightSaysWhatItOvershoots) {
+    const auto warned = [](const std::string& product) {
+        TuningRequest request = fixed_request(product, Fopdt{2, 100, 30}, 1, 1.4);
+        request.tune.front().options.set("setpoint/overshoot", 12.0);
+        const auto result = tune(request, {});
+        EXPECT_TRUE(result);
+        const auto& warnings = result->controllers.front().evaluation->warnings;
+        const auto found = std::ranges::find(warnings, "overshoot-not-held", &Warning::code);
+        return found != warnings.end() ? found->detail : std::string();
+    };
+    EXPECT_THAT(warned("siemens_fb41_cont_c"), testing::HasSubstr("before its set point keeps that"));
+    EXPECT_EQ(warned("discretepids_jl"), "");  // whose weight can be set
+}
+
+}  // namespace
+}  // namespace tunewright

@@ -26,6 +26,9 @@ export type JobRoute = Extract<Route, { screen: JobScreen }>;
 
 export const showsJob = (route: Route): route is JobRoute => route.screen === "design" || route.screen === "compare";
 
+/** Start's own addresses: as it stands, or filled in from somewhere. */
+export const showsStart = (route: Route): boolean => ["start", "new", "example", "edit"].includes(route.screen);
+
 /** A job's screen as it is when nothing was chosen on it yet. */
 export const addressOfJob = (job: string, screen: JobScreen): string =>
   formatRoute(screen === "design" ? { screen, job, entry: null } : { screen, job, sort: "", rows: null });

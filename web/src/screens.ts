@@ -8,7 +8,7 @@ import { h } from "./dom.ts";
 import type { TuneSubject } from "./form/tuning_request.ts";
 import type { JobFlow } from "./job_flow.ts";
 import type { RangeView } from "./range/view.ts";
-import { addressOfJob, formatRoute, parseRoute, showsJob } from "./routes.ts";
+import { addressOfJob, formatRoute, parseRoute, showsJob, showsStart } from "./routes.ts";
 import type { JobRoute, Route } from "./routes.ts";
 import type { Store } from "./store.ts";
 import { batchView } from "./views/batch.ts";
@@ -59,6 +59,13 @@ export function screens(
     document.title = title;
   }
 
+  /** A plant that was typed goes into the address, if its screen is still shown when the service has read it. */
+  function typed(own: (route: Route) => boolean, route: Route): void {
+    if (!own(store.get().route)) return;
+    store.set((workspace) => ({ ...workspace, route }));
+    history.replaceState(null, "", formatRoute(route));
+  }
+
   /** The start screen is kept: what was typed is still there when one comes back. */
   function startScreen(): StartView {
     start ??= startView(store, {
@@ -67,9 +74,7 @@ export function screens(
       onRelay(form, values) {
         location.hash = formatRoute({ screen: "relay", plant: form, values });
       },
-      onModel(form, values) {
-        history.replaceState(null, "", formatRoute({ screen: "new", plant: form, values }));
-      },
+      onModel: (form, values) => typed(showsStart, { screen: "new", plant: form, values }),
     });
     return start;
   }
@@ -79,9 +84,7 @@ export function screens(
     relay ??= relayView(announce, {
       units: () => startScreen().units(),
       onIdentify: openRecord,
-      onPlant(form, values) {
-        history.replaceState(null, "", formatRoute({ screen: "relay", plant: form, values }));
-      },
+      onPlant: (plant, values) => typed(({ screen }) => screen === "relay", { screen: "relay", plant, values }),
     });
     return relay;
   }
@@ -129,12 +132,11 @@ export function screens(
 
   /** A job's record, with the methods and settings of its request. */
   async function openJobRecord(id: string, focus: boolean): Promise<void> {
+    const { route, job: known } = store.get();
     try {
-      const known = store.get().job;
       const job = known?.id === id && known.request ? known : await getJob(id);
       const { name, units, record, identify } = job.request ?? {};
-      const route = store.get().route;
-      if (route.screen !== "identify" || route.job !== id) return;
+      if (store.get().route !== route) return;
       if (!record || !job.request) return mount(noRecordView(), "Identify · Tunewright", focus);
       startScreen().load(job.request);
       const test: IdentifyRequest = {
@@ -146,7 +148,7 @@ export function screens(
       store.set((workspace) => ({ ...workspace, test }));
       mount(identifyScreen(test, job.request["uncertainty"] === "identified"), "Identify · Tunewright", focus);
     } catch (error) {
-      mount(noRecordView(sentenceOf(error)), "Identify · Tunewright", focus);
+      if (store.get().route === route) mount(noRecordView(sentenceOf(error)), "Identify · Tunewright", focus);
     }
   }
 
@@ -166,6 +168,7 @@ export function screens(
       if (route.screen === "edit") {
         const known = store.get().job;
         const job = known?.id === route.job && known.request ? known : await getJob(route.job);
+        if (store.get().route !== route) return;
         // A range is changed on its own screen.
         if (isRangeRequest(job.request))
           return location.replace(formatRoute({ screen: "range", example: "", job: job.id }));
@@ -173,15 +176,14 @@ export function screens(
       }
       if (route.screen === "example") {
         await listed;
+        if (store.get().route !== route) return;
         const example = store.get().examples.find((candidate) => candidate.id === route.id);
         if (example) form.load(example.request);
         else store.set((workspace) => ({ ...workspace, serviceTrouble: `There is no example "${route.id}".` }));
       }
     } catch (error) {
-      store.set((workspace) => ({
-        ...workspace,
-        serviceTrouble: sentenceOf(error),
-      }));
+      if (store.get().route === route)
+        store.set((workspace) => ({ ...workspace, serviceTrouble: sentenceOf(error) }));
     }
   }
 

@@ -1,0 +1,81 @@
+// Answers that come late, or not at first: each belongs to the screen that asked, and what was lost is found again.
+import assert from "node:assert/strict";
+import test from "node:test";
+import { browserTests } from "../harness.mjs";
+
+const tests = browserTests();
+const { withPage } = tests;
+
+const PLANT = { type: "fopdt", K: 9, T: 90, L: 9 };
+const post = async (address, body) =>
+  (
+    await fetch(`${tests.service.base}/${address}`, {
+      method: "POST",
+      headers: { "Content-Type": "application/json", Prefer: "wait=20" },
+      body: JSON.stringify(body),
+    })
+  ).json();
+const screen = (page, name) =>
+  page.getByRole("navigation", { name: "Screens" }).getByRole("link", { name, exact: true });
+
+/** Calls to these addresses wait until they are let go; `done` is when the page has had their answers. */
+async function hold(page, pattern) {
+  let letGo;
+  const gate = new Promise((resolve) => (letGo = resolve));
+  await page.route(pattern, async (route) => {
+    await gate;
+    await route.continue();
+  });
+  return async (answered) => {
+    const reply = page.waitForResponse(answered);
+    letGo();
+    await (await reply).finished();
+    // What the page does with an answer is done before the next frame is drawn.
+    await page.evaluate(() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn))));
+  };
+}
+
+test("a job that fails to open leaves another screen as it is", async () => {
+  await withPage(
+    "",
+    {},
+    async (page) => {
+      const release = await hold(page, "**/v1/jobs/nothere");
+      await page.evaluate(() => (location.hash = "#/jobs/nothere/identify"));
+      await screen(page, "Methods").click();
+      await page.getByRole("heading", { level: 1, name: "Methods" }).waitFor();
+      await release(/v1\/jobs\/nothere/);
+      assert.equal(await page.getByRole("heading", { level: 1 }).innerText(), "Methods");
+      assert.match(page.url(), /#\/methods$/);
+    },
+    ["404"],
+  );
+});
+
+for (const [from, address] of [
+  ["Start", ""],
+  ["Relay test", "#/relay"],
+])
+  test(`a line that is read after ${from} was left does not touch the address`, async () => {
+    await withPage(address, {}, async (page) => {
+      await page.waitForLoadState("networkidle");
+      const release = await hold(page, "**/v1/plants/**");
+      await page.getByLabel("Model in one line").fill("3 e^(-1s)/(5s+1)");
+      await screen(page, "Methods").click();
+      await page.getByRole("heading", { level: 1, name: "Methods" }).waitFor();
+      await release(/v1\/plants\//);
+      assert.match(page.url(), /#\/methods$/);
+    });
+  });
+
+test("a job that comes after its form was left does not replace what is typed", async () => {
+  const job = await post("v1/jobs", { name: "OLD", plant: PLANT, tune: [{ method: "simc" }] });
+  await withPage("", {}, async (page) => {
+    const release = await hold(page, `**/v1/jobs/${job.id}`);
+    await page.evaluate((id) => (location.hash = `#/jobs/${id}/edit`), job.id);
+    await page.getByRole("link", { name: "Tunewright" }).click();
+    await page.getByLabel("Loop name").fill("MINE");
+    await release(new RegExp(job.id));
+    assert.equal(await page.getByLabel("Loop name").inputValue(), "MINE");
+  });
+});

@@ -1,5 +1,5 @@
 // Starts the page: its state, its head, the screen of the address, and what happens when something unforeseen goes wrong.
-import { sentenceOf } from "./api/client.ts";
+import { sentenceOf, waitAfter } from "./api/client.ts";
 import { getExamples, getMethods } from "./api/jobs.ts";
 import { askForKeyWith } from "./api/key.ts";
 import { getProducts } from "./api/products.ts";
@@ -35,19 +35,35 @@ const announce = (sentence: string): void => {
 const skip = h("a", { class: "skip", href: "#main" }, "Skip to the content");
 const stage = h("div", { class: "stage" });
 
+const NO_METHODS = "The service's list of methods could not be read; the default method is used.";
+
+/** Asked for until it can be had: a service that starts anew must not cost the reader what was typed. */
+async function readList<T>(ask: () => Promise<T>, take: (list: T) => void, trouble = ""): Promise<void> {
+  const say = (before: string, now: string): void =>
+    store.set((workspace) =>
+      workspace.serviceTrouble === before ? { ...workspace, serviceTrouble: now } : workspace,
+    );
+  for (;;) {
+    try {
+      take(await ask());
+      return say(trouble, "");
+    } catch (error) {
+      say("", trouble);
+      const wait = waitAfter(error);
+      if (wait === null) return;
+      await new Promise((over) => setTimeout(over, wait));
+    }
+  }
+}
+
+/** Ends when methods and examples are known. */
 async function loadLists(): Promise<void> {
-  const [methods, examples, products] = await Promise.allSettled([getMethods(), getExamples(), getProducts()]);
-  store.set((workspace) => ({
-    ...workspace,
-    methods: methods.status === "fulfilled" ? methods.value : workspace.methods,
-    examples: examples.status === "fulfilled" ? examples.value : workspace.examples,
-    // Without the list a controller cannot be chosen; everything else works as before.
-    products: products.status === "fulfilled" ? products.value : workspace.products,
-    serviceTrouble:
-      methods.status === "rejected"
-        ? "The service's list of methods could not be read; the default method is used."
-        : "",
-  }));
+  // Without this list a controller cannot be chosen; everything else works as before.
+  void readList(getProducts, (products) => store.set((workspace) => ({ ...workspace, products })));
+  await Promise.all([
+    readList(getMethods, (methods) => store.set((workspace) => ({ ...workspace, methods })), NO_METHODS),
+    readList(getExamples, (examples) => store.set((workspace) => ({ ...workspace, examples }))),
+  ]);
 }
 
 function fault(reason: unknown): void {

@@ -79,3 +79,63 @@ test("a job that comes after its form was left does not replace what is typed", 
     assert.equal(await page.getByLabel("Loop name").inputValue(), "MINE");
   });
 });
+
+/** Calls to these addresses find no service until it is back. */
+async function lose(page, pattern) {
+  let lost = true;
+  await page.route(pattern, (route) => (lost ? route.abort() : route.continue()));
+  return () => (lost = false);
+}
+const notConnected = (page) => page.getByText("Not connected to the service.");
+
+test("a batch is followed again when the connection is back", async () => {
+  const batch = await post("v1/batches", { name: "unit 9", jobs: [{ plant: PLANT, tune: [{ method: "simc" }] }] });
+  await withPage(
+    "",
+    {},
+    async (page) => {
+      const back = await lose(page, "**/v1/batches/*");
+      await page.evaluate((id) => (location.hash = `#/batches/${id}`), batch.id);
+      await notConnected(page).waitFor();
+      back();
+      await page.getByText("1 loop: 1 tuned", { exact: true }).waitFor();
+      await notConnected(page).waitFor({ state: "hidden" });
+    },
+    ["ERR_FAILED"],
+  );
+});
+
+test("Jobs takes back that it was not connected, by itself", async () => {
+  await post("v1/jobs", { name: "TIC-55", plant: PLANT, tune: [{ method: "simc" }] });
+  await withPage(
+    "",
+    {},
+    async (page) => {
+      const back = await lose(page, "**/v1/jobs?*");
+      await screen(page, "Jobs").click();
+      await notConnected(page).waitFor();
+      back();
+      await page.getByRole("link", { name: "TIC-55", exact: true }).waitFor();
+      await notConnected(page).waitFor({ state: "hidden" });
+    },
+    ["ERR_FAILED"],
+  );
+});
+
+test("lists that could not be had at first are asked for again", async () => {
+  await withPage(
+    "#/jobs",
+    {},
+    async (page) => {
+      const back = await lose(page, "**/v1/methods");
+      await page.goto(`${tests.service.base}/?again#/methods`);
+      await page.getByText("The service's list of methods could not be read").waitFor();
+      back();
+      await page.getByRole("link", { name: "Revised IMC", exact: false }).first().waitFor();
+      await screen(page, "Start").click();
+      await page.getByText(/^Compare with/).waitFor();
+      assert.equal(await page.getByText("The service's list of methods could not be read").isVisible(), false);
+    },
+    ["ERR_FAILED"],
+  );
+});

@@ -15,6 +15,15 @@ export class ApiError extends Error {
 /** What went wrong, as a sentence to show. */
 export const sentenceOf = (error: unknown): string => (error instanceof Error ? error.message : String(error));
 
+const LOST_WAIT_MS = 2000;
+
+/** How long to wait before what failed is asked for again; null where the answer would be the same. */
+export function waitAfter(error: unknown): number | null {
+  if (!(error instanceof ApiError)) return LOST_WAIT_MS;
+  if (error.status >= 400 && error.status < 500 && error.status !== 429) return null;
+  return error.retryAfter ? error.retryAfter * 1000 : LOST_WAIT_MS;
+}
+
 export interface Reply {
   status: number;
   data: unknown;

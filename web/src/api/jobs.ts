@@ -1,5 +1,5 @@
 // Starting, following and cancelling a job.
-import { ApiError, call, sentenceOf } from "./client.ts";
+import { call, sentenceOf, waitAfter } from "./client.ts";
 import { withTraces } from "./experiments.ts";
 import { isFinal } from "./types.ts";
 import type { Example, Job, Method, TuningRequest } from "./types.ts";
@@ -60,7 +60,6 @@ export function watchJob(id: string, watcher: Watcher): () => void {
 
 const FIRST_WAIT_MS = 80;
 const LONGEST_WAIT_MS = 1000;
-const LOST_WAIT_MS = 2000;
 
 function poll(id: string, watcher: Watcher): () => void {
   let stopped = false;
@@ -89,9 +88,9 @@ function poll(id: string, watcher: Watcher): () => void {
     } catch (error) {
       if (stopped) return;
       troubled = true;
-      const gone = error instanceof ApiError && error.status >= 400 && error.status < 500 && error.status !== 429;
       watcher.onTrouble(sentenceOf(error));
-      if (!gone) again(error instanceof ApiError && error.retryAfter ? error.retryAfter * 1000 : LOST_WAIT_MS);
+      const later = waitAfter(error);
+      if (later !== null) again(later);
     }
   };
   void step();

@@ -7,7 +7,7 @@ import { formatRoute } from "../routes.ts";
 import { BATCH_COLUMNS, sorted } from "../words/job_list.ts";
 import type { BatchColumn } from "../words/job_list.ts";
 import { orderOf, sortText } from "../words/league.ts";
-import { jobTable, troubleLine } from "./job_actions.ts";
+import { jobTable, reader, troubleLine } from "./job_actions.ts";
 import type { View } from "./start.ts";
 
 export interface BatchEvents {
@@ -16,7 +16,6 @@ export interface BatchEvents {
   onBatch(batch: Batch): void;
 }
 
-const LOOK_AGAIN_MS = 1000;
 /** So many loops are listed; the CSV has all of them. */
 const MOST_LISTED = 2000;
 /** A batch of more loops is read again only when it has ended. */
@@ -25,13 +24,13 @@ const WORDS = ["name", "plant", "method", "status"];
 
 export function batchView(id: string, sort: string, announce: (sentence: string) => void, events: BatchEvents): View {
   let disposed = false;
-  let timer: ReturnType<typeof setTimeout> | undefined;
   let batch: Batch | null = null;
   let jobs: ListedJob[] = [];
   let readAt = -1;
   let order = orderOf(sort || "index");
   const heading = h("h1", { tabindex: -1 }, "Batch");
-  const { element: trouble, complain } = troubleLine("alert");
+  const line = troubleLine("alert");
+  const { element: trouble, complain } = line;
   const counts = h("p", { role: "status" });
   const bar = h("progress", { max: 1, "aria-label": "Loops done" });
   const cancel = h("button", { type: "button", onclick: () => void work(() => cancelBatch(id)) }, "Cancel the rest");
@@ -90,7 +89,7 @@ export function batchView(id: string, sort: string, announce: (sentence: string)
   async function work(act: () => Promise<void>): Promise<void> {
     trouble.hidden = true;
     await act().catch(complain);
-    if (!disposed) await refresh();
+    if (!disposed) list.look();
   }
 
   async function saveCsv(): Promise<void> {
@@ -172,34 +171,30 @@ export function batchView(id: string, sort: string, announce: (sentence: string)
     again.hidden = !hasEnded(now) || failed + cancelled === 0;
   }
 
-  async function refresh(): Promise<void> {
-    clearTimeout(timer);
-    try {
-      const now = await getBatch(id);
-      if (disposed) return;
-      batch = now;
-      showHead(now);
-      const done = now.counts.succeeded + now.counts.failed + now.counts.cancelled;
-      if (done !== readAt && (hasEnded(now) || now.total <= MOST_FOLLOWED)) {
-        const read = await jobsOfBatch(id, MOST_LISTED);
-        if (disposed) return;
-        jobs = read;
-        readAt = done;
-        showRows();
-      }
-      if (!hasEnded(now)) timer = setTimeout(() => void refresh(), LOOK_AGAIN_MS);
-    } catch (error) {
-      if (!disposed) complain(error);
+  async function read(): Promise<boolean> {
+    const now = await getBatch(id);
+    if (disposed) return false;
+    batch = now;
+    showHead(now);
+    const done = now.counts.succeeded + now.counts.failed + now.counts.cancelled;
+    if (done !== readAt && (hasEnded(now) || now.total <= MOST_FOLLOWED)) {
+      const listed = await jobsOfBatch(id, MOST_LISTED);
+      if (disposed) return false;
+      jobs = listed;
+      readAt = done;
+      showRows();
     }
+    return !hasEnded(now);
   }
 
-  void refresh();
+  const list = reader(read, line);
+  list.look();
   return {
     element,
     heading,
     dispose() {
       disposed = true;
-      clearTimeout(timer);
+      list.stop();
     },
   };
 }

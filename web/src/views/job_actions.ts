@@ -1,5 +1,5 @@
 // What the screens of a job have in common: stopping it, comparing all methods on its plant, saying what went wrong.
-import { sentenceOf } from "../api/client.ts";
+import { sentenceOf, waitAfter } from "../api/client.ts";
 import { cancelJob } from "../api/jobs.ts";
 import type { Job, TuningRequest } from "../api/types.ts";
 import { h } from "../dom.ts";
@@ -31,6 +31,52 @@ export function troubleLine(role: "status" | "alert"): TroubleLine {
     complain(error) {
       element.textContent = sentenceOf(error);
       element.hidden = false;
+    },
+  };
+}
+
+const LOOK_AGAIN_MS = 1000;
+
+export interface Reader {
+  /** Reads now, or after so many milliseconds; what was planned before is dropped. */
+  look(wait?: number): void;
+  stop(): void;
+}
+
+/** Reads a list again while it moves (`read` answers that), and after a failure until it can be had; the line says so meanwhile. */
+export function reader(read: () => Promise<boolean>, trouble: TroubleLine): Reader {
+  let timer: ReturnType<typeof setTimeout> | undefined;
+  let round = 0;
+  let lost = "";
+
+  async function step(mine: number): Promise<void> {
+    let wait: number | null = null;
+    try {
+      if (await read()) wait = LOOK_AGAIN_MS;
+      // What went wrong with something else stays said.
+      if (lost !== "" && trouble.element.textContent === lost) trouble.element.hidden = true;
+      lost = "";
+    } catch (error) {
+      if (mine !== round) return;
+      trouble.complain(error);
+      lost = trouble.element.textContent ?? "";
+      wait = waitAfter(error);
+    }
+    if (mine === round && wait !== null) look(wait);
+  }
+
+  function look(wait = 0): void {
+    clearTimeout(timer);
+    const mine = ++round;
+    if (wait === 0) void step(mine);
+    else timer = setTimeout(() => void step(mine), wait);
+  }
+
+  return {
+    look,
+    stop() {
+      clearTimeout(timer);
+      round = -1;
     },
   };
 }

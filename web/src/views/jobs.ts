@@ -10,7 +10,7 @@ import { formatRoute } from "../routes.ts";
 import type { Store } from "../store.ts";
 import { age, methodWords, shortPlant } from "../words/job_list.ts";
 import { formatNumber } from "../words/numbers.ts";
-import { jobTable, troubleLine } from "./job_actions.ts";
+import { jobTable, reader, troubleLine } from "./job_actions.ts";
 import { reportLink } from "./report_link.ts";
 import type { View } from "./start.ts";
 
@@ -21,7 +21,6 @@ export interface JobsEvents {
   onSearch(text: string): void;
 }
 
-const LOOK_AGAIN_MS = 1000;
 const SEARCH_WAIT_MS = 150;
 const COLUMNS = ["Name", "Plant", "Method", "Load IAE", "Ms", "Age", "Status"];
 
@@ -53,11 +52,11 @@ const nameOf = (job: ListedJob): string => job.name || `Job ${job.id.slice(0, 8)
 
 export function jobsView(store: Store, text: string, announce: (sentence: string) => void, events: JobsEvents): View {
   let disposed = false;
-  let timer: ReturnType<typeof setTimeout> | undefined;
   let next: string | null = null;
   let further: ListedJob[] = [];
   const heading = h("h1", { tabindex: -1 }, "Jobs");
-  const { element: trouble, complain } = troubleLine("alert");
+  const line = troubleLine("alert");
+  const { element: trouble, complain } = line;
   const search = h("input", {
     type: "text",
     value: text,
@@ -103,7 +102,7 @@ export function jobsView(store: Store, text: string, announce: (sentence: string
     } catch (error) {
       complain(error);
     }
-    await refresh();
+    list.look();
   }
 
   async function again(job: ListedJob): Promise<void> {
@@ -224,21 +223,15 @@ export function jobsView(store: Store, text: string, announce: (sentence: string
   }
 
   let shownBatches = "";
-  async function refresh(): Promise<void> {
-    clearTimeout(timer);
+  async function read(): Promise<boolean> {
     const asked = search.value.trim();
-    try {
-      const [page, list] = await Promise.all([listJobs(asked), listBatches()]);
-      if (disposed || asked !== search.value.trim()) return;
-      take(page);
-      const words = JSON.stringify(list);
-      if (words !== shownBatches) showBatches(list);
-      shownBatches = words;
-      const moving = page.jobs.some((job) => !isFinal(job.status)) || list.some((batch) => !hasEnded(batch));
-      if (moving) timer = setTimeout(() => void refresh(), LOOK_AGAIN_MS);
-    } catch (error) {
-      if (!disposed) complain(error);
-    }
+    const [page, list] = await Promise.all([listJobs(asked), listBatches()]);
+    if (disposed || asked !== search.value.trim()) return false;
+    take(page);
+    const words = JSON.stringify(list);
+    if (words !== shownBatches) showBatches(list);
+    shownBatches = words;
+    return page.jobs.some((job) => !isFinal(job.status)) || list.some((batch) => !hasEnded(batch));
   }
 
   function take(page: JobList): void {
@@ -254,23 +247,23 @@ export function jobsView(store: Store, text: string, announce: (sentence: string
     if (!page) return;
     next = page.next;
     further.push(...page.jobs);
-    await refresh();
+    list.look();
   }
 
   search.addEventListener("input", () => {
-    clearTimeout(timer);
     further = [];
     events.onSearch(search.value.trim());
-    timer = setTimeout(() => void refresh(), SEARCH_WAIT_MS);
+    list.look(SEARCH_WAIT_MS);
   });
-  void refresh();
+  const list = reader(read, line);
+  list.look();
   return {
     element,
     heading,
     dispose() {
       disposed = true;
       loops.dispose();
-      clearTimeout(timer);
+      list.stop();
     },
   };
 }

@@ -46,15 +46,18 @@ export function methodsView(store: Store, id: string): View {
     if (id !== "" && chosen.length === 1) heading.textContent = chosen[0]!.title;
     if (chosen.length === 0)
       list.append(
-        h("p", {}, methods.length === 0 ? "Asking the service for its methods..." : `There is no method "${id}".`),
+        h("p", {}, methods.length === 0 ? waiting() : `There is no method "${id}".`),
       );
     filter();
   }
 
+  const waiting = (): string => store.get().serviceTrouble || "Asking the service for its methods...";
+
   search.addEventListener("input", filter);
   show(store.get().methods);
   const leave = store.subscribe((workspace, previous) => {
-    if (workspace.methods !== previous.methods) show(workspace.methods);
+    const told = workspace.methods.length === 0 && workspace.serviceTrouble !== previous.serviceTrouble;
+    if (told || workspace.methods !== previous.methods) show(workspace.methods);
   });
   return { element, heading, dispose: leave };
 }

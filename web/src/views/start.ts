@@ -56,6 +56,7 @@ export function startView(store: Store, events: StartEvents): StartView {
   // Parts of a loaded request that have no field: sent back as they came.
   let base: TuningRequest = {};
   let busy = false;
+  let troubled = "";
   const heading = h("h1", { tabindex: -1 }, "What do you have?");
   const status = h("p", { class: "trouble", role: "status", hidden: true });
   // Faults of a plant belong to the card that it was written on.
@@ -221,9 +222,9 @@ export function startView(store: Store, events: StartEvents): StartView {
   }
 
   function showLists(workspace: Workspace): void {
-    if (workspace.serviceTrouble) {
-      status.textContent = workspace.serviceTrouble;
-      status.hidden = false;
+    if (workspace.serviceTrouble !== troubled) {
+      troubled = status.textContent = workspace.serviceTrouble;
+      status.hidden = troubled === "";
     }
     const elements = workspace.examples.map((example) =>
       exampleElement(example, (all) => void send(all ? byAllMethods(example.request) : example.request, [], all)),

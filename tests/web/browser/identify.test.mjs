@@ -189,6 +189,30 @@ test("the part that counts is chosen by slider, by keys and by number, and ident
   });
 });
 
+test("an end of the part that cannot be read keeps its fault, and no model is made without it", async () => {
+  await withPage("", {}, async (page) => {
+    await dropFile(page, ".drop", "step.csv", disturbedTest);
+    await candidatesShown(page);
+    let asked = 0;
+    page.on("request", (request) => (asked += request.url().endsWith("/v1/identify") ? 1 : 0));
+    const [from, to] = ["Use from", "Use up to"].map((name) => page.getByRole("textbox", { name }));
+    await from.fill("abc");
+    await to.fill("249");
+    await to.press("Tab");
+    await page.getByText("1 problem to fix").waitFor();
+    const error = page.locator(`#${await from.getAttribute("id")}-error`);
+    assert.match(await error.innerText(), /^Use from "abc" is not a number\.[^"]*$/);
+    assert.equal(await from.getAttribute("aria-invalid"), "true");
+    assert.equal(asked, 0);
+    const answered = identified(page);
+    await from.fill("10");
+    await from.press("Tab");
+    const { record } = (await answered).request().postDataJSON();
+    assert.deepEqual([record.from, record.to], [10, 249]);
+    await error.waitFor({ state: "hidden" });
+  });
+});
+
 test("a record that cannot be read says why at its field, and is mended there", async () => {
   await withPage(
     "",

@@ -145,6 +145,26 @@ test("a limit that the method does not take is told at its field, and the addres
   });
 });
 
+test("what is wrong with a typed value goes with the text", async () => {
+  await withPage(PLANT, {}, async (page) => {
+    await openDesign(page);
+    const ms = page.getByRole("textbox", { name: "Robustness Ms" });
+    const error = page.locator(`#${await ms.getAttribute("id")}-error`);
+    await ms.fill("abc");
+    await ms.press("Enter");
+    await error.waitFor();
+    await page.getByRole("slider", { name: "Robustness Ms, slider" }).press("ArrowRight");
+    assert.equal(await error.isVisible(), false);
+    assert.equal(await ms.getAttribute("aria-invalid"), null);
+    await ms.fill("abc");
+    await ms.press("Enter");
+    await error.waitFor();
+    await page.getByRole("button", { name: "Back to the proposal" }).click();
+    await error.waitFor({ state: "hidden" });
+    assert.equal(Number(await ms.inputValue()), 1.4);
+  });
+});
+
 test("paper is light though the page is dark, and has no sliders", async () => {
   await withPage(PLANT, {}, async (page) => {
     await openDesign(page);

@@ -6,6 +6,8 @@ export interface Control {
   input: HTMLInputElement | HTMLSelectElement | HTMLTextAreaElement;
   /** The element beside the field that holds its sentence. */
   error: HTMLElement;
+  /** What is wrong with its text by itself: it stands beside the field for as long as the text does. */
+  fault?: string;
   /** JSON Pointer of the value in the request as it would be sent now; null: not part of it. */
   pointer(): string | null;
 }
@@ -41,8 +43,20 @@ export class FormErrors {
 
   add(control: Control): void {
     this.controls.add(control);
-    control.input.addEventListener("input", () => this.clearControl(control));
-    control.input.addEventListener("change", () => this.clearControl(control));
+    control.input.addEventListener("input", () => this.settle(control));
+    control.input.addEventListener("change", () => this.settle(control));
+  }
+
+  /** Its text cannot be used, whatever the rest of the form says. */
+  refuse(control: Control, sentence: string): void {
+    control.fault = sentence;
+    this.clearControl(control);
+  }
+
+  /** Another text stands in the field: what was wrong with the one before is over. */
+  settle(control: Control): void {
+    delete control.fault;
+    this.clearControl(control);
   }
 
   remove(control: Control): void {
@@ -88,16 +102,19 @@ export class FormErrors {
     const controls = [...this.controls];
     const control = controls[matchPointer(error.pointer, controls.map((item) => item.pointer()))];
     if (!control) return undefined;
-    control.error.textContent = [control.error.textContent, inWordsOf(control, error)].filter(Boolean).join(" ");
+    const words = inWordsOf(control, error);
+    if (words !== control.fault)
+      control.error.textContent = [control.error.textContent, words].filter(Boolean).join(" ");
     control.error.hidden = false;
     control.input.setAttribute("aria-invalid", "true");
     return control;
   }
 
   private clearControl(control: Control): void {
-    control.error.textContent = "";
-    control.error.hidden = true;
-    control.input.removeAttribute("aria-invalid");
+    control.error.textContent = control.fault ?? "";
+    control.error.hidden = control.fault === undefined;
+    if (control.fault === undefined) control.input.removeAttribute("aria-invalid");
+    else control.input.setAttribute("aria-invalid", "true");
   }
 }
 

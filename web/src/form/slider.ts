@@ -90,6 +90,7 @@ export function slider(options: SliderOptions, errors: FormErrors): Slider {
   const speak = (): void => range.setAttribute("aria-valuetext", options.spoken(value));
 
   function take(next: number): void {
+    errors.settle(field.control);
     value = next;
     write(true);
   }
@@ -139,12 +140,7 @@ export function slider(options: SliderOptions, errors: FormErrors): Slider {
   field.input.addEventListener("change", () => {
     const parsed = parseNumber(field.input.value, options.label);
     const bad = !parsed.ok ? parsed.sentence : wrongSign(parsed.value) || (options.wrong?.(parsed.value) ?? "");
-    if (bad || !parsed.ok) {
-      field.control.error.textContent = bad;
-      field.control.error.hidden = false;
-      field.input.setAttribute("aria-invalid", "true");
-      return;
-    }
+    if (bad || !parsed.ok) return errors.refuse(field.control, bad);
     stretch(parsed.value);
     value = parsed.value;
     write(false);

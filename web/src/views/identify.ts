@@ -127,7 +127,7 @@ export function identifyView(
     const base = text.read() === givenText ? samples : { csv: text.read() };
     return {
       request: { ...given, record: { ...base, ...read.record, ...(chosen ?? {}) }, identify: read.identify },
-      errors: read.errors,
+      errors: [...read.errors, ...part.faults()],
     };
   }
 

@@ -1,5 +1,6 @@
 // Which part of a record counts: its start and its end, each a slider and a number.
 import { h, uniqueId } from "../../dom.ts";
+import type { FieldError } from "../../api/types.ts";
 import type { FormErrors } from "../../form/errors.ts";
 import { slider } from "../../form/slider.ts";
 import { formatParameter } from "../../words/numbers.ts";
@@ -24,6 +25,8 @@ export interface PartCard {
   setSteps(steps: Step[]): void;
   /** Null: all of it. */
   read(): Part | null;
+  /** What stands in its fields and cannot be read: their sliders are elsewhere. */
+  faults(): FieldError[];
 }
 
 const MOST_STEPS = 12;
@@ -101,5 +104,9 @@ export function partCard(errors: FormErrors, onMove: () => void, onRelease: () =
       if (!extent || (from.value() <= extent.from && to.value() >= extent.to)) return null;
       return { from: from.value(), to: to.value() };
     },
+    faults: () =>
+      [from, to].flatMap(({ field: { control } }) =>
+        control.fault === undefined ? [] : [{ pointer: control.pointer() ?? "", detail: control.fault }],
+      ),
   };
 }

@@ -103,6 +103,16 @@ test("a field that cannot be read says so beside itself, and the summary leads t
   });
 });
 
+test("a filter alone is no controller of today: Kp is asked for, and the filter's own fault is told", async () => {
+  await withPage("#/new/fopdt?K=1.25&T=40&L=8", {}, async (page) => {
+    await page.getByRole("textbox", { name: "Tf" }).fill("abc");
+    await page.getByRole("button", { name: "Tune this model" }).click();
+    await page.getByText("2 problems to fix").waitFor();
+    for (const name of ["Kp", "Tf"])
+      assert.equal(await page.getByRole("textbox", { name, exact: true }).getAttribute("aria-invalid"), "true", name);
+  });
+});
+
 test("faults that the service finds stand at their fields, several at once", async () => {
   const opened = await openPage(tests.browser);
   try {

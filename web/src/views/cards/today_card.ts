@@ -134,7 +134,9 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
     read() {
       if (isOwn()) return readOwn();
       const typed = slots.map((slot) => slot.input.value.trim());
-      if (typed.every((text) => text === "")) return { baseline: undefined, errors: [] };
+      // A field of the others asks for Kp: what was typed is never passed over.
+      const others = [filter, ...(form.input.value === "npid" ? [delta] : [])].map((field) => field.input.value.trim());
+      if ([...typed, ...others].every((text) => text === "")) return { baseline: undefined, errors: [] };
       const faults: FieldError[] = [];
       const baseline: Baseline = { form: form.input.value, ...rest };
       names().forEach((key, index) => {

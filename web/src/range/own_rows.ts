@@ -138,6 +138,12 @@ export function ownRows(store: Store, announce: (sentence: string) => void): Own
 
   const leave = store.subscribe((workspace, previous) => {
     if (workspace.products !== previous.products) picker.setProducts(workspace.products);
+    // Chosen on Start or Design.
+    if (workspace.mine !== previous.mine && workspace.mine !== mine) {
+      mine = shown ? inUnits(workspace.mine, shown.units) : workspace.mine;
+      picker.set(mine);
+      ask();
+    }
   });
 
   return {

@@ -135,6 +135,22 @@ test("the rows are typed into the user's controller, follow a row that moves, an
   });
 });
 
+test("a controller that is chosen on Start is that of Range too, which was opened before", async () => {
+  await withPage("#/range", {}, async (page) => {
+    await verdict(page).waitFor();
+    const picker = page.getByRole("combobox", { name: "Maker and product" });
+    await page.getByRole("link", { name: "Start", exact: true }).click();
+    await picker.fill("deltav standard");
+    await page.getByRole("listbox", { name: "Maker and product" }).getByRole("option").first().waitFor();
+    await page.keyboard.press("Enter");
+    const chosen = await picker.inputValue();
+    assert.match(chosen, /DeltaV/);
+    await page.getByRole("link", { name: "Range", exact: true }).click();
+    await verdict(page).waitFor();
+    assert.equal(await picker.inputValue(), chosen);
+  });
+});
+
 test("equations show their runs, and with moved rows run again", async () => {
   await withPage("#/range", {}, async (page) => {
     await verdict(page).waitFor();
@@ -204,6 +220,14 @@ test("a fault of the service stands at the row that it is about", async () => {
       await page.getByRole("button", { name: "Design", exact: true }).click();
       await page.getByText("1 problem to fix").waitFor();
       assert.equal(await cell(page, "Plant").nth(1).getAttribute("aria-invalid"), "true");
+      // The verdict is of the request before, and says so.
+      const mark = page.getByText("These results are of the last request that was answered");
+      await mark.waitFor();
+      const colours = page.locator(".range-results > .verdict").evaluate((card) => getComputedStyle(card).filter);
+      assert.equal(await colours, "grayscale(1)");
+      await cell(page, "Plant").nth(1).fill("2 e^(-3s)/(12s+1)");
+      await page.getByRole("button", { name: "Design", exact: true }).click();
+      await mark.waitFor({ state: "hidden" });
     },
     ["422"],
   );

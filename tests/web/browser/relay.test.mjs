@@ -120,6 +120,24 @@ test("a relay that cannot oscillate says why at its field", async () => {
   );
 });
 
+test("results beside a request that was refused are marked as those of the one before", async () => {
+  await withPage("#/relay/fopdt?K=1&T=10&L=2", {}, async (page) => {
+    const mark = page.getByText("These results are of the last request that was answered");
+    const results = page.locator(".relay-results");
+    await page.getByRole("heading", { name: "The test as it would be recorded" }).waitFor();
+    assert.equal(await mark.isVisible(), false);
+    await page.getByLabel("Hysteresis").fill("abc");
+    await page.getByRole("button", { name: "Simulate" }).click();
+    await mark.waitFor();
+    assert.ok(await page.getByRole("button", { name: "Identify this record" }).isDisabled());
+    assert.equal(await results.locator("> .cards").evaluate((card) => getComputedStyle(card).filter), "grayscale(1)");
+    await page.getByLabel("Hysteresis").fill("0.1");
+    await page.getByRole("button", { name: "Simulate" }).click();
+    await mark.waitFor({ state: "hidden" });
+    assert.ok(await page.getByRole("button", { name: "Identify this record" }).isEnabled());
+  });
+});
+
 for (const [name, options] of WINDOWS) {
   test(`the relay test on a ${name}: axe finds nothing, and nothing is wider than the window`, async () => {
     await withPage("#/relay", options, async (page) => {

@@ -129,3 +129,23 @@ function inWordsOf({ input }: Control, { pointer, detail }: FieldError): string 
 function openAround(element: Element): void {
   for (let at = element.closest("details"); at; at = at.parentElement?.closest("details") ?? null) at.open = true;
 }
+
+const WHOSE = "These results are of the last request that was answered, not of the form as it stands.";
+
+/** Said above results that stand beside a form whose last request was refused; they lose their colours meanwhile. */
+export interface StaleMark {
+  element: HTMLElement;
+  set(stale: boolean): void;
+}
+
+export function staleMark(results: () => HTMLElement): StaleMark {
+  const element = h("p", { class: "trouble", role: "status", hidden: true });
+  return {
+    element,
+    set(stale) {
+      element.textContent = stale ? WHOSE : "";
+      element.hidden = !stale;
+      results().toggleAttribute("data-stale", stale);
+    },
+  };
+}

@@ -4,6 +4,7 @@ import type { RangeContent, RangeRequest } from "../api/range.ts";
 import { plantFrame, robustnessFrame, settingsFrame } from "../charts/range.ts";
 import type { RangeShown } from "../charts/range.ts";
 import { h } from "../dom.ts";
+import { staleMark } from "../form/errors.ts";
 import { plotGrid } from "../plot/grid.ts";
 import { createPlot } from "../plot/plot.ts";
 import type { Plot } from "../plot/plot.ts";
@@ -25,6 +26,8 @@ export interface RangeResultView {
   /** The verdict as it stands, to be spoken. */
   sentence(): string;
   clear(): void;
+  /** The form was refused: what is shown is of the request before. */
+  setStale(stale: boolean): void;
   dispose(): void;
 }
 
@@ -64,9 +67,11 @@ export function rangeResult(
   const own = ownRows(store, announce);
   const runs = runsCard(announce, hand.runAgain);
   const slot = h("div", { class: "range-first" });
+  const stale = staleMark(() => element);
   const element = h(
     "div",
     { class: "range-results", hidden: true },
+    stale.element,
     cards.verdict,
     slot,
     h("div", { class: "range-cards" }, schedule.element, cards.one),
@@ -149,6 +154,7 @@ export function rangeResult(
     show(request, content) {
       about = request;
       element.hidden = false;
+      stale.set(false);
       hand.start(request, content);
       draw();
       showMoving();
@@ -162,7 +168,9 @@ export function rangeResult(
     sentence,
     clear() {
       element.hidden = true;
+      stale.set(false);
     },
+    setStale: stale.set,
     dispose() {
       first?.dispose();
       plots.dispose();

@@ -66,7 +66,10 @@ export function rangeView(store: Store, announce: (sentence: string) => void, ev
       result.show(request, content);
       announce(result.sentence());
     },
-    onError: complain,
+    onError(error) {
+      complain(error);
+      result.setStale(true);
+    },
   });
 
   function complain(error: unknown): void {
@@ -78,7 +81,10 @@ export function rangeView(store: Store, announce: (sentence: string) => void, ev
   function compose(): RangeRequest | null {
     const { request, errors: faults } = form.read();
     errors.clear();
-    if (faults.length > 0) errors.show(faults);
+    if (faults.length > 0) {
+      errors.show(faults);
+      result.setStale(true);
+    }
     return faults.length > 0 ? null : request;
   }
 

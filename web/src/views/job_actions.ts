@@ -43,7 +43,8 @@ export interface Reader {
   stop(): void;
 }
 
-/** Reads a list again while it moves (`read` answers that), and after a failure until it can be had; the line says so meanwhile. */
+/** Reads a list again while it moves (`read` answers that), and after a failure until it can be had: the line says so
+    meanwhile. */
 export function reader(read: () => Promise<boolean>, trouble: TroubleLine): Reader {
   let timer: ReturnType<typeof setTimeout> | undefined;
   let round = 0;

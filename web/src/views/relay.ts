@@ -7,7 +7,7 @@ import type { FieldError, IdentifyRequest, Units } from "../api/types.ts";
 import { relayFrame } from "../charts/relay.ts";
 import { h, uniqueId } from "../dom.ts";
 import { textField } from "../form/controls.ts";
-import { FormErrors } from "../form/errors.ts";
+import { FormErrors, staleMark } from "../form/errors.ts";
 import { parseNumber } from "../form/number.ts";
 import { plantFields } from "../form/plant_fields.ts";
 import { createPlot } from "../plot/plot.ts";
@@ -103,9 +103,11 @@ export function relayView(announce: (sentence: string) => void, events: RelayEve
   const planText = h("div", { class: "stack" });
   const planCard = h("section", { class: "card plan", "aria-labelledby": planTitle.id }, planTitle, planText);
   const cycle = cycleCard();
+  const stale = staleMark(() => results);
   const results = h(
     "div",
     { class: "relay-results" },
+    stale.element,
     h("h2", { class: "visually-hidden" }, "The record"),
     slot,
     h("div", { class: "actions" }, identify),
@@ -136,17 +138,19 @@ export function relayView(announce: (sentence: string) => void, events: RelayEve
     return { request: { units: events.units(), plant: reading.plant, relay }, errors: faults };
   }
 
+  function setBusy(now: boolean): void {
+    busy.hidden = !now;
+    element.toggleAttribute("data-busy", now);
+  }
+
   const calls = latest<RelayRequest, RelayAnswer>(simulateRelay, {
-    onBusy(now) {
-      busy.hidden = !now;
-      element.toggleAttribute("data-busy", now);
-    },
+    onBusy: setBusy,
     onAnswer(next, asked) {
       errors.clear();
       answer = next;
       menu.show("v1/experiments/relay", asked);
       results.hidden = false;
-      identify.disabled = false;
+      markStale(false);
       const frame = relayFrame(next, asked.relay.hysteresis ?? 0, units);
       if (plot) plot.update(frame);
       else {
@@ -167,7 +171,7 @@ export function relayView(announce: (sentence: string) => void, events: RelayEve
     onError(error) {
       const problem = error instanceof ApiError ? error.problem : {};
       errors.show(problem.errors ?? [], sentenceOf(error));
-      identify.disabled = true;
+      markStale(true);
     },
   });
 
@@ -191,11 +195,20 @@ export function relayView(announce: (sentence: string) => void, events: RelayEve
     simulate();
   }
 
+  function markStale(now: boolean): void {
+    stale.set(now);
+    identify.disabled = now;
+  }
+
   function simulate(): void {
     const now = read();
     errors.clear();
-    if (now.errors.length > 0) return errors.show(now.errors);
-    calls.send(now.request);
+    if (now.errors.length === 0) return calls.send(now.request);
+    // An answer under way would be of another request than the one refused here.
+    calls.drop();
+    setBusy(false);
+    errors.show(now.errors);
+    markStale(true);
   }
 
   function hand(): void {

@@ -203,6 +203,29 @@ test("the table is saved as CSV with all digits", async () => {
   });
 });
 
+test("on paper every column has its heading, and the table is no wider than its card", async () => {
+  // What A4 leaves between usual margins.
+  await withPage(PLANT, { width: 720, height: 1000 }, async (page) => {
+    await compareAll(page);
+    await page.locator(".league-table tbody tr").first().waitFor();
+    const headings = await page.locator(".league-table thead th").allInnerTexts();
+    await page.emulateMedia({ media: "print" });
+    const printed = page.locator(".league-table thead th:visible");
+    assert.deepEqual(
+      (await printed.allInnerTexts()).map((text) => text.replace(/\s+/g, " ").trim()),
+      headings.map((text) => text.replace(/\s+/g, " ").trim()).filter((text) => !text.startsWith("y, ")),
+    );
+    const edge = (selector) => page.locator(selector).first().evaluate((box) => box.getBoundingClientRect().right);
+    assert.ok((await edge(".league-table")) <= (await edge(".card.league")));
+    await page.emulateMedia({ media: "screen" });
+    await page.getByRole("link", { name: "Settings and verdict" }).click();
+    await page.getByRole("heading", { name: /^Settings to enter/ }).waitFor();
+    await page.emulateMedia({ media: "print" });
+    assert.equal(await page.locator(".legend input:visible").count(), 0);
+    assert.match(await page.locator(".legend").innerText(), /robust[^]*today/i);
+  });
+});
+
 test("every subject leads to its comparison: Design, an example, a recorded test", async () => {
   await withPage(PLANT, {}, async (page) => {
     await page.getByRole("button", { name: "Tune this model" }).click();

@@ -76,7 +76,9 @@ export const outputName = (plant: Plant | undefined): string => {
 };
 
 function equationWords(plant: Plant, units: UnitNames): string {
-  const states = Object.keys((plant["states"] as object | undefined) ?? {}).length;
+  // A list of jobs knows the kind alone.
+  if (plant["states"] === undefined) return "nonlinear plant";
+  const states = Object.keys(plant["states"] as object).length;
   const parts = [
     `${states} ${states === 1 ? "state" : "states"}`,
     `from ${inputOf(plant)?.name ?? "u"} to ${outputName(plant)}`,

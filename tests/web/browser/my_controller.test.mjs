@@ -147,6 +147,20 @@ test("from a record to the settings of three products, each read back as the con
   });
 });
 
+test("beside settings in seconds the notes of a loop in minutes say their unit", async () => {
+  await withPage("#/new/fopdt?K=1.25&T=40&L=8", {}, async (page) => {
+    await page.getByLabel("Time unit").fill("min");
+    await page.getByRole("button", { name: "Tune this model" }).click();
+    await designShown(page);
+    await search(page).fill("arduino");
+    await found(page).first().waitFor();
+    await page.keyboard.press("Enter");
+    await giveRange(page, /^Output range/, 0, 100);
+    await typed(page).getByText("Times in these notes are in min, the loop's unit of time.").waitFor();
+    assert.ok((await rowsOf(page)).some(([, , unit]) => unit === "s"));
+  });
+});
+
 test("a list is searched by maker, name and parameter, with the keyboard alone", async () => {
   await withPage("", {}, async (page) => {
     await tuneModel(page);

@@ -13,7 +13,7 @@ import { myControllerCard } from "../views/cards/my_controller_card.ts";
 import { copyButton } from "../views/copy.ts";
 import { plainSetting, withUnit } from "../words/numbers.ts";
 import type { UnitNames } from "../words/numbers.ts";
-import { productTitle, splitNotes, typedRows } from "../words/products.ts";
+import { noteTimes, productTitle, splitNotes, typedRows } from "../words/products.ts";
 import { placeWords } from "../words/range.ts";
 
 interface Shown {
@@ -53,8 +53,8 @@ export function ownRows(store: Store, announce: (sentence: string) => void): Own
       Promise.all([getProduct(implement.product), scheduleSettingsFor(implement, rows, interpolation, units)]),
     {
       onBusy: (busy) => picker.element.setAttribute("aria-busy", String(busy)),
-      onAnswer([product, typed], { scheduling }) {
-        draw(product, typed, scheduling);
+      onAnswer([product, typed], { scheduling, units }) {
+        draw(product, typed, scheduling, units);
         announce(`The schedule for ${productTitle(product)} is shown.`);
       },
       onError: complain,
@@ -91,7 +91,12 @@ export function ownRows(store: Store, announce: (sentence: string) => void): Own
     calls.send({ ...shown, implement });
   }
 
-  function draw(product: Product, typed: TypedSchedule, scheduling: Shown["scheduling"]): void {
+  function draw(
+    product: Product,
+    typed: TypedSchedule,
+    scheduling: Shown["scheduling"],
+    units: UnitNames,
+  ): void {
     const lines = typed.rows.map(({ at, typing }) => ({ at, cells: typedRows(product, typing), notes: typing.notes }));
     const columns = lines[0]!.cells;
     const place = withUnit(scheduling.name || "at", scheduling.unit ?? "");
@@ -128,6 +133,7 @@ export function ownRows(store: Store, announce: (sentence: string) => void): Own
       ),
       h("div", { class: "actions" }, copy),
       deviations.length > 0 ? items(deviations) : "",
+      deviations.length + remarks.length + ofRows.length > 0 ? h("p", { class: "hint" }, noteTimes(units.time)) : "",
       remarks.length + ofRows.length > 0
         ? h("details", {}, h("summary", {}, "How it was reckoned"), items([...remarks, ...ofRows]))
         : "",

@@ -175,6 +175,9 @@ export function evidenceSentence({ level, unverified }: Evidence): string {
   return `${evidenceWords(level)}.${rest}${level === "read" ? "" : " Check the settings against your manual before you use them."}`;
 }
 
+/** The rows name their own units; what the notes say is reckoned in the loop's. */
+export const noteTimes = (time: string): string => `Times in these notes are in ${time}, the loop's unit of time.`;
+
 /** Notes on how it was reckoned and what to know; every other one says what the block cannot be. */
 const REMARKS = ["action", "clock", "default", "discretisation", "outside-the-twin", "unverified"];
 

@@ -7,6 +7,7 @@ import {
   builtTroubles,
   differenceSentence,
   evidenceSentence,
+  noteTimes,
   productTitle,
   samplingSentences,
   splitNotes,
@@ -76,6 +77,7 @@ export function typedCard(announce: (sentence: string) => void, ...below: HTMLEl
       rest.replaceChildren(
         ...judgement(judged, time),
         ...noteList("What this block cannot do, or does otherwise", deviations),
+        ...(entered.notes.length > 0 ? [h("p", { class: "hint" }, noteTimes(time))] : []),
         h("p", { class: "evidence" }, h("strong", {}, "Evidence. "), evidenceSentence(product.evidence)),
         remarks.length === 0
           ? ""

@@ -129,7 +129,12 @@ test("results beside a request that was refused are marked as those of the one b
     await page.getByLabel("Hysteresis").fill("abc");
     await page.getByRole("button", { name: "Simulate" }).click();
     await mark.waitFor();
-    assert.ok(await page.getByRole("button", { name: "Identify this record" }).isDisabled());
+    const identify = page.getByRole("button", { name: "Identify this record" });
+    const look = (button) => button.evaluate((it) => [getComputedStyle(it).backgroundColor, getComputedStyle(it).cursor]);
+    assert.ok(await identify.isDisabled());
+    const [[plain, cursor], [primary]] = [await look(identify), await look(page.getByRole("button", { name: "Simulate" }))];
+    assert.notEqual(plain, primary);
+    assert.equal(cursor, "default");
     assert.equal(await results.locator("> .cards").evaluate((card) => getComputedStyle(card).filter), "grayscale(1)");
     await page.getByLabel("Hysteresis").fill("0.1");
     await page.getByRole("button", { name: "Simulate" }).click();

@@ -213,6 +213,20 @@ test("an end of the part that cannot be read keeps its fault, and no model is ma
   });
 });
 
+test("at 200 % the formula of a third-order model is whole, and one that is longer scrolls by the keyboard", async () => {
+  const csv = readFileSync(path.join(root, "tests/data/records/tclab-step.csv"), "utf8");
+  await withPage("", { width: 720, height: 450 }, async (page) => {
+    await dropFile(page, ".drop", "tclab-step.csv", csv);
+    await candidatesShown(page);
+    const third = page.locator(".candidate").filter({ hasText: "Third order" }).first().locator(".formula");
+    await third.locator("math").waitFor();
+    assert.ok(await third.evaluate((box) => box.scrollWidth <= box.clientWidth));
+    assert.deepEqual(await page.locator(".candidate .formula").evaluateAll((all) => all.filter((it) => it.tabIndex < 0)), []);
+    for (const folded of await page.getByText(/that fits? worse/).all()) await folded.click();
+    assert.deepEqual(await accessibilityViolations(page), []);
+  });
+});
+
 test("a record that cannot be read says why at its field, and is mended there", async () => {
   await withPage(
     "",

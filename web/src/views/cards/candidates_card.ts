@@ -132,9 +132,14 @@ function poor(candidates: Candidate[], at: number): boolean {
 
 const capital = (text: string): string => text.charAt(0).toUpperCase() + text.slice(1);
 
-/** Of structures that their parameters alone do not tell. */
-const formulaOf = (candidate: Candidate): HTMLElement | null =>
-  candidate.plant.type === "transfer_function" ? plantFormula(rounded(candidate.plant), "span", true) : null;
+/** Of structures that their parameters alone do not tell. In a narrow card it scrolls, by the keyboard too. */
+function formulaOf(candidate: Candidate): HTMLElement | null {
+  if (candidate.plant.type !== "transfer_function") return null;
+  const formula = plantFormula(rounded(candidate.plant), "span", true);
+  for (const [name, value] of [["tabindex", "0"], ["role", "group"], ["aria-label", "Formula"]] as const)
+    formula.setAttribute(name, value);
+  return formula;
+}
 
 /**
  * "K 1.25 ± 0.01 °C/%" of each parameter; of a transfer function only the errors of its coefficients. A time whose error

@@ -30,6 +30,13 @@ export function h<K extends keyof HTMLElementTagNameMap>(
   return element;
 }
 
+/** The focus of an element that is about to go, or to be disabled, passes to the first of these that can take it: else the
+    keyboard would begin again at the top of the page. */
+export function passFocus(from: Element, ...to: (HTMLElement | null)[]): void {
+  if (!from.contains(document.activeElement)) return;
+  to.find((element) => element && !element.matches(":disabled") && element.getClientRects().length > 0)?.focus();
+}
+
 /** A menu that opens from its summary closes when the focus leaves it, or by Escape. */
 export function closesItself(menu: HTMLDetailsElement): HTMLDetailsElement {
   menu.addEventListener("focusout", (event) => {

@@ -85,6 +85,16 @@ test("a row moves by keys and by the pointer, the curves follow, and the design 
   });
 });
 
+test("the focus goes on to the schedule when the design is back", async () => {
+  await withPage("#/range", {}, async (page) => {
+    await verdict(page).waitFor();
+    await handle(page, 1).press("ArrowRight");
+    await page.getByRole("button", { name: "Back to the design" }).press("Enter");
+    await page.getByRole("button", { name: "Back to the design" }).waitFor({ state: "hidden" });
+    assert.equal(await page.evaluate(() => document.activeElement.ariaLabel), "Rows of the schedule");
+  });
+});
+
 test("a row is typed over; what cannot be read stands at its cell", async () => {
   await withPage("#/range", {}, async (page) => {
     await verdict(page).waitFor();

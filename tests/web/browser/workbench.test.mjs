@@ -165,6 +165,43 @@ test("what is wrong with a typed value goes with the text", async () => {
   });
 });
 
+test("no number is cut off: fields of settings by hand, all figures beside today's", async () => {
+  const cut = (list) =>
+    list.filter((box) => box.scrollWidth > box.clientWidth).map((box) => box.value ?? box.getAttribute("aria-label"));
+  // A gain with a sign, and times of a few thousandths.
+  await withPage("#/new/fopdt?K=-0.8&T=6&L=0.05", {}, async (page) => {
+    await openDesign(page, true);
+    assert.ok((await page.locator(".controls").getByRole("textbox", { name: "Tf" }).last().inputValue()).length > 7);
+    assert.deepEqual(await page.locator(".controls input[type=text]").evaluateAll(cut), []);
+    await page.getByText("All figures", { exact: true }).click();
+    assert.deepEqual(await page.locator(".figures-card .scroll").evaluateAll(cut), []);
+  });
+});
+
+test("the focus stays at the sliders when a step has nothing left to do, and when a design is kept", async () => {
+  await withPage(PLANT, {}, async (page) => {
+    await openDesign(page);
+    const press = async (name) => {
+      await page.locator(".controls").getByRole("button", { name, exact: true }).focus();
+      await page.keyboard.press("Enter");
+    };
+    const focused = () => page.evaluate(() => document.activeElement.ariaLabel ?? document.activeElement.textContent);
+    const turn = () => slider(page, "Robustness Ms").press("ArrowRight");
+    await turn();
+    await press("Undo");
+    assert.equal(await focused(), "Redo");
+    await turn();
+    await press("Back to the proposal");
+    assert.equal(await focused(), "Undo");
+    await turn();
+    const before = page.url();
+    await press("Keep this design");
+    await page.waitForURL((url) => url.href.split("/design")[0] !== before.split("/design")[0]);
+    await page.getByRole("button", { name: "Keep this design" }).waitFor({ state: "hidden" });
+    assert.equal(await focused(), "Robustness Ms, slider");
+  });
+});
+
 test("paper is light though the page is dark, and has no sliders", async () => {
   await withPage(PLANT, {}, async (page) => {
     await openDesign(page);

@@ -1,7 +1,7 @@
 // The schedule as a table: its rows can be typed over; how it stands is said above it.
 import { ApiError, sentenceOf } from "../api/client.ts";
 import type { RangeContent, ScheduleRow } from "../api/range.ts";
-import { h, uniqueId } from "../dom.ts";
+import { h, passFocus, uniqueId } from "../dom.ts";
 import { textField } from "../form/controls.ts";
 import type { Field } from "../form/controls.ts";
 import { FormErrors } from "../form/errors.ts";
@@ -117,6 +117,7 @@ export function scheduleCard(events: ScheduleEvents): ScheduleCard {
       const { schedule, scheduling } = content;
       errors.clear();
       for (const part of [how, scroll, worst]) part.hidden = !schedule;
+      if (!moved) passFocus(back, scroll);
       back.hidden = !moved;
       if (!schedule) {
         title.textContent = "No schedule";

@@ -5,7 +5,7 @@ import { latest } from "../api/latest.ts";
 import type { Emulation, EmulationScenario, Tuned } from "../api/reports.ts";
 import type { Controller, Entry, Plant } from "../api/types.ts";
 import type { OwnRun } from "../charts/emulation.ts";
-import { h } from "../dom.ts";
+import { h, passFocus } from "../dom.ts";
 import { FormErrors } from "../form/errors.ts";
 import { slider } from "../form/slider.ts";
 import type { Slider } from "../form/slider.ts";
@@ -111,6 +111,7 @@ export function handSettings({ onRun, onTry }: HandEvents): HandSettings {
   function reset(): void {
     calls.drop();
     element.removeAttribute("aria-busy");
+    passFocus(back, element.querySelector<HTMLElement>(".slider:not([hidden]) input[type=range]"));
     back.disabled = true;
     trouble.hidden = true;
     said.textContent = "";

@@ -4,7 +4,7 @@ import { effect, untracked } from "@preact/signals-core";
 import type { LiveSubject } from "../api/live.ts";
 import { isFinal } from "../api/types.ts";
 import type { Entry, Job, Method, Plant, Result, TuningRequest } from "../api/types.ts";
-import { h } from "../dom.ts";
+import { h, passFocus } from "../dom.ts";
 import { tuneEntryOf, withTune } from "../form/tuning_request.ts";
 import type { Knob } from "../live/knobs.ts";
 import { liveDesign } from "../live/live.ts";
@@ -60,7 +60,7 @@ export function turnedDesign(
   const front = frontCard(announce, controls.turnMs, () => controls.setLowest(front.lowest()));
   const trouble = h("p", { class: "trouble", role: "status", hidden: true });
   const about = h("p", {});
-  const keep = h("button", { type: "button", onclick: () => void keepDesign() });
+  const keep = h("button", { type: "button", onclick: () => keepIt() });
   const keeping = h("p", { class: "actions" }, keep);
   const away = h("div", { class: "trouble", hidden: true }, about, keeping);
   controls.element.append(trouble, away);
@@ -85,6 +85,12 @@ export function turnedDesign(
     store.set((workspace) => ({ ...workspace, route: next }));
     history.replaceState(null, "", formatRoute(next));
     showFront();
+  }
+
+  /** The button goes with what it is about; the keyboard stays at the sliders. */
+  function keepIt(): void {
+    passFocus(keep, controls.element.querySelector<HTMLElement>("input[type=range]"));
+    void keepDesign();
   }
 
   /** The job's report, request and code are the proposal's: a design that stays has a job of its own. */

@@ -1,7 +1,7 @@
 // What can be turned on Design: the method's options, the settings by hand, and the way back and forth.
 import { effect } from "@preact/signals-core";
 import type { Entry, Method } from "../../api/types.ts";
-import { h, uniqueId } from "../../dom.ts";
+import { h, passFocus, uniqueId } from "../../dom.ts";
 import { FormErrors } from "../../form/errors.ts";
 import { slider } from "../../form/slider.ts";
 import type { Slider } from "../../form/slider.ts";
@@ -178,12 +178,27 @@ export function controlsCard(live: Live): ControlsCard {
     }
   }
 
+  const firstSlider = (): HTMLElement | null => element.querySelector<HTMLElement>("input[type=range]");
+
+  /** A step that leads nowhere any more hands its focus to one that does. */
+  function allow(steps: [HTMLButtonElement, boolean][]): void {
+    for (const [button, useful] of steps) if (useful) button.disabled = false;
+    const others = steps.flatMap(([button, useful]) => (useful ? [button] : []));
+    for (const [button, useful] of steps) {
+      if (!useful) passFocus(button, ...others, firstSlider());
+      button.disabled = !useful;
+    }
+  }
+
   const leave = effect(() => {
     const point = live.point.value;
-    undo.disabled = !live.canUndo.value;
-    redo.disabled = !live.canRedo.value;
+    const moved = point !== null && shown !== null && JSON.stringify(point) !== JSON.stringify(shown.point);
+    allow([
+      [undo, live.canUndo.value],
+      [redo, live.canRedo.value],
+      [back, moved],
+    ]);
     if (!point || !shown) return;
-    back.disabled = JSON.stringify(point) === JSON.stringify(shown.point);
     if (tiedAt(point) !== tied && !live.held.value && point.tune?.method === "robust" && tied) {
       tied = tie.checked = false;
       showMt(point);
@@ -196,6 +211,7 @@ export function controlsCard(live: Live): ControlsCard {
     show(point, entry, method, units) {
       shown = { point, entry, method, units };
       followed = null;
+      const focused = element.contains(document.activeElement);
       tied = tie.checked = tiedAt(point);
       makeOptions();
       const hand = entry.controller && entry.method !== "emulation" ? handKnobs(entry.controller, units) : [];
@@ -203,6 +219,7 @@ export function controlsCard(live: Live): ControlsCard {
       handRows.replaceChildren(...hands.map((item) => item.slider.element));
       handTitle.hidden = hands.length === 0;
       element.hidden = options.length === 0 && hands.length === 0;
+      if (focused && !element.contains(document.activeElement)) firstSlider()?.focus();
       return [...options.map((item) => item.knob)];
     },
     setLowest(Ms) {

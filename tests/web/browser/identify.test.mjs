@@ -302,7 +302,12 @@ test("a record in which nothing happens is refused in the service's words", asyn
       const { detail, errors = [] } = await (await refused).json();
       const summary = page.getByRole("group", { name: "Problems to fix" });
       await summary.waitFor();
-      assert.ok((await summary.innerText()).includes(errors[0]?.detail ?? detail));
+      // In the page's names, at the text that the column stands in.
+      const said = await summary.innerText();
+      assert.ok(said.includes((errors[0]?.detail ?? detail).replace("u0", '"u before"')), said);
+      assert.doesNotMatch(said, /\/record/);
+      const text = page.getByRole("textbox", { name: "The record as text" });
+      assert.equal(await text.getAttribute("aria-invalid"), "true");
     },
     ["422"],
   );

@@ -96,6 +96,23 @@ test("loops that failed say why; gain and risk order the table", async () => {
   });
 });
 
+test("a limit that is no number is told by its label, and no loop is sent", async () => {
+  await withPage("#/jobs", {}, async (page) => {
+    for (const [text, sentence] of [
+      ["abc", 'Largest Ms "abc" is not a number. Write for example 1.25, 1,25 or 1e-3.'],
+      ["0,9", "Largest Ms is 0,9; it must be above 1."],
+    ]) {
+      await page.getByLabel("Largest Ms").fill(text);
+      await page
+        .getByLabel(/Drop a CSV of loops here/)
+        .setInputFiles({ name: "loops.csv", mimeType: "text/csv", buffer: Buffer.from("name,K,T,L\na,1,10,2\n") });
+      await page.getByText(sentence).waitFor();
+      assert.equal(await page.locator(".loops .error").innerText(), sentence);
+    }
+    assert.match(page.url(), /#\/jobs$/);
+  });
+});
+
 test("a file that is no list of loops is refused where it was dropped", async () => {
   await withPage(
     "#/jobs",

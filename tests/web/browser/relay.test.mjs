@@ -113,7 +113,7 @@ test("a relay that cannot oscillate says why at its field", async () => {
       await page.getByRole("group", { name: "Problems to fix" }).waitFor();
       assert.equal(errors[0].pointer, "/relay/hysteresis");
       assert.equal(await input.getAttribute("aria-invalid"), "true");
-      assert.equal(await page.locator(`#${await input.getAttribute("id")}-error`).innerText(), errors[0].detail);
+      assert.equal(await page.locator(`#${await input.getAttribute("id")}-error`).innerText(), errors[0].detail.replace("u_plus", '"Upper level"'));
       assert.ok(await page.getByRole("button", { name: "Identify this record" }).isDisabled());
     },
     ["422"],

@@ -2,8 +2,9 @@ import assert from "node:assert/strict";
 import test from "node:test";
 import type { Schema } from "../../../web/src/api/types.ts";
 import { pick, place } from "../../../web/src/form/cases.ts";
-import { matchPointer } from "../../../web/src/form/errors.ts";
+import { inLabels, matchPointer } from "../../../web/src/form/errors.ts";
 import { fieldsOf, readField, typedText } from "../../../web/src/form/fields.ts";
+import { atRecordText } from "../../../web/src/form/record_text.ts";
 import { formOf, PLANT_FORMS, readPlant } from "../../../web/src/form/plant.ts";
 import { formatRoute, parseRoute } from "../../../web/src/routes.ts";
 
@@ -40,6 +41,32 @@ test("a method's schema becomes fields; nested objects are opened, shapes withou
   assert.deepEqual(fields[1]!.choices, ["PI", "PID"]);
   assert.equal(fields[5]!.unit, "time");
   assert.deepEqual(fieldsOf(undefined), []);
+});
+
+test("a fault names fields by their labels, and leaves signals and words alone", () => {
+  const labels = new Map([
+    ["u_plus", "Upper level"],
+    ["u0", "u before"],
+    ["u", "Output u"],
+  ]);
+  const said = (pointer: string, own: string, detail: string): string => inLabels({ pointer, detail }, own, labels);
+  assert.equal(
+    said("/relay/u_minus", "Lower level", "u_minus is 2; it must be less than u_plus, 1."),
+    'Lower level is 2; it must be less than "Upper level", 1.',
+  );
+  const still = "u never moves, so nothing can be learned. Record a test in which u changes, or give u0.";
+  assert.equal(said("/record/csv", "or paste it", still), still.replace("u0", '"u before"'));
+  assert.equal(
+    said("/record/csv", "or paste it", "csv has headings but no line of numbers."),
+    "The text has headings but no line of numbers.",
+  );
+  assert.equal(said("/plant/K", "K", "No loop_gain is known."), "No loop_gain is known.");
+});
+
+test("what the service says of a record's columns stands at its text", () => {
+  const pointers = ["/record/u", "/record/y/3", "/record/u0", "/plant/K"];
+  const moved = atRecordText(pointers.map((pointer) => ({ pointer, detail: "" })));
+  assert.deepEqual(moved.map(({ pointer }) => pointer), ["/record/csv", "/record/csv", "/record/u0", "/plant/K"]);
 });
 
 test("what is typed becomes values at their paths; empty fields send nothing", () => {

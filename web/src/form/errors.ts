@@ -82,7 +82,7 @@ export class FormErrors {
       const control = this.place(error);
       if (!control) return h("li", {}, error.detail, error.pointer ? h("code", {}, ` ${error.pointer}`) : null);
       openAround(control.input);
-      const link = h("a", { href: `#${control.input.id}` }, inWordsOf(control, error));
+      const link = h("a", { href: `#${control.input.id}` }, this.inWords(control, error));
       link.addEventListener("click", (event) => {
         event.preventDefault();
         control.input.focus();
@@ -102,12 +102,21 @@ export class FormErrors {
     const controls = [...this.controls];
     const control = controls[matchPointer(error.pointer, controls.map((item) => item.pointer()))];
     if (!control) return undefined;
-    const words = inWordsOf(control, error);
+    const words = this.inWords(control, error);
     if (words !== control.fault)
       control.error.textContent = [control.error.textContent, words].filter(Boolean).join(" ");
     control.error.hidden = false;
     control.input.setAttribute("aria-invalid", "true");
     return control;
+  }
+
+  private inWords(control: Control, error: FieldError): string {
+    const beside = [...this.controls].flatMap((item) => {
+      const pointer = item.pointer();
+      if (pointer === null || parentOf(pointer) !== parentOf(error.pointer)) return [];
+      return [[memberOf(pointer), labelOf(item)] as const];
+    });
+    return inLabels(error, labelOf(control), new Map(beside));
   }
 
   private clearControl(control: Control): void {
@@ -118,11 +127,23 @@ export class FormErrors {
   }
 }
 
-/** With the field's label where the service writes the member's name. */
-function inWordsOf({ input }: Control, { pointer, detail }: FieldError): string {
-  const member = pointer.slice(pointer.lastIndexOf("/") + 1);
-  const label = input.labels?.[0]?.firstElementChild?.textContent;
-  return label && detail.startsWith(`${member} is `) ? label + detail.slice(member.length) : detail;
+const parentOf = (pointer: string): string => pointer.slice(0, pointer.lastIndexOf("/"));
+const memberOf = (pointer: string): string => pointer.slice(pointer.lastIndexOf("/") + 1);
+const labelOf = ({ input }: Control): string => input.labels?.[0]?.firstElementChild?.textContent ?? "";
+
+/** With the page's labels where the service writes names of members: `own` is that of the fault's field, `labels` those
+    of its neighbours by their members. A name that may be a word or a signal, such as y, stays within a sentence. */
+export function inLabels({ pointer, detail }: FieldError, own: string, labels: ReadonlyMap<string, string>): string {
+  const member = memberOf(pointer);
+  // A field to paste into is called by what to do, not by what stands in it.
+  const subject = member === "csv" ? "The text" : own;
+  const named = subject !== "" && [" is ", " has "].some((verb) => detail.startsWith(member + verb));
+  const [head, rest] = named ? [subject, detail.slice(member.length)] : ["", detail];
+  const words = rest.replace(/\b[a-z]+(?:_[a-z]+)+\b|\b[uy]0\b/g, (name) => {
+    const label = labels.get(name);
+    return label ? `"${label}"` : name;
+  });
+  return head + words;
 }
 
 /** Opens the folded parts of the page that an element is in. */

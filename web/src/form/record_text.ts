@@ -1,8 +1,13 @@
 // The text of a record, to paste and to edit; of a long one only the beginning is laid out, which takes no time.
+import type { FieldError } from "../api/types.ts";
 import { h } from "../dom.ts";
 import { areaField } from "./controls.ts";
 import type { ControlOptions } from "./controls.ts";
 import type { FormErrors } from "./errors.ts";
+
+/** What the service says of the columns of a record stands at its text. */
+export const atRecordText = (errors: FieldError[]): FieldError[] =>
+  errors.map((error) => (/^\/record\/[tuyr](\/|$)/.test(error.pointer) ? { ...error, pointer: "/record/csv" } : error));
 
 export interface RecordText {
   element: HTMLElement;

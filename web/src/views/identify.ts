@@ -11,7 +11,7 @@ import { h } from "../dom.ts";
 import { FormErrors } from "../form/errors.ts";
 import { csvOf, recordFields, samplesOf } from "../form/record_fields.ts";
 import { previewPanel } from "../form/record_preview.ts";
-import { recordText } from "../form/record_text.ts";
+import { atRecordText, recordText } from "../form/record_text.ts";
 import { tuneSubject } from "../form/tuning_request.ts";
 import type { TuneSubject } from "../form/tuning_request.ts";
 import { createPlot } from "../plot/plot.ts";
@@ -154,7 +154,7 @@ export function identifyView(
     },
     onError(error, asked) {
       const problem = error instanceof ApiError ? error.problem : {};
-      const pointed = (problem.errors ?? []).filter((fault) => fault.pointer !== "/record");
+      const pointed = atRecordText(problem.errors ?? []).filter((fault) => fault.pointer !== "/record");
       model = null;
       side.hidden = true;
       cycle.show(undefined, undefined, [], units);
@@ -228,7 +228,7 @@ export function identifyView(
       if (faults.length > 0) errors.show(faults);
     } catch (error) {
       const problem = error instanceof ApiError ? error.problem : {};
-      errors.show(problem.errors ?? [], sentenceOf(error));
+      errors.show(atRecordText(problem.errors ?? []), sentenceOf(error));
     } finally {
       candidates.setBusy(false);
     }

@@ -6,6 +6,7 @@ import { cancelJob, deleteJob, getJob, postJob } from "../api/jobs.ts";
 import { isFinal } from "../api/types.ts";
 import type { Job } from "../api/types.ts";
 import { h } from "../dom.ts";
+import { parseNumber } from "../form/number.ts";
 import { formatRoute } from "../routes.ts";
 import type { Store } from "../store.ts";
 import { age, methodWords, shortPlant } from "../words/job_list.ts";
@@ -301,15 +302,27 @@ function loopsCard(
     ),
   );
 
+  function refuse(sentence: string): void {
+    fault.replaceChildren(h("p", {}, sentence));
+    limit.setAttribute("aria-invalid", "true");
+    file.value = "";
+  }
+
   async function take(chosen: File | undefined): Promise<void> {
     if (!chosen) return;
     fault.replaceChildren();
+    limit.removeAttribute("aria-invalid");
     const options: Record<string, string> = {
       method: method.value || "robust",
       name: chosen.name.replace(/\.\w+$/, ""),
     };
-    const Ms = limit.value.trim().replace(",", ".");
-    if (method.value === "robust" && Ms !== "") Object.assign(options, { Ms, Mt: Ms });
+    if (method.value === "robust" && limit.value.trim() !== "") {
+      // Both limits are set from the one field: what is wrong with it is said here, once and by its name.
+      const Ms = parseNumber(limit.value, "Largest Ms");
+      if (!Ms.ok) return refuse(Ms.sentence);
+      if (Ms.value <= 1) return refuse(`Largest Ms is ${limit.value.trim()}; it must be above 1.`);
+      Object.assign(options, { Ms: String(Ms.value), Mt: String(Ms.value) });
+    }
     announce(`Sending ${chosen.name}.`);
     try {
       onBatch(await postLoops(chosen, options));

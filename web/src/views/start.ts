@@ -5,6 +5,7 @@ import type { Example, FieldError, IdentifyRequest, Job, RecordedTest, TuningReq
 import { h } from "../dom.ts";
 import { FormErrors } from "../form/errors.ts";
 import type { PlantReading } from "../form/plant.ts";
+import { atRecordText } from "../form/record_text.ts";
 import { byAllMethods, EVERY_METHOD, withImplement } from "../form/tuning_request.ts";
 import type { TuneSubject } from "../form/tuning_request.ts";
 import { implementOf, inUnits, mineOfRequest, named, rememberMine } from "../my_controller.ts";
@@ -139,7 +140,7 @@ export function startView(store: Store, events: StartEvents): StartView {
       events.onJob(await postJob(request), all);
     } catch (error) {
       const problem = error instanceof ApiError ? error.problem : {};
-      const listed = problem.errors ?? [];
+      const listed = atRecordText(problem.errors ?? []);
       errors.show(listed, sentenceOf(error));
     } finally {
       busy = false;

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import test from "node:test";
-import { accessibilityViolations, browserTests, openPage } from "../harness.mjs";
+import { accessibilityViolations, browserTests, openPage, overflow } from "../harness.mjs";
 
 const tests = browserTests();
 
@@ -58,6 +58,14 @@ test("the report prints on A4 and Letter, its style alone applies, and nothing i
     assert.deepEqual(await opened.faults(), []);
     await opened.close();
   }
+});
+
+test("on a phone the report is as wide as the window; wide tables scroll by themselves", async () => {
+  const job = await tuned({ ...REQUEST, units: { time: "min", u: "%", y: "degC" } });
+  const opened = await openPage(tests.browser, { width: 390, height: 844 });
+  await opened.page.goto(`${tests.service.base}/v1/jobs/${job.id}/report.html`);
+  assert.equal(await overflow(opened.page), 0);
+  await opened.close();
 });
 
 test("axe finds nothing in the report", async () => {

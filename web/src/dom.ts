@@ -30,8 +30,8 @@ export function h<K extends keyof HTMLElementTagNameMap>(
   return element;
 }
 
-/** The focus of an element that is about to go, or to be disabled, passes to the first of these that can take it: else the
-    keyboard would begin again at the top of the page. */
+/** The focus of an element that is about to go, or to be disabled, passes to the first of these that can take it: else
+    the keyboard would begin again at the top of the page. */
 export function passFocus(from: Element, ...to: (HTMLElement | null)[]): void {
   if (!from.contains(document.activeElement)) return;
   to.find((element) => element && !element.matches(":disabled") && element.getClientRects().length > 0)?.focus();

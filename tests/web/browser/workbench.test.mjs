@@ -186,6 +186,29 @@ test("a gain by hand is evaluated as it stands, and typed values act when the fi
   });
 });
 
+test("a gain by hand on a turned design is the same after a reload, its set-point filter too", async () => {
+  await withPage(PLANT, {}, async (page) => {
+    await openDesign(page);
+    const controls = page.locator(".controls");
+    for (const [name, value, address] of [
+      ["Robustness Ms", "1.7", /Ms=1\.7/],
+      ["Set-point overshoot", "10", /overshoot=10/],
+      ["Kp", "2", /Kp=2/],
+    ]) {
+      await controls.getByRole("textbox", { name }).fill(value);
+      await controls.getByRole("textbox", { name }).press("Enter");
+      await page.waitForURL(address);
+    }
+    await shows(page, "Kp", 2);
+    const settings = () => page.locator(".settings tbody").innerText();
+    const before = await settings();
+    assert.match(before, /Set-point filter/);
+    await page.reload();
+    await shows(page, "Kp", 2);
+    assert.equal(await settings(), before);
+  });
+});
+
 test("dragging draws all the time though every answer takes 60 ms, and is one step", async () => {
   await withPage(PLANT, {}, async (page) => {
     await openDesign(page);

@@ -80,7 +80,7 @@ export function turnedDesign(
     const route = store.get().route;
     if (route.screen !== "design" || !proposal) return;
     const { values: _before, ...bare } = route;
-    const values = valuesOf(point, proposal, knobs);
+    const values = valuesOf(point, proposal, base()?.controller, knobs);
     const next = { ...bare, entry: store.get().selected, ...(Object.keys(values).length > 0 ? { values } : {}) };
     store.set((workspace) => ({ ...workspace, route: next }));
     history.replaceState(null, "", formatRoute(next));

@@ -257,6 +257,42 @@ test("a range as a job shows its schedule and its report, has no league table, a
   });
 });
 
+test("moved rows go with the job under another name, and from the job's own screen again, but not with another design", async () => {
+  await withPage("#/range", {}, async (page) => {
+    const send = page.getByRole("button", { name: "Send as a job" });
+    const sent = async () => {
+      const posted = page.waitForRequest((request) => request.url().endsWith("/v1/jobs") && request.method() === "POST");
+      await send.click();
+      return (await posted).postDataJSON();
+    };
+    await verdict(page).waitFor();
+    await handle(page, 2).focus();
+    await page.keyboard.press("Shift+ArrowRight");
+    const place = Number(await handle(page, 2).getAttribute("aria-valuenow"));
+    await page.getByText("Name of the loop, units").click();
+    await page.locator(".range-form").getByLabel("Loop", { exact: true }).fill("TIC-7");
+    const first = await sent();
+    assert.deepEqual([first.name, first.schedule.given[1].at], ["TIC-7", place]);
+
+    await page.getByRole("link", { name: "Open in Range" }).click();
+    await page.waitForURL(/\/range$/);
+    await page.waitForFunction(
+      (at) => document.querySelectorAll(".handle")[1]?.getAttribute("aria-valuenow") === String(at),
+      place,
+    );
+    assert.deepEqual((await sent()).schedule.given, first.schedule.given);
+
+    await page.getByRole("link", { name: "Open in Range" }).click();
+    await page.waitForURL(/\/range$/);
+    await verdict(page).waitFor();
+    const limit = page.locator(".range-form").getByLabel("Ms", { exact: true });
+    await limit.fill("1.7");
+    await send.click();
+    await page.getByText("The rows were moved for another request than the form has now.").waitFor();
+    assert.match(page.url(), /\/range$/);
+  });
+});
+
 for (const [name, options] of WINDOWS) {
   test(`a range fits the window and has no accessibility violations: ${name}`, async () => {
     for (const address of ["#/range", "#/range/range-of-a-cone"])

@@ -145,6 +145,48 @@ test("a limit that the method does not take is told at its field, and the addres
   });
 });
 
+test("a typed value that stands there already is no step, and nothing waits for it to be let go", async () => {
+  await withPage(PLANT, {}, async (page) => {
+    await openDesign(page);
+    const report = page.getByRole("link", { name: "Report", exact: true });
+    const undo = page.getByRole("button", { name: "Undo" });
+    const field = page.locator(".controls").getByRole("textbox", { name: "Robustness Ms" });
+    await field.fill("1,40");
+    await field.press("Enter");
+    await field.fill("1.5");
+    await field.press("Enter");
+    await page.waitForURL(/Ms=1\.5/);
+    await undo.click();
+    await report.waitFor();
+    assert.ok(await undo.isDisabled(), "one step, not two");
+    await field.fill("1,40");
+    await field.press("Enter");
+    assert.equal(await page.getByRole("button", { name: "Redo" }).isEnabled(), true);
+    assert.ok(await report.isVisible());
+  });
+});
+
+test("ticking Mt = Ms makes them equal, also where the request has no Ms of its own", async () => {
+  await withPage("", {}, async (page) => {
+    const request = { plant: { type: "fopdt", K: 1.25, T: 40, L: 8 }, tune: [{ method: "robust" }] };
+    const { id } = await (await page.request.post(new URL("v1/jobs", page.url()).href, { data: request })).json();
+    await page.goto(new URL(`#/jobs/${id}/design`, page.url()).href);
+    await slider(page, "Robustness Ms").waitFor();
+    const proposal = await setting(page, "Kp");
+    const tie = page.getByLabel("Mt = Ms");
+    const Mt = page.locator(".controls").getByRole("textbox", { name: "Robustness Mt" });
+    await tie.uncheck();
+    await Mt.fill("1.2");
+    await Mt.press("Enter");
+    await page.waitForURL(/Mt=1\.2/);
+    await tie.check();
+    await page.waitForURL(/Ms=1\.4&.*Mt=1\.4/);
+    await shows(page, "Kp", proposal);
+    await Mt.waitFor({ state: "hidden" });
+    assert.ok(await tie.isChecked());
+  });
+});
+
 test("paper is light though the page is dark, and has no sliders", async () => {
   await withPage(PLANT, {}, async (page) => {
     await openDesign(page);

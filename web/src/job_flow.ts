@@ -26,19 +26,27 @@ const LONGEST_WAIT_S = 20;
 
 export function jobFlow(store: Store): JobFlow {
   let stopWatching: (() => void) | null = null;
+  let retunes = 0;
 
   function open(job: Job, screen: JobScreen = "design"): void {
     store.set((workspace) => ({ ...workspace, job, jobTrouble: "", selected: null, drawn: null, sort: "" }));
     location.hash = addressOfJob(job.id, screen);
   }
 
+  /** The newest one counts: what an older one comes to is told to nobody. */
   async function retune(request: TuningRequest, index: number): Promise<void> {
     const from = store.get().route;
-    const job = await postJobAndWait(request, LONGEST_WAIT_S);
+    const mine = ++retunes;
+    const job = await postJobAndWait(request, LONGEST_WAIT_S).catch((error: unknown) => {
+      if (mine === retunes) throw error;
+    });
+    if (!job || mine !== retunes) return;
     const failure = job.error ?? job.result?.controllers[index]?.error;
     if (failure) throw new Error(failure.detail ?? failure.title ?? "There is no such design.");
-    if (store.get().route !== from || from.screen !== "design") return;
-    const { values: _turned, ...kept } = from;
+    const now = store.get().route;
+    // The same job's screen: a slider that has moved since writes its own address.
+    if (from.screen !== "design" || now.screen !== "design" || now.job !== from.job) return;
+    const { values: _turned, ...kept } = now;
     const route: Route = { ...kept, job: job.id };
     store.set((workspace) => ({ ...workspace, route, job, jobTrouble: "" }));
     history.replaceState(null, "", formatRoute({ ...route, entry: store.get().selected }));

@@ -112,6 +112,33 @@ test("what a job hands out is the design on the screen: it is kept first, or the
   });
 });
 
+test("a slider that moves while a design is being kept goes on from it: the job is the design that was kept", async () => {
+  await withPage(PLANT, {}, async (page) => {
+    await openDesign(page);
+    await slider(page, "Robustness Ms").focus();
+    await page.keyboard.press("Shift+ArrowRight");
+    await page.waitForURL(/Ms=1\.5&/);
+    const before = await jobOf(page);
+    let answer;
+    const held = new Promise((resolve) => (answer = resolve));
+    await page.route("**/v1/jobs", async (route) => {
+      await held;
+      await route.continue();
+    });
+    await page.getByRole("button", { name: "Keep this design" }).click();
+    await slider(page, "Robustness Ms").focus();
+    await page.keyboard.press("ArrowRight");
+    await page.waitForURL(/Ms=1\.51/);
+    answer();
+    await page.waitForFunction((id) => !location.hash.includes(id), before.id);
+    assert.equal((await jobOf(page)).request.tune[0].Ms, 1.5);
+    await page.waitForURL(/Ms=1\.51/);
+    await shows(page, "Kp", (await designAt(page, 1.51)).controller.Kp);
+    await page.getByRole("button", { name: "Back to the proposal" }).click();
+    await shows(page, "Kp", (await designAt(page, 1.5)).controller.Kp);
+  });
+});
+
 test("the sliders stand where they were left, after Back and by the header's link", async () => {
   await withPage(PLANT, {}, async (page) => {
     await openDesign(page);

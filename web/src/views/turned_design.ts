@@ -9,7 +9,7 @@ import { tuneEntryOf, withTune } from "../form/tuning_request.ts";
 import type { Knob } from "../live/knobs.ts";
 import { liveDesign } from "../live/live.ts";
 import type { Answer } from "../live/live.ts";
-import { pointOf, tiedAt, valuesOf } from "../live/point.ts";
+import { pointOf, samePoint, tiedAt, valuesOf } from "../live/point.ts";
 import type { Point } from "../live/point.ts";
 import { formatRoute } from "../routes.ts";
 import type { Store } from "../store.ts";
@@ -55,6 +55,8 @@ export function turnedDesign(
   let proposal: Point | null = null;
   /** The address speaks of the entry that was shown first. */
   let addressed = true;
+  /** Where the design stood that is being kept. */
+  let kept: Point | null = null;
   const live = liveDesign(settled);
   const controls = controlsCard(live);
   const front = frontCard(announce, controls.turnMs, () => controls.setLowest(front.lowest()));
@@ -92,11 +94,13 @@ export function turnedDesign(
     const tune = live.point.peek()?.tune;
     if (!shown?.job.request || !tune) return;
     keep.disabled = true;
+    kept = live.point.peek();
     try {
       await events.onRetune(withTune(shown.job.request, shown.result, shown.index, tune), shown.index);
     } catch (error) {
       trouble.textContent = sentenceOf(error);
       trouble.hidden = false;
+      kept = null;
     } finally {
       keep.disabled = false;
     }
@@ -200,7 +204,8 @@ export function turnedDesign(
 
   const methodOf = (entry: Entry): Method | undefined => store.get().methods.find((item) => item.id === entry.method);
 
-  function begin(): void {
+  /** `to`: where the sliders go on from; else where the address says. */
+  function begin(to: Point | null = null): void {
     const entry = base();
     if (!shown || !entry) return;
     const { job, result, index } = shown;
@@ -211,10 +216,24 @@ export function turnedDesign(
     if (!usable || !subject) return;
     proposal = { tune: job.request ? tuneEntryOf(job.request, result, index) : null, hand: null };
     knobs = controls.show(proposal, entry, methodOf(entry), unitNames(job.request?.units));
+    live.start({ subject, point: proposal, entry }, to ?? addressedPoint(proposal, entry));
+    if (to) settled(to);
+    else showFront();
+  }
+
+  function addressedPoint(from: Point, entry: Entry): Point {
     const route = store.get().route;
     const values = addressed && route.screen === "design" ? (route.values ?? {}) : {};
-    live.start({ subject, point: proposal, entry }, pointOf(values, proposal, entry.controller, knobs));
-    showFront();
+    return pointOf(values, from, entry.controller, knobs);
+  }
+
+  /** Where a slider went while the design was being kept; null: it stands where it was kept, or another job is shown. */
+  function movedOn(job: Job): Point | null {
+    const from = kept;
+    if (!from || shown?.job.id === job.id) return null;
+    kept = null;
+    const now = live.point.peek();
+    return now && !samePoint(now, from) ? now : null;
   }
 
   // The sliders of a method need its options, which may come later than the job.
@@ -223,7 +242,7 @@ export function turnedDesign(
   leaving.push(
     effect(() => {
       const now = methods.value;
-      if (now !== known && shown) untracked(begin);
+      if (now !== known && shown) untracked(() => begin());
       known = now;
     }),
   );
@@ -235,8 +254,9 @@ export function turnedDesign(
       if (shown?.result === result && shown.index === index) return;
       // The same entry again, newly fetched, still stands where the address says.
       addressed = shown === null || (shown.job.id === job.id && shown.index === index);
+      const to = movedOn(job);
       shown = { job, result, index };
-      begin();
+      begin(to);
     },
     effective(result) {
       const answer = live.answer.peek();

@@ -1,5 +1,6 @@
 // The job that the page follows: started, shown, replaced by another one in its place.
 import { postJob, postJobAndWait, watchJob } from "./api/jobs.ts";
+import { newest } from "./api/latest.ts";
 import { isFinal } from "./api/types.ts";
 import type { Job, TuningRequest } from "./api/types.ts";
 import { byAllMethods } from "./form/tuning_request.ts";
@@ -26,7 +27,7 @@ const LONGEST_WAIT_S = 20;
 
 export function jobFlow(store: Store): JobFlow {
   let stopWatching: (() => void) | null = null;
-  let retunes = 0;
+  const beginRetune = newest();
 
   function open(job: Job, screen: JobScreen = "design"): void {
     store.set((workspace) => ({ ...workspace, job, jobTrouble: "", selected: null, drawn: null, sort: "" }));
@@ -36,11 +37,11 @@ export function jobFlow(store: Store): JobFlow {
   /** The newest one counts: what an older one comes to is told to nobody. */
   async function retune(request: TuningRequest, index: number): Promise<void> {
     const from = store.get().route;
-    const mine = ++retunes;
+    const isNewest = beginRetune();
     const job = await postJobAndWait(request, LONGEST_WAIT_S).catch((error: unknown) => {
-      if (mine === retunes) throw error;
+      if (isNewest()) throw error;
     });
-    if (!job || mine !== retunes) return;
+    if (!job || !isNewest()) return;
     const failure = job.error ?? job.result?.controllers[index]?.error;
     if (failure) throw new Error(failure.detail ?? failure.title ?? "There is no such design.");
     const now = store.get().route;

@@ -2,7 +2,7 @@
 import { ApiError, sentenceOf } from "../api/client.ts";
 import { identify } from "../api/experiments.ts";
 import { previewRecord } from "../api/records.ts";
-import { latest } from "../api/latest.ts";
+import { latest, newest } from "../api/latest.ts";
 import type { FieldError, IdentifyRequest, Model } from "../api/types.ts";
 import { bareRecordFrame, identifiedFrame } from "../charts/identified.ts";
 import { stepParts } from "../charts/record.ts";
@@ -51,12 +51,17 @@ export function identifyView(
   const units = unitNames(given.units);
   const errors = new FormErrors();
   let model: Model | null = null;
+  // What the model on the screen was asked by; the fields may have been typed over since.
+  let answered: IdentifyRequest | null = null;
   // The record beyond the used part, from the answer about all of it.
   let whole: Samples | null = null;
   let samples = samplesOf(given.record);
   const givenText = csvOf(given.record);
+  /** What the extent that can be chosen from is of. */
+  let askedText = givenText;
   let plot: Plot | null = null;
   let plotTitle = "";
+  const beginLook = newest();
 
   const heading = h("h1", { tabindex: -1 }, given.name ? `Identify: ${given.name}` : "Identify");
   const busy = h("p", { class: "hint busy", hidden: true }, "Fitting models to the record...");
@@ -140,6 +145,7 @@ export function identifyView(
     onAnswer(answer, asked) {
       errors.clear();
       model = answer;
+      answered = asked;
       menu.show("v1/identify", asked);
       if (isWhole(asked)) takeWhole(answer.fit);
       body.hidden = false;
@@ -168,7 +174,16 @@ export function identifyView(
     },
   });
 
+  /** Another record has another extent: what was chosen of the one before means nothing in it. */
+  function forgetPart(): void {
+    if (text.read() === askedText) return;
+    askedText = text.read();
+    whole = null;
+    part.clear();
+  }
+
   function ask(): void {
+    forgetPart();
     const now = request();
     errors.clear();
     if (now.errors.length > 0) return errors.show(now.errors);
@@ -178,9 +193,11 @@ export function identifyView(
 
   /** What the text is read as, once somebody wants to know. */
   async function look(): Promise<void> {
+    const isNewest = beginLook();
     if (text.read().trim() === "") return;
     try {
       const preview = await previewRecord({ ...fields.read().record, csv: text.read() });
+      if (!isNewest()) return;
       shown.replaceChildren(previewPanel(preview));
       fields.offer(preview);
     } catch {
@@ -218,11 +235,11 @@ export function identifyView(
   }
 
   async function tune(all: boolean): Promise<void> {
-    if (!model) return;
+    if (!model || !answered) return;
     errors.clear();
     candidates.setBusy(true);
     try {
-      const subject = tuneSubject(request().request, model, candidates.chosen());
+      const subject = tuneSubject(answered, model, candidates.chosen());
       const uncertainty = candidates.onRegion() ? ("identified" as const) : undefined;
       const faults = await events.onTune("plant" in subject ? subject : { ...subject, uncertainty }, all);
       if (faults.length > 0) errors.show(faults);
@@ -245,8 +262,6 @@ export function identifyView(
   });
   reading.addEventListener("submit", (event) => {
     event.preventDefault();
-    // Another record has another extent.
-    if (text.read() !== givenText) whole = null;
     ask();
   });
 

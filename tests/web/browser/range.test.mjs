@@ -135,6 +135,24 @@ test("the rows are typed into the user's controller, follow a row that moves, an
   });
 });
 
+test("a controller that is chosen on Start is known in Range, though Range was opened before", async () => {
+  await withPage("#/range", {}, async (page) => {
+    const search = page.getByRole("combobox", { name: "Maker and product" });
+    const screens = page.getByRole("navigation", { name: "Screens" });
+    await verdict(page).waitFor();
+    assert.equal(await search.inputValue(), "");
+    await screens.getByRole("link", { name: "Start" }).click();
+    await search.fill("deltav standard");
+    await page.getByRole("listbox", { name: "Maker and product" }).getByRole("option").first().waitFor();
+    await page.keyboard.press("Enter");
+    const chosen = await search.inputValue();
+    assert.match(chosen, /DeltaV/);
+    await screens.getByRole("link", { name: "Range" }).click();
+    await verdict(page).waitFor();
+    assert.equal(await search.inputValue(), chosen);
+  });
+});
+
 test("equations show their runs, and with moved rows run again", async () => {
   await withPage("#/range", {}, async (page) => {
     await verdict(page).waitFor();

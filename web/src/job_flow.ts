@@ -30,7 +30,7 @@ export function jobFlow(store: Store): JobFlow {
   const beginRetune = newest();
 
   function open(job: Job, screen: JobScreen = "design"): void {
-    store.set((workspace) => ({ ...workspace, job, jobTrouble: "", selected: null, drawn: null, sort: "" }));
+    store.set((workspace) => ({ ...workspace, job, jobTrouble: "", selected: null, drawn: null, sort: "", rankMs: null }));
     location.hash = addressOfJob(job.id, screen);
   }
 

@@ -19,6 +19,7 @@ const store = createStore({
   selected: null,
   drawn: null,
   sort: "",
+  rankMs: null,
   test: null,
   methods: [],
   products: [],

@@ -200,7 +200,7 @@ export function screens(
   function openJobScreen(route: JobRoute, focus: boolean): void {
     const before = store.get();
     const same = before.job?.id === route.job;
-    const kept = same ? before : { job: null, selected: null, drawn: null, sort: "" };
+    const kept = same ? before : { job: null, selected: null, drawn: null, sort: "", rankMs: null };
     store.set((workspace) => ({
       ...workspace,
       job: kept.job,
@@ -208,7 +208,11 @@ export function screens(
       selected: (route.screen === "design" ? route.entry : null) ?? kept.selected,
       drawn: (route.screen === "compare" ? route.rows : null) ?? kept.drawn,
       sort: route.screen === "compare" ? route.sort : kept.sort,
+      rankMs: (route.screen === "compare" ? route.rankMs : null) ?? kept.rankMs,
     }));
+    // A link to the table alone leads to what was chosen there; so does its address then.
+    const { drawn: rows, rankMs } = store.get();
+    if (route.screen === "compare") history.replaceState(null, "", formatRoute({ ...route, rows, rankMs }));
     if (route.screen === "design") {
       const events = { onJob: flow.take, onTune: flow.tune, onRetune: flow.retune, onCompareAll: flow.compareAll };
       mount(designView(store, announce, events), "Design · Tunewright", focus);
@@ -251,13 +255,13 @@ export function screens(
   store.subscribe((workspace, previous) => {
     const route = workspace.route;
     if (!showsJob(route)) return;
-    const { selected, drawn, sort } = workspace;
-    const changed = selected !== previous.selected || drawn !== previous.drawn || sort !== previous.sort;
+    const { selected, drawn, sort, rankMs } = workspace;
+    const changed = (["selected", "drawn", "sort", "rankMs"] as const).some((name) => workspace[name] !== previous[name]);
     if (changed && workspace.job?.id === previous.job?.id)
       history.replaceState(
         null,
         "",
-        formatRoute(route.screen === "design" ? { screen: "design", job: route.job, entry: selected } : { ...route, sort, rows: drawn }),
+        formatRoute(route.screen === "design" ? { screen: "design", job: route.job, entry: selected } : { ...route, sort, rows: drawn, rankMs }),
       );
     // A range has no league table.
     if (route.screen === "compare" && workspace.job?.id === route.job && isRangeRequest(workspace.job.request))

@@ -1,46 +1,11 @@
 // The design that moves: sliders, the front, steps back and forth, the address, a slow network and a busy service.
 import assert from "node:assert/strict";
 import test from "node:test";
+import { designedBy, openDesign, PLANT, setting, shows, slider } from "../design_page.mjs";
 import { browserTests, tracesShown } from "../harness.mjs";
 
 const { withPage, jobOf } = browserTests();
-
-const slider = (page, name) => page.locator(".controls").getByRole("slider", { name: `${name}, slider` });
-const setting = (page, name) =>
-  page
-    .locator(".settings tbody tr")
-    .filter({ has: page.locator("th", { hasText: new RegExp(`^${name}\\b`) }) })
-    .locator("td")
-    .innerText()
-    .then((text) => Number(text.replace("−", "-")));
-const shows = (page, name, value) =>
-  page.waitForFunction(
-    ([wanted, number]) =>
-      [...document.querySelectorAll(".settings tbody tr")].some(
-        (row) =>
-          row.querySelector("th").textContent.startsWith(wanted) &&
-          Math.abs(Number(row.querySelector("td").textContent.replace("−", "-")) / number - 1) < 1e-3,
-      ),
-    [name, value],
-  );
-
-async function openDesign(page, today = false) {
-  if (today) {
-    await page.getByLabel("Kp", { exact: true }).fill("1.2");
-    await page.getByLabel("Ti", { exact: true }).fill("40");
-  }
-  await page.getByRole("button", { name: "Tune this model" }).click();
-  await slider(page, "Robustness Ms").waitFor();
-}
-
-/** The service's own answer for that limit. */
-async function designAt(page, Ms) {
-  const { plant, tune } = (await jobOf(page)).request;
-  const answer = await page.request.post(`${new URL(page.url()).origin}/v1/design`, {
-    data: { plant, tune: [{ ...tune[0], Ms, Mt: Ms }] },
-  });
-  return (await answer.json()).controllers[0];
-}
+const designAt = designedBy(jobOf);
 
 /** Drags a slider's thumb from one share of its way to another. */
 async function drag(page, target, from, to, steps, pause = 0) {
@@ -53,8 +18,6 @@ async function drag(page, target, from, to, steps, pause = 0) {
     if (pause > 0) await page.waitForTimeout(pause);
   }
 }
-
-const PLANT = "#/new/fopdt?K=1.25&T=40&L=8";
 
 test("the slider of Ms designs anew; undo, redo and the proposal lead back, the address and a reload bring it again", async () => {
   await withPage(PLANT, {}, async (page) => {
@@ -112,33 +75,6 @@ test("what a job hands out is the design on the screen: it is kept first, or the
   });
 });
 
-test("a slider that moves while a design is being kept goes on from it: the job is the design that was kept", async () => {
-  await withPage(PLANT, {}, async (page) => {
-    await openDesign(page);
-    await slider(page, "Robustness Ms").focus();
-    await page.keyboard.press("Shift+ArrowRight");
-    await page.waitForURL(/Ms=1\.5&/);
-    const before = await jobOf(page);
-    let answer;
-    const held = new Promise((resolve) => (answer = resolve));
-    await page.route("**/v1/jobs", async (route) => {
-      await held;
-      await route.continue();
-    });
-    await page.getByRole("button", { name: "Keep this design" }).click();
-    await slider(page, "Robustness Ms").focus();
-    await page.keyboard.press("ArrowRight");
-    await page.waitForURL(/Ms=1\.51/);
-    answer();
-    await page.waitForFunction((id) => !location.hash.includes(id), before.id);
-    assert.equal((await jobOf(page)).request.tune[0].Ms, 1.5);
-    await page.waitForURL(/Ms=1\.51/);
-    await shows(page, "Kp", (await designAt(page, 1.51)).controller.Kp);
-    await page.getByRole("button", { name: "Back to the proposal" }).click();
-    await shows(page, "Kp", (await designAt(page, 1.5)).controller.Kp);
-  });
-});
-
 test("the sliders stand where they were left, after Back and by the header's link", async () => {
   await withPage(PLANT, {}, async (page) => {
     await openDesign(page);
@@ -193,27 +129,6 @@ test("a typed value that stands there already is no step, and nothing waits for 
   });
 });
 
-test("ticking Mt = Ms makes them equal, also where the request has no Ms of its own", async () => {
-  await withPage("", {}, async (page) => {
-    const request = { plant: { type: "fopdt", K: 1.25, T: 40, L: 8 }, tune: [{ method: "robust" }] };
-    const { id } = await (await page.request.post(new URL("v1/jobs", page.url()).href, { data: request })).json();
-    await page.goto(new URL(`#/jobs/${id}/design`, page.url()).href);
-    await slider(page, "Robustness Ms").waitFor();
-    const proposal = await setting(page, "Kp");
-    const tie = page.getByLabel("Mt = Ms");
-    const Mt = page.locator(".controls").getByRole("textbox", { name: "Robustness Mt" });
-    await tie.uncheck();
-    await Mt.fill("1.2");
-    await Mt.press("Enter");
-    await page.waitForURL(/Mt=1\.2/);
-    await tie.check();
-    await page.waitForURL(/Ms=1\.4&.*Mt=1\.4/);
-    await shows(page, "Kp", proposal);
-    await Mt.waitFor({ state: "hidden" });
-    assert.ok(await tie.isChecked());
-  });
-});
-
 test("paper is light though the page is dark, and has no sliders", async () => {
   await withPage(PLANT, {}, async (page) => {
     await openDesign(page);
@@ -252,29 +167,6 @@ test("a gain by hand is evaluated as it stands, and typed values act when the fi
     });
     const [entry] = (await answer.json()).controllers;
     assert.equal(Number(await Ms.locator("td").first().innerText()), Number(entry.robustness.Ms.toPrecision(3)));
-  });
-});
-
-test("a gain by hand on a turned design is the same after a reload, its set-point filter too", async () => {
-  await withPage(PLANT, {}, async (page) => {
-    await openDesign(page);
-    const controls = page.locator(".controls");
-    for (const [name, value, address] of [
-      ["Robustness Ms", "1.7", /Ms=1\.7/],
-      ["Set-point overshoot", "10", /overshoot=10/],
-      ["Kp", "2", /Kp=2/],
-    ]) {
-      await controls.getByRole("textbox", { name }).fill(value);
-      await controls.getByRole("textbox", { name }).press("Enter");
-      await page.waitForURL(address);
-    }
-    await shows(page, "Kp", 2);
-    const settings = () => page.locator(".settings tbody").innerText();
-    const before = await settings();
-    assert.match(before, /Set-point filter/);
-    await page.reload();
-    await shows(page, "Kp", 2);
-    assert.equal(await settings(), before);
   });
 });
 

@@ -9,8 +9,8 @@ import { tuneEntryOf, withTune } from "../form/tuning_request.ts";
 import type { Knob } from "../live/knobs.ts";
 import { liveDesign } from "../live/live.ts";
 import type { Answer } from "../live/live.ts";
-import { pointOf, samePoint, tiedAt, valuesOf } from "../live/point.ts";
-import type { Point } from "../live/point.ts";
+import { firstStep, pointOf, samePoint, tiedAt, valuesOf } from "../live/point.ts";
+import type { Point, Steps } from "../live/point.ts";
 import { formatRoute } from "../routes.ts";
 import type { Store } from "../store.ts";
 import { formatNumber, unitNames } from "../words/numbers.ts";
@@ -53,8 +53,10 @@ export function turnedDesign(
   let shown: { job: Job; result: Result; index: number } | null = null;
   let knobs: Knob[] = [];
   let proposal: Point | null = null;
-  /** The address speaks of the entry that was shown first. */
+  /** The address speaks of the entry that is shown. */
   let addressed = true;
+  /** Of the job's other entries: what was done to them before another one was chosen. */
+  const left = new Map<number, Steps>();
   /** Where the design stood that is being kept. */
   let kept: Point | null = null;
   const live = liveDesign(settled);
@@ -205,7 +207,7 @@ export function turnedDesign(
   const methodOf = (entry: Entry): Method | undefined => store.get().methods.find((item) => item.id === entry.method);
 
   /** `to`: where the sliders go on from; else where the address says. */
-  function begin(to: Point | null = null): void {
+  function begin(to: Steps | null = null): void {
     const entry = base();
     if (!shown || !entry) return;
     const { job, result, index } = shown;
@@ -216,9 +218,11 @@ export function turnedDesign(
     if (!usable || !subject) return;
     proposal = { tune: job.request ? tuneEntryOf(job.request, result, index) : null, hand: null };
     knobs = controls.show(proposal, entry, methodOf(entry), unitNames(job.request?.units));
-    live.start({ subject, point: proposal, entry }, to ?? addressedPoint(proposal, entry));
-    if (to) settled(to);
-    else showFront();
+    const at = to ?? firstStep(addressedPoint(proposal, entry));
+    live.start({ subject, point: proposal, entry }, at);
+    if (addressed && !to) return showFront();
+    addressed = true;
+    settled(at.now);
   }
 
   function addressedPoint(from: Point, entry: Entry): Point {
@@ -254,9 +258,12 @@ export function turnedDesign(
       if (shown?.result === result && shown.index === index) return;
       // The same entry again, newly fetched, still stands where the address says.
       addressed = shown === null || (shown.job.id === job.id && shown.index === index);
-      const to = movedOn(job);
+      const moved = movedOn(job);
+      const before = live.steps.peek();
+      if (shown?.job.id !== job.id) left.clear();
+      else if (before) left.set(shown.index, before);
       shown = { job, result, index };
-      begin(to);
+      begin(moved ? firstStep(moved) : (left.get(index) ?? null));
     },
     effective(result) {
       const answer = live.answer.peek();

@@ -7,6 +7,7 @@ import { h } from "./dom.ts";
 import { header } from "./header.ts";
 import { jobFlow } from "./job_flow.ts";
 import { rememberedMine } from "./my_controller.ts";
+import { rememberedTest, rememberTest } from "./record_at_hand.ts";
 import { screens } from "./screens.ts";
 import { createStore } from "./store.ts";
 import { applyTheme } from "./theme.ts";
@@ -20,7 +21,7 @@ const store = createStore({
   drawn: null,
   sort: "",
   rankMs: null,
-  test: null,
+  test: rememberedTest(),
   methods: [],
   products: [],
   mine: rememberedMine(),
@@ -50,6 +51,10 @@ async function loadLists(): Promise<void> {
         : "",
   }));
 }
+
+store.subscribe((workspace, previous) => {
+  if (workspace.test !== previous.test) rememberTest(workspace.test);
+});
 
 function fault(reason: unknown): void {
   const words = sentenceOf(reason);

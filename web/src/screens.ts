@@ -11,6 +11,7 @@ import type { RangeView } from "./range/view.ts";
 import { addressOfJob, formatRoute, parseRoute, showsJob } from "./routes.ts";
 import type { JobRoute, Route } from "./routes.ts";
 import type { Store } from "./store.ts";
+import type { CandidateChoice } from "./views/cards/candidates_card.ts";
 import { batchView } from "./views/batch.ts";
 import { compareView } from "./views/compare.ts";
 import { designView } from "./views/design.ts";
@@ -47,6 +48,10 @@ export function screens(
   let start: StartView | null = null;
   let relay: RelayView | null = null;
   let range: RangeView | null = null;
+  /** How often the form of Start was filled from elsewhere. */
+  let fills = 0;
+  /** What was chosen on Identify, of the record at that address. */
+  let remembered: { address: string; choice: CandidateChoice } | null = null;
 
   function mount(next: View, title: string, focus: boolean): void {
     if (view !== next) {
@@ -105,6 +110,7 @@ export function screens(
   function openRecord(test: IdentifyRequest): void {
     store.set((workspace) => ({ ...workspace, test }));
     const address = formatRoute({ screen: "identify", job: null });
+    remembered = null;
     if (location.hash === address) go(false);
     else location.hash = address;
   }
@@ -118,7 +124,12 @@ export function screens(
   }
 
   function identifyScreen(test: IdentifyRequest, region = false): View {
-    return identifyView(test, { methods: startScreen().methods(), region }, announce, {
+    const address = location.hash;
+    const first = remembered?.address === address ? remembered.choice : { structure: "", region };
+    return identifyView(test, { methods: startScreen().methods(), first }, announce, {
+      onRemember(choice) {
+        remembered = { address, choice };
+      },
       onChange(changed) {
         store.set((workspace) => ({ ...workspace, test: changed }));
         startScreen().loadRecord(changed.record, changed.identify);
@@ -136,7 +147,7 @@ export function screens(
       const route = store.get().route;
       if (route.screen !== "identify" || route.job !== id) return;
       if (!record || !job.request) return mount(noRecordView(), "Identify · Tunewright", focus);
-      startScreen().load(job.request);
+      fillForm(job.request);
       const test: IdentifyRequest = {
         ...(name ? { name } : {}),
         ...(units ? { units } : {}),
@@ -159,9 +170,28 @@ export function screens(
     }
   }
 
+  function fillForm(request: TuningRequest): void {
+    fills += 1;
+    startScreen().load(request);
+  }
+
+  /** Of what stands in the form; a reload of the page begins anew. */
+  const fillMark = (): string => `${performance.timeOrigin}/${fills}`;
+
+  /** An entry of the history remembers what it filled the form with: Back finds what was typed since. */
+  function fillForEntry(request: TuningRequest): void {
+    fillForm(request);
+    history.replaceState({ fill: fillMark() }, "");
+  }
+
+  const isAsLeft = (): boolean => (history.state as { fill?: string } | null)?.fill === fillMark();
+
   async function loadForm(route: Route): Promise<void> {
-    const form = startScreen();
-    if (route.screen === "new") form.loadTyped(route.plant, route.values);
+    if (route.screen === "new") {
+      fills += 1;
+      startScreen().loadTyped(route.plant, route.values);
+    }
+    if (isAsLeft()) return;
     try {
       if (route.screen === "edit") {
         const known = store.get().job;
@@ -169,12 +199,12 @@ export function screens(
         // A range is changed on its own screen.
         if (isRangeRequest(job.request))
           return location.replace(formatRoute({ screen: "range", example: "", job: job.id }));
-        if (job.request) form.load(job.request);
+        if (job.request) fillForEntry(job.request);
       }
       if (route.screen === "example") {
         await listed;
         const example = store.get().examples.find((candidate) => candidate.id === route.id);
-        if (example) form.load(example.request);
+        if (example) fillForEntry(example.request);
         else store.set((workspace) => ({ ...workspace, serviceTrouble: `There is no example "${route.id}".` }));
       }
     } catch (error) {
@@ -231,6 +261,8 @@ export function screens(
     if (route.screen === "identify") {
       if (route.job !== null) return void openJobRecord(route.job, !first);
       const test = before.test;
+      // After a reload: name, units and record go on from here with the form's.
+      if (first && test) fillForm({ ...test });
       mount(test ? identifyScreen(test) : noRecordView(), "Identify · Tunewright", !first);
       return;
     }

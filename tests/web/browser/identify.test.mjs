@@ -243,6 +243,36 @@ test("Use and tune takes the model that is shown, not what was typed since", asy
   });
 });
 
+test("candidate and check box are as they were chosen after Back, and the record after a reload", async () => {
+  await withPage("", {}, async (page) => {
+    await page.getByLabel("Loop name").fill("TIC-9");
+    await page.getByLabel("Unit of y").fill("degC");
+    await dropFile(page, ".drop", "step.csv", stepTest);
+    await candidatesShown(page);
+    const choice = page.getByRole("group", { name: "Which model to use" });
+    const region = page.getByRole("checkbox", { name: /^Meet the limits for every model/ });
+    const other = choice.locator("label:not(:has(:checked)):visible").first();
+    const name = await other.locator("strong").innerText();
+    await other.locator("input").check();
+    await region.check();
+    await page.getByRole("navigation", { name: "Screens" }).getByRole("link", { name: "Methods" }).click();
+    await page.waitForURL(/methods/);
+    await page.goBack();
+    await candidatesShown(page);
+    await choice.locator("label", { has: page.locator(":checked") }).filter({ hasText: name }).waitFor();
+    assert.ok(await region.isChecked());
+
+    await page.reload();
+    await candidatesShown(page);
+    await page.getByRole("heading", { name: "Identify: TIC-9" }).waitFor();
+    await page.getByRole("button", { name: "Use and tune" }).click();
+    await page.getByRole("heading", { name: "Model from the record" }).waitFor();
+    const { request } = await job(page);
+    assert.equal(request.record.csv, stepTest);
+    assert.deepEqual([request.name, request.units], ["TIC-9", { time: "s", y: "degC" }]);
+  });
+});
+
 test("a record that cannot be read says why at its field, and is mended there", async () => {
   await withPage(
     "",

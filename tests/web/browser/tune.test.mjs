@@ -256,44 +256,6 @@ test("an example is shown in the form and sent from there as the same plant and 
   }
 });
 
-test("a filter of today's settings that is emptied is none, and what has no field is said and can be left out", async () => {
-  const response = await fetch(`${tests.service.base}/v1/jobs`, {
-    method: "POST",
-    headers: { "Content-Type": "application/json" },
-    body: JSON.stringify({
-      plant: { type: "fopdt", K: 1.25, T: 40, L: 8 },
-      tune: [{ method: "simc" }],
-      evaluate: { load_step: 5, horizon: 77 },
-      baseline: { form: "ideal", Kp: 1, Ti: 40, Td: 2, b: 0.3, filter: { type: "derivative", Tf: 5 } },
-    }),
-  });
-  const { id } = await response.json();
-  const tuned = async (page) => {
-    await page.getByRole("button", { name: "Tune this model" }).click();
-    await designShown(page);
-    return (await jobOf(page)).request;
-  };
-  await withPage(`#/jobs/${id}/edit`, {}, async (page) => {
-    const ofRequest = page.getByText("without a field here: evaluate.load_step 5, evaluate.horizon 77.");
-    const ofToday = page.getByText("without a field here: b 0.3.");
-    await ofRequest.waitFor();
-    await ofToday.waitFor();
-    await page.getByLabel("Tf", { exact: true }).fill("");
-    const kept = await tuned(page);
-    assert.deepEqual(kept.evaluate, { horizon: 77, load_step: 5 });
-    assert.deepEqual(kept.baseline, { form: "ideal", Kp: 1, Ti: 40, Td: 2, b: 0.3 });
-    await page.getByRole("navigation", { name: "Screens" }).getByRole("link", { name: "Start" }).click();
-    await page.getByLabel("Model in one line").fill("3 e^(-1s)/(5s+1)");
-    await page.getByRole("button", { name: "Leave it out of the request" }).click();
-    await page.getByRole("button", { name: "Leave it out of today's settings" }).click();
-    await ofRequest.waitFor({ state: "hidden" });
-    await ofToday.waitFor({ state: "hidden" });
-    const bare = await tuned(page);
-    assert.equal(bare.evaluate, undefined);
-    assert.deepEqual(bare.baseline, { form: "ideal", Kp: 1, Ti: 40, Td: 2 });
-  });
-});
-
 test("a job that cannot be done says why, and leads back to its request", async () => {
   await withPage("#/new/fopdt?K=1&T=10&L=10", {}, async (page) => {
     await page.getByRole("textbox", { name: "Ms", exact: true }).fill("1.01");

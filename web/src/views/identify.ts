@@ -20,6 +20,7 @@ import { formatNumber, unitNames } from "../words/numbers.ts";
 import { structureTitle } from "../words/plant.ts";
 import { qualityOf } from "../words/quality.ts";
 import { candidatesCard } from "./cards/candidates_card.ts";
+import type { CandidateChoice } from "./cards/candidates_card.ts";
 import { cycleCard } from "./cards/cycle_card.ts";
 import { partCard } from "./cards/part_card.ts";
 import { qualityCard } from "./cards/quality_card.ts";
@@ -30,8 +31,7 @@ import type { View } from "./start.ts";
 export interface TuningChoice {
   /** Names of the methods that stand on Start. */
   methods: string[];
-  /** Limits hold for every model consistent with the record. */
-  region: boolean;
+  first: CandidateChoice;
 }
 
 export interface IdentifyEvents {
@@ -40,6 +40,8 @@ export interface IdentifyEvents {
   /** Starts a tuning job; returns what keeps it from starting. */
   /** `all`: by every method. */
   onTune(subject: TuneSubject, all: boolean): Promise<FieldError[]>;
+  /** What was chosen of what it found. */
+  onRemember(choice: CandidateChoice): void;
 }
 
 export function identifyView(
@@ -101,7 +103,8 @@ export function identifyView(
     part.element,
     sentence,
   );
-  const candidates = candidatesCard(tuning.methods, tuning.region, {
+  const candidates = candidatesCard(tuning.methods, tuning.first, {
+    onRemember: events.onRemember,
     onChoose() {
       draw();
       const chosen = candidates.chosen();

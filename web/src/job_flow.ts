@@ -30,7 +30,8 @@ export function jobFlow(store: Store): JobFlow {
   const beginRetune = newest();
 
   function open(job: Job, screen: JobScreen = "design"): void {
-    store.set((workspace) => ({ ...workspace, job, jobTrouble: "", selected: null, drawn: null, sort: "", rankMs: null }));
+    const nothing = { selected: null, drawn: null, sort: "", rankMs: null };
+    store.set((workspace) => ({ ...workspace, job, jobTrouble: "", ...nothing }));
     location.hash = addressOfJob(job.id, screen);
   }
 

@@ -17,10 +17,15 @@ export function rememberTest(test: IdentifyRequest | null): void {
 
 export function rememberedTest(): IdentifyRequest | null {
   try {
-    const test: unknown = JSON.parse(sessionStorage.getItem(STORED_AS) ?? "null");
-    const isTest = typeof test === "object" && test !== null && "record" in test && typeof test.record === "object";
-    return isTest && test.record !== null ? (test as IdentifyRequest) : null;
+    return readTest(JSON.parse(sessionStorage.getItem(STORED_AS) ?? "null"));
   } catch {
     return null;
   }
+}
+
+const isObject = (value: unknown): value is Record<string, unknown> => typeof value === "object" && value !== null;
+
+/** What stands in the storage may be an older page's, or anybody's. */
+export function readTest(data: unknown): IdentifyRequest | null {
+  return isObject(data) && isObject(data["record"]) ? (data as unknown as IdentifyRequest) : null;
 }

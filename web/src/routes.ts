@@ -13,8 +13,8 @@ export type Route =
   /** `values`: where its sliders stand, where that is not the proposal. */
   | { screen: "design"; job: string; entry: number | null; values?: Record<string, string> }
   /**
-   * The league table of a job. `sort`: a column's id, with a minus where it falls; "" is the ranking. `rankMs`: the limit on
-   * Ms below which it ranks, where that is not the request's.
+   * The league table of a job. `sort`: a column's id, with a minus where it falls; "" is the ranking. `rankMs`: the
+   * limit on Ms below which it ranks, where that is not the request's.
    */
   | { screen: "compare"; job: string; sort: string; rows: number[] | null; rankMs?: number | null }
   /** The jobs that have this text in their name, id or method. */

@@ -288,12 +288,17 @@ export function screens(
     const route = workspace.route;
     if (!showsJob(route)) return;
     const { selected, drawn, sort, rankMs } = workspace;
-    const changed = (["selected", "drawn", "sort", "rankMs"] as const).some((name) => workspace[name] !== previous[name]);
+    const parts = ["selected", "drawn", "sort", "rankMs"] as const;
+    const changed = parts.some((part) => workspace[part] !== previous[part]);
     if (changed && workspace.job?.id === previous.job?.id)
       history.replaceState(
         null,
         "",
-        formatRoute(route.screen === "design" ? { screen: "design", job: route.job, entry: selected } : { ...route, sort, rows: drawn, rankMs }),
+        formatRoute(
+          route.screen === "design"
+            ? { screen: "design", job: route.job, entry: selected }
+            : { ...route, sort, rows: drawn, rankMs },
+        ),
       );
     // A range has no league table.
     if (route.screen === "compare" && workspace.job?.id === route.job && isRangeRequest(workspace.job.request))

@@ -275,11 +275,12 @@ test("a range as a job shows its schedule and its report, has no league table, a
   });
 });
 
-test("moved rows go with the job under another name, and from the job's own screen again, but not with another design", async () => {
+test("moved rows go with the job under another name and from its screen again, not with another design", async () => {
   await withPage("#/range", {}, async (page) => {
     const send = page.getByRole("button", { name: "Send as a job" });
     const sent = async () => {
-      const posted = page.waitForRequest((request) => request.url().endsWith("/v1/jobs") && request.method() === "POST");
+      const isPost = (request) => request.url().endsWith("/v1/jobs") && request.method() === "POST";
+      const posted = page.waitForRequest(isPost);
       await send.click();
       return (await posted).postDataJSON();
     };

@@ -36,7 +36,7 @@ test("a screen with a result leads to the report of the entry that it shows", as
   });
 });
 
-test("the link itself has the entry, chosen or not: a middle click and a copy of it lead to the same report", async () => {
+test("the link itself has the entry, chosen or not: a middle click or a copy leads to the same report", async () => {
   const job = await tuned({ ...REQUEST, tune: [{ method: "cohen_coon" }, { method: "robust" }] });
   for (const [address, index] of [
     ["design", 0],

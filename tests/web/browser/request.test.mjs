@@ -8,7 +8,7 @@ const { withPage, jobOf } = tests;
 
 const designShown = (page) => page.getByRole("heading", { name: /^Settings to enter/ }).waitFor();
 
-test("a filter of today's settings that is emptied is none, and what has no field is said and can be left out", async () => {
+test("an emptied filter of today's settings is none, and what has no field is said and can be left out", async () => {
   const response = await fetch(`${tests.service.base}/v1/jobs`, {
     method: "POST",
     headers: { "Content-Type": "application/json" },

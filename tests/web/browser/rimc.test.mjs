@@ -71,7 +71,7 @@ test("the slider shows what a lambda would buy while it moves, and designs it wh
   });
 });
 
-test("of several steps in a row the last one is shown and kept, however late the answers to the others come", async () => {
+test("of several steps in a row the last is shown and kept, however late the other answers come", async () => {
   await withPage("#/new/fopdt?K=1&T=10&L=2", {}, async (page) => {
     await showRimc(page);
     const slider = page.getByRole("slider", { name: "λ, slider" });

@@ -15,7 +15,7 @@ async function openJob(page, tune) {
   await slider(page, "Robustness Ms").waitFor();
 }
 
-test("a slider that moves while a design is being kept goes on from it: the job is the design that was kept", async () => {
+test("a slider that moves while a design is being kept goes on from it; the job is what was kept", async () => {
   await withPage(PLANT, {}, async (page) => {
     await openDesign(page);
     await slider(page, "Robustness Ms").focus();

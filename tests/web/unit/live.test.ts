@@ -112,7 +112,7 @@ test("the address says where the sliders stand, and brings them back", () => {
   assert.deepEqual(pointOf({ Ms: "nonsense", other: "3" }, proposal, controller, knobs), proposal);
 });
 
-test("settings by hand that started from a turned design come back from the address with all that belongs to them", () => {
+test("settings by hand on a turned design come back from the address with all that belongs to them", () => {
   const proposal: Point = { tune: { method: "robust" }, hand: null };
   const filtered: Controller = { ...controller, b: 0, setpoint_filter: { T: 16.8 } };
   const knobs = optionKnobs(proposal.tune!, entryOf("robust"), robust, units);

@@ -5,7 +5,14 @@ import type { RangeContent, RangeRequest, ScheduleRow } from "../../../web/src/a
 import { passageFrame, plantFrame, robustnessFrame, settingsFrame } from "../../../web/src/charts/range.ts";
 import { atSharedFields, plantText, readRange, textsOf } from "../../../web/src/range/request.ts";
 import type { RangeTexts } from "../../../web/src/range/request.ts";
-import { givenRequest, handleWords, keyedPlace, movedRow, reachOf, sameDesign } from "../../../web/src/range/schedule.ts";
+import {
+  givenRequest,
+  handleWords,
+  keyedPlace,
+  movedRow,
+  reachOf,
+  sameDesign,
+} from "../../../web/src/range/schedule.ts";
 import { formatRoute, parseRoute } from "../../../web/src/routes.ts";
 import { unitNames } from "../../../web/src/words/numbers.ts";
 import {

@@ -99,7 +99,7 @@ export function slider(options: SliderOptions, errors: FormErrors): Slider {
     options.onRelease(value);
   }
 
-  /** By a key or a text: moved and let go in one. What stands there already is no move, after which nothing would be let go. */
+  /** By a key or a text: moved and let go in one. What stands there already is no move: nothing would let it go. */
   function report(): void {
     if (value === reported) return;
     options.onMove(value);

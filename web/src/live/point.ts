@@ -44,7 +44,7 @@ const BESIDE_HAND = ["b", "c", "delta_r", "filter.type", "setpoint_filter.T"];
 const at = (whole: TuneEntry | Controller | null | undefined, id: string): unknown =>
   id.split(".").reduce<unknown>((value, part) => (value as Record<string, unknown> | undefined)?.[part], whole ?? {});
 
-/** What of a point differs from the proposal and its controller, for the address; with all digits, to lead back to it. */
+/** What of a point differs from the proposal and its controller, for the address; with all its digits. */
 export function valuesOf(
   point: Point,
   proposal: Point,

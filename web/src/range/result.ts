@@ -21,7 +21,7 @@ export interface RangeResultView {
   element: HTMLElement;
   /** `typed`: what the form says of the request, where it came from elsewhere. */
   show(request: RangeRequest, content: RangeContent, typed?: RangeRequest): void;
-  /** With the rows as they stand, where a hand moved them; null where they belong to another design than the request's. */
+  /** With the rows as they stand, where a hand moved them; null where they are of another design than the request's. */
   withMoved(request: RangeRequest): RangeRequest | null;
   /** The verdict as it stands, to be spoken. */
   sentence(): string;

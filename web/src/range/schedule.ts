@@ -57,7 +57,8 @@ export const sameRows = (a: readonly ScheduleRow[], b: readonly ScheduleRow[]): 
 
 /** Whether two requests ask for the same design: names and units of what is shown, and rows that were given, aside. */
 export function sameDesign(a: RangeRequest, b: RangeRequest): boolean {
-  const bare = ({ name: _name, units: _units, scheduling: _scheduling, schedule = {}, ...others }: RangeRequest): string => {
+  const bare = (request: RangeRequest): string => {
+    const { name: _name, units: _units, scheduling: _scheduling, schedule = {}, ...others } = request;
     const { given: _given, ...terms } = schedule;
     return JSON.stringify({ ...others, schedule: terms });
   };

@@ -27,7 +27,7 @@ export interface RangeEvents {
 
 /** Rows that are shown are not dropped, nor sent with what they were not made for. */
 const ANOTHER_DESIGN =
-  "The rows were moved for another request than the form has now. Press Design for new ones, or take back what was changed.";
+  "The rows were moved for another request than the form has now. Press Design for new ones, or undo the change.";
 
 export function rangeView(store: Store, announce: (sentence: string) => void, events: RangeEvents): RangeView {
   const errors = new FormErrors();

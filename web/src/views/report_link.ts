@@ -1,4 +1,4 @@
-// "Report": a job's page to print. The address has the entry, so that it is the same however the link is opened or copied.
+// "Report": a job's page to print. The address has the entry, so that it is the same however the link is opened.
 import { getText, sentenceOf } from "../api/client.ts";
 import { currentKey } from "../api/key.ts";
 import { h } from "../dom.ts";

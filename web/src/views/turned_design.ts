@@ -231,7 +231,7 @@ export function turnedDesign(
     return pointOf(values, from, entry.controller, knobs);
   }
 
-  /** Where a slider went while the design was being kept; null: it stands where it was kept, or another job is shown. */
+  /** Where a slider went while the design was being kept; null: it stands where it was, or nothing was kept. */
   function movedOn(job: Job): Point | null {
     const from = kept;
     if (!from || shown?.job.id === job.id) return null;

@@ -1,5 +1,6 @@
 // The job that the page follows: started, shown, replaced by another one in its place.
 import { postJob, postJobAndWait, watchJob } from "./api/jobs.ts";
+import { newest } from "./api/latest.ts";
 import { isFinal } from "./api/types.ts";
 import type { Job, TuningRequest } from "./api/types.ts";
 import { byAllMethods } from "./form/tuning_request.ts";
@@ -26,19 +27,28 @@ const LONGEST_WAIT_S = 20;
 
 export function jobFlow(store: Store): JobFlow {
   let stopWatching: (() => void) | null = null;
+  const beginRetune = newest();
 
   function open(job: Job, screen: JobScreen = "design"): void {
-    store.set((workspace) => ({ ...workspace, job, jobTrouble: "", selected: null, drawn: null, sort: "" }));
+    const nothing = { selected: null, drawn: null, sort: "", rankMs: null };
+    store.set((workspace) => ({ ...workspace, job, jobTrouble: "", ...nothing }));
     location.hash = addressOfJob(job.id, screen);
   }
 
+  /** The newest one counts: what an older one comes to is told to nobody. */
   async function retune(request: TuningRequest, index: number): Promise<void> {
     const from = store.get().route;
-    const job = await postJobAndWait(request, LONGEST_WAIT_S);
+    const isNewest = beginRetune();
+    const job = await postJobAndWait(request, LONGEST_WAIT_S).catch((error: unknown) => {
+      if (isNewest()) throw error;
+    });
+    if (!job || !isNewest()) return;
     const failure = job.error ?? job.result?.controllers[index]?.error;
     if (failure) throw new Error(failure.detail ?? failure.title ?? "There is no such design.");
-    if (store.get().route !== from || from.screen !== "design") return;
-    const { values: _turned, ...kept } = from;
+    const now = store.get().route;
+    // The same job's screen: a slider that has moved since writes its own address.
+    if (from.screen !== "design" || now.screen !== "design" || now.job !== from.job) return;
+    const { values: _turned, ...kept } = now;
     const route: Route = { ...kept, job: job.id };
     store.set((workspace) => ({ ...workspace, route, job, jobTrouble: "" }));
     history.replaceState(null, "", formatRoute({ ...route, entry: store.get().selected }));

@@ -7,6 +7,7 @@ import { h } from "./dom.ts";
 import { header } from "./header.ts";
 import { jobFlow } from "./job_flow.ts";
 import { rememberedMine } from "./my_controller.ts";
+import { rememberedTest, rememberTest } from "./record_at_hand.ts";
 import { screens } from "./screens.ts";
 import { createStore } from "./store.ts";
 import { applyTheme } from "./theme.ts";
@@ -19,7 +20,8 @@ const store = createStore({
   selected: null,
   drawn: null,
   sort: "",
-  test: null,
+  rankMs: null,
+  test: rememberedTest(),
   methods: [],
   products: [],
   mine: rememberedMine(),
@@ -65,6 +67,10 @@ async function loadLists(): Promise<void> {
     readList(getExamples, (examples) => store.set((workspace) => ({ ...workspace, examples }))),
   ]);
 }
+
+store.subscribe((workspace, previous) => {
+  if (workspace.test !== previous.test) rememberTest(workspace.test);
+});
 
 function fault(reason: unknown): void {
   const words = sentenceOf(reason);

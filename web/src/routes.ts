@@ -12,8 +12,11 @@ export type Route =
   | { screen: "relay"; plant: string; values: Record<string, string> }
   /** `values`: where its sliders stand, where that is not the proposal. */
   | { screen: "design"; job: string; entry: number | null; values?: Record<string, string> }
-  /** The league table of a job. `sort`: a column's id, with a minus where it falls; "" is the ranking. */
-  | { screen: "compare"; job: string; sort: string; rows: number[] | null }
+  /**
+   * The league table of a job. `sort`: a column's id, with a minus where it falls; "" is the ranking. `rankMs`: the
+   * limit on Ms below which it ranks, where that is not the request's.
+   */
+  | { screen: "compare"; job: string; sort: string; rows: number[] | null; rankMs?: number | null }
   /** The jobs that have this text in their name, id or method. */
   | { screen: "jobs"; text: string }
   /** The loops of a batch, in an order as in compare. */
@@ -54,6 +57,7 @@ export function parseRoute(hash: string): Route {
         job: parts[1],
         sort: values["sort"] ?? "",
         rows: /^\d+(\.\d+)*$/.test(rows) ? rows.split(".").map(Number) : null,
+        ...(Number(values["Ms"]) > 1 ? { rankMs: Number(values["Ms"]) } : {}),
       };
     }
     if (parts[2] === "identify") return { screen: "identify", job: parts[1] };
@@ -98,7 +102,8 @@ export function formatRoute(route: Route): string {
       return `#/batches/${encodeURIComponent(route.id)}${route.sort ? `?sort=${encodeURIComponent(route.sort)}` : ""}`;
     case "compare": {
       const rows = route.rows && route.rows.length > 0 ? `rows=${route.rows.join(".")}` : "";
-      const query = [route.sort && `sort=${encodeURIComponent(route.sort)}`, rows].filter(Boolean).join("&");
+      const Ms = route.rankMs ? `Ms=${route.rankMs}` : "";
+      const query = [route.sort && `sort=${encodeURIComponent(route.sort)}`, rows, Ms].filter(Boolean).join("&");
       return `#/jobs/${encodeURIComponent(route.job)}/compare${query ? `?${query}` : ""}`;
     }
     case "design": {

@@ -11,6 +11,7 @@ import type { RangeView } from "./range/view.ts";
 import { addressOfJob, formatRoute, parseRoute, showsJob, showsStart } from "./routes.ts";
 import type { JobRoute, Route } from "./routes.ts";
 import type { Store } from "./store.ts";
+import type { CandidateChoice } from "./views/cards/candidates_card.ts";
 import { batchView } from "./views/batch.ts";
 import { compareView } from "./views/compare.ts";
 import { designView } from "./views/design.ts";
@@ -47,6 +48,10 @@ export function screens(
   let start: StartView | null = null;
   let relay: RelayView | null = null;
   let range: RangeView | null = null;
+  /** How often the form of Start was filled from elsewhere. */
+  let fills = 0;
+  /** What was chosen on Identify, of the record at that address. */
+  let remembered: { address: string; choice: CandidateChoice } | null = null;
 
   function mount(next: View, title: string, focus: boolean): void {
     if (view !== next) {
@@ -108,6 +113,7 @@ export function screens(
   function openRecord(test: IdentifyRequest): void {
     store.set((workspace) => ({ ...workspace, test }));
     const address = formatRoute({ screen: "identify", job: null });
+    remembered = null;
     if (location.hash === address) go(false);
     else location.hash = address;
   }
@@ -121,7 +127,12 @@ export function screens(
   }
 
   function identifyScreen(test: IdentifyRequest, region = false): View {
-    return identifyView(test, { methods: startScreen().methods(), region }, announce, {
+    const address = location.hash;
+    const first = remembered?.address === address ? remembered.choice : { structure: "", region };
+    return identifyView(test, { methods: startScreen().methods(), first }, announce, {
+      onRemember(choice) {
+        remembered = { address, choice };
+      },
       onChange(changed) {
         store.set((workspace) => ({ ...workspace, test: changed }));
         startScreen().loadRecord(changed.record, changed.identify);
@@ -138,7 +149,7 @@ export function screens(
       const { name, units, record, identify } = job.request ?? {};
       if (store.get().route !== route) return;
       if (!record || !job.request) return mount(noRecordView(), "Identify · Tunewright", focus);
-      startScreen().load(job.request);
+      fillForm(job.request);
       const test: IdentifyRequest = {
         ...(name ? { name } : {}),
         ...(units ? { units } : {}),
@@ -161,9 +172,28 @@ export function screens(
     }
   }
 
+  function fillForm(request: TuningRequest): void {
+    fills += 1;
+    startScreen().load(request);
+  }
+
+  /** Of what stands in the form; a reload of the page begins anew. */
+  const fillMark = (): string => `${performance.timeOrigin}/${fills}`;
+
+  /** An entry of the history remembers what it filled the form with: Back finds what was typed since. */
+  function fillForEntry(request: TuningRequest): void {
+    fillForm(request);
+    history.replaceState({ fill: fillMark() }, "");
+  }
+
+  const isAsLeft = (): boolean => (history.state as { fill?: string } | null)?.fill === fillMark();
+
   async function loadForm(route: Route): Promise<void> {
-    const form = startScreen();
-    if (route.screen === "new") form.loadTyped(route.plant, route.values);
+    if (route.screen === "new") {
+      fills += 1;
+      startScreen().loadTyped(route.plant, route.values);
+    }
+    if (isAsLeft()) return;
     try {
       if (route.screen === "edit") {
         const known = store.get().job;
@@ -172,13 +202,13 @@ export function screens(
         // A range is changed on its own screen.
         if (isRangeRequest(job.request))
           return location.replace(formatRoute({ screen: "range", example: "", job: job.id }));
-        if (job.request) form.load(job.request);
+        if (job.request) fillForEntry(job.request);
       }
       if (route.screen === "example") {
         await listed;
         if (store.get().route !== route) return;
         const example = store.get().examples.find((candidate) => candidate.id === route.id);
-        if (example) form.load(example.request);
+        if (example) fillForEntry(example.request);
         else store.set((workspace) => ({ ...workspace, serviceTrouble: `There is no example "${route.id}".` }));
       }
     } catch (error) {
@@ -202,7 +232,7 @@ export function screens(
   function openJobScreen(route: JobRoute, focus: boolean): void {
     const before = store.get();
     const same = before.job?.id === route.job;
-    const kept = same ? before : { job: null, selected: null, drawn: null, sort: "" };
+    const kept = same ? before : { job: null, selected: null, drawn: null, sort: "", rankMs: null };
     store.set((workspace) => ({
       ...workspace,
       job: kept.job,
@@ -210,7 +240,11 @@ export function screens(
       selected: (route.screen === "design" ? route.entry : null) ?? kept.selected,
       drawn: (route.screen === "compare" ? route.rows : null) ?? kept.drawn,
       sort: route.screen === "compare" ? route.sort : kept.sort,
+      rankMs: (route.screen === "compare" ? route.rankMs : null) ?? kept.rankMs,
     }));
+    // A link to the table alone leads to what was chosen there; so does its address then.
+    const { drawn: rows, rankMs } = store.get();
+    if (route.screen === "compare") history.replaceState(null, "", formatRoute({ ...route, rows, rankMs }));
     if (route.screen === "design") {
       const events = { onJob: flow.take, onTune: flow.tune, onRetune: flow.retune, onCompareAll: flow.compareAll };
       mount(designView(store, announce, events), "Design · Tunewright", focus);
@@ -229,6 +263,8 @@ export function screens(
     if (route.screen === "identify") {
       if (route.job !== null) return void openJobRecord(route.job, !first);
       const test = before.test;
+      // After a reload: name, units and record go on from here with the form's.
+      if (first && test) fillForm({ ...test });
       mount(test ? identifyScreen(test) : noRecordView(), "Identify · Tunewright", !first);
       return;
     }
@@ -253,13 +289,18 @@ export function screens(
   store.subscribe((workspace, previous) => {
     const route = workspace.route;
     if (!showsJob(route)) return;
-    const { selected, drawn, sort } = workspace;
-    const changed = selected !== previous.selected || drawn !== previous.drawn || sort !== previous.sort;
+    const { selected, drawn, sort, rankMs } = workspace;
+    const parts = ["selected", "drawn", "sort", "rankMs"] as const;
+    const changed = parts.some((part) => workspace[part] !== previous[part]);
     if (changed && workspace.job?.id === previous.job?.id)
       history.replaceState(
         null,
         "",
-        formatRoute(route.screen === "design" ? { screen: "design", job: route.job, entry: selected } : { ...route, sort, rows: drawn }),
+        formatRoute(
+          route.screen === "design"
+            ? { screen: "design", job: route.job, entry: selected }
+            : { ...route, sort, rows: drawn, rankMs },
+        ),
       );
     // A range has no league table.
     if (route.screen === "compare" && workspace.job?.id === route.job && isRangeRequest(workspace.job.request))

@@ -18,6 +18,8 @@ export interface Workspace {
   drawn: number[] | null;
   /** Order of the league table: a column's id, with a minus where it falls; "" is the ranking. */
   sort: string;
+  /** The limit on Ms below which rows are ranked, as typed; null: the request's. */
+  rankMs: number | null;
   /** The recorded test that is being looked at. */
   test: IdentifyRequest | null;
   methods: Method[];

@@ -185,6 +185,44 @@ test("the limit on Ms ranks anew, unstable rows go on request, columns are chose
   });
 });
 
+test("the limit on Ms is the request's on every way in, and a typed one stays after Back and a reload", async () => {
+  const response = await fetch(`${tests.service.base}/v1/jobs`, {
+    method: "POST",
+    headers: { "Content-Type": "application/json", Prefer: "wait=60" },
+    body: JSON.stringify({
+      plant: { type: "fopdt", K: 1, T: 10, L: 2 },
+      tune: [{ method: "robust" }, { method: "simc" }, { method: "amigo" }],
+      evaluate: { rank_limits: { Ms: 1.5 } },
+    }),
+  });
+  const { id } = await response.json();
+  await withPage(`#/jobs/${id}/design`, {}, async (page) => {
+    const limit = page.getByLabel(/among Ms/);
+    const table = page.locator(".league-table tbody a");
+    const stands = async (value) => {
+      await table.first().waitFor();
+      assert.equal(await limit.inputValue(), value);
+    };
+    await page.getByRole("link", { name: "League table" }).click();
+    await stands("1.5");
+    await page.reload();
+    await stands("1.5");
+    await limit.fill("1,7");
+    await limit.press("Enter");
+    await page.waitForURL(/compare\?Ms=1\.7$/);
+    await table.first().click();
+    await page.getByRole("heading", { name: /^Settings to enter/ }).waitFor();
+    await page.goBack();
+    await stands("1.7");
+    await page.reload();
+    await stands("1.7");
+    await page.getByRole("link", { name: "Settings and verdict" }).click();
+    await page.getByRole("navigation", { name: "Screens" }).getByRole("link", { name: "Compare" }).click();
+    await stands("1.7");
+    assert.match(page.url(), /compare\?Ms=1\.7$/);
+  });
+});
+
 test("the table is saved as CSV with all digits", async () => {
   await withPage(PLANT, {}, async (page) => {
     await compareAll(page);

@@ -145,19 +145,21 @@ test("the rows are typed into the user's controller, follow a row that moves, an
   });
 });
 
-test("a controller that is chosen on Start is that of Range too, which was opened before", async () => {
+test("a controller that is chosen on Start is known in Range, though Range was opened before", async () => {
   await withPage("#/range", {}, async (page) => {
+    const search = page.getByRole("combobox", { name: "Maker and product" });
+    const screens = page.getByRole("navigation", { name: "Screens" });
     await verdict(page).waitFor();
-    const picker = page.getByRole("combobox", { name: "Maker and product" });
-    await page.getByRole("link", { name: "Start", exact: true }).click();
-    await picker.fill("deltav standard");
+    assert.equal(await search.inputValue(), "");
+    await screens.getByRole("link", { name: "Start" }).click();
+    await search.fill("deltav standard");
     await page.getByRole("listbox", { name: "Maker and product" }).getByRole("option").first().waitFor();
     await page.keyboard.press("Enter");
-    const chosen = await picker.inputValue();
+    const chosen = await search.inputValue();
     assert.match(chosen, /DeltaV/);
-    await page.getByRole("link", { name: "Range", exact: true }).click();
+    await screens.getByRole("link", { name: "Range" }).click();
     await verdict(page).waitFor();
-    assert.equal(await picker.inputValue(), chosen);
+    assert.equal(await search.inputValue(), chosen);
   });
 });
 
@@ -288,6 +290,43 @@ test("a range as a job shows its schedule and its report, has no league table, a
     await page.waitForURL(new RegExp(`#/jobs/${id}/range$`));
     await verdict(page).waitFor();
     assert.equal(await verdict(page).innerText(), result.range.verdict.text);
+  });
+});
+
+test("moved rows go with the job under another name and from its screen again, not with another design", async () => {
+  await withPage("#/range", {}, async (page) => {
+    const send = page.getByRole("button", { name: "Send as a job" });
+    const sent = async () => {
+      const isPost = (request) => request.url().endsWith("/v1/jobs") && request.method() === "POST";
+      const posted = page.waitForRequest(isPost);
+      await send.click();
+      return (await posted).postDataJSON();
+    };
+    await verdict(page).waitFor();
+    await handle(page, 2).focus();
+    await page.keyboard.press("Shift+ArrowRight");
+    const place = Number(await handle(page, 2).getAttribute("aria-valuenow"));
+    await page.getByText("Name of the loop, units").click();
+    await page.locator(".range-form").getByLabel("Loop", { exact: true }).fill("TIC-7");
+    const first = await sent();
+    assert.deepEqual([first.name, first.schedule.given[1].at], ["TIC-7", place]);
+
+    await page.getByRole("link", { name: "Open in Range" }).click();
+    await page.waitForURL(/\/range$/);
+    await page.waitForFunction(
+      (at) => document.querySelectorAll(".handle")[1]?.getAttribute("aria-valuenow") === String(at),
+      place,
+    );
+    assert.deepEqual((await sent()).schedule.given, first.schedule.given);
+
+    await page.getByRole("link", { name: "Open in Range" }).click();
+    await page.waitForURL(/\/range$/);
+    await verdict(page).waitFor();
+    const limit = page.locator(".range-form").getByLabel("Ms", { exact: true });
+    await limit.fill("1.7");
+    await send.click();
+    await page.getByText("The rows were moved for another request than the form has now.").waitFor();
+    assert.match(page.url(), /\/range$/);
   });
 });
 

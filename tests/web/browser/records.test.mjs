@@ -123,6 +123,32 @@ test("a file without times is tuned after the sampling time is entered", async (
   });
 });
 
+test("of two files the one that was dropped last is identified, however late the first is read", async () => {
+  const file = (K) => ["t,u,y", ...Array.from({ length: 200 }, (_, t) => {
+    const y = t > 25 ? K * (1 - Math.exp(-(t - 25) / 30)) : 0;
+    return `${t},${t >= 20 ? 1 : 0},${(y + 0.001 * Math.sin(37 * t)).toFixed(4)}`;
+  })].join("\n");
+  await withPage("", {}, async (page) => {
+    let answerFirst;
+    const first = new Promise((resolve) => (answerFirst = resolve));
+    let files = 0;
+    await page.route("**/v1/records/preview", async (route) => {
+      files += 1;
+      if (files === 1) await first;
+      await route.continue();
+    });
+    await dropFile(page, ".drop", "first.csv", file(2));
+    await page.getByText("Reading first.csv...").waitFor();
+    await dropFile(page, ".drop", "second.csv", file(9));
+    await page.getByText(/^K 9\.0/).first().waitFor();
+    const late = page.waitForResponse((response) => response.url().endsWith("/v1/records/preview"));
+    answerFirst();
+    await (await late).finished();
+    await page.getByRole("link", { name: "Start", exact: true }).click();
+    assert.equal(await page.getByLabel("or paste it").inputValue(), file(9));
+  });
+});
+
 test("what was passed over is listed, and another unit of time can be chosen", async () => {
   await withPage("", {}, async (page) => {
     const log = file(["Trend of TIC101", "Time,OP,PV"], (i) => `${20 * i},${u(i)},${fixed(y(i))}`, ["Total,,8123.4"]);

@@ -36,6 +36,19 @@ test("a screen with a result leads to the report of the entry that it shows", as
   });
 });
 
+test("the link itself has the entry, chosen or not: a middle click or a copy leads to the same report", async () => {
+  const job = await tuned({ ...REQUEST, tune: [{ method: "cohen_coon" }, { method: "robust" }] });
+  for (const [address, index] of [
+    ["design", 0],
+    ["design?entry=1", 1],
+  ])
+    await tests.withPage(`#/jobs/${job.id}/${address}`, {}, async (page) => {
+      const link = page.getByRole("link", { name: "Report", exact: true });
+      await link.waitFor();
+      assert.equal(await link.getAttribute("href"), `v1/jobs/${job.id}/report.html?controller=${index}`);
+    });
+});
+
 /** Pages of a PDF as the browser writes it. */
 const pageCount = (pdf) => (pdf.toString("latin1").match(/\/Type\s*\/Page[^s]/g) ?? []).length;
 

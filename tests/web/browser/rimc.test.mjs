@@ -71,6 +71,32 @@ test("the slider shows what a lambda would buy while it moves, and designs it wh
   });
 });
 
+test("of several steps in a row the last is shown and kept, however late the other answers come", async () => {
+  await withPage("#/new/fopdt?K=1&T=10&L=2", {}, async (page) => {
+    await showRimc(page);
+    const slider = page.getByRole("slider", { name: "λ, slider" });
+    const posted = [];
+    await page.route("**/v1/jobs", async (route) => {
+      posted.push(route.request().postDataJSON().tune[1].lambda);
+      await new Promise((resolve) => setTimeout(resolve, posted.length === 2 ? 900 : 300));
+      await route.continue();
+    });
+    await slider.focus();
+    for (let press = 1; press <= 3; press += 1) {
+      await page.keyboard.press("ArrowRight");
+      for (let look = 0; look < 100 && posted.length < press; look += 1) await page.waitForTimeout(10);
+    }
+    assert.ok(posted[0] < posted[1] && posted[1] < posted[2], posted.join());
+    const last = String(posted[2]);
+    for (let look = 0; look < 100; look += 1) {
+      if ((await jobOf(page)).request.tune[1].lambda === posted[2]) break;
+      await page.waitForTimeout(50);
+    }
+    assert.equal((await jobOf(page)).request.tune[1].lambda, posted[2]);
+    assert.equal(await page.getByLabel("λ (s)", { exact: true }).inputValue(), last);
+  });
+});
+
 test("the full controller stands beside its PID, in figures and in its load response", async () => {
   await withPage("#/new/fopdt?K=1&T=10&L=2", {}, async (page) => {
     // As the service answers it, whatever its figures are.

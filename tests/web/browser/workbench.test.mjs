@@ -1,46 +1,11 @@
 // The design that moves: sliders, the front, steps back and forth, the address, a slow network and a busy service.
 import assert from "node:assert/strict";
 import test from "node:test";
+import { designedBy, openDesign, PLANT, setting, shows, slider } from "../design_page.mjs";
 import { browserTests, tracesShown } from "../harness.mjs";
 
 const { withPage, jobOf } = browserTests();
-
-const slider = (page, name) => page.locator(".controls").getByRole("slider", { name: `${name}, slider` });
-const setting = (page, name) =>
-  page
-    .locator(".settings tbody tr")
-    .filter({ has: page.locator("th", { hasText: new RegExp(`^${name}\\b`) }) })
-    .locator("td")
-    .innerText()
-    .then((text) => Number(text.replace("−", "-")));
-const shows = (page, name, value) =>
-  page.waitForFunction(
-    ([wanted, number]) =>
-      [...document.querySelectorAll(".settings tbody tr")].some(
-        (row) =>
-          row.querySelector("th").textContent.startsWith(wanted) &&
-          Math.abs(Number(row.querySelector("td").textContent.replace("−", "-")) / number - 1) < 1e-3,
-      ),
-    [name, value],
-  );
-
-async function openDesign(page, today = false) {
-  if (today) {
-    await page.getByLabel("Kp", { exact: true }).fill("1.2");
-    await page.getByLabel("Ti", { exact: true }).fill("40");
-  }
-  await page.getByRole("button", { name: "Tune this model" }).click();
-  await slider(page, "Robustness Ms").waitFor();
-}
-
-/** The service's own answer for that limit. */
-async function designAt(page, Ms) {
-  const { plant, tune } = (await jobOf(page)).request;
-  const answer = await page.request.post(`${new URL(page.url()).origin}/v1/design`, {
-    data: { plant, tune: [{ ...tune[0], Ms, Mt: Ms }] },
-  });
-  return (await answer.json()).controllers[0];
-}
+const designAt = designedBy(jobOf);
 
 /** Drags a slider's thumb from one share of its way to another. */
 async function drag(page, target, from, to, steps, pause = 0) {
@@ -53,8 +18,6 @@ async function drag(page, target, from, to, steps, pause = 0) {
     if (pause > 0) await page.waitForTimeout(pause);
   }
 }
-
-const PLANT = "#/new/fopdt?K=1.25&T=40&L=8";
 
 test("the slider of Ms designs anew; undo, redo and the proposal lead back, the address and a reload bring it again", async () => {
   await withPage(PLANT, {}, async (page) => {
@@ -199,6 +162,27 @@ test("the focus stays at the sliders when a step has nothing left to do, and whe
     await page.waitForURL((url) => url.href.split("/design")[0] !== before.split("/design")[0]);
     await page.getByRole("button", { name: "Keep this design" }).waitFor({ state: "hidden" });
     assert.equal(await focused(), "Robustness Ms, slider");
+  });
+});
+
+test("a typed value that stands there already is no step, and nothing waits for it to be let go", async () => {
+  await withPage(PLANT, {}, async (page) => {
+    await openDesign(page);
+    const report = page.getByRole("link", { name: "Report", exact: true });
+    const undo = page.getByRole("button", { name: "Undo" });
+    const field = page.locator(".controls").getByRole("textbox", { name: "Robustness Ms" });
+    await field.fill("1,40");
+    await field.press("Enter");
+    await field.fill("1.5");
+    await field.press("Enter");
+    await page.waitForURL(/Ms=1\.5/);
+    await undo.click();
+    await report.waitFor();
+    assert.ok(await undo.isDisabled(), "one step, not two");
+    await field.fill("1,40");
+    await field.press("Enter");
+    assert.equal(await page.getByRole("button", { name: "Redo" }).isEnabled(), true);
+    assert.ok(await report.isVisible());
   });
 });
 

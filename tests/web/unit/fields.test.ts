@@ -4,6 +4,7 @@ import type { Schema } from "../../../web/src/api/types.ts";
 import { pick, place } from "../../../web/src/form/cases.ts";
 import { inLabels, matchPointer } from "../../../web/src/form/errors.ts";
 import { fieldsOf, readField, typedText } from "../../../web/src/form/fields.ts";
+import { keptWords } from "../../../web/src/form/kept_note.ts";
 import { atRecordText } from "../../../web/src/form/record_text.ts";
 import { formOf, PLANT_FORMS, readPlant } from "../../../web/src/form/plant.ts";
 import { formatRoute, parseRoute } from "../../../web/src/routes.ts";
@@ -240,4 +241,15 @@ test("options of lists, spreads, roots and cases are typed as text and read back
   assert.deepEqual(readField(fields[3]!, "0,1"), { ok: true, value: 0.1 });
   assert.equal(readField(fields[2]!, "10 initial.T").ok, false);
   assert.equal(readField(fields[2]!, "ten").ok, false);
+});
+
+test("what a request has without a field is named by its place, its value cut where it is long", () => {
+  assert.deepEqual(keptWords({ evaluate: { horizon: 77, actuator: { min: 0, max: null } }, gone: undefined }), [
+    "evaluate.horizon 77",
+    "evaluate.actuator.min 0",
+    "evaluate.actuator.max null",
+  ]);
+  const [long] = keptWords({ list: Array.from({ length: 50 }, (_, at) => at) });
+  assert.match(long!, /^list \[0,1,2,.*…$/);
+  assert.deepEqual(keptWords({ evaluate: {} }), []);
 });

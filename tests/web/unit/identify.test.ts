@@ -9,6 +9,7 @@ import { formWords, timeWords } from "../../../web/src/form/record_preview.ts";
 import type { Preview } from "../../../web/src/api/records.ts";
 import { stepParts } from "../../../web/src/charts/record.ts";
 import { serviceChoice, structureOf, tuneSubject } from "../../../web/src/form/tuning_request.ts";
+import { readTest } from "../../../web/src/record_at_hand.ts";
 import { parameterTexts } from "../../../web/src/views/cards/candidates_card.ts";
 import { cycleRows } from "../../../web/src/words/cycle.ts";
 import { formatUncertain, unitNames } from "../../../web/src/words/numbers.ts";
@@ -224,4 +225,11 @@ test("each move of u has the part of the record that shows it alone", () => {
     { at: 20, from: 10, to: 59 },
     { at: 60, from: 40, to: 99 },
   ]);
+});
+
+test("what the tab's storage holds is a record, or is passed over", () => {
+  const test: IdentifyRequest = { name: "TIC-9", record: { csv: "t,u,y" } };
+  assert.deepEqual(readTest(JSON.parse(JSON.stringify(test))), test);
+  const others = [null, 3, "t,u,y", {}, { record: null }, { record: "t,u,y" }];
+  for (const other of others) assert.equal(readTest(other), null);
 });

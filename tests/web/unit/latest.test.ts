@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import { latest } from "../../../web/src/api/latest.ts";
+import { latest, newest } from "../../../web/src/api/latest.ts";
 
 const settle = (): Promise<void> => new Promise((resolve) => setImmediate(resolve));
 
@@ -117,4 +117,14 @@ test("an answer at hand is reported at once, and what is on its way is older tha
   calls.send(4);
   await answer(4);
   assert.deepEqual(answers, [30, 40]);
+});
+
+test("of work that is begun again only the newest is, and each begins its own", () => {
+  const begin = newest();
+  const first = begin();
+  assert.ok(first());
+  const second = begin();
+  assert.deepEqual([first(), second()], [false, true]);
+  newest()();
+  assert.ok(second(), "another kind of work");
 });

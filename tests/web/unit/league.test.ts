@@ -190,9 +190,15 @@ test("at first the best is drawn beside today's settings, or the two best", () =
 });
 
 test("the table's address keeps its order and its chosen rows", () => {
-  for (const hash of ["#/jobs/a1/compare", "#/jobs/a1/compare?sort=-Ms&rows=0.12", "#/methods", "#/methods/cohen_coon"])
+  for (const hash of [
+    "#/jobs/a1/compare",
+    "#/jobs/a1/compare?sort=-Ms&rows=0.12",
+    "#/jobs/a1/compare?rows=3&Ms=1.5",
+    "#/methods",
+    "#/methods/cohen_coon",
+  ])
     assert.equal(formatRoute(parseRoute(hash)), hash);
-  assert.deepEqual(parseRoute("#/jobs/a1/compare?rows=x"), { screen: "compare", job: "a1", sort: "", rows: null });
+  assert.deepEqual(parseRoute("#/jobs/a1/compare?rows=x&Ms=1"), { screen: "compare", job: "a1", sort: "", rows: null });
 });
 
 test("a comparison of all methods is tuned again as the variants that it ran", () => {

@@ -97,19 +97,37 @@ test("steps go back and forth, a hundred of them, and a new one forgets what was
 test("the address says where the sliders stand, and brings them back", () => {
   const proposal: Point = { tune: { method: "robust", Ms: 1.4, Mt: 1.4 }, hand: null };
   const knobs = optionKnobs(proposal.tune!, entryOf("robust"), robust, units);
-  assert.deepEqual(valuesOf(proposal, proposal, knobs), {});
+  assert.deepEqual(valuesOf(proposal, proposal, controller, knobs), {});
   const turned: Point = {
     tune: { method: "robust", Ms: 1.65, Mt: 1.65, filter: { Tf_over_Td: 0.3 }, setpoint: { overshoot: 12 } },
     hand: null,
   };
   for (const point of [turned, { ...turned, hand: withHand(controller, "Kp", 2.5) }]) {
-    const values = valuesOf(point, proposal, knobs);
+    const values = valuesOf(point, proposal, controller, knobs);
     const route = parseRoute(formatRoute({ screen: "design", job: "j", entry: 1, values }));
     assert.ok(route.screen === "design");
     assert.equal(route.entry, 1);
     assert.deepEqual(pointOf(route.values ?? {}, proposal, controller, knobs), point);
   }
   assert.deepEqual(pointOf({ Ms: "nonsense", other: "3" }, proposal, controller, knobs), proposal);
+});
+
+test("settings by hand on a turned design come back from the address with all that belongs to them", () => {
+  const proposal: Point = { tune: { method: "robust" }, hand: null };
+  const filtered: Controller = { ...controller, b: 0, setpoint_filter: { T: 16.8 } };
+  const knobs = optionKnobs(proposal.tune!, entryOf("robust"), robust, units);
+  const back = (hand: Controller, from: Controller): Controller | null => {
+    const values = valuesOf({ ...proposal, hand }, proposal, from, knobs);
+    const route = parseRoute(formatRoute({ screen: "design", job: "j", entry: null, values }));
+    return pointOf(route.screen === "design" ? (route.values ?? {}) : {}, proposal, from, knobs).hand;
+  };
+  const turned: Controller = { ...filtered, Td: 3.3592532104, b: 0.3, setpoint_filter: { T: 4.851 } };
+  assert.deepEqual(back(turned, filtered), turned, "not those of the proposal, and no digit less");
+  assert.deepEqual(back(controller, filtered), controller, "nor a filter that the turned design has not");
+  assert.deepEqual(back(filtered, controller), filtered);
+  const bare: Controller = { ...controller, filter: { type: "none" } };
+  assert.deepEqual(back(controller, bare), controller, "the turned design filters the measurement");
+  assert.deepEqual(back(bare, controller), bare);
 });
 
 test("the front has the design as a point that can be taken, today's settings, and the rules by name", () => {

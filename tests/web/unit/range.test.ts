@@ -5,7 +5,14 @@ import type { RangeContent, RangeRequest, ScheduleRow } from "../../../web/src/a
 import { passageFrame, plantFrame, robustnessFrame, settingsFrame } from "../../../web/src/charts/range.ts";
 import { atSharedFields, plantText, readRange, textsOf } from "../../../web/src/range/request.ts";
 import type { RangeTexts } from "../../../web/src/range/request.ts";
-import { givenRequest, handleWords, keyedPlace, movedRow, reachOf } from "../../../web/src/range/schedule.ts";
+import {
+  givenRequest,
+  handleWords,
+  keyedPlace,
+  movedRow,
+  reachOf,
+  sameDesign,
+} from "../../../web/src/range/schedule.ts";
 import { formatRoute, parseRoute } from "../../../web/src/routes.ts";
 import { unitNames } from "../../../web/src/words/numbers.ts";
 import {
@@ -217,6 +224,15 @@ test("while a hand moves a row the schedule is given, records stand for the mode
   assert.deepEqual(givenRequest(region, content, rows, { runs: false, quick: false }).points, request.points);
   const quick = givenRequest(region, content, rows, { runs: false, quick: true });
   assert.deepEqual([quick.points, quick.uncertainty], [asked.points, undefined]);
+});
+
+test("names and units leave a design as it is; plants and limits do not", () => {
+  const schedule = { Ms: 1.4, Mt: 1.4 };
+  const asked: RangeRequest = { ...loads, schedule };
+  assert.ok(sameDesign(asked, { ...asked, name: "TIC-7", units: { time: "min" }, scheduling: { name: "flow" } }));
+  assert.ok(sameDesign(asked, { ...asked, schedule: { ...schedule, given: [row(30)] } }));
+  assert.ok(!sameDesign(asked, { ...asked, schedule: { ...schedule, Ms: 1.6 } }));
+  assert.ok(!sameDesign(asked, { ...asked, points: [{ at: 30, plant: fopdt(4, 21, 4) }, loads.points![1]!] }));
 });
 
 test("the plots show the design with its limits, then the moved rows beside the one setting of the design", () => {

@@ -72,3 +72,12 @@ export function latest<Request, Answer>(
     },
   };
 }
+
+/** For work that is not repeated: each call begins one, and answers whether it is still the newest that was begun. */
+export function newest(): () => () => boolean {
+  let begun = 0;
+  return () => {
+    const mine = ++begun;
+    return () => mine === begun;
+  };
+}

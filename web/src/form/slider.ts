@@ -96,9 +96,15 @@ export function slider(options: SliderOptions, errors: FormErrors): Slider {
   }
 
   function release(): void {
-    if (value === reported) return;
     reported = value;
     options.onRelease(value);
+  }
+
+  /** By a key or a text: moved and let go in one. What stands there already is no move: nothing would let it go. */
+  function report(): void {
+    if (value === reported) return;
+    options.onMove(value);
+    release();
   }
 
   function* near(most = Infinity): Generator<number> {
@@ -116,11 +122,8 @@ export function slider(options: SliderOptions, errors: FormErrors): Slider {
     options.onMove(value);
   });
   if (options.onTouch) for (const event of ["pointerenter", "focus"]) range.addEventListener(event, () => options.onTouch!());
-  range.addEventListener("change", () => {
-    // A drag that ends where it began is over too.
-    reported = NaN;
-    release();
-  });
+  // A drag that ends where it began is over too.
+  range.addEventListener("change", release);
   range.addEventListener("keydown", (event) => {
     if (event.key === "Delete" && options.onHome) {
       event.preventDefault();
@@ -133,8 +136,7 @@ export function slider(options: SliderOptions, errors: FormErrors): Slider {
     event.preventDefault();
     const far = options.step ? MANY / steps() : 0.1;
     take(reachable(valueAt(Math.min(1, Math.max(0, share(value) + direction * far)))));
-    options.onMove(value);
-    release();
+    report();
   });
   if (options.onHome) range.addEventListener("dblclick", () => options.onHome!());
   field.input.addEventListener("change", () => {
@@ -144,8 +146,7 @@ export function slider(options: SliderOptions, errors: FormErrors): Slider {
     stretch(parsed.value);
     value = parsed.value;
     write(false);
-    options.onMove(value);
-    release();
+    report();
   });
   write(false);
 

@@ -7,7 +7,7 @@ import { designOf, entriesOf } from "../api/live.ts";
 import type { LiveSubject } from "../api/live.ts";
 import type { Entry } from "../api/types.ts";
 import { ahead } from "./ahead.ts";
-import { firstStep, samePoint, stepBack, stepForward, stepTo } from "./point.ts";
+import { samePoint, stepBack, stepForward, stepTo } from "./point.ts";
 import type { Point, Steps } from "./point.ts";
 
 /** What the sliders start from: an entry of a job. */
@@ -37,8 +37,9 @@ export interface Live {
   readonly trouble: ReadonlySignal<string>;
   readonly canUndo: ReadonlySignal<boolean>;
   readonly canRedo: ReadonlySignal<boolean>;
-  /** Starts from an entry; `at`: where the address says that the sliders stand. */
-  start(proposal: Proposal, at: Point): void;
+  readonly steps: ReadonlySignal<Steps | null>;
+  /** Starts from an entry; `at`: where its sliders stand, as the address or the steps that led there say. */
+  start(proposal: Proposal, at: Steps): void;
   /** While something is held. */
   move(point: Point): void;
   /** Where the hand may go next, the likeliest first. */
@@ -172,14 +173,15 @@ export function liveDesign(onSettled: (point: Point) => void): Live {
     trouble,
     canUndo: computed(() => (steps.value?.past.length ?? 0) > 0),
     canRedo: computed(() => (steps.value?.future.length ?? 0) > 0),
-    start(from, at) {
+    steps,
+    start(from, { past, now: at, future }) {
       calls.drop();
       next.drop();
       clearTimeout(retryTimer);
       expectNothing();
       batch(() => {
         proposal.value = from;
-        steps.value = firstStep(at);
+        steps.value = { past, now: at, future };
         point.value = at;
         answer.value = null;
         held.value = false;

@@ -1,7 +1,7 @@
 // A design as it was turned: the method's options, or settings by hand; its steps back and forth, and its place in the address.
 import type { Controller, TuneEntry } from "../api/types.ts";
 import { HAND, handValue, isTied, withHand, withOption } from "./knobs.ts";
-import type { Knob } from "./knobs.ts";
+import type { HandName, Knob } from "./knobs.ts";
 
 export interface Point {
   /** The method with its options; null where there is none, as for today's settings. */
@@ -38,22 +38,58 @@ export function stepForward(steps: Steps): Steps {
   return after ? { past: [...steps.past, steps.now], now: after, future: rest } : steps;
 }
 
-const written = (value: number): string => String(Number(value.toPrecision(6)));
+/** What no slider by hand moves and a turned design may have otherwise than the proposal. */
+const BESIDE_HAND = ["b", "c", "delta_r", "filter.type", "setpoint_filter.T"];
 
-/** What of a point differs from the proposal, for the address. */
-export function valuesOf(point: Point, proposal: Point, knobs: readonly Knob[]): Record<string, string> {
+const at = (whole: TuneEntry | Controller | null | undefined, id: string): unknown =>
+  id.split(".").reduce<unknown>((value, part) => (value as Record<string, unknown> | undefined)?.[part], whole ?? {});
+
+/** What of a point differs from the proposal and its controller, for the address; with all its digits. */
+export function valuesOf(
+  point: Point,
+  proposal: Point,
+  controller: Controller | undefined,
+  knobs: readonly Knob[],
+): Record<string, string> {
   const values: Record<string, string> = {};
-  const at = (tune: TuneEntry | null, id: string): unknown =>
-    id.split(".").reduce<unknown>((value, part) => (value as Record<string, unknown> | undefined)?.[part], tune ?? {});
   for (const id of [...knobs.map((knob) => knob.id), ...(knobs.some((knob) => knob.id === "Ms") ? ["Mt"] : [])]) {
     const value = at(point.tune, id);
-    if (typeof value === "number" && value !== at(proposal.tune, id)) values[id] = written(value);
+    if (typeof value === "number" && value !== at(proposal.tune, id)) values[id] = String(value);
   }
-  for (const name of point.hand ? HAND : []) {
-    const value = handValue(point.hand!, name);
-    if (value !== null) values[name] = written(value);
+  if (!point.hand) return values;
+  for (const name of HAND) {
+    const value = handValue(point.hand, name);
+    if (value !== null) values[name] = String(value);
+  }
+  for (const id of BESIDE_HAND) {
+    const value = at(point.hand, id);
+    if (value !== at(controller, id)) values[id] = String(value ?? "");
   }
   return values;
+}
+
+/** The same controller with a part that the address writes; an empty text is none. */
+function withPart(controller: Controller, id: string, text: string): Controller {
+  const [name = id, part] = id.split(".");
+  const { [name as keyof Controller]: _before, ...others } = controller;
+  const value = part === "type" ? text : Number(text);
+  if (text === "" || Number.isNaN(value)) return others as Controller;
+  return { ...others, [name]: part ? { [part]: value } : value } as Controller;
+}
+
+const numberIn = (values: Record<string, string>, id: string): number | null => {
+  const value = Number(values[id] ?? NaN);
+  return Number.isFinite(value) ? value : null;
+};
+
+/** The settings by hand that an address means; null where it names none. */
+function handOf(values: Record<string, string>, controller: Controller): Controller | null {
+  const has = (name: HandName): boolean =>
+    handValue(controller, name) !== null || (name === "Tf" && "filter.type" in values);
+  const given = HAND.filter((name) => numberIn(values, name) !== null && has(name));
+  if (given.length === 0) return null;
+  const base = BESIDE_HAND.filter((id) => id in values).reduce((to, id) => withPart(to, id, values[id]!), controller);
+  return given.reduce((to, name) => withHand(to, name, numberIn(values, name)!), base);
 }
 
 /** The point that an address means; what it does not name is as proposed. */
@@ -63,22 +99,13 @@ export function pointOf(
   controller: Controller | undefined,
   knobs: readonly Knob[],
 ): Point {
-  const number = (id: string): number | null => {
-    const value = Number(values[id] ?? NaN);
-    return Number.isFinite(value) ? value : null;
-  };
-  let { tune, hand } = proposal;
+  let { tune } = proposal;
   const ids = [...new Set([...knobs.map((knob) => knob.id), ...(knobs.some((knob) => knob.id === "Ms") ? ["Mt"] : [])])];
   for (const id of ids) {
-    const value = number(id);
+    const value = numberIn(values, id);
     if (tune && value !== null) tune = withOption(tune, id, value, false);
   }
-  for (const name of HAND) {
-    const value = number(name);
-    if (value === null || !controller) continue;
-    if (handValue(controller, name) !== null) hand = withHand(hand ?? controller, name, value);
-  }
-  return { tune, hand };
+  return { tune, hand: (controller && handOf(values, controller)) ?? proposal.hand };
 }
 
 /** Whether Mt goes along when Ms is turned. */

@@ -142,26 +142,30 @@ export function ownRows(store: Store, announce: (sentence: string) => void): Own
     answer.hidden = false;
   }
 
+  /** Numbers that were given in other units are not known here. */
+  function take(next: MyController | null): void {
+    mine = shown ? inUnits(next, shown.units) : next;
+    picker.set(mine);
+  }
+
   const leave = store.subscribe((workspace, previous) => {
     if (workspace.products !== previous.products) picker.setProducts(workspace.products);
-    // Chosen on Start or Design.
-    if (workspace.mine !== previous.mine && workspace.mine !== mine) {
-      mine = shown ? inUnits(workspace.mine, shown.units) : workspace.mine;
-      picker.set(mine);
-      ask();
-    }
+    // Chosen on another screen, while this one is kept.
+    if (workspace.mine === previous.mine || workspace.mine === mine) return;
+    take(workspace.mine);
+    ask();
   });
 
   return {
     element: picker.element,
     show(next) {
       picker.element.hidden = next === null;
-      if (next && JSON.stringify(next.units) !== JSON.stringify(shown?.units)) {
-        mine = inUnits(mine, next.units);
-        picker.setUnits(next.units);
-        picker.set(mine);
-      }
+      const units = JSON.stringify(shown?.units);
       shown = next;
+      if (next && JSON.stringify(next.units) !== units) {
+        picker.setUnits(next.units);
+        take(mine);
+      }
       ask();
     },
     dispose() {

@@ -15,14 +15,15 @@ import { rangeHandles } from "./handles.ts";
 import { ownRows } from "./own_rows.ts";
 import { resultCards, showRangeVerdict } from "./result_cards.ts";
 import { runsCard } from "./runs_card.ts";
-import { givenRequest, handleWords } from "./schedule.ts";
+import { givenRequest, handleWords, sameDesign, sameRows } from "./schedule.ts";
 import { scheduleCard } from "./schedule_card.ts";
 
 export interface RangeResultView {
   element: HTMLElement;
-  show(request: RangeRequest, content: RangeContent): void;
-  /** With the rows as they were moved, where these curves were asked by the request; else as it is. */
-  withMoved(request: RangeRequest): RangeRequest;
+  /** `typed`: what the form says of the request, where it came from elsewhere. */
+  show(request: RangeRequest, content: RangeContent, typed?: RangeRequest): void;
+  /** With the rows as they stand, where a hand moved them; null where they are of another design than the request's. */
+  withMoved(request: RangeRequest): RangeRequest | null;
   /** The verdict as it stands, to be spoken. */
   sentence(): string;
   clear(): void;
@@ -38,6 +39,7 @@ export function rangeResult(
   onAsked: (request: RangeRequest | null) => void,
 ): RangeResultView {
   let about: RangeRequest = {};
+  let form: RangeRequest = {};
   let first: Plot | null = null;
   let held = false;
   const cards = resultCards();
@@ -151,8 +153,9 @@ export function rangeResult(
 
   return {
     element,
-    show(request, content) {
+    show(request, content, typed = request) {
       about = request;
+      form = typed;
       element.hidden = false;
       stale.set(false);
       hand.start(request, content);
@@ -161,9 +164,13 @@ export function rangeResult(
       showCards();
     },
     withMoved(request) {
-      const { designed, moved } = hand.shown() ?? {};
-      if (!designed || !moved || JSON.stringify(request) !== JSON.stringify(about)) return request;
-      return givenRequest(request, designed, [...hand.rows()], { runs: true, quick: false });
+      const { designed } = hand.shown() ?? {};
+      if (!designed || element.hidden) return request;
+      const rows = [...hand.rows()];
+      // A job may have been given its rows: they are no more the form's design than those that were moved here.
+      const given = about.schedule?.given !== undefined || !sameRows(rows, designed.schedule?.rows ?? []);
+      if (!given) return request;
+      return sameDesign(request, form) ? givenRequest(request, designed, rows, { runs: true, quick: false }) : null;
     },
     sentence,
     clear() {

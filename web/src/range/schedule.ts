@@ -55,6 +55,16 @@ export function keyedPlace(
 export const sameRows = (a: readonly ScheduleRow[], b: readonly ScheduleRow[]): boolean =>
   JSON.stringify(a) === JSON.stringify(b);
 
+/** Whether two requests ask for the same design: names and units of what is shown, and rows that were given, aside. */
+export function sameDesign(a: RangeRequest, b: RangeRequest): boolean {
+  const bare = (request: RangeRequest): string => {
+    const { name: _name, units: _units, scheduling: _scheduling, schedule = {}, ...others } = request;
+    const { given: _given, ...terms } = schedule;
+    return JSON.stringify({ ...others, schedule: terms });
+  };
+  return bare(a) === bare(b);
+}
+
 /** Whether limits hold over what each record leaves open, which takes longer than a hand waits. */
 export const overRegion = ({ points, uncertainty }: RangeRequest): boolean =>
   uncertainty !== "none" && Boolean(points?.some((point) => point.record));

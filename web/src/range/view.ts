@@ -25,6 +25,10 @@ export interface RangeEvents {
   onJob(request: RangeRequest): Promise<void>;
 }
 
+/** Rows that are shown are not dropped, nor sent with what they were not made for. */
+const ANOTHER_DESIGN =
+  "The rows were moved for another request than the form has now. Press Design for new ones, or undo the change.";
+
 export function rangeView(store: Store, announce: (sentence: string) => void, events: RangeEvents): RangeView {
   const errors = new FormErrors();
   let examples: RangeExample[] = [];
@@ -100,8 +104,11 @@ export function rangeView(store: Store, announce: (sentence: string) => void, ev
   }
 
   async function sendJob(): Promise<void> {
-    const request = compose();
-    if (request) await events.onJob(result.withMoved(request)).catch(complain);
+    const typed = compose();
+    if (!typed) return;
+    const request = result.withMoved(typed);
+    if (request) await events.onJob(request).catch(complain);
+    else complain(new Error(ANOTHER_DESIGN));
   }
 
   /** Examples are asked for once; another try follows where they could not be had. */
@@ -147,7 +154,7 @@ export function rangeView(store: Store, announce: (sentence: string) => void, ev
       if (job.result?.range) {
         calls.drop();
         setBusy(false);
-        result.show(request, job.result.range);
+        result.show(request, job.result.range, form.read().request);
       } else design();
     } catch (error) {
       complain(error);

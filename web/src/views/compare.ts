@@ -35,7 +35,12 @@ export function compareView(store: Store, announce: (sentence: string) => void, 
   const failure = h("section", { class: "verdict", "aria-label": "Verdict" });
   const progress = progressCard(announce, () => void cancel());
   const heading = h("h2", { id: "league-title" });
-  const controls = leagueControls({ onChange: arrange, onColumns: rebuild, onExport: exportTable });
+  const controls = leagueControls({
+    onChange: arrange,
+    onLimit: (rankMs) => store.set((workspace) => ({ ...workspace, rankMs })),
+    onColumns: rebuild,
+    onExport: exportTable,
+  });
   const table = leagueTable({ onSort: sortBy, onDraw: choose });
   const star = h("p", { class: "hint" }, "* the least load IAE that any PID reaches on this plant at the same Ms.");
   const legend = h("p", { class: "pane-legend overlay-legend" });
@@ -129,6 +134,7 @@ export function compareView(store: Store, announce: (sentence: string) => void, 
 
   function showResult(job: Job, result: Result, workspace: Workspace): void {
     const anew = shown !== result;
+    controls.setLimit(workspace.rankMs ?? job.request?.evaluate?.rank_limits?.Ms ?? RANK_MS);
     if (anew) {
       shown = result;
       const methods = result.controllers.filter((entry) => entry.method !== "baseline");
@@ -165,7 +171,6 @@ export function compareView(store: Store, announce: (sentence: string) => void, 
     else showFailure(failure, job);
   }
 
-  controls.setLimit(store.get().job?.request?.evaluate?.rank_limits?.Ms ?? RANK_MS);
   show(store.get());
   const leave = store.subscribe(show);
   return {

@@ -212,7 +212,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     trouble.textContent = workspace.jobTrouble;
     progress.element.hidden = !job || isFinal(job.status);
     verdict.hidden = !job || !isFinal(job.status);
-    title.show(job);
+    title.show(job, job?.result?.controllers?.length ? selectedEntry(job.result, workspace) : null);
     cures.show(job);
     if (!job) return;
     league.href = formatRoute({ screen: "compare", job: job.id, sort: workspace.sort, rows: workspace.drawn });

@@ -2,7 +2,7 @@
 import { ApiError, sentenceOf } from "../api/client.ts";
 import { identify } from "../api/experiments.ts";
 import { previewRecord } from "../api/records.ts";
-import { latest } from "../api/latest.ts";
+import { latest, newest } from "../api/latest.ts";
 import type { FieldError, IdentifyRequest, Model } from "../api/types.ts";
 import { bareRecordFrame, identifiedFrame } from "../charts/identified.ts";
 import { stepParts } from "../charts/record.ts";
@@ -20,6 +20,7 @@ import { formatNumber, unitNames } from "../words/numbers.ts";
 import { structureTitle } from "../words/plant.ts";
 import { qualityOf } from "../words/quality.ts";
 import { candidatesCard } from "./cards/candidates_card.ts";
+import type { CandidateChoice } from "./cards/candidates_card.ts";
 import { cycleCard } from "./cards/cycle_card.ts";
 import { partCard } from "./cards/part_card.ts";
 import { qualityCard } from "./cards/quality_card.ts";
@@ -30,8 +31,7 @@ import type { View } from "./start.ts";
 export interface TuningChoice {
   /** Names of the methods that stand on Start. */
   methods: string[];
-  /** Limits hold for every model consistent with the record. */
-  region: boolean;
+  first: CandidateChoice;
 }
 
 export interface IdentifyEvents {
@@ -40,6 +40,8 @@ export interface IdentifyEvents {
   /** Starts a tuning job; returns what keeps it from starting. */
   /** `all`: by every method. */
   onTune(subject: TuneSubject, all: boolean): Promise<FieldError[]>;
+  /** What was chosen of what it found. */
+  onRemember(choice: CandidateChoice): void;
 }
 
 export function identifyView(
@@ -51,12 +53,17 @@ export function identifyView(
   const units = unitNames(given.units);
   const errors = new FormErrors();
   let model: Model | null = null;
+  // What the model on the screen was asked by; the fields may have been typed over since.
+  let answered: IdentifyRequest | null = null;
   // The record beyond the used part, from the answer about all of it.
   let whole: Samples | null = null;
   let samples = samplesOf(given.record);
   const givenText = csvOf(given.record);
+  /** What the extent that can be chosen from is of. */
+  let askedText = givenText;
   let plot: Plot | null = null;
   let plotTitle = "";
+  const beginLook = newest();
 
   const heading = h("h1", { tabindex: -1 }, given.name ? `Identify: ${given.name}` : "Identify");
   const busy = h("p", { class: "hint busy", hidden: true }, "Fitting models to the record...");
@@ -96,7 +103,8 @@ export function identifyView(
     part.element,
     sentence,
   );
-  const candidates = candidatesCard(tuning.methods, tuning.region, {
+  const candidates = candidatesCard(tuning.methods, tuning.first, {
+    onRemember: events.onRemember,
     onChoose() {
       draw();
       const chosen = candidates.chosen();
@@ -140,6 +148,7 @@ export function identifyView(
     onAnswer(answer, asked) {
       errors.clear();
       model = answer;
+      answered = asked;
       menu.show("v1/identify", asked);
       if (isWhole(asked)) takeWhole(answer.fit);
       body.hidden = false;
@@ -168,7 +177,16 @@ export function identifyView(
     },
   });
 
+  /** Another record has another extent: what was chosen of the one before means nothing in it. */
+  function forgetPart(): void {
+    if (text.read() === askedText) return;
+    askedText = text.read();
+    whole = null;
+    part.clear();
+  }
+
   function ask(): void {
+    forgetPart();
     const now = request();
     errors.clear();
     if (now.errors.length > 0) return errors.show(now.errors);
@@ -178,9 +196,11 @@ export function identifyView(
 
   /** What the text is read as, once somebody wants to know. */
   async function look(): Promise<void> {
+    const isNewest = beginLook();
     if (text.read().trim() === "") return;
     try {
       const preview = await previewRecord({ ...fields.read().record, csv: text.read() });
+      if (!isNewest()) return;
       shown.replaceChildren(previewPanel(preview));
       fields.offer(preview);
     } catch {
@@ -218,11 +238,11 @@ export function identifyView(
   }
 
   async function tune(all: boolean): Promise<void> {
-    if (!model) return;
+    if (!model || !answered) return;
     errors.clear();
     candidates.setBusy(true);
     try {
-      const subject = tuneSubject(request().request, model, candidates.chosen());
+      const subject = tuneSubject(answered, model, candidates.chosen());
       const uncertainty = candidates.onRegion() ? ("identified" as const) : undefined;
       const faults = await events.onTune("plant" in subject ? subject : { ...subject, uncertainty }, all);
       if (faults.length > 0) errors.show(faults);
@@ -245,8 +265,6 @@ export function identifyView(
   });
   reading.addEventListener("submit", (event) => {
     event.preventDefault();
-    // Another record has another extent.
-    if (text.read() !== givenText) whole = null;
     ask();
   });
 

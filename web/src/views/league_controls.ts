@@ -7,6 +7,7 @@ import { RANK_MS } from "../words/league.ts";
 export interface LeagueControls {
   element: HTMLElement;
   limit(): number;
+  /** Without reporting. */
   setLimit(Ms: number): void;
   onlySettled(): boolean;
   setColumns(columns: LeagueColumn[]): void;
@@ -16,6 +17,8 @@ export interface LeagueControls {
 
 export interface LeagueControlEvents {
   onChange(): void;
+  /** A limit was typed. */
+  onLimit(Ms: number): void;
   onColumns(): void;
   onExport(): void;
 }
@@ -44,7 +47,7 @@ export function leagueControls(events: LeagueControlEvents): LeagueControls {
     input.removeAttribute("aria-invalid");
     if (sentence !== "" || !parsed.ok) return input.setAttribute("aria-invalid", "true");
     limit = parsed.value;
-    events.onChange();
+    events.onLimit(limit);
   });
   stable.addEventListener("change", () => events.onChange());
   closesItself(menu);
@@ -64,6 +67,7 @@ export function leagueControls(events: LeagueControlEvents): LeagueControls {
     ),
     limit: () => limit,
     setLimit(Ms) {
+      if (Ms === limit) return;
       limit = Ms;
       input.value = String(Ms);
     },

@@ -4,6 +4,7 @@ import { postJob } from "../api/jobs.ts";
 import type { Example, FieldError, IdentifyRequest, Job, RecordedTest, TuningRequest, Units } from "../api/types.ts";
 import { h } from "../dom.ts";
 import { FormErrors } from "../form/errors.ts";
+import { keptNote } from "../form/kept_note.ts";
 import type { PlantReading } from "../form/plant.ts";
 import { atRecordText } from "../form/record_text.ts";
 import { byAllMethods, EVERY_METHOD, withImplement } from "../form/tuning_request.ts";
@@ -56,6 +57,10 @@ export function startView(store: Store, events: StartEvents): StartView {
   const errors = new FormErrors();
   // Parts of a loaded request that have no field: sent back as they came.
   let base: TuningRequest = {};
+  const kept = keptNote("the request", () => {
+    base = {};
+    showKept();
+  });
   let busy = false;
   let troubled = "";
   const heading = h("h1", { tabindex: -1 }, "What do you have?");
@@ -92,6 +97,7 @@ export function startView(store: Store, events: StartEvents): StartView {
     mine = next;
     rememberMine(next);
     today.setMine(next);
+    showKept();
     store.set((workspace) => ({ ...workspace, mine: next }));
   });
   const examples = h("div", { class: "examples" });
@@ -107,6 +113,7 @@ export function startView(store: Store, events: StartEvents): StartView {
     ),
     recent,
     status,
+    kept.element,
     errors.summary,
     h(
       "div",
@@ -166,6 +173,12 @@ export function startView(store: Store, events: StartEvents): StartView {
     return { request, faults: [...chosen.errors, ...baseline.errors, ...own.errors] };
   }
 
+  function showKept(): void {
+    const { name: _name, units: _units, tune: _tune, baseline: _baseline, implement, ...others } = common(true).request;
+    const { product: _product, y_span: _y, u_span: _u, sample_time: _time, ...built } = implement ?? {};
+    kept.show({ ...others, implement: built });
+  }
+
   function compose(subject: TuneSubject, all = false): { request: TuningRequest; faults: FieldError[] } {
     const { request, faults } = common(all);
     return { request: { ...request, ...subject }, faults };
@@ -220,6 +233,7 @@ export function startView(store: Store, events: StartEvents): StartView {
     mine = named(next, store.get().products);
     mineCard.set(mine);
     today.setMine(mine);
+    showKept();
   }
 
   function showLists(workspace: Workspace): void {

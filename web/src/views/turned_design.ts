@@ -9,8 +9,8 @@ import { tuneEntryOf, withTune } from "../form/tuning_request.ts";
 import type { Knob } from "../live/knobs.ts";
 import { liveDesign } from "../live/live.ts";
 import type { Answer } from "../live/live.ts";
-import { pointOf, tiedAt, valuesOf } from "../live/point.ts";
-import type { Point } from "../live/point.ts";
+import { firstStep, pointOf, samePoint, tiedAt, valuesOf } from "../live/point.ts";
+import type { Point, Steps } from "../live/point.ts";
 import { formatRoute } from "../routes.ts";
 import type { Store } from "../store.ts";
 import { formatNumber, unitNames } from "../words/numbers.ts";
@@ -53,8 +53,12 @@ export function turnedDesign(
   let shown: { job: Job; result: Result; index: number } | null = null;
   let knobs: Knob[] = [];
   let proposal: Point | null = null;
-  /** The address speaks of the entry that was shown first. */
+  /** The address speaks of the entry that is shown. */
   let addressed = true;
+  /** Of the job's other entries: what was done to them before another one was chosen. */
+  const left = new Map<number, Steps>();
+  /** Where the design stood that is being kept. */
+  let kept: Point | null = null;
   const live = liveDesign(settled);
   const controls = controlsCard(live);
   const front = frontCard(announce, controls.turnMs, () => controls.setLowest(front.lowest()));
@@ -80,7 +84,7 @@ export function turnedDesign(
     const route = store.get().route;
     if (route.screen !== "design" || !proposal) return;
     const { values: _before, ...bare } = route;
-    const values = valuesOf(point, proposal, knobs);
+    const values = valuesOf(point, proposal, base()?.controller, knobs);
     const next = { ...bare, entry: store.get().selected, ...(Object.keys(values).length > 0 ? { values } : {}) };
     store.set((workspace) => ({ ...workspace, route: next }));
     history.replaceState(null, "", formatRoute(next));
@@ -98,11 +102,13 @@ export function turnedDesign(
     const tune = live.point.peek()?.tune;
     if (!shown?.job.request || !tune) return;
     keep.disabled = true;
+    kept = live.point.peek();
     try {
       await events.onRetune(withTune(shown.job.request, shown.result, shown.index, tune), shown.index);
     } catch (error) {
       trouble.textContent = sentenceOf(error);
       trouble.hidden = false;
+      kept = null;
     } finally {
       keep.disabled = false;
     }
@@ -206,7 +212,8 @@ export function turnedDesign(
 
   const methodOf = (entry: Entry): Method | undefined => store.get().methods.find((item) => item.id === entry.method);
 
-  function begin(): void {
+  /** `to`: where the sliders go on from; else where the address says. */
+  function begin(to: Steps | null = null): void {
     const entry = base();
     if (!shown || !entry) return;
     const { job, result, index } = shown;
@@ -217,10 +224,26 @@ export function turnedDesign(
     if (!usable || !subject) return;
     proposal = { tune: job.request ? tuneEntryOf(job.request, result, index) : null, hand: null };
     knobs = controls.show(proposal, entry, methodOf(entry), unitNames(job.request?.units));
+    const at = to ?? firstStep(addressedPoint(proposal, entry));
+    live.start({ subject, point: proposal, entry }, at);
+    if (addressed && !to) return showFront();
+    addressed = true;
+    settled(at.now);
+  }
+
+  function addressedPoint(from: Point, entry: Entry): Point {
     const route = store.get().route;
     const values = addressed && route.screen === "design" ? (route.values ?? {}) : {};
-    live.start({ subject, point: proposal, entry }, pointOf(values, proposal, entry.controller, knobs));
-    showFront();
+    return pointOf(values, from, entry.controller, knobs);
+  }
+
+  /** Where a slider went while the design was being kept; null: it stands where it was, or nothing was kept. */
+  function movedOn(job: Job): Point | null {
+    const from = kept;
+    if (!from || shown?.job.id === job.id) return null;
+    kept = null;
+    const now = live.point.peek();
+    return now && !samePoint(now, from) ? now : null;
   }
 
   // The sliders of a method need its options, which may come later than the job.
@@ -229,7 +252,7 @@ export function turnedDesign(
   leaving.push(
     effect(() => {
       const now = methods.value;
-      if (now !== known && shown) untracked(begin);
+      if (now !== known && shown) untracked(() => begin());
       known = now;
     }),
   );
@@ -241,8 +264,12 @@ export function turnedDesign(
       if (shown?.result === result && shown.index === index) return;
       // The same entry again, newly fetched, still stands where the address says.
       addressed = shown === null || (shown.job.id === job.id && shown.index === index);
+      const moved = movedOn(job);
+      const before = live.steps.peek();
+      if (shown?.job.id !== job.id) left.clear();
+      else if (before) left.set(shown.index, before);
       shown = { job, result, index };
-      begin();
+      begin(moved ? firstStep(moved) : (left.get(index) ?? null));
     },
     effective(result) {
       const answer = live.answer.peek();

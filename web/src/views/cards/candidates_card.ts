@@ -17,14 +17,24 @@ export interface CandidatesCard {
   setBusy(busy: boolean): void;
 }
 
+/** What the reader chose, to find it again. */
+export interface CandidateChoice {
+  /** Title of the candidate's structure; "" for the service's choice. */
+  structure: string;
+  /** Limits hold for every model consistent with the record. */
+  region: boolean;
+}
+
 export interface CandidatesEvents {
   onChoose(): void;
+  onRemember(choice: CandidateChoice): void;
   /** `all`: by every method. */
   onTune(all: boolean): void;
 }
 
-/** `methods`: names of those that Use and tune will use. */
-export function candidatesCard(methods: string[], region: boolean, events: CandidatesEvents): CandidatesCard {
+/** `methods`: names of those that Use and tune will use. `first`: what is chosen at first. */
+export function candidatesCard(methods: string[], first: CandidateChoice, events: CandidatesEvents): CandidatesCard {
+  let structure = first.structure;
   let candidates: Candidate[] = [];
   let index = -1;
   let duration = Infinity;
@@ -33,7 +43,7 @@ export function candidatesCard(methods: string[], region: boolean, events: Candi
   const reason = h("p", { class: "hint" });
   const tune = h("button", { type: "button", class: "primary", onclick: () => events.onTune(false) }, "Use and tune");
   const all = h("button", { type: "button", onclick: () => events.onTune(true) }, "Compare all methods");
-  const whole = h("input", { type: "checkbox", id: uniqueId("region"), checked: region });
+  const whole = h("input", { type: "checkbox", id: uniqueId("region"), checked: first.region });
   const element = h(
     "section",
     { class: "card", "aria-labelledby": title.id },
@@ -53,10 +63,15 @@ export function candidatesCard(methods: string[], region: boolean, events: Candi
       : null,
   );
 
+  const remember = (): void => events.onRemember({ structure, region: whole.checked });
+  whole.addEventListener("change", remember);
+
   function item(candidate: Candidate, at: number, preferred: number, units: UnitNames, name: string): HTMLElement {
     const input = h("input", { type: "radio", name, value: at, checked: at === index });
     input.addEventListener("change", () => {
       index = at;
+      structure = structureTitle(candidate.plant);
+      remember();
       events.onChoose();
     });
     return h(
@@ -82,15 +97,12 @@ export function candidatesCard(methods: string[], region: boolean, events: Candi
   return {
     element,
     show(model, units) {
-      const before = candidates[index];
       candidates = model.candidates ?? [];
       const preferred = serviceChoice(model);
       const t = model.fit?.t ?? [];
       duration = t.length > 1 ? t[t.length - 1]! - t[0]! : Infinity;
       // The reader's own choice stays when the same record is identified again.
-      const again = before
-        ? candidates.findIndex((candidate) => structureTitle(candidate.plant) === structureTitle(before.plant))
-        : -1;
+      const again = candidates.findIndex((candidate) => structureTitle(candidate.plant) === structure);
       index = again >= 0 ? again : Math.max(0, preferred);
       if (candidates.length === 0) index = -1;
       const name = uniqueId("candidate");

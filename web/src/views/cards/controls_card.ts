@@ -150,8 +150,8 @@ export function controlsCard(live: Live): ControlsCard {
   tie.addEventListener("change", () => {
     tied = tie.checked;
     const point = now();
-    const Ms = Number(point.tune?.["Ms"] ?? NaN);
-    if (tied && point.tune && Number.isFinite(Ms)) live.settle({ tune: withOption(point.tune, "Ms", Ms, true), hand: null });
+    const Ms = Number(point.tune?.["Ms"] ?? DEFAULT_LIMIT);
+    if (tied && point.tune) live.settle({ tune: withOption(point.tune, "Ms", Ms, true), hand: null });
     optionRows.replaceChildren();
     makeOptions();
     if (!tied) showMt(point);

@@ -18,8 +18,10 @@ export interface Step extends Part {
 export interface PartCard {
   element: HTMLElement;
   setUnit(unit: string): void;
-  /** The record's whole extent; the first time it is also what is chosen. */
+  /** The record's whole extent. All of it is chosen at first, and stays so until a part is. */
   setExtent(whole: Part): void;
+  /** Of another record: nothing is known of its extent yet. */
+  clear(): void;
   set(part: Part): void;
   /** The record's steps, each with the part that shows it alone. */
   setSteps(steps: Step[]): void;
@@ -66,6 +68,11 @@ export function partCard(errors: FormErrors, onMove: () => void, onRelease: () =
     onRelease();
   }
 
+  function read(): Part | null {
+    if (!extent || (from.value() <= extent.from && to.value() >= extent.to)) return null;
+    return { from: from.value(), to: to.value() };
+  }
+
   return {
     element,
     setSteps(list) {
@@ -88,7 +95,7 @@ export function partCard(errors: FormErrors, onMove: () => void, onRelease: () =
       to.field.setUnit(unit);
     },
     setExtent(whole) {
-      if (!extent) {
+      if (read() === null) {
         from.set(whole.from);
         to.set(whole.to);
       }
@@ -96,14 +103,14 @@ export function partCard(errors: FormErrors, onMove: () => void, onRelease: () =
       from.setLimits(whole.from, whole.to);
       to.setLimits(whole.from, whole.to);
     },
+    clear() {
+      extent = null;
+    },
     set(part) {
       from.set(part.from);
       to.set(part.to);
     },
-    read() {
-      if (!extent || (from.value() <= extent.from && to.value() >= extent.to)) return null;
-      return { from: from.value(), to: to.value() };
-    },
+    read,
     faults: () =>
       [from, to].flatMap(({ field: { control } }) =>
         control.fault === undefined ? [] : [{ pointer: control.pointer() ?? "", detail: control.fault }],

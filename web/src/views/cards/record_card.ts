@@ -1,5 +1,6 @@
 // "A recorded test": a CSV file dropped, chosen or pasted. The service finds and reads the columns; nothing is parsed here.
 import { ApiError, sentenceOf } from "../../api/client.ts";
+import { newest } from "../../api/latest.ts";
 import { previewFile, previewRecord } from "../../api/records.ts";
 import type { Preview } from "../../api/records.ts";
 import type { FieldError, RecordedTest } from "../../api/types.ts";
@@ -82,8 +83,12 @@ export function recordCard(errors: FormErrors, events: RecordCardEvents): Record
     ),
   );
 
+  const beginReading = newest();
+  const beginLook = newest();
+
   async function take(chosen: File | undefined): Promise<void> {
     if (!chosen) return;
+    const isNewest = beginReading();
     const large = tooLarge(chosen);
     if (large) {
       status.textContent = large;
@@ -93,11 +98,13 @@ export function recordCard(errors: FormErrors, events: RecordCardEvents): Record
     status.textContent = `Reading ${chosen.name}...`;
     const read = await previewFile(chosen).catch((error: unknown) => {
       const problem = error instanceof ApiError ? error.problem : {};
+      if (!isNewest()) return null;
       errors.show(problem.errors ?? [], sentenceOf(error));
       status.textContent = `${chosen.name} could not be read.`;
       return null;
     });
-    if (!read) return;
+    // Another file, or text, has come since.
+    if (!read || !isNewest()) return;
     csv.write(read.text);
     // What was chosen of another file means nothing here.
     fields.load({}, fields.read().identify);
@@ -107,6 +114,7 @@ export function recordCard(errors: FormErrors, events: RecordCardEvents): Record
 
   /** Whether the record can be read as it is; else it says what is missing, where it can be chosen. */
   function show(preview: Preview): boolean {
+    beginLook();
     shown.replaceChildren(previewPanel(preview));
     fields.offer(preview);
     if (preview.problems.length === 0) return true;
@@ -117,9 +125,11 @@ export function recordCard(errors: FormErrors, events: RecordCardEvents): Record
 
   /** What is pasted, or read another way, is looked at again. */
   async function look(): Promise<void> {
+    const isNewest = beginLook();
     if (csv.read().trim() === "") return shown.replaceChildren();
     try {
       const preview = await previewRecord({ ...fields.read().record, csv: csv.read() });
+      if (!isNewest()) return;
       shown.replaceChildren(previewPanel(preview));
       fields.offer(preview);
     } catch {
@@ -127,7 +137,16 @@ export function recordCard(errors: FormErrors, events: RecordCardEvents): Record
     }
   }
 
-  csv.onChange(() => void look());
+  /** A file that is still being read is wanted no more. */
+  function forgetFile(): void {
+    beginReading();
+    status.textContent = "";
+  }
+
+  csv.onChange(() => {
+    forgetFile();
+    void look();
+  });
   reading.addEventListener("change", () => void look());
   file.addEventListener("change", () => void take(file.files?.[0]));
   // The whole card takes the file: people do not aim.
@@ -165,10 +184,11 @@ export function recordCard(errors: FormErrors, events: RecordCardEvents): Record
       };
     },
     load(record, identify) {
+      forgetFile();
+      beginLook();
       csv.write(csvOf(record));
       fields.load(record, identify);
       shown.replaceChildren();
-      status.textContent = "";
     },
   };
 }

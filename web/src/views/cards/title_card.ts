@@ -14,7 +14,8 @@ import { requestMenu } from "../request_menu.ts";
 export interface TitleCard {
   element: HTMLElement;
   heading: HTMLElement;
-  show(job: Job | null): void;
+  /** `entry`: the controller that the screen shows, if it shows one; the report is about it. */
+  show(job: Job | null, entry?: number | null): void;
   /** Whether what is shown is the job's own; report and request are left out where it is not. */
   setOwn(own: boolean): void;
 }
@@ -37,17 +38,18 @@ export function titleCard(screen: string, announce: (sentence: string) => void, 
     h("p", { class: "actions" }, editLink, recordLink, report.element, actions, menu.element),
   );
   let about: Job | null = null;
+  let chosen: number | null = null;
   let own = true;
 
   function showOwn(): void {
     menu.show("v1/jobs", own ? about?.request : null);
-    report.show(own && about?.result ? about.id : null);
+    report.show(own && about?.result ? about.id : null, chosen);
   }
 
   return {
     element,
     heading,
-    show(job) {
+    show(job, entry = null) {
       element.hidden = !job;
       if (!job) return;
       const request = job.request;
@@ -66,6 +68,7 @@ export function titleCard(screen: string, announce: (sentence: string) => void, 
       recordLink.href = formatRoute({ screen: "identify", job: job.id });
       recordLink.hidden = !request?.record;
       about = job;
+      chosen = entry;
       showOwn();
     },
     setOwn(now) {

@@ -1,10 +1,11 @@
 // Units and today's settings: both optional.
 import { getProduct } from "../../api/products.ts";
 import type { SettingValue } from "../../api/products.ts";
-import type { Baseline, FieldError, Units } from "../../api/types.ts";
+import type { Baseline, FieldError, Filter, Units } from "../../api/types.ts";
 import { h } from "../../dom.ts";
 import { choiceField, textField } from "../../form/controls.ts";
 import type { FormErrors } from "../../form/errors.ts";
+import { keptNote } from "../../form/kept_note.ts";
 import { parseNumber } from "../../form/number.ts";
 import { productFields } from "../../form/product_fields.ts";
 import { mineOfRequest, typedBaseline } from "../../my_controller.ts";
@@ -19,6 +20,8 @@ export interface TodayCard {
   /** The user's own controller, whose own form is then one of the forms. */
   setMine(mine: MyController | null): void;
 }
+
+const DEFAULT_FILTER = "derivative";
 
 /** In place of a form: the settings as they stand in the user's own controller. */
 const OWN = "own";
@@ -61,6 +64,13 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
   own.element.hidden = true;
   // What a loaded request had and no field shows, e.g. set-point weights.
   let rest: Record<string, unknown> = {};
+  let filterType = DEFAULT_FILTER;
+  const kept = keptNote("today's settings", () => keep({}));
+
+  function keep(parts: Record<string, unknown>): void {
+    rest = parts;
+    label();
+  }
 
   function names(): [string, string, string] {
     return form.input.value === "parallel" ? ["Kp", "Ki", "Kd"] : ["Kp", "Ti", "Td"];
@@ -71,6 +81,7 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
     own.element.hidden = !isOwn();
     form.element.classList.toggle("wide", isOwn());
     for (const field of [...slots, filter]) field.element.hidden = isOwn();
+    kept.show(isOwn() ? {} : rest);
     names().forEach((text, index) => slots[index]!.setLabel(text));
     delta.element.hidden = form.input.value !== "npid";
   }
@@ -116,6 +127,7 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
     h("p", { class: "hint" }, "What the controller runs with now: drawn and counted beside every proposal."),
     h("div", { class: "fields" }, form.element, ...slots.map((slot) => slot.element), delta.element, filter.element),
     own.element,
+    kept.element,
     h("h2", {}, "Name and units ", h("span", { class: "optional" }, "optional")),
     h("div", { class: "fields" }, name.element, time.element, u.element, y.element),
   );
@@ -156,8 +168,7 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
       }
       if (filter.input.value.trim() !== "") {
         const parsed = parseNumber(filter.input.value, "Tf");
-        if (parsed.ok)
-          baseline["filter"] = { type: "derivative", ...(rest["filter"] as object | undefined), Tf: parsed.value };
+        if (parsed.ok) baseline["filter"] = { type: filterType, Tf: parsed.value };
         else faults.push({ pointer: "/baseline/filter/Tf", detail: parsed.sentence });
       }
       return { baseline, errors: faults };
@@ -170,6 +181,7 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
       if (baseline?.product !== undefined) {
         const { product, settings, ...spans } = baseline;
         const loaded = mineOfRequest({ product, ...spans }, mine);
+        rest = {};
         setMine(loaded, settings);
         form.input.value = OWN;
         label();
@@ -183,10 +195,13 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
         slots[index]!.input.value = text(baseline?.[key]);
       });
       delta.input.value = text(baseline?.["delta_r"]);
-      filter.input.value = text((baseline?.["filter"] as { Tf?: unknown } | undefined)?.Tf);
-      rest = Object.fromEntries(
-        Object.entries(baseline ?? {}).filter(([key]) => key !== "form" && key !== "delta_r" && !names().includes(key)),
-      );
+      const given = baseline?.["filter"] as Filter | null | undefined;
+      const filtered = given && given.type !== "none" ? given : null;
+      filter.input.value = text(filtered?.Tf);
+      filterType = filtered?.type ?? DEFAULT_FILTER;
+      // A filter with its time has its field, and is gone when that is emptied.
+      const shown = ["form", "delta_r", ...names(), ...(filtered && filter.input.value === "" ? [] : ["filter"])];
+      keep(Object.fromEntries(Object.entries(baseline ?? {}).filter(([key]) => !shown.includes(key))));
       onUnits();
     },
   };

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "engine/number_text.h"
-#include "engine/range/schedule/sample_time.h"
 
 namespace tunewright::range {
 namespace {

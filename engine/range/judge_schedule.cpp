@@ -2,7 +2,6 @@
 #include <utility>
 
 #include "engine/range/design_range.h"
-#include "engine/range/schedule/sample_time.h"
 
 namespace tunewright::range {
 namespace {

@@ -18,7 +18,7 @@ struct ScheduleDesign {
     bool holds_limits = false;                       ///< at every place that was looked at
     bool within_allowance = false;                   ///< IAE everywhere within the allowance of the place's own optimum
     double worst_relative_IAE = 0;                   ///< over all places that were looked at
-    std::optional<double> longest_sample_time = {};  ///< schedule/sample_time.h
+    std::optional<double> longest_sample_time = {};  ///< below
     bool partial = false;                            ///< stopped early
     std::vector<Warning> warnings;                   ///< "schedule-over-allowance"
 };
@@ -44,6 +44,11 @@ Expected<ScheduleDesign> design_schedule(Places& places, OwnOptima& own, const R
 /// Errors: as design_schedule.
 Expected<ScheduleDesign> steps_schedule(Places& places, OwnOptima& own, const RangeOptions& options,
                                         const std::optional<IdealPid>& one);
+
+/// The longest sample time of a program with backward rules that keeps Ms within 5 % of the continuous loop's, at the
+/// model's points and at the rows, with each setting in use there, on the nominal plants. Empty: none was found, or the
+/// plants are known by their frequency response alone. Errors: the model's.
+Expected<std::optional<double>> longest_sample_time(const RangeModel& model, const Schedule& schedule);
 
 /// Rows in the middles of the widest parts, until there are so many; the last part ends at `high`.
 void fill_up(std::vector<double>& at, int rows, double high);

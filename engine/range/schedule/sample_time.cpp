@@ -1,4 +1,4 @@
-#include "engine/range/schedule/sample_time.h"
+#include "engine/range/schedule/design_schedule.h"
 
 #include <algorithm>
 #include <cmath>

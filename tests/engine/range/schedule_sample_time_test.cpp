@@ -1,5 +1,5 @@
 // The longest sample time of a schedule, held against the sampled loops of its places.
-#include "engine/range/schedule/sample_time.h"
+#include "engine/range/schedule/design_schedule.h"
 
 #include <gtest/gtest.h>
 

@@ -3,26 +3,12 @@ import { readFileSync } from "node:fs";
 import path from "node:path";
 import test from "node:test";
 import { accessibilityViolations, browserTests, dropFile, overflow, root, tracesShown, WINDOWS } from "../harness.mjs";
+import { candidatesShown, disturbedTest, identified, rows, stepTest } from "../step_record.mjs";
 
 const tests = browserTests();
 const { withPage } = tests;
 
 const shown = (value, digits = 3) => Number(Number(value).toPrecision(digits));
-const candidatesShown = (page) => page.getByRole("heading", { name: "Model candidates" }).waitFor();
-const identified = (page) =>
-  page.waitForResponse((response) => response.url().endsWith("/v1/identify") && response.status() === 200);
-
-// A first-order step response with known parameters: K 2, T 30, L 5 from rest at y = 20. From t = 250 on something else
-// moves y.
-const rows = Array.from({ length: 400 }, (_, t) => {
-  const y = 20 + (t > 25 ? 10 * (1 - Math.exp(-(t - 25) / 30)) : 0);
-  return `${t},${t >= 20 ? 5 : 0},${(y + 0.01 * Math.sin(37 * t)).toFixed(4)}`;
-});
-const stepTest = ["t,u,y", ...rows].join("\n");
-const disturbedTest = ["t,u,y", ...rows.map((row, t) => (t < 250 ? row : `${t},5,${30 + 0.02 * (t - 250)}`))].join(
-  "\n",
-);
-
 const job = async (page) =>
   (await fetch(`${tests.service.base}/v1/jobs/${/#\/jobs\/([^/]+)\/design/.exec(page.url())[1]}`)).json();
 
@@ -225,90 +211,6 @@ test("at 200 % the formula of a third-order model is whole, and a longer one scr
     assert.ok(await formulas.evaluateAll((all) => all.every((formula) => formula.tabIndex === 0)));
     for (const folded of await page.getByText(/that fits? worse/).all()) await folded.click();
     assert.deepEqual(await accessibilityViolations(page), []);
-  });
-});
-
-/** Another text in place of the record, identified. */
-async function replaceText(page, text) {
-  await page.getByText("How the record is read").click();
-  await page.getByLabel("The record as text").fill(text);
-  const answered = identified(page);
-  await page.getByRole("button", { name: "Identify again" }).click();
-  return (await answered).request().postDataJSON();
-}
-
-test("a longer record in place of the first is used whole, also with another model", async () => {
-  await withPage("", {}, async (page) => {
-    const [from, to] = ["Use from", "Use up to"].map((name) => page.getByRole("textbox", { name }));
-    await dropFile(page, ".drop", "short.csv", ["t,u,y", ...rows.slice(0, 200)].join("\n"));
-    await candidatesShown(page);
-    assert.equal(await to.inputValue(), "199");
-    const first = identified(page);
-    await from.fill("10");
-    await from.press("Enter");
-    await first;
-    const asked = await replaceText(page, stepTest);
-    assert.deepEqual([asked.record.from, asked.record.to], [undefined, undefined]);
-    await page.waitForFunction(() => document.querySelectorAll(".part input[type=text]")[1].value === "399");
-    assert.equal(await from.inputValue(), "0");
-    const second = identified(page);
-    await page.getByLabel("Model", { exact: true }).selectOption("fopdt");
-    const again = (await second).request().postDataJSON();
-    assert.deepEqual([again.record.from, again.record.to, again.identify.model], [undefined, undefined, "fopdt"]);
-    // A part of it that is chosen stays with it.
-    const third = identified(page);
-    await to.fill("249");
-    await to.press("Enter");
-    await third;
-    const fourth = identified(page);
-    await page.getByRole("button", { name: "Identify again" }).click();
-    assert.equal((await fourth).request().postDataJSON().record.to, 249);
-  });
-});
-
-test("Use and tune takes the model that is shown, not what was typed since", async () => {
-  await withPage("", {}, async (page) => {
-    const answered = identified(page);
-    await dropFile(page, ".drop", "step.csv", stepTest);
-    const { model } = await (await answered).json();
-    await candidatesShown(page);
-    await page.getByText("How the record is read").click();
-    await page.getByRole("textbox", { name: "y before" }).fill("10");
-    await page.getByRole("button", { name: "Use and tune" }).click();
-    await page.getByRole("heading", { name: "Model from the record" }).waitFor();
-    const { request, result } = await job(page);
-    assert.equal(request.record.y0, undefined);
-    assert.deepEqual(result.model.plant, model.plant);
-  });
-});
-
-test("candidate and check box are as they were chosen after Back, and the record after a reload", async () => {
-  await withPage("", {}, async (page) => {
-    await page.getByLabel("Loop name").fill("TIC-9");
-    await page.getByLabel("Unit of y").fill("degC");
-    await dropFile(page, ".drop", "step.csv", stepTest);
-    await candidatesShown(page);
-    const choice = page.getByRole("group", { name: "Which model to use" });
-    const region = page.getByRole("checkbox", { name: /^Meet the limits for every model/ });
-    const other = choice.locator("label:not(:has(:checked)):visible").first();
-    const name = await other.locator("strong").innerText();
-    await other.locator("input").check();
-    await region.check();
-    await page.getByRole("navigation", { name: "Screens" }).getByRole("link", { name: "Methods" }).click();
-    await page.waitForURL(/methods/);
-    await page.goBack();
-    await candidatesShown(page);
-    await choice.locator("label", { has: page.locator(":checked") }).filter({ hasText: name }).waitFor();
-    assert.ok(await region.isChecked());
-
-    await page.reload();
-    await candidatesShown(page);
-    await page.getByRole("heading", { name: "Identify: TIC-9" }).waitFor();
-    await page.getByRole("button", { name: "Use and tune" }).click();
-    await page.getByRole("heading", { name: "Model from the record" }).waitFor();
-    const { request } = await job(page);
-    assert.equal(request.record.csv, stepTest);
-    assert.deepEqual([request.name, request.units], ["TIC-9", { time: "s", y: "degC" }]);
   });
 });
 

@@ -31,6 +31,7 @@ struct Cleaning {
     double hole_from = 0, hole_to = 0;      ///< the longest time without y because of that, record's unit
     std::vector<int> spikes;                ///< left out: readings of y that are false plainly (record_rows.h)
     std::vector<double> spike_times;        ///< of the same, record's unit
+    int unread = 0;                         ///< left out: first rows of before the logger's first reading
     int late_moves = 0;                     ///< left out: changes of u that no sample follows
     int limited_u = 0;                      ///< rows in which u was cut to its limits
 };
@@ -53,6 +54,9 @@ struct RecordFacts {
     int switches_placed = 0;  ///< a relay's switches that were put between rows (fit/record_repair.h)
     /// No change of u was recorded: each was put into the middle of the missing rows before it, so long at least.
     double moves_unseen = 0;
+    /// The rows show the changes of u late: each was put before its row, all may lie together anywhere within this
+    /// length (fit/between_rows.h).
+    double moved_within = 0;
 };
 
 /// Dimensionless samples and input. The input v is 0 before the first sample and v_level[j] from v_time[j] on; v_time

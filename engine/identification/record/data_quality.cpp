@@ -73,6 +73,10 @@ void describe_times(const Cleaning& done, DataQuality& quality) {
                         ").");
     if (done.without_time > 0)
         notes.push_back(counted(done.without_time, "row") + " without a time, or before the first u, left out.");
+    if (done.unread > 0)
+        notes.push_back("The first " + counted(done.unread, "row") +
+                        " left out: u and y both jump away from there with the next one, by more than they move in all "
+                        "others together, as where a logger writes before its first reading.");
     if (done.late_moves > 0)
         notes.push_back(counted(done.late_moves, "change") + " of u with the last sample left out: nothing follows.");
     if (done.limited_u > 0)
@@ -128,6 +132,10 @@ void describe_pretest(const CleanRecord& r, DataQuality& quality) {
     const Line line = straight_line(t, y);
     const double y_mean = n == 0 || at_work ? r.y.front() : line.y_mean;
     quality.y0 = r.scale.y_origin + r.scale.y_scale * r.y_rest.value_or(y_mean);
+    if (n > 0 && n < kRestRows && r.changes() == 1 && !r.u0_given)
+        quality.notes.push_back("Only " + counted(n, "row") +
+                                " before the step of u: the plant is taken to rest there, which they do not show. Give "
+                                "u0 if it does not.");
     if (n < 2 || t.back() <= t.front() || at_work) return;
     const double duration = t.back() - t.front();
     // Two samples determine a line without telling its error.

@@ -66,7 +66,7 @@ bool switched_by_y(const CleanRecord& r, const TwoLevels& u) {
                        [&](const auto& y) { return y.empty() || deviation(y) <= kTolerance * moved; });
 }
 
-/// Whether y rests when u switches: in most half periods its last fifth moves little beside the whole.
+/// Whether y rests when u switches: in most half periods (of two, in one) its last fifth moves little beside the whole.
 bool rests_before_switches(const CleanRecord& r, const TwoLevels& u) {
     constexpr std::ptrdiff_t kMin = 5;  // samples: a tenth of a half period needs some
     constexpr double kAtRest = 0.03;    // of what y moves in the half period
@@ -81,7 +81,8 @@ bool rests_before_switches(const CleanRecord& r, const TwoLevels& u) {
         if (late < kAtRest * spread({r.y.begin() + (first - r.t.begin()), r.y.begin() + (last - r.t.begin())}))
             ++resting;
     }
-    return 2 * resting > halves;
+    constexpr int kFew = 2;  // half periods: one that rests is no relay's
+    return halves <= kFew ? resting > 0 : 2 * resting > halves;
 }
 
 bool is_relay(const CleanRecord& r, const TwoLevels& u) {
@@ -186,29 +187,32 @@ const char* name_of(RecordKind kind) {
     return "auto";
 }
 
-RecordStart start_of(const CleanRecord& r, bool relay, double noise) {
-    constexpr std::size_t kMin = 5;      // samples that tell a slope from its error
+bool moves_at_first(std::span<const double> t, std::span<const double> values) {
     constexpr double kErrors = 5;        // standard errors of the slope
-    constexpr double kVisible = 0.03;    // of y's range, over the rows before the first change of u
+    constexpr double kVisible = 0.03;    // of the range, over these rows
     constexpr double kTimesScatter = 4;  // what scatters about the line
-    constexpr double kInTheEnd = 0.05;   // of y's range, over the whole record
+    constexpr double kInTheEnd = 0.05;   // of the range, over the whole record
+    const Line line = straight_line(t, values);
+    const double slope = std::abs(line.slope), moved = slope * (t.back() - t.front());
+    if (slope <= kErrors * line.slope_std) return false;
+    std::vector<double> left;
+    for (std::size_t i = 0; i < t.size(); ++i)
+        left.push_back(values[i] - line.y_mean - line.slope * (t[i] - line.t_mean));
+    if (moved > kVisible && moved > kTimesScatter * deviation(left)) return true;
+    return slope > kErrors * line.slope_std * std::sqrt(correlation_time(left)) && slope > kInTheEnd;
+}
+
+RecordStart start_of(const CleanRecord& r, bool relay, double noise) {
     if (r.u0_given) return RecordStart::at_rest;
     const auto n = static_cast<std::size_t>(std::lower_bound(r.t.begin(), r.t.end(), r.v_time.front()) - r.t.begin());
-    if (n < kMin || r.t[n - 1] <= r.t[0]) return r.changes() == 1 ? RecordStart::at_rest : RecordStart::unseen;
+    if (n < kRestRows || r.t[n - 1] <= r.t[0]) return r.changes() == 1 ? RecordStart::at_rest : RecordStart::unseen;
     const std::span t(r.t.data(), n), y(r.y.data(), n);
     if (relay && comes_back(r)) {
         constexpr double kStill = 0.01, kTimesNoise = 6;  // of y's range; the span of some hundred readings
         const auto [low, high] = std::minmax_element(y.begin(), y.end());
         return *high - *low <= std::max(kStill, kTimesNoise * noise) ? RecordStart::at_rest : RecordStart::unseen;
     }
-    const Line line = straight_line(t, y);
-    const double slope = std::abs(line.slope), moved = slope * (t.back() - t[0]);
-    if (slope <= kErrors * line.slope_std) return RecordStart::at_rest;
-    std::vector<double> left;
-    for (std::size_t i = 0; i < n; ++i) left.push_back(y[i] - line.y_mean - line.slope * (t[i] - line.t_mean));
-    if (moved > kVisible && moved > kTimesScatter * deviation(left)) return RecordStart::moving;
-    const bool certain = slope > kErrors * line.slope_std * std::sqrt(correlation_time(left));
-    return certain && slope * (r.t.back() - r.t[0]) > kInTheEnd ? RecordStart::moving : RecordStart::at_rest;
+    return moves_at_first(t, y) ? RecordStart::moving : RecordStart::at_rest;
 }
 
 }  // namespace tunewright

@@ -1,6 +1,7 @@
 // What kind of test a record shows (one step, several, a relay, anything else), and whether it begins at rest.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "engine/identification/record/clean_record.h"
@@ -46,9 +47,15 @@ enum class RecordStart {
     moving,   ///< y moves there
 };
 
-/// y moves where its slope over the rows before the first change of u exceeds five of its standard errors, and either
-/// takes it by 3 % of its range and four times what scatters about the line, or exceeds five errors with the
-/// correlation of that scatter counted and would take it by 5 % until the end of the record.
+/// So many rows tell a slope from its error.
+inline constexpr int kRestRows = 5;
+
+/// Whether what has a range of about 1 over a record of length 1 moves in these first rows of it: its slope exceeds
+/// five of its standard errors, and either takes it by 0.03 and four times what scatters about the line, or exceeds
+/// five errors with the correlation of that scatter counted and would take it by 0.05 until the end of the record.
+bool moves_at_first(std::span<const double> t, std::span<const double> values);
+
+/// y moves where moves_at_first() says so of the rows before the first change of u.
 /// In a relay test that is at work from the first row on, y may rest there for a dead time: it is at rest only where it
 /// stays within its noise until u first switches. `noise` is y's standard deviation from sample to sample.
 RecordStart start_of(const CleanRecord& record, bool relay, double noise);

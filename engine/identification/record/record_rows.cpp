@@ -212,6 +212,31 @@ RecordRows collect_rows(const Record& r, Cleaning& cleaning) {
     return rows;
 }
 
+void drop_unread_rows(RecordRows& rows, Cleaning& cleaning) {
+    constexpr std::size_t kMost = 3, kMin = 12;  // rows: left out; of a record that shows how far it moves
+    if (rows.t.size() < kMin || rows.change_time.size() < 2) return;
+    const auto range = [](auto from, auto to) {
+        const auto [low, high] = std::minmax_element(from, to);
+        return *high - *low;
+    };
+    const auto jump = rows.change_time.front();
+    const auto first = std::lower_bound(rows.t.begin(), rows.t.end(), jump) - rows.t.begin();
+    if (first < 1 || static_cast<std::size_t>(first) > kMost || rows.t[static_cast<std::size_t>(first)] != jump) return;
+    const double y_jump =
+        std::abs(rows.y[static_cast<std::size_t>(first)] - rows.y[static_cast<std::size_t>(first) - 1]);
+    const double u_jump = std::abs(rows.change_level.front() - rows.u_rest);
+    if (y_jump <= range(rows.y.begin() + first, rows.y.end()) || range(rows.y.begin(), rows.y.begin() + first) > 0)
+        return;
+    if (u_jump <= range(rows.change_level.begin(), rows.change_level.end())) return;
+    rows.u_rest = rows.change_level.front();
+    rows.change_time.erase(rows.change_time.begin());
+    rows.change_level.erase(rows.change_level.begin());
+    rows.t.erase(rows.t.begin(), rows.t.begin() + first);
+    rows.y.erase(rows.y.begin(), rows.y.begin() + first);
+    rows.number.erase(rows.number.begin(), rows.number.begin() + first);
+    cleaning.unread = static_cast<int>(first);
+}
+
 void drop_late_moves(RecordRows& rows, Cleaning& cleaning) {
     constexpr std::size_t kThereAndBack = 2;
     if (rows.change_time.size() > kThereAndBack) return;

@@ -21,6 +21,10 @@ struct RecordRows {
 /// The rows as clean_record() describes them, false readings included. The columns of `record` have equal lengths.
 RecordRows collect_rows(const Record& record, Cleaning& cleaning);
 
+/// Takes the first rows out, three at most, where u and y both jump away from what they hold with one row, each by more
+/// than it moves in all others together, and u moves later on too: a logger's rows of before its first reading.
+void drop_unread_rows(RecordRows& rows, Cleaning& cleaning);
+
 /// Takes changes of u out that come with the last sample or after it: nothing of the record shows what they do. A lone
 /// change stays, and so do all changes of an input that moves more than twice, as that of a relay or a loop does.
 void drop_late_moves(RecordRows& rows, Cleaning& cleaning);

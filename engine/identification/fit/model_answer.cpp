@@ -247,6 +247,12 @@ IdentifiedModel searched_model(ModelSearch search, const CleanRecord& recorded) 
                                 "the dead time may be off by half of that; its standard error says so. Repeat the test "
                                 "with the recorder running, or give the row at which u moved."});
     }
+    if (record.moved_within > 0) {
+        model.data_quality.notes.push_back(
+            "When u moved is known only to one row (" + text(usual_spacing(record) * record.scale.t_scale, 3) +
+            "), which is not small beside the dead time: u is taken to have moved before the row that shows it, and "
+            "the standard error of L holds that. Record faster around the step for a better L.");
+    }
     if (record.moved_between_rows) {
         model.data_quality.notes.emplace_back(
             "u is taken to change midway between the row that shows it and the row before: the samples are not evenly "

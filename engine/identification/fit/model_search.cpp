@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "engine/identification/fit/between_rows.h"
 #include "engine/identification/fit/record_repair.h"
 #include "engine/identification/record/series.h"
 
@@ -137,17 +138,6 @@ ModelSearch fit_some(const ModelSearch& search, ModelChoice model, const Disturb
     return ranked(search.context, std::move(fits), answers, disturbances);
 }
 
-/// The record with each change of u midway between the row that shows it and the row before: what a logger that writes
-/// now and then has seen late.
-CleanRecord changed_between_rows(CleanRecord record) {
-    for (double& time : record.v_time) {
-        const auto row = std::lower_bound(record.t.begin(), record.t.end(), time);
-        if (row != record.t.begin()) time = 0.5 * (time + *std::prev(row));
-    }
-    record.moved_between_rows = true;
-    return record;
-}
-
 bool usable(const ModelSearch& search) { return search.choice.index >= 0; }
 
 void try_between_rows(ModelSearch& search, ModelChoice model, const RunControl& control) {
@@ -161,6 +151,16 @@ void try_between_rows(ModelSearch& search, ModelChoice model, const RunControl& 
     ModelSearch other = fit_all(fit_context(moved, search.context.relay, control), model, {}, control);
     if (!usable(other) || other.chosen().sse > kMuchWorse * now.sse) return;
     search = std::move(other);
+}
+
+/// The rows show a move of u up to a row late.
+void allow_for_late_rows(ModelSearch& search, ModelChoice model, const RunControl& control) {
+    const auto moved = with_moves_between_rows(search.context.record, search.chosen(), control.stop);
+    if (!moved) return;
+    RunControl quiet = control;  // the progress of a search that was done is not told again
+    quiet.progress = {};
+    ModelSearch other = fit_all(fit_context(*moved, search.context.relay, quiet), model, search.disturbances, quiet);
+    if (usable(other)) search = std::move(other);
 }
 
 /// A change of u in a gap of the record happened at a row that is missing: at which one, the models tell. Kept where
@@ -277,10 +277,20 @@ void try_drift(ModelSearch& search, ModelChoice model, const RunControl& control
     search = std::move(other);
 }
 
-/// A load far beyond all that u did stands in for the plant's own response.
-bool plausible_load(const Fit& fit) {
-    constexpr double kLargest = 3;  // ranges of u
-    return !fit.form.load || std::abs(fit.linear[fit.form.load_index()]) <= kLargest * std::abs(fit.linear[0]);
+/// A load far beyond all that u did stands in for the plant's own response, and so does one that takes back a move of u
+/// before the plant has answered it: then the move and its answer belong to different moves.
+bool plausible_load(const CleanRecord& r, const Fit& fit) {
+    constexpr double kLargest = 3, kSame = 0.4;  // ranges of u; of a move, that the load may differ from it
+    if (!fit.form.load) return true;
+    const double load = fit.linear[fit.form.load_index()] / fit.linear[0];
+    if (!(std::abs(load) <= kLargest)) return false;
+    const double time = fit.shape.load_time(), row = usual_spacing(r);
+    for (int j = 0; j < r.changes(); ++j) {
+        const double move = r.v_level[j] - (j > 0 ? r.v_level[j - 1] : 0);
+        const bool before_answer = time > r.v_time[j] - row && time < r.v_time[j] + fit.shape.L() + row;
+        if (before_answer && std::abs(load + move) < kSame * std::abs(move)) return false;
+    }
+    return true;
 }
 
 void try_disturbances(ModelSearch& search, ModelChoice model, const RunControl& control) {
@@ -297,7 +307,7 @@ void try_disturbances(ModelSearch& search, ModelChoice model, const RunControl& 
         if (d.slope && d.load && !leaves_a_pattern(best->context, best->chosen())) break;
         others.push_back(fit_some(search, model, d, control));
         const ModelSearch& other = others.back();
-        if (!usable(other) || !plausible_load(other.chosen())) continue;
+        if (!usable(other) || !plausible_load(record, other.chosen())) continue;
         // A disturbance that leaves a pattern too stands in for a structure that is none of these.
         const double less = best->chosen().sse / other.chosen().sse;
         if (less < (leaves_a_pattern(other.context, other.chosen()) ? kFarLess : kMuchLess)) continue;
@@ -307,7 +317,7 @@ void try_disturbances(ModelSearch& search, ModelChoice model, const RunControl& 
     }
     if (best == &search) return;
     ModelSearch whole = fit_all(search.context, model, best->disturbances, control);
-    if (usable(whole) && plausible_load(whole.chosen())) search = std::move(whole);
+    if (usable(whole) && plausible_load(record, whole.chosen())) search = std::move(whole);
 }
 
 /// Whether an unstable model's free run lasts so many time constants that it is all but arbitrary.
@@ -365,6 +375,7 @@ ModelSearch search_models(const CleanRecord& record, ModelChoice model, bool rel
         try_drift_for_slow_part(search, model, control);
         if (!search.disturbances.slope) try_drift(search, model, control);
     }
+    if (!relay && usable(search) && !control.stop.stop_requested()) allow_for_late_rows(search, model, control);
     return search;
 }
 

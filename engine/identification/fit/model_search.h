@@ -32,8 +32,11 @@ struct ModelSearch {
 /// - in a record that is not evenly sampled, u is tried as changing midway between the rows;
 /// - in one in which u moves more than once, or y creeps before u does, a drift and a lasting load at an unknown time
 ///   are tried, and kept if they leave a third of the sum of squares or less (a thirtieth where a pattern remains);
+///   No load is taken that takes back a move of u before the plant has answered it;
 /// - an unstable plant's free run loses its digits over a long record: in relay tests that no model explains, the
 ///   record's beginning is tried.
+///
+/// Rows that show a few moves of u late are allowed for at the end (between_rows.h).
 ///
 /// `relay`: the record is of a relay test. Nothing is chosen (choice.index < 0) where the record determines no
 /// structure. When control.stop asks for it the search ends early with what it has; the caller looks at the token.

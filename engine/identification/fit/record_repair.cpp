@@ -85,13 +85,6 @@ double least_miss(const CleanRecord& whole, const std::vector<std::size_t>& left
     return least;
 }
 
-/// The time of the last row before the one at or after `time`.
-double row_before(const CleanRecord& r, double time) {
-    constexpr double kRounding = 1e-12;  // of the record's length
-    const auto row = std::lower_bound(r.t.begin(), r.t.end(), time - kRounding);
-    return row == r.t.begin() ? time : *std::prev(row);
-}
-
 /// Whether the rows up to the one at `time` came at the usual spacing, as those of a recorder that writes whether
 /// anything happens or not: one that waits for a change writes few while all is at rest.
 bool written_steadily(const CleanRecord& r, double time, double usual) {
@@ -133,6 +126,12 @@ void place(CleanRecord& placed, const Fit& fit, const std::vector<int>& moves, c
 }
 
 }  // namespace
+
+double row_before(const CleanRecord& r, double time) {
+    constexpr double kRounding = 1e-12;  // of the record's length
+    const auto row = std::lower_bound(r.t.begin(), r.t.end(), time - kRounding);
+    return row == r.t.begin() ? time : *std::prev(row);
+}
 
 std::vector<std::size_t> doubtful_samples(const CleanRecord& record, const Fit& fit) {
     std::vector<bool> marked = lone_misses(fit);

@@ -28,6 +28,9 @@ std::vector<std::size_t> doubtful_samples(const CleanRecord& record, const Fit& 
 ModelSearch without_false_readings(ModelSearch search, CleanRecord& record, ModelChoice model,
                                    const RunControl& control);
 
+/// The time of the last row before the one at or after `time`; `time` itself where that is the first.
+double row_before(const CleanRecord& record, double time);
+
 /// Indices into record.v_time, ascending, of the changes of u that were first seen after a spacing of more than 1.5
 /// times the usual one: the record does not show when they happened in it.
 std::vector<int> gap_moves(const CleanRecord& record);

@@ -294,11 +294,12 @@ FittedPlant fitted_plant(const CleanRecord& record, const Fit& fit, double quant
     Eigen::MatrixXd deviations =
         fit.deviations.empty() ? deviations_of(fit, record.t, quantisation, noise, load) : given_deviations(fit);
     const std::vector<int> places = fit.form.searched();
-    if (record.moves_unseen > 0) {
-        // As likely at any of the missing rows: that is the dead time's.
+    const double open = std::max(record.moves_unseen, record.moved_within);
+    if (open > 0) {
+        // u may have moved at any time in it: that is the dead time's.
         deviations.conservativeResize(deviations.rows() + 1, Eigen::NoChange);
         deviations.bottomRows(1).setZero();
-        deviations(deviations.rows() - 1, 0) = record.moves_unseen / std::sqrt(12.0);
+        deviations(deviations.rows() - 1, 0) = open / std::sqrt(12.0);
     }
     const int size = static_cast<int>(places.size());
     for (int axis = 0; axis < deviations.rows(); ++axis) {

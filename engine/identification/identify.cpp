@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/identification/closed_loop/closed_loop.h"
+#include "engine/identification/closed_loop/loop_parts.h"
 #include "engine/identification/fit/diagnosis.h"
 #include "engine/identification/fit/model_answer.h"
 #include "engine/identification/fit/model_search.h"
@@ -11,7 +12,7 @@
 #include "engine/identification/record/data_quality.h"
 #include "engine/identification/record/record_kind.h"
 #include "engine/identification/record/series.h"
-#include "engine/identification/relay_test/relay_fourier.h"
+#include "engine/identification/relay_test/formula_answer.h"
 #include "engine/identification/two_point.h"
 #include "engine/number_text.h"
 
@@ -48,132 +49,20 @@ Error no_response(const CleanRecord& r, double percent, const char* asked) {
                 std::string("No ") + asked + " model explains y beyond noise and drift (the best reaches a fit of " +
                     text(std::max(0.0, percent), 3) + " %). Use model auto, or look whether y responds to u at all."};
     }
+    constexpr double kMovesWithU = 30;  // per cent: more than chance makes of a record
+    if (percent > kMovesWithU) {
+        return {ErrorKind::not_identifiable, "record",
+                "No linear model follows y (the best reaches a fit of " + text(percent, 3) +
+                    " %). Look in the plot whether every move of u moves y, always by as much: beyond a valve's end it "
+                    "moves nothing (give u_limits then), and a load moves y without u. Or give the part of the record "
+                    "that does follow u (`from`, `to`)."};
+    }
     return {ErrorKind::not_identifiable, "record",
             "y does not respond to u beyond what its own noise and drift explain (the best model reaches a fit of " +
                 text(std::max(0.0, percent), 3) +
                 " %). u first changes at t = " + text(r.scale.t_origin + r.scale.t_scale * r.v_time.front()) +
                 " and the record ends at t = " + text(r.scale.t_origin + r.scale.t_scale * r.t.back()) +
                 ". Make a larger step, record until y has settled, and check that u and y belong to the same loop."};
-}
-
-/// The shift of Eq. 9, dimensionless; 1/Pu unless given.
-Expected<double> shift_of(const IdentifyOptions& options, const CleanRecord& record, const RecordedCycle& cycle) {
-    if (!options.shift) return 1 / cycle.period;
-    if (!(*options.shift > 0) || !std::isfinite(*options.shift))
-        return Error{ErrorKind::invalid_argument, "identify/shift", "shift must be a number above 0."};
-    return *options.shift * record.scale.t_scale;
-}
-
-/// Every model that the formulas give and `asked` admits, the one that repeats y best first.
-std::vector<RelayModel> relay_models(const RecordedCycle& cycle, std::complex<double> shifted, double sigma,
-                                     ModelChoice asked) {
-    std::vector<RelayModel> models;
-    auto add = [&](const std::vector<RelayModel>& more) { models.insert(models.end(), more.begin(), more.end()); };
-    const bool any = asked == ModelChoice::automatic;
-    if (any || asked == ModelChoice::fopdt) {
-        const auto by_gain = cycle.biased() ? biased_fopdt(cycle) : std::nullopt;
-        if (by_gain)
-            models.push_back(*by_gain);
-        else
-            add(unbiased_models(cycle, shifted, sigma, Structure::fopdt));
-        if (!by_gain) add(unbiased_models(cycle, shifted, sigma, Structure::unstable));
-    }
-    if (any || asked == ModelChoice::ipdt) {
-        if (const auto model = integrating_model(cycle)) models.push_back(*model);
-    }
-    if (asked == ModelChoice::ipdt_lag) add(unbiased_models(cycle, shifted, sigma, Structure::ipdt_lag));
-    // The request asks for the paper's first-order lag, unless the integrator repeats the oscillation twice as well, or
-    // as well where both repeat it: a lag without end is an integrator.
-    constexpr double kRepeats = 0.01;              // of half a swing: no more than sampling and noise leave
-    constexpr double kAsWell = 0.95, kTie = 1e-5;  // so that of equal misfits the integrator's is the smaller
-    constexpr double kFarBetter = 2;
-    auto cost = [&](const RelayModel& model) {
-        const bool integrator = any && model.shape.structure == Structure::ipdt;
-        if (!integrator) return model.fit_rms;
-        return model.fit_rms < kRepeats * cycle.y_half ? kAsWell * model.fit_rms - kTie : kFarBetter * model.fit_rms;
-    };
-    std::stable_sort(models.begin(), models.end(), [&](const auto& a, const auto& b) { return cost(a) < cost(b); });
-    return models;
-}
-
-void warn_formula(const CleanRecord& r, const RecordedCycle& cycle, const RelayModel& chosen, double noise,
-                  std::vector<Warning>& warnings) {
-    if (cycle.rest.assumed) {
-        warnings.push_back({"rest-assumed", "The record starts under the relay: u is taken to rest at " +
-                                                text(r.scale.u_rest + r.scale.u_scale * cycle.rest.v) +
-                                                " and y at its first values, " +
-                                                text(r.scale.y_origin + r.scale.y_scale * cycle.rest.y) +
-                                                ". Give u0 and y0 if they are known."});
-    }
-    if (cycle.biased() && !chosen.by_static_gain && !is_integrating(chosen.shape.structure)) {
-        warnings.push_back({"static-gain-contradiction",
-                            "The mean of y over the mean of u is " +
-                                text(cycle.static_gain() * r.scale.y_scale / r.scale.u_scale) +
-                                ", which the phase at the oscillation contradicts: a load, a drift or a wrong rest "
-                                "level is in the record. Eq. 13 was used in place of Eq. 14; method output_error fits "
-                                "such disturbances."});
-    }
-    // Periods that differ blur the harmonics of their mean.
-    const double scatter = noise / std::sqrt(static_cast<double>(std::max(1, r.samples()))) +
-                           2 * cycle.period_scatter / cycle.period * cycle.y_half;
-    constexpr double kPlainly = 0.03, kErrors = 4;  // of half a swing, and of what scatter explains
-    if (chosen.fit_rms > kPlainly * cycle.y_half + kErrors * scatter) {
-        warnings.push_back(
-            {"structure-mismatch", "The model repeats the steady oscillation only within " +
-                                       text(chosen.fit_rms * r.scale.y_scale, 3) + " (r.m.s., of a half swing of " +
-                                       text(cycle.y_half * r.scale.y_scale, 3) +
-                                       "): the plant is not of this structure. Trust the measured frequency point; " +
-                                       (chosen.by_static_gain ? "the gain is the mean of y over the mean of u."
-                                                              : "the gain is not the plant's static gain.")});
-    }
-    if (std::abs(cycle.drift) > 0) {
-        warnings.push_back(
-            {"drift", "The mean of y creeps from period to period by " +
-                          text(cycle.drift * cycle.period * r.scale.y_scale, 3) +
-                          ": a load or a drift is in the record, and Eqs. 9 and 14 suffer from it. Method "
-                          "output_error fits it."});
-    }
-}
-
-Error no_relay_model(const CleanRecord& r, const RecordedCycle& cycle, ModelChoice asked) {
-    std::string why = "No ";
-    why += asked == ModelChoice::ipdt || asked == ModelChoice::ipdt_lag ? "integrating" : "first-order";
-    why += " model with a dead time meets the oscillation (A_u = " +
-           text(std::abs(cycle.harmonics.front().G) * r.scale.y_scale / r.scale.u_scale) +
-           ", phi_u = " + text(std::arg(cycle.harmonics.front().G)) + ")";
-    if (cycle.biased()) {
-        why += "; the mean of y over the mean of u is " +
-               text(cycle.static_gain() * r.scale.y_scale / r.scale.u_scale) +
-               ", which a load or a wrong rest level would explain";
-    }
-    return {ErrorKind::not_identifiable, "identify/method", why + ". Use method output_error."};
-}
-
-Expected<IdentifiedModel> by_relay_formulas(const CleanRecord& record, const IdentifyOptions& options) {
-    if (options.model == ModelChoice::sopdt || options.model == ModelChoice::sopdt_zero) {
-        return Error{ErrorKind::unsupported, "identify/model",
-                     "The relay formulas give models fopdt, ipdt and ipdt_lag; use method output_error for a second "
-                     "order."};
-    }
-    const double noise = std::max(noise_std(record.y), quantisation_step(record.y) / std::sqrt(12.0));
-    const Expected<RecordedCycle> cycle = find_cycle(record, noise);
-    if (!cycle) return cycle.error();
-    const Expected<double> sigma = shift_of(options, record, *cycle);
-    if (!sigma) return sigma.error();
-    const std::complex<double> shifted = shifted_response(record, *cycle, *sigma);
-    const std::vector<RelayModel> models = relay_models(*cycle, shifted, *sigma, options.model);
-    if (models.empty()) return no_relay_model(record, *cycle, options.model);
-    const RelayModel& chosen = models.front();
-    IdentifiedModel model = formula_model(record, chosen.shape, chosen.K, cycle->rest.v);
-    model.choice_reason = std::string(name_of(chosen.shape.structure)) + " by the relay formulas " +
-                          (chosen.by_static_gain                       ? "(11), (12), (14)"
-                           : chosen.shape.structure == Structure::ipdt ? "(4) of an integrator"
-                                                                       : "(11) to (13)") +
-                          ": it repeats the steady oscillation best.";
-    add_cycle(record, *cycle, {*sigma / record.scale.t_scale, shifted}, model);
-    model.limit_cycle->fit_rms = chosen.fit_rms * record.scale.y_scale;
-    warn_formula(record, *cycle, chosen, noise, model.warnings);
-    return model;
 }
 
 Expected<IdentifiedModel> by_two_points(const CleanRecord& record, const IdentifyOptions& options) {
@@ -375,22 +264,67 @@ Expected<IdentifiedModel> by_fitting(const Record& record, CleanRecord clean, co
     return model;
 }
 
+/// A record and what was found of a controller in it.
+struct Looked {
+    CleanRecord clean;
+    std::optional<LoopRecord> loop;
+    std::optional<double> u_rest;  ///< where a loop rests before its set point moves
+};
+
+Expected<Looked> looked_at(const Record& record) {
+    Expected<CleanRecord> clean = clean_record(record);
+    if (!clean) return clean.error();
+    if (auto error = refuse_late_step(*clean)) return *error;
+    Expected<std::optional<LoopRecord>> loop = find_loop(*clean, record);
+    if (!loop) return loop.error();
+    const std::optional<double> rest = *loop ? (*loop)->u_rest : std::nullopt;
+    if (rest) {
+        // Its noise moves u from the first row on: that row is no level of rest.
+        Record rested = record;
+        rested.u0 = rest;
+        clean = clean_record(rested);
+        loop = find_loop(*clean, rested);
+    }
+    return Looked{std::move(*clean), std::move(*loop), rest};
+}
+
+/// The model from the rows in which the controller was in manual; empty where there are none.
+std::optional<IdentifiedModel> by_manual_rows(const Record& record, const Looked& looked,
+                                              const IdentifyOptions& options, const RunControl& control) {
+    if (options.method == IdentifyMethod::relay_fourier || options.method == IdentifyMethod::two_point)
+        return std::nullopt;
+    const std::optional<Stretch> manual = manual_stretch(looked.clean);
+    if (!manual || (!looked.loop && !feedback_outside(record, *manual))) return std::nullopt;
+    Expected<IdentifiedModel> model = identify(rows_of(record, *manual), options, control);
+    if (!model) return std::nullopt;
+    model->data_quality.notes.push_back("Only the rows from t = " + text(manual->from) + " to " + text(manual->to) +
+                                        " are used, in which u stands still or steps: in others a controller moves u.");
+    return std::move(*model);
+}
+
 }  // namespace
 
 Expected<IdentifiedModel> identify(const Record& record, const IdentifyOptions& options, const RunControl& control) {
-    const Expected<CleanRecord> clean = clean_record(record);
-    if (!clean) return clean.error();
-    if (auto error = refuse_late_step(*clean)) return *error;
-    const Expected<std::optional<LoopRecord>> loop = find_loop(*clean, record);
-    if (!loop) return loop.error();
+    const Expected<Looked> looked = looked_at(record);
+    if (!looked) return looked.error();
+    const auto& [clean, loop, rest] = *looked;
+    if (!loop) {
+        if (auto model = by_manual_rows(record, *looked, options, control)) return std::move(*model);
+    }
     const bool by_formula = options.method == IdentifyMethod::relay_fourier;
-    Expected<IdentifiedModel> model = by_formula                                    ? by_relay_formulas(*clean, options)
-                                      : options.method == IdentifyMethod::two_point ? by_two_points(*clean, options)
-                                      : *loop ? identify_in_loop(*clean, **loop, options.model, control)
-                                              : by_fitting(record, *clean, options, control);
+    Expected<IdentifiedModel> model = by_formula                                    ? by_relay_formulas(clean, options)
+                                      : options.method == IdentifyMethod::two_point ? by_two_points(clean, options)
+                                      : loop ? identify_in_loop(clean, *loop, options.model, control)
+                                             : by_fitting(record, clean, options, control);
+    if (!model && loop && model.error().kind == ErrorKind::not_identifiable) {
+        if (auto manual = by_manual_rows(record, *looked, options, control)) return std::move(*manual);
+    }
     if (!model) return model;
-    *loop ? report_loop(**loop, *model) : doubt_open_loop(*clean, *model);
-    add_excited_band(*clean, *model);
+    if (rest)
+        model->data_quality.notes.push_back(
+            "Before the set point first moves the loop is at rest: u0 = " + text(*rest) + " is the mean of u there.");
+    loop ? report_loop(*loop, *model) : doubt_open_loop(clean, *model);
+    add_excited_band(clean, *model);
     add_ultimate_point(*model);
     if (control.progress) control.progress({1, "identify", "model found", std::nullopt});
     return model;

@@ -135,6 +135,8 @@ struct IdentifiedModel {
 /// - `model` automatic fits every structure and keeps the least information criterion, the simpler one where they are
 ///   equal within noise. `fopdt` may come out with T < 0 (K is negative then too for 1/(s - 1)) from a record in which
 ///   u changes more than twice.
+/// - Rows that are not small beside the dead time show moves of u late (fit/between_rows.h): noted, and counted in the
+///   standard error of L.
 /// - A drift and a lasting load are fitted with the model where the record shows them, and reported as warnings.
 /// - A relay test also gives `limit_cycle`, `frequency_points`; where no structure fits it, the model is held to the
 ///   measured response at the oscillation (and to the static gain of a biased test), and a warning says so.
@@ -143,7 +145,8 @@ struct IdentifiedModel {
 /// - Standard errors and covariance count correlated residuals as the few independent samples they are worth, and what
 ///   rounding of y does.
 /// - Where a controller moves u in answer to y, the model rests on what moves of the set point (column r, or plain
-///   kicks of u) do to u and y (closed_loop.h); without any, the record is refused. Warning closed-loop.
+///   kicks of u) do to u and y (closed_loop.h); without any, on its rows in manual (closed_loop/loop_parts.h), and
+///   where there are none, the record is refused. Warning closed-loop.
 /// - `fit` has at most 2,000 points; of more than 20,000 samples means over blocks are fitted, if the
 ///   plant is slow beside them; of more than 100,000 always. Warning codes:
 ///   diagnosis.h, model_answer.cpp, data_quality.h.

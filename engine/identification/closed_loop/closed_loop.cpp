@@ -6,10 +6,12 @@
 
 #include "engine/identification/closed_loop/feedback.h"
 #include "engine/identification/closed_loop/instrument_fit.h"
+#include "engine/identification/closed_loop/loop_parts.h"
 #include "engine/identification/fit/diagnosis.h"
 #include "engine/identification/fit/model_answer.h"
 #include "engine/identification/fit/model_search.h"
 #include "engine/identification/record/record_kind.h"
+#include "engine/identification/record/series.h"
 #include "engine/number_text.h"
 #include "engine/numerics/matrix/dense.h"
 
@@ -18,6 +20,20 @@ namespace {
 
 constexpr int kMaxSeen = 20'000;    ///< rows
 constexpr int kMaxFitted = 10'000;  ///< samples: an instrumental fit costs several times a plain one
+
+/// Whether r is y, as many controllers write it in manual: of this row or the one before, and rounded, in some rows.
+bool tracks(const std::vector<double>& r, const std::vector<double>& y) {
+    constexpr double kSame = 1e-3, kFine = 0.1;       // of y's range; more is a level of r, not a figure's rounding
+    constexpr double kMostMoves = 0.8, kOften = 0.1;  // of the moves of r; of the rows: a set point moves in fewer
+    const double grid = quantisation_step(r), same = kSame + (grid < kFine ? 0.5 * grid : 0);
+    int moves = 0, tracking = 0;
+    for (std::size_t i = 1; i < r.size(); ++i) {
+        if (r[i] == r[i - 1]) continue;
+        ++moves;
+        tracking += std::min(std::abs(r[i] - y[i]), std::abs(r[i] - y[i - 1])) < same ? 1 : 0;
+    }
+    return moves > kOften * static_cast<double>(r.size()) && tracking > kMostMoves * moves;
+}
 
 /// r at the record's samples, dimensionless as y; empty where the record has none, or it only tracks y.
 std::vector<double> set_point_at_samples(const CleanRecord& clean, const Record& record) {
@@ -28,19 +44,16 @@ std::vector<double> set_point_at_samples(const CleanRecord& clean, const Record&
     if (known.empty()) return {};
     std::stable_sort(known.begin(), known.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     const RecordScale& s = clean.scale;
-    constexpr double kRounding = 1e-9, kSame = 1e-3;  // of the record's length; of y's range
+    constexpr double kRounding = 1e-9;  // of the record's length
     std::vector<double> r;
     std::size_t next = 0;
     double now = known.front().second;
-    int tracking = 0;
     for (int i = 0; i < clean.samples(); ++i) {
         const double t = s.t_origin + s.t_scale * (clean.t[i] + kRounding);
         for (; next < known.size() && known[next].first <= t; ++next) now = known[next].second;
         r.push_back((now - s.y_origin) / s.y_scale);
-        const bool moved = i > 0 && r[i] != r[i - 1];
-        tracking += moved && std::abs(r.back() - clean.y[i]) < kSame ? 1 : 0;
     }
-    return 2 * tracking > clean.samples() ? std::vector<double>{} : r;
+    return tracks(r, clean.y) ? std::vector<double>{} : r;
 }
 
 /// Feedback shows from row to row: of a long record the beginning is looked at, and means over blocks are fitted.
@@ -105,8 +118,15 @@ double by_set_point(const std::vector<double>& signal, const SetPointPart& part)
     return (columns * least_squares(columns, values)).squaredNorm();
 }
 
-std::optional<Refined> refined(ModelSearch search, const CleanRecord& record, const SetPointPart& part,
+/// Whether the recognised controller would drive this plant away: static feedback of the positive sign.
+bool driven_away(const LoopRecord& loop, const Fit& fit) {
+    const double K = fit.linear[0] * (fit.form.structure == Structure::unstable ? -1 : 1);
+    return K * loop.gain > 0;
+}
+
+std::optional<Refined> refined(ModelSearch search, const CleanRecord& record, const LoopRecord& loop,
                                const std::stop_token& stop) {
+    const SetPointPart& part = *loop.part;
     if (search.choice.index < 0) return std::nullopt;
     search.context.record = record;
     Refined out{std::move(search), {}, {}, {}};
@@ -121,7 +141,7 @@ std::optional<Refined> refined(ModelSearch search, const CleanRecord& record, co
         fit = std::move(better->fit);
         out.search.percents[i] = fit_percent(record, fit);
         // A gain without any error is one that nothing in the equations depends on.
-        const bool empty = better->gain_error < kNoError && out.search.percents[i] < kFits;
+        const bool empty = (better->gain_error < kNoError && out.search.percents[i] < kFits) || driven_away(loop, fit);
         out.left[i] = by_set_point(fit.residual, part) / std::max(done, kTiny);
         out.mismatch[i] = better->mismatch, out.gain_error[i] = empty ? 1 : better->gain_error;
     }
@@ -202,20 +222,21 @@ Expected<std::optional<LoopRecord>> find_loop(const CleanRecord& full, const Rec
     const std::optional<Feedback> feedback = find_feedback(seen);
     const std::vector<double> r = set_point_at_samples(record, as_given);
     LoopRecord loop;
+    std::vector<double> moves = r;
     if (!r.empty()) {
-        loop.part = set_point_part(input_at_samples(record), r);
         loop.found.used = LoopExcitation::set_point;
     } else if (feedback && !feedback->outside.empty()) {
-        loop.part =
-            set_point_part(input_at_samples(record),
-                           steps_at_samples(feedback->outside, seen.scale.t_scale / full.scale.t_scale, record));
+        moves = steps_at_samples(feedback->outside, seen.scale.t_scale / full.scale.t_scale, record);
         loop.found.used = LoopExcitation::outside_moves;
     }
+    if (!moves.empty()) loop.part = set_point_part(input_at_samples(record), moves);
     const bool follows = loop.part && loop.part->share > kFollows && loop.part->strength > kPlain;
     if (!feedback && !follows) return std::optional<LoopRecord>{};
     loop.found.evidence = evidence_of(feedback, loop.part ? &*loop.part : nullptr, record.scale);
     if (loop.part) loop.found.share = loop.part->share;
     if (!loop.part) loop.found.used = LoopExcitation::none;
+    if (feedback) loop.gain = feedback->gain;
+    if (loop.part && !full.u0_given) loop.u_rest = level_before_set_point(record, moves);
     return std::optional<LoopRecord>(std::move(loop));
 }
 
@@ -229,10 +250,10 @@ Expected<IdentifiedModel> identify_in_loop(const CleanRecord& full, const LoopRe
             "and moves of the set point explain too little of u (" + text(100 * loop.part->share, 2) + " %)");
     const CleanRecord record = condensed(full, kMaxFitted);
     const auto cancelled = [] { return Error{ErrorKind::cancelled, "", "The identification was cancelled."}; };
-    auto direct = refined(search_models(record, model, false, control), record, *loop.part, control.stop);
+    auto direct = refined(search_models(record, model, false, control), record, loop, control.stop);
     if (control.stop.stop_requested()) return cancelled();
     auto two_stage =
-        refined(search_models(driven_by(*loop.part, record), model, false, control), record, *loop.part, control.stop);
+        refined(search_models(driven_by(*loop.part, record), model, false, control), record, loop, control.stop);
     if (control.stop.stop_requested()) return cancelled();
     for (std::optional<Refined>* one : {&direct, &two_stage}) {
         if (*one) choose_again(**one);
@@ -245,6 +266,10 @@ Expected<IdentifiedModel> identify_in_loop(const CleanRecord& full, const LoopRe
     const bool follows = best && best->search.chosen().determined &&
                          (best->mismatch[best->chosen()] < kMismatch || responds(full, best->search.chosen()));
     if (!follows) return nothing_outside(full, loop, "and y does not plainly follow the moves from outside the loop");
+    if (driven_away(loop, best->search.chosen()))
+        return nothing_outside(full, loop,
+                               "and the gain that the moves from outside the loop give has the sign with which this "
+                               "controller would have driven y away");
     constexpr double kHalf = 0.5;  // of what the set point did to y
     if (best->left[best->chosen()] > kHalf)
         return nothing_outside(full, loop, "and no structure explains what the moves from outside the loop did to y");

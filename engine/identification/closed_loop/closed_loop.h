@@ -15,6 +15,8 @@ namespace tunewright {
 struct LoopRecord {
     ClosedLoop found;
     std::optional<SetPointPart> part;  ///< empty: nothing but feedback moves u
+    double gain = 0;                   ///< Feedback::gain
+    std::optional<double> u_rest;      ///< where the plant rests before the set point moves, in the record's units
 };
 
 /// Feedback by feedback.h, or a set point whose moves u follows. Error: r not as long as the other columns.
@@ -22,8 +24,8 @@ Expected<std::optional<LoopRecord>> find_loop(const CleanRecord& record, const R
 
 /// The structure is searched for with the recorded u and with the set point's part of u alone; both ends are refined by
 /// instrumental variables (instrument_fit.h), and the one stays whose residual the set point explains less. Errors:
-/// not_identifiable where nothing but feedback moves u, or too little to know the gain within a half of itself;
-/// cancelled.
+/// not_identifiable where nothing but feedback moves u, or too little to know the gain within a half of itself, or
+/// where the gain that comes out is of the sign with which that controller drives its plant away; cancelled.
 Expected<IdentifiedModel> identify_in_loop(const CleanRecord& record, const LoopRecord& loop, ModelChoice model,
                                            const RunControl& control);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/identification/closed_loop/level_law.h"
 #include "engine/identification/record/record_kind.h"
 #include "engine/numerics/matrix/dense.h"
 #include "engine/numerics/statistics.h"
@@ -289,6 +290,41 @@ std::optional<Moves> possible_moves(const CleanRecord& r, const std::vector<doub
     return moves;
 }
 
+std::optional<Feedback> found_in_moves(const CleanRecord& r, const std::vector<double>& u, const Moves& moves) {
+    constexpr double kNoNews = 1e-6;         // of u's range: its own past predicts u to rounding
+    constexpr double kExact = 0.03;          // ratio of errors that no open-loop test shows
+    constexpr double kMoreThanChance = 1.6;  // standard errors of the log ratio; more where rows are uneven
+    constexpr double kMoreUneven = 3;
+    constexpr double kNewsInY = 0.8;     // u's past must not lower y's error below that share
+    constexpr double kByNews = 0.3;      // of what y explains of u's moves, its news explain this
+    constexpr double kQuiet = 3e-4;      // of y's range: a y without news is a simulation's
+    constexpr double kLawIsPlain = 0.5;  // ratio of errors at which its outliers are the set point's moves
+    const Predictions p = moves.every_row ? predict_every_row(moves) : predict_moves(moves);
+    const Errors same = compare(p.by_u, p.by_y), past = compare(p.by_u, p.by_past_y);
+    if (same.a < kNoNews) return std::nullopt;
+    const bool at_once = same.ratio() <= past.ratio();
+    const double ratio = std::min(same.ratio(), past.ratio());
+    const auto n = static_cast<double>(p.by_u.residual.size());
+    const double margin = moves.every_row && unevenly_spaced(r) ? kMoreUneven : kMoreThanChance;
+    if (ratio > std::exp(-margin * std::sqrt(p.coefficients / n))) return std::nullopt;
+    const bool exact = ratio < kExact;
+    if (!exact || !moves.every_row) {
+        const NewsOfY y = news_of_y(r, u);
+        const Errors of_y = compare(y.by_y, y.by_both);
+        if (of_y.b < kQuiet) return std::nullopt;
+        if (!exact && of_y.ratio() < kNewsInY) return std::nullopt;
+        const double left = unexplained_by_news(moves, p, y);
+        if (!exact && 1 - left * left < kByNews * (1 - ratio * ratio)) return std::nullopt;
+    }
+    if (at_once && moves.every_row && !exact && is_law_of_lag(r, u)) return std::nullopt;
+    Feedback feedback{same.a, at_once ? same.b : past.b, at_once, 0, {}};
+    if (same.ratio() < kLawIsPlain) {
+        feedback.gain = p.by_y.coefficient[p.y_column];
+        feedback.outside = outside_moves(r, moves, p);
+    }
+    return feedback;
+}
+
 }  // namespace
 
 std::vector<double> input_at_samples(const CleanRecord& r) {
@@ -312,39 +348,13 @@ double restlessness(const CleanRecord& r) {
 }
 
 std::optional<Feedback> find_feedback(const CleanRecord& r) {
-    constexpr double kNoNews = 1e-6;         // of u's range: its own past predicts u to rounding
-    constexpr double kExact = 0.03;          // ratio of errors that no open-loop test shows
-    constexpr double kMoreThanChance = 1.6;  // standard errors of the log ratio; more where rows are uneven
-    constexpr double kMoreUneven = 3;
-    constexpr double kNewsInY = 0.8;     // u's past must not lower y's error below that share
-    constexpr double kByNews = 0.3;      // of what y explains of u's moves, its news explain this
-    constexpr double kQuiet = 3e-4;      // of y's range: a y without news is a simulation's
-    constexpr double kLawIsPlain = 0.5;  // ratio of errors at which its outliers are the set point's moves
     const std::vector<double> u = input_at_samples(r);
-    const std::optional<Moves> possible = possible_moves(r, u);
-    if (!possible) return std::nullopt;
-    const Moves& moves = *possible;
-    const Predictions p = moves.every_row ? predict_every_row(moves) : predict_moves(moves);
-    const Errors same = compare(p.by_u, p.by_y), past = compare(p.by_u, p.by_past_y);
-    if (same.a < kNoNews) return std::nullopt;
-    const bool at_once = same.ratio() <= past.ratio();
-    const double ratio = std::min(same.ratio(), past.ratio());
-    const auto n = static_cast<double>(p.by_u.residual.size());
-    const double margin = moves.every_row && unevenly_spaced(r) ? kMoreUneven : kMoreThanChance;
-    if (ratio > std::exp(-margin * std::sqrt(p.coefficients / n))) return std::nullopt;
-    const bool exact = ratio < kExact;
-    if (!exact || !moves.every_row) {
-        const NewsOfY y = news_of_y(r, u);
-        const Errors of_y = compare(y.by_y, y.by_both);
-        if (of_y.b < kQuiet) return std::nullopt;
-        if (!exact && of_y.ratio() < kNewsInY) return std::nullopt;
-        const double left = unexplained_by_news(moves, p, y);
-        if (!exact && 1 - left * left < kByNews * (1 - ratio * ratio)) return std::nullopt;
-    }
-    if (at_once && moves.every_row && !exact && is_law_of_lag(r, u)) return std::nullopt;
-    Feedback feedback{same.a, at_once ? same.b : past.b, at_once, {}};
-    if (same.ratio() < kLawIsPlain) feedback.outside = outside_moves(r, moves, p);
-    return feedback;
+    const std::optional<Moves> moves = possible_moves(r, u);
+    if (!moves) return std::nullopt;
+    if (auto found = found_in_moves(r, u, *moves)) return found;
+    const std::optional<LevelLaw> law = level_law(r, u);
+    if (!law) return std::nullopt;
+    return Feedback{deviation(u), law->left, true, law->gain, {}};
 }
 
 }  // namespace tunewright

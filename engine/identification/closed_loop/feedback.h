@@ -21,6 +21,7 @@ struct Feedback {
     double by_u = 0;                   ///< error of predicting u's moves from u's own past, dimensionless
     double by_y = 0;                   ///< the same from y and u's past, with as many coefficients
     bool at_once = false;              ///< y of the same row explains u; else y of the rows before does
+    double gain = 0;                   ///< of u over y in the same row, dimensionless; 0 where the law is not plain
     std::vector<OutsideMove> outside;  ///< where the controller's law is plain enough to tell
 };
 
@@ -32,6 +33,7 @@ std::vector<double> input_at_samples(const CleanRecord& record);
 /// PID controller in its differenced form, in which the set point is a rare outlier). Where u moves in fewer than half
 /// of the rows, the moves alone are looked at. Feedback is found where y halves the error, or lowers it by more than
 /// chance and more than u's past lowers the error of predicting y: an open-loop test has its news in u, a loop in y.
+/// So is it where levels that are rounded show a proportional law (level_law.h).
 /// Empty for relay tests, for u on two or three levels, for fewer than 12 moves, and where u has no news (ramps,
 /// sines).
 std::optional<Feedback> find_feedback(const CleanRecord& record);

@@ -1,0 +1,121 @@
+#include "engine/identification/closed_loop/loop_parts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "engine/identification/closed_loop/feedback.h"
+#include "engine/identification/record/record_kind.h"
+#include "engine/numerics/statistics.h"
+
+namespace tunewright {
+namespace {
+
+constexpr int kApart = 10;  ///< rows between two moves by hand
+
+/// Rows [from, to), and the changes of u [first, last) inside that somebody may have made.
+struct Run {
+    int from = 0, to = 0, first = 0, last = 0;
+};
+
+/// Stretches between changes that are too near to one another.
+std::vector<Run> quiet_runs(const CleanRecord& r) {
+    std::vector<int> row;  // of each change
+    for (const double time : r.v_time)
+        row.push_back(static_cast<int>(std::lower_bound(r.t.begin(), r.t.end(), time) - r.t.begin()));
+    std::vector<Run> runs;
+    const auto near = [&](int j) { return j > 0 && row[j] - row[j - 1] < kApart; };
+    for (int j = 0; j <= r.changes(); ++j) {
+        const bool ends = j == r.changes() || (j + 1 < r.changes() && near(j + 1));
+        if (runs.empty()) runs.push_back({});
+        Run& now = runs.back();
+        if (j < r.changes() && near(j)) {
+            now = {row[j], 0, j + 1, 0};  // the controller's last move: it may be still from here on
+            continue;
+        }
+        if (!ends) continue;
+        now.to = j < r.changes() ? row[j] : r.samples();
+        now.last = j;
+        runs.push_back({});
+    }
+    return runs;
+}
+
+bool steps_inside(const CleanRecord& r, const Run& run) {
+    constexpr double kMove = 0.05;  // of u's range
+    constexpr int kAfter = 15;      // rows
+    const auto [low, high] = std::minmax_element(r.v_level.begin(), r.v_level.end());
+    const double range = std::max(*high, 0.0) - std::min(*low, 0.0);
+    for (int j = run.first; j < run.last; ++j) {
+        const auto row = std::lower_bound(r.t.begin(), r.t.end(), r.v_time[j]) - r.t.begin();
+        const double move = r.v_level[j] - (j > 0 ? r.v_level[j - 1] : 0);
+        if (std::abs(move) > kMove * range && run.to - row > kAfter) return true;
+    }
+    return false;
+}
+
+/// Of a stretch's length: times that were scaled and scaled back.
+constexpr double kRounding = 1e-9;
+
+Record between(const Record& record, double from, double to) {
+    Record part;
+    part.kind = record.kind;
+    part.u_limits = record.u_limits;
+    for (std::size_t i = 0; i < record.t.size(); ++i) {
+        if (!(record.t[i] >= from && record.t[i] <= to)) continue;
+        part.t.push_back(record.t[i]);
+        part.u.push_back(record.u[i]);
+        part.y.push_back(record.y[i]);
+        if (!record.line.empty()) part.line.push_back(record.line[i]);
+    }
+    return part;
+}
+
+bool has_feedback(const Record& record) {
+    const Expected<CleanRecord> clean = clean_record(record);
+    return clean && find_feedback(*clean).has_value();
+}
+
+}  // namespace
+
+std::optional<double> level_before_set_point(const CleanRecord& record, const std::vector<double>& r) {
+    const auto moved = std::ranges::find_if(r, [&](double value) { return value != r.front(); });
+    const auto n = static_cast<std::size_t>(moved - r.begin());
+    if (moved == r.end() || n < kRestRows || record.t[n - 1] <= record.t[0]) return std::nullopt;
+    std::vector<double> u = input_at_samples(record);
+    u.resize(n);
+    const std::span t(record.t.data(), n), y(record.y.data(), n);
+    if (moves_at_first(t, y) || moves_at_first(t, u)) return std::nullopt;
+    return record.scale.u_rest + record.scale.u_scale * mean(u);
+}
+
+std::optional<Stretch> manual_stretch(const CleanRecord& r) {
+    constexpr int kMin = 30;  // rows
+    std::optional<Run> longest;
+    for (const Run& run : quiet_runs(r)) {
+        const bool part = run.to - run.from < r.samples();
+        if (!part || run.to - run.from < kMin || !steps_inside(r, run)) continue;
+        if (!longest || run.to - run.from > longest->to - longest->from) longest = run;
+    }
+    if (!longest) return std::nullopt;
+    const auto time = [&](int row) { return r.scale.t_origin + r.scale.t_scale * r.t[static_cast<std::size_t>(row)]; };
+    return Stretch{time(longest->from), time(longest->to - 1), longest->from == 0};
+}
+
+Record rows_of(const Record& record, const Stretch& stretch) {
+    const double margin = kRounding * (stretch.to - stretch.from);
+    Record part = between(record, stretch.from - margin, stretch.to + margin);
+    if (stretch.whole_start) part.u0 = record.u0, part.y0 = record.y0;
+    return part;
+}
+
+bool feedback_outside(const Record& record, const Stretch& stretch) {
+    constexpr double kFar = std::numeric_limits<double>::infinity();
+    const double margin = kRounding * (stretch.to - stretch.from);
+    return has_feedback(between(record, -kFar, stretch.from - margin)) ||
+           has_feedback(between(record, stretch.to + margin, kFar));
+}
+
+}  // namespace tunewright

@@ -1,0 +1,34 @@
+// The parts of a loop's record: its rest before the set point moves, and the rows in which the controller was in
+// manual.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "engine/identification/record/clean_record.h"
+
+namespace tunewright {
+
+/// The mean of u, in the record's units, before the set point first moves: there the plant rests. Empty where fewer
+/// than five rows come before that, where y or u moves in them (record_kind.h), and where the set point never moves.
+/// `r` is the set point at the record's samples, or its moves, in any unit.
+std::optional<double> level_before_set_point(const CleanRecord& record, const std::vector<double>& r);
+
+/// First and last time, in the record's units.
+struct Stretch {
+    double from = 0, to = 0;
+    bool whole_start = false;  ///< it begins with the record
+};
+
+/// Of the rows in manual, where somebody stepped u or left it alone, the longest stretch: changes of u are ten rows
+/// apart and more in it, beside one in which they are not. It has 30 rows and more, and holds a move of u by a
+/// twentieth of u's range with 15 rows after it. Empty where there is none.
+std::optional<Stretch> manual_stretch(const CleanRecord& record);
+
+/// The rows of a stretch alone, without the set point, which in manual moves nothing.
+Record rows_of(const Record& record, const Stretch& stretch);
+
+/// Whether a controller moves u in the rows before the stretch, or in those after it.
+bool feedback_outside(const Record& record, const Stretch& stretch);
+
+}  // namespace tunewright

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 #include "engine/identification/fit/record_repair.h"
 #include "engine/identification/record/series.h"
@@ -116,24 +117,22 @@ CleanRecord changed_between_rows(CleanRecord record) {
 
 std::optional<CleanRecord> with_moves_between_rows(const CleanRecord& record, const Fit& fit,
                                                    const std::stop_token& stop) {
-    constexpr double kSmall = 0.25;  // of the dead time that is seen
+    constexpr double kSmall = 0.5;  // of the dead time that is seen
     const double row = usual_spacing(record);
     if (!(row > kSmall * acting_dead_time(fit.shape)) || !seen_at_rows(record, row)) return std::nullopt;
-    double open = row;
-    std::vector<double> early(record.v_time.size(), 0.5 * row);
-    if (early.size() > 1) {
-        MovesInRows moves(record, fit, row, stop);
-        if (moves.lie_apart())
-            open = moves.centre(early);
-        else if (moves.shown_on_rows())
-            return std::nullopt;
-    }
-    if (stop.stop_requested()) return std::nullopt;
     CleanRecord moved = record;
-    for (std::size_t j = 0; j < early.size(); ++j)
-        moved.v_time[j] = std::max(moved.v_time[j] - early[j], row_before(record, record.v_time[j]));
-    moved.moved_within = open;
-    return moved;
+    moved.moved_within = 2 * row;  // a row at most before the one that stands there
+    if (record.changes() < 2) return moved;
+    MovesInRows moves(record, fit, row, stop);
+    if (moves.lie_apart()) {
+        std::vector<double> early;
+        moved.moved_within = moves.centre(early);
+        for (std::size_t j = 0; j < early.size(); ++j)
+            moved.v_time[j] = std::max(moved.v_time[j] - early[j], row_before(record, record.v_time[j]));
+    } else if (moves.shown_on_rows()) {
+        return std::nullopt;
+    }
+    return stop.stop_requested() ? std::nullopt : std::optional(std::move(moved));
 }
 
 }  // namespace tunewright

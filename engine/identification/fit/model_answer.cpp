@@ -250,8 +250,8 @@ IdentifiedModel searched_model(ModelSearch search, const CleanRecord& recorded) 
     if (record.moved_within > 0) {
         model.data_quality.notes.push_back(
             "When u moved is known only to one row (" + text(usual_spacing(record) * record.scale.t_scale, 3) +
-            "), which is not small beside the dead time: u is taken to have moved before the row that shows it, and "
-            "the standard error of L holds that. Record faster around the step for a better L.");
+            "), which is not small beside the dead time: if somebody moved u between two rows, L is longer by up to "
+            "as much, and its standard error holds that. Record faster around the step for a better L.");
     }
     if (record.moved_between_rows) {
         model.data_quality.notes.emplace_back(

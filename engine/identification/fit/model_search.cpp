@@ -157,6 +157,10 @@ void try_between_rows(ModelSearch& search, ModelChoice model, const RunControl& 
 void allow_for_late_rows(ModelSearch& search, ModelChoice model, const RunControl& control) {
     const auto moved = with_moves_between_rows(search.context.record, search.chosen(), control.stop);
     if (!moved) return;
+    if (moved->v_time == search.context.record.v_time) {
+        search.context.record.moved_within = moved->moved_within;
+        return;
+    }
     RunControl quiet = control;  // the progress of a search that was done is not told again
     quiet.progress = {};
     ModelSearch other = fit_all(fit_context(*moved, search.context.relay, quiet), model, search.disturbances, quiet);

@@ -54,8 +54,8 @@ struct RecordFacts {
     int switches_placed = 0;  ///< a relay's switches that were put between rows (fit/record_repair.h)
     /// No change of u was recorded: each was put into the middle of the missing rows before it, so long at least.
     double moves_unseen = 0;
-    /// The rows show the changes of u late: each was put before its row, all may lie together anywhere within this
-    /// length (fit/between_rows.h).
+    /// The rows may show the changes of u late: together they may lie anywhere within this length about where they
+    /// stand (fit/between_rows.h).
     double moved_within = 0;
 };
 

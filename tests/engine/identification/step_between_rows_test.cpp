@@ -24,10 +24,15 @@ TEST(StepBetweenRows, ALoneMoveLeavesTheDeadTimeOpenByARow) {
     for (const double late : {1.0, 5.0, 9.0, 10.0}) {
         const IdentifiedModel model = recorded_slowly({{110 - late, 50}});
         const double error = model.standard_errors.at("L");
-        EXPECT_NEAR(error, kRow / std::sqrt(12.0), 0.3) << late;
+        EXPECT_NEAR(error, kRow / std::sqrt(3.0), 0.3) << late;
         EXPECT_NEAR(plant_as<Fopdt>(model).L, kDeadTime, 2 * error) << late;
         EXPECT_THAT(model.data_quality.notes, Contains(HasSubstr("known only to one row (10)"))) << late;
     }
+}
+
+TEST(StepBetweenRows, AMoveThatIsTakenToFallOnItsRowLeavesTheDeadTimeWhereItWas) {
+    Record record = simulate(even_times(80, kRow), 40, 60, {{110, 50}}, first_order(2, 60, kDeadTime));
+    EXPECT_NEAR(plant_as<Fopdt>(identified(record, ModelChoice::fopdt)).L, kDeadTime, 1e-3);
 }
 
 TEST(StepBetweenRows, MovesThatAllFallOnRowsAreTheRecordersOwn) {

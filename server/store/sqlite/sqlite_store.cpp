@@ -1,9 +1,5 @@
 #include "server/store/open_store.h"
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <unistd.h>
-
 #include <filesystem>
 #include <future>
 #include <limits>
@@ -13,6 +9,7 @@
 
 #include "server/clock.h"
 #include "server/store/sqlite/changes.h"
+#include "server/store/sqlite/file.h"
 #include "server/store/sqlite/reading.h"
 #include "server/store/sqlite/writer.h"
 
@@ -22,23 +19,11 @@ namespace {
 constexpr UnixMs kEver = std::numeric_limits<UnixMs>::max();
 constexpr const char* kPageCache = "PRAGMA cache_size = -16384";  // KiB; the default of 2 MiB thrashes in long queues
 
-/// Held while the file is open, so that two services never take each other's jobs.
-class FileLock {
-public:
-    explicit FileLock(const std::string& path) : fd_(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600)) {
-        if (fd_ < 0) throw StoreError({StoreFault::Kind::unavailable, "its lock file " + path + " cannot be created"});
-        if (::flock(fd_, LOCK_EX | LOCK_NB) != 0) {
-            ::close(fd_);
-            throw StoreError({StoreFault::Kind::unavailable, "another tunewright is using it"});
-        }
-    }
-    ~FileLock() { ::close(fd_); }
-    FileLock(const FileLock&) = delete;
-    FileLock& operator=(const FileLock&) = delete;
-
-private:
-    int fd_;
-};
+/// The file is locked.
+Connection open_file(const std::string& path) {
+    refuse_foreign_log(path);
+    return {path, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE};
+}
 
 void bring_up_to_date(SQLite::Database& database, SchemaSteps steps) {
     const SchemaState state = schema_state(database);
@@ -48,8 +33,7 @@ void bring_up_to_date(SQLite::Database& database, SchemaSteps steps) {
 
 class SqliteStore : public JobStore {
 public:
-    SqliteStore(const std::string& path, SchemaSteps steps)
-        : path_(path), lock_(path + ".lock"), connection_(path, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE) {
+    SqliteStore(const std::string& path, SchemaSteps steps) : path_(path), lock_(path), connection_(open_file(path)) {
         connection_.database().exec("PRAGMA journal_mode = WAL");
         // Debian's library writes zeros over each page that it frees, which is most of what deleting costs.
         connection_.database().exec("PRAGMA secure_delete = FAST");
@@ -279,21 +263,6 @@ void SqliteStore::reclaim(Reclaim what, Done<Recovery> done) {
 
 }  // namespace
 
-namespace {
-
-/// A file that is to be made needs its folder. More than one is perhaps a word that was mistyped, or a disk that is not
-/// mounted: an empty store there would look as if all jobs were gone.
-void make_folder(const std::string& path) {
-    const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
-    if (std::filesystem::exists(folder)) return;
-    if (!std::filesystem::exists(folder.parent_path()) || folder.parent_path() == folder.root_path())
-        throw StoreError({StoreFault::Kind::unavailable,
-                          "there is no folder " + folder.string() + "; make it, or correct the path"});
-    std::filesystem::create_directory(folder);
-}
-
-}  // namespace
-
 std::unique_ptr<JobStore> open_sqlite_store(const std::string& path, SchemaSteps steps) {
     return opening(path, [&] {
         make_folder(path);
@@ -304,8 +273,8 @@ std::unique_ptr<JobStore> open_sqlite_store(const std::string& path, SchemaSteps
 void migrate_sqlite(const std::string& path, bool compact, std::ostream& out) {
     opening(path, [&] {
         make_folder(path);
-        const FileLock lock(path + ".lock");
-        Connection connection(path, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+        const FileLock lock(path);
+        Connection connection = open_file(path);
         connection.database().exec("PRAGMA journal_mode = WAL");
         const SchemaState state = schema_state(connection.database());
         migrate(connection.database());

@@ -1,0 +1,63 @@
+#include "server/store/sqlite/file.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <array>
+#include <filesystem>
+#include <fstream>
+
+#include "server/store/fault.h"
+
+namespace tunewright::server {
+namespace {
+
+/// The file that a link leads to: SQLite keeps the log of changes there too.
+std::string file_behind(const std::string& path) { return std::filesystem::weakly_canonical(path).string(); }
+
+/// Whether the file's head says that there may be a log of changes beside it. True of a file that has no head yet.
+bool may_have_log(const std::string& path) {
+    constexpr std::streamoff write_version = 18, read_version = 19;
+    constexpr char with_log = 2;
+    std::array<char, read_version + 1> head{};
+    std::ifstream file(path, std::ios::binary);
+    if (!file.read(head.data(), head.size())) return true;
+    return head[write_version] == with_log && head[read_version] == with_log;
+}
+
+}  // namespace
+
+void make_folder(const std::string& path) {
+    const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+    if (std::filesystem::exists(folder)) return;
+    if (!std::filesystem::exists(folder.parent_path()) || folder.parent_path() == folder.root_path())
+        throw StoreError({StoreFault::Kind::unavailable,
+                          "there is no folder " + folder.string() + "; make it, or correct the path"});
+    std::filesystem::create_directory(folder);
+}
+
+void refuse_foreign_log(const std::string& path) {
+    const std::string file = file_behind(path), log = file + "-wal";
+    std::error_code none;
+    const auto size = std::filesystem::file_size(log, none);
+    // SQLite marks the file before it makes a log, and removes the log before it takes the mark away.
+    if (none || size == 0 || may_have_log(file)) return;
+    throw StoreError({StoreFault::Kind::unavailable, "the file is a copy that was put in its place, and " + log +
+                                                         " belongs to the file that was there before; remove it and " +
+                                                         file + "-shm, then start again"});
+}
+
+FileLock::FileLock(const std::string& path) {
+    const std::string lock = file_behind(path) + ".lock";
+    fd_ = ::open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+    if (fd_ < 0) throw StoreError({StoreFault::Kind::unavailable, "its lock file " + lock + " cannot be created"});
+    if (::flock(fd_, LOCK_EX | LOCK_NB) != 0) {
+        ::close(fd_);
+        throw StoreError({StoreFault::Kind::unavailable, "another tunewright is using it"});
+    }
+}
+
+FileLock::~FileLock() { ::close(fd_); }
+
+}  // namespace tunewright::server

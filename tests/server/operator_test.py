@@ -94,6 +94,15 @@ class OperatorTest(unittest.TestCase):
             self.assertIn(waiting.json["status"], ("queued", "running", "failed"))
             self.assertEqual(self.ended(job_id)["attempts"], attempts)
 
+    def test_a_cancelled_batch_that_had_ended_before_keeps_its_entries_fit_for_another_try(self):
+        lines = json.dumps(dict(LONG, timeout_s=0.05))
+        batch = self.service.call("POST", "/v1/batches", lines, {"Content-Type": "application/x-ndjson", **self.ann}).json
+        while self.service.get("/v1/batches/" + batch["id"], self.ann).json["status"] != "ended":
+            time.sleep(0.02)
+        self.assertFalse(self.service.call("POST", "/v1/batches/%s/cancel" % batch["id"], "", self.ann).json["cancel_requested"])
+        entry = self.service.get("/v1/jobs?batch=" + batch["id"], self.ann).json["jobs"][0]
+        self.assertEqual(self.service.call("POST", entry["links"]["requeue"], "", self.ann).status, 202)
+
     def test_what_succeeded_is_not_queued_again(self):
         job_id = self.post(QUICK, self.ann)
         self.assertNotIn("requeue", self.ended(job_id)["links"])

@@ -163,9 +163,12 @@ RemovedBatch remove_batch(Work& work, const std::string& id) {
 
 std::optional<std::int64_t> begin_cancel(Work& work, const std::string& id) {
     Session& session = work.session;
-    return one_number(
-        session.run("UPDATE batches SET cancel_requested = true WHERE id = $1 AND state <> 'leaving' RETURNING seq",
-                    Values().text(id)));
+    // One that has ended stays as it is: its failed entries may be queued again.
+    return one_number(session.run(
+        "UPDATE batches b SET cancel_requested = b.cancel_requested OR b.state <> 'sealed' OR "
+        "coalesce((SELECT sum(c.queued) + sum(c.running) FROM batch_counts c WHERE c.batch = b.seq), 0) > 0 "
+        "WHERE b.id = $1 AND b.state <> 'leaving' RETURNING b.seq",
+        Values().text(id)));
 }
 
 std::optional<std::int64_t> cancel_entries(Work& work, std::int64_t batch, std::int64_t from, UnixMs now) {

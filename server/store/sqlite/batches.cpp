@@ -146,8 +146,10 @@ RemovedBatch remove_batch(Connection& store, const std::string& id) {
 }
 
 std::optional<std::int64_t> begin_cancel(Connection& store, const std::string& id) {
-    Connection::Use row =
-        store.use("UPDATE batches SET cancel_requested = 1 WHERE id = ?1 AND state <> 'leaving' RETURNING seq");
+    // One that has ended stays as it is: its failed entries may be queued again.
+    Connection::Use row = store.use(
+        "UPDATE batches SET cancel_requested = cancel_requested OR state <> 'sealed' OR queued > 0 OR running > 0 "
+        "WHERE id = ?1 AND state <> 'leaving' RETURNING seq");
     if (!row.with(id).next()) return std::nullopt;
     return row.integer(0);
 }

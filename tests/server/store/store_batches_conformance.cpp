@@ -258,6 +258,21 @@ TEST_P(StoreConformance, CancellingABatchEndsWhatWaitsAndNamesWhatRuns) {
     EXPECT_THAT(cancel_batch("x").value(), testing::SizeIs(running->size())) << "once more does no harm";
 }
 
+TEST_P(StoreConformance, CancellingABatchThatHasEndedChangesNothing) {
+    open_batch("x");
+    add_waiting("x", 0, 1);
+    seal("x", "key");
+    claim();
+    finish("x-0", JobStatus::failed, "{}", R"({"type":"timeout"})");
+    EXPECT_THAT(cancel_batch("x"), testing::Optional(testing::IsEmpty()));
+    EXPECT_FALSE(batch("x").cancel_requested);
+    EXPECT_EQ(requeue("x-0"), RequeueEffect::requeued);
+    cancel_batch("x");
+    EXPECT_TRUE(batch("x").cancel_requested) << "it goes on";
+    cancel_batch("x");
+    EXPECT_TRUE(batch("x").cancel_requested) << "as it was when it ended";
+}
+
 TEST_P(StoreConformance, ACancelledBatchTakesNoMoreAndItsInterruptedEntriesAreNotQueuedAgain) {
     open_batch("x");
     add_waiting("x", 0, 3);

@@ -1,9 +1,11 @@
 #include "server/access/watched_file.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
@@ -14,7 +16,8 @@
 namespace tunewright::server {
 namespace {
 
-constexpr std::string_view kBlanks = " \t\r";  // a file may come from another system
+constexpr std::string_view kBlanks = " \t\r";                // a file may come from another system
+constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";  // which editors of that system put first
 constexpr std::size_t kMaxNameLength = 64;
 constexpr std::chrono::seconds kLookInterval{1};
 
@@ -45,6 +48,7 @@ bool is_key_name(std::string_view name) {
 
 std::vector<NamedLine> named_lines(std::string_view text) {
     std::vector<NamedLine> lines;
+    if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
     for (std::size_t number = 1; !text.empty(); number++) {
         const std::size_t end = text.find('\n');
         const std::string_view whole = text.substr(0, end);
@@ -94,10 +98,10 @@ WatchedFile::WatchedFile(std::string path, Meaning meaning, std::function<Clock:
 }
 
 std::optional<WatchedFile::Stamp> WatchedFile::stamp_of(const std::string& path) {
-    std::error_code error;
-    Stamp stamp{std::filesystem::last_write_time(path, error)};
-    if (!error) stamp.size = std::filesystem::file_size(path, error);
-    return error ? std::nullopt : std::optional(stamp);
+    struct stat state {};
+    if (::stat(path.c_str(), &state) != 0) return std::nullopt;
+    const auto nanoseconds = [](const timespec& time) { return time.tv_sec * 1'000'000'000LL + time.tv_nsec; };
+    return Stamp{state.st_dev, state.st_ino, state.st_size, nanoseconds(state.st_mtim), nanoseconds(state.st_ctim)};
 }
 
 void WatchedFile::look() {

@@ -6,9 +6,10 @@
 //   then it holds nothing.
 #pragma once
 
+#include <sys/types.h>
+
 #include <chrono>
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -59,10 +60,13 @@ public:
     const std::string& path() const { return path_; }
 
 private:
-    /// What tells one state of the file from another.
+    /// What tells one state of the file from another. A file that takes the place of another may have its size and the
+    /// time of its last change, but not its number nor, where the number is given anew, the time that nobody sets.
     struct Stamp {
-        std::filesystem::file_time_type modified;
-        std::uintmax_t size = 0;
+        dev_t device = 0;
+        ino_t number = 0;
+        off_t size = 0;
+        std::int64_t modified = 0, changed = 0;  ///< ns
         bool operator==(const Stamp&) const = default;
     };
 

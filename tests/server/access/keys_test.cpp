@@ -43,6 +43,28 @@ TEST_F(KeyRingTest, FollowsLinesThatAreAddedAndDeleted) {
     EXPECT_TRUE(admits("bob") && admits("eve") && ring_->usable());
 }
 
+TEST_F(KeyRingTest, AFileOfTheSameSizeAndTimeThatTakesItsPlaceIsReadAgain) {
+    const auto written = std::filesystem::last_write_time(path());
+    const std::string other = path() + ".new";
+    std::ofstream(other) << line("eve") + line("bob");
+    std::filesystem::last_write_time(other, written);
+    ASSERT_EQ(std::filesystem::file_size(other), std::filesystem::file_size(path()));
+    std::filesystem::rename(other, path());
+    later();
+    EXPECT_FALSE(admits("ann"));
+    EXPECT_TRUE(admits("eve") && admits("bob"));
+    write(line("bob") + line("ann"));
+    std::filesystem::last_write_time(path(), written);
+    later();
+    EXPECT_FALSE(admits("eve")) << "written over, in place";
+}
+
+TEST_F(KeyRingTest, AByteOrderMarkIsNoPartOfTheFirstName) {
+    write("\xef\xbb\xbf" + line("ann") + line("eve"));
+    later();
+    EXPECT_TRUE(admits("ann") && admits("eve") && ring_->usable());
+}
+
 TEST_F(KeyRingTest, AnEmptiedFileAdmitsNobody) {
     write("# nobody\n");
     later();

@@ -26,13 +26,28 @@ spdlog::level::level_enum level_of(const http::Answered& answered) {
     return probe ? spdlog::level::debug : spdlog::level::info;
 }
 
-/// What was asked for, in quotes. Whom a batch tells may have a secret in his address.
+bool is_word(std::string_view text) {
+    return !text.empty() && std::ranges::all_of(text, [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+    });
+}
+
+/// What was asked for, in quotes, with the names of the parameters alone: a value may be a secret, such as the address
+/// that a batch tells, also where the name before it is spelt in another way.
 std::string shown_target(std::string_view target) {
-    constexpr std::string_view secret = "notify_url=";
-    const std::size_t at = target.find(secret);
-    if (at == std::string_view::npos) return json_string(target);
-    const std::size_t from = at + secret.size(), to = std::min(target.find('&', from), target.size());
-    return json_string(std::string(target.substr(0, from)).append("...").append(target.substr(to)));
+    const std::size_t mark = std::min(target.find('?'), target.size());
+    std::string shown(target.substr(0, mark));
+    for (std::size_t at = mark; at < target.size();) {
+        const std::size_t end = std::min(target.find('&', at + 1), target.size());
+        const std::string_view parameter = target.substr(at + 1, end - at - 1);
+        const std::string_view name = parameter.substr(0, std::min(parameter.find('='), parameter.size()));
+        shown += at == mark ? '?' : '&';
+        // Without a value, it may be one.
+        if (name.size() < parameter.size() && is_word(name)) shown.append(name).append("=");
+        if (!parameter.empty()) shown += "...";
+        at = end;
+    }
+    return json_string(shown);
 }
 
 void log_message(spdlog::level::level_enum level, std::string_view message) {

@@ -149,6 +149,16 @@ class ToldTest(WebhookTest):
         self.assertIn("notify_url=...", service.read_log())
         self.assertNotIn("notify_url=http", service.read_log())
 
+    def test_no_value_of_a_query_is_in_the_log(self):
+        service = self.service("http://127.0.0.1:9")
+        for query in ("notify%5Furl=http://h/SECRET", "notify_url=x&notify_url=http://h/SECRET", "notify_url%3Dhttp://h/SECRET",
+                      "notify_url=http://h/x%3Fa=1&token=SECRET&SECRET", "Notify_url=SECRET", "x&SECRET=http://h/", "&&SECRET"):
+            service.post("/v1/batches?" + query.replace("SECRET=", "SEC%52ET="), "{}")
+        log = service.read_log()
+        self.assertNotIn("SECRET", log)
+        self.assertNotIn("SEC%52ET", log)
+        self.assertIn("/v1/batches?notify_url=...&token=...&... ", log.replace('"', " "))
+
     def test_a_low_priority_job_comes_after_normal_ones(self):
         receiver = self.receiver()
         service = self.service(receiver.origin)

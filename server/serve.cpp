@@ -37,6 +37,8 @@ constexpr std::size_t kWaitingComputations = 64;
 constexpr std::size_t kForOthers = 4;  // computations, for clients that have none while others fill the cores
 // Answers with a whole job that are made at the same time; each may take a hundred megabytes for some moments.
 constexpr std::size_t kReaders = 2, kWaitingReaders = 1024;
+// Of one client, and of one more: a shared store has four connections for all that is read.
+constexpr std::size_t kSearchers = 1;
 // Batches come and go without keeping others from being answered.
 constexpr std::size_t kBatchThreads = 2;
 constexpr int kBatchNiceness = 5;
@@ -91,6 +93,7 @@ public:
           jobs_(*store_, timer_, settings(config)),
           turns_(core_count(), std::max(core_count(), kForOthers), kWaitingComputations),
           readers_(std::max(kReaders, core_count()), kReaders, kWaitingReaders),
+          searchers_(kSearchers, kSearchers, kWaitingReaders),
           places_(places_of(limits(config))),
           batch_lane_(kBatchThreads, kBatchNiceness),
           batches_(*store_, jobs_, batch_lane_, [this] { return now(); }),
@@ -241,7 +244,8 @@ private:
 
     /// What a process that only computes does not answer.
     void add_public_routes() {
-        add_job_routes(router_, jobs_, places_, readers_, policy_, {config_.job_timeout_s, config_.max_timeout_s});
+        add_job_routes(router_, jobs_, places_, readers_, searchers_, policy_,
+                       {config_.job_timeout_s, config_.max_timeout_s});
         add_event_routes(router_, jobs_, places_);
         add_trace_routes(router_, jobs_, readers_);
         add_code_routes(router_, jobs_, readers_);
@@ -295,7 +299,7 @@ private:
     SpareCores spare_cores_;
     JobService jobs_;
     Turns turns_;
-    Turns readers_;
+    Turns readers_, searchers_;
     Places places_;
     Executor batch_lane_;
     Batches batches_;

@@ -195,13 +195,15 @@ api::Problem read_query(const http::Request& request, JobQuery& query) {
     return problem;
 }
 
-Response list_jobs(JobService& jobs, const Call& call) {
+Response list_jobs(JobService& jobs, Turns& searchers, const Call& call) {
     if (auto refusal = refuse_form(call.request)) return *std::move(refusal);
     JobQuery query;
     query.owner = visible_owner(call.request);
     const api::Problem problem = read_query(call.request, query);
     if (!problem.errors.empty()) return http::problem_response(problem);
-    return guarded([&] { return http::json_response(job_page_json(jobs.list(query), query, call.request.admin)); });
+    const auto list = [&] { return http::json_response(job_page_json(jobs.list(query), query, call.request.admin)); };
+    // A text is looked for in all jobs that are kept, which may take seconds.
+    return query.text ? in_turn(searchers, call.request, list) : guarded(list);
 }
 
 Response cancel_job(JobService& jobs, Turns& readers, const Call& call) {
@@ -272,12 +274,12 @@ Response delete_job(JobService& jobs, const Call& call) {
 
 }  // namespace
 
-void add_job_routes(http::Router& router, JobService& jobs, Places& places, Turns& readers, NotifyPolicy& policy,
-                    const api::JobLimits& limits) {
+void add_job_routes(http::Router& router, JobService& jobs, Places& places, Turns& readers, Turns& searchers,
+                    NotifyPolicy& policy, const api::JobLimits& limits) {
     router.add("POST", "/v1/jobs", [&jobs, &places, &readers, &policy, limits](const Call& call) {
         return post_job(jobs, places, readers, policy, limits, call);
     });
-    router.add("GET", "/v1/jobs", [&](const Call& call) { return list_jobs(jobs, call); });
+    router.add("GET", "/v1/jobs", [&](const Call& call) { return list_jobs(jobs, searchers, call); });
     router.add("GET", "/v1/jobs/{id}", [&](const Call& call) { return get_job(jobs, readers, call); });
     router.add("DELETE", "/v1/jobs/{id}", [&](const Call& call) { return delete_job(jobs, call); });
     router.add("POST", "/v1/jobs/{id}/cancel", [&](const Call& call) { return cancel_job(jobs, readers, call); });

@@ -19,9 +19,10 @@
 namespace tunewright::server {
 
 /// /v1/jobs and what is below it. Who waits for a job takes one of `places`; whom a job may tell of its end, `policy`
-/// says. Here and below, what answers with a job as a whole takes one of the turns of `readers`.
-void add_job_routes(http::Router& router, JobService& jobs, Places& places, Turns& readers, NotifyPolicy& policy,
-                    const api::JobLimits& limits);
+/// says. Here and below, what answers with a job as a whole takes one of the turns of `readers`; a list that looks for
+/// a text, one of `searchers`.
+void add_job_routes(http::Router& router, JobService& jobs, Places& places, Turns& readers, Turns& searchers,
+                    NotifyPolicy& policy, const api::JobLimits& limits);
 
 /// /v1/jobs/{id}/events: progress as server-sent events.
 void add_event_routes(http::Router& router, JobService& jobs, Places& places);

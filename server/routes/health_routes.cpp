@@ -11,7 +11,8 @@ using http::Response;
 Response ready(const JobService& jobs, const JobStore& store, Gate& gate) {
     if (jobs.draining()) return http::problem_response(503, "The service is being stopped.");
     if (!store.healthy())
-        return http::problem_response(503, "The store could not be written to when it was last tried.");
+        return http::problem_response(
+            503, "The store could not be written to when it was last tried, or it does not answer.");
     if (!gate.ready())
         return http::problem_response(503, "The file of keys cannot be used, so nobody is admitted; the log says why.");
     return http::json_response(R"({"status":"ready"})");

@@ -16,14 +16,17 @@ namespace tunewright::server {
 namespace postgres {
 namespace {
 
+/// Of what is quickly done where all is well.
+constexpr std::chrono::seconds kSilence{5};
+
 class PostgresStore : public JobStore {
 public:
     PostgresStore(const Address& address, const std::string& tag)
-        : readers_(address),
+        : readers_(address, watch_),
           listener_(address.pooled() ? nullptr : std::make_unique<Listener>(address, tag)),
-          writer_(address, address.pooled() ? "" : tag),
-          results_(address, address.pooled() ? "" : tag),
-          bulk_(address, address.pooled() ? "" : tag) {
+          writer_(address, address.pooled() ? "" : tag, watch_),
+          results_(address, address.pooled() ? "" : tag, watch_),
+          bulk_(address, address.pooled() ? "" : tag, watch_) {
         PostgresStore::depth();  // its clock is known from the start
     }
 
@@ -31,7 +34,9 @@ public:
     void watch(std::function<void(const StoreNotice&)> notify) override {
         if (listener_) listener_->watch(std::move(notify));
     }
-    bool healthy() const override { return writer_.healthy() && results_.healthy() && bulk_.healthy(); }
+    bool healthy() const override {
+        return writer_.healthy() && results_.healthy() && bulk_.healthy() && writer_.silence() < kSilence;
+    }
 
     Recovery recover(UnixMs now, int attempts, const std::string& error) override {
         std::promise<Outcome<Recovery>> promise;
@@ -190,6 +195,7 @@ private:
         (manner == kBulky ? bulk_ : writer_).change(std::move(change));
     }
 
+    Watch watch_;
     Readers readers_;
     std::atomic<UnixMs> ahead_ = 0;       ///< the database's clock, before ours; measured with each count
     std::unique_ptr<Listener> listener_;  ///< nothing behind a pooler

@@ -31,7 +31,7 @@ std::unique_ptr<Session> Readers::open() {
     }
     std::this_thread::sleep_until(earliest);
     try {
-        return std::make_unique<Session>(address_);
+        return std::make_unique<Session>(address_, watch_.line());
     } catch (const Failure&) {
         const std::lock_guard lock(mutex_);
         next_try_ = std::chrono::steady_clock::now() + kPause;

@@ -15,7 +15,7 @@ namespace tunewright::server::postgres {
 
 class Readers {
 public:
-    explicit Readers(Address address) : address_(std::move(address)) {}
+    Readers(Address address, Watch& watch) : address_(std::move(address)), watch_(watch) {}
 
     /// What `work` finds. A connection that turns out to be lost is replaced once. Throws StoreError.
     template <class Work>
@@ -67,6 +67,7 @@ private:
     void leave();
 
     Address address_;
+    Watch& watch_;
     std::mutex mutex_;
     std::condition_variable left_;
     std::size_t busy_ = 0;

@@ -147,11 +147,16 @@ Values& Values::real(double value) {
     return plain(error == std::errc{} ? std::string(digits, end) : "NaN");
 }
 
-Session::Session(const Address& address) : pooled_(address.pooled()), link_(connect(address)) {}
+Session::Session(const Address& address, std::shared_ptr<Line> line)
+    : pooled_(address.pooled()), link_(connect(address)), line_(std::move(line)) {}
 Session::~Session() = default;
 
 template <class Work>
 pqxx::result Session::guarded(Work work) {
+    if (line_) line_->asked(link_->connection.sock());
+    const std::shared_ptr<void> answered(nullptr, [this](void*) {
+        if (line_) line_->answered();
+    });
     try {
         pqxx::nontransaction on(link_->connection);
         return work(on);

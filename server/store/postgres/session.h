@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "server/store/postgres/watch.h"
 #include "server/store/store.h"
 
 namespace tunewright::server::postgres {
@@ -79,8 +80,9 @@ std::unique_ptr<Link> connect(const Address& address);
 
 class Session {
 public:
-    /// Throws Failure.
-    explicit Session(const Address& address);
+    /// `line` is told of what is asked and answered; nothing where answers may take as long as they will. Throws
+    /// Failure.
+    explicit Session(const Address& address, std::shared_ptr<Line> line = nullptr);
     ~Session();
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
@@ -111,6 +113,7 @@ private:
     bool pooled_;
     bool open_ = false;  ///< a transaction is
     std::unique_ptr<Link> link_;
+    std::shared_ptr<Line> line_;
     std::map<std::string, std::string> names_;  ///< of the prepared statements, by their text
 };
 

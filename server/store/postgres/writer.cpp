@@ -110,8 +110,8 @@ void one_by_one(std::vector<T>& from, std::vector<T> Group::*place, Each each) {
 
 }  // namespace
 
-Writer::Writer(Address address, std::string tag)
-    : address_(std::move(address)), tag_(std::move(tag)), thread_([this] { work(); }) {}
+Writer::Writer(Address address, std::string tag, Watch& watch)
+    : address_(std::move(address)), tag_(std::move(tag)), line_(watch.line()), thread_([this] { work(); }) {}
 
 Writer::~Writer() {
     {
@@ -275,7 +275,7 @@ std::optional<Failure> Writer::try_once(Group& group) {
 bool Writer::connect() {
     if (Clock::now() < next_try_) return false;
     try {
-        auto session = std::make_unique<Session>(address_);
+        auto session = std::make_unique<Session>(address_, line_);
         life_ = server_life(*session);
         session_ = std::move(session);
         if (pause_.count() > 0) log_info("the store is connected to " + address_.shown() + " again");

@@ -54,7 +54,7 @@ struct Group {
 class Writer {
 public:
     /// Connects by itself. `tag` "": other processes are told nothing.
-    Writer(Address address, std::string tag);
+    Writer(Address address, std::string tag, Watch& watch);
     /// Does what was asked for, as far as the database is there, then joins.
     ~Writer();
     Writer(const Writer&) = delete;
@@ -67,6 +67,8 @@ public:
     void change(OtherChange change);
 
     bool healthy() const { return healthy_; }
+    /// How long the server has owed an answer.
+    std::chrono::milliseconds silence() const { return line_->silence(); }
 
 private:
     using Clock = std::chrono::steady_clock;
@@ -87,6 +89,7 @@ private:
 
     Address address_;
     std::string tag_;
+    const std::shared_ptr<Line> line_;
     std::unique_ptr<Session> session_;
     std::string life_;  ///< server_life() that the session saw
     Clock::time_point next_try_{};

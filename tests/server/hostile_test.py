@@ -7,6 +7,7 @@ import os
 import re
 import resource
 import socket
+import subprocess
 import threading
 import time
 import unittest
@@ -236,6 +237,40 @@ class ManyAtOnceTest(unittest.TestCase):
             self.assertEqual(service.stop(), 0)
             self.assertLess(time.monotonic() - started, 15)
             connection.close()
+
+
+class FewThreads(Service):
+    """A service whose user may have so many threads."""
+
+    AS_ANOTHER = ["setpriv", "--reuid", "54321", "--regid", "54321", "--clear-groups"]
+
+    def start(self):
+        os.chmod(self.folder.name, 0o777)
+        super().start()
+
+    def command(self):
+        return [*self.AS_ANOTHER, "prlimit", "--nproc=100", *super().command()]
+
+    @classmethod
+    def possible(cls):
+        try:
+            return os.getuid() == 0 and subprocess.run([*cls.AS_ANOTHER, "test", "-x", BINARY]).returncode == 0
+        except OSError:
+            return False
+
+
+@unittest.skipUnless(FewThreads.possible(), "only root can be another user, who can run the binary")
+class FewThreadsTest(unittest.TestCase):
+    def test_an_idle_connection_gives_way_where_there_are_no_more_threads(self):
+        with FewThreads("--workers", "1") as service:
+            idle = []
+            for _ in range(150):
+                idle.append(socket.create_connection(("127.0.0.1", service.port), timeout=20))
+                self.addCleanup(idle[-1].close)
+                idle[-1].sendall(b"GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n")
+                self.assertIn(b" 200 OK", idle[-1].recv(4096))
+            for _ in range(10):
+                self.assertEqual(service.call("GET", "/healthz", timeout=10).status, 200)
 
 
 class MadeUpCallsTest(unittest.TestCase):

@@ -64,13 +64,15 @@ class Service:
 
     def start(self):
         self.log = open(os.path.join(self.folder.name, "log"), "ab")
-        self.process = subprocess.Popen(
-            [BINARY, "serve", "--listen", "127.0.0.1:0", "--store", self.store, *self.arguments],
-            stdout=subprocess.PIPE, stderr=self.log, env={**os.environ, **self.environment})
+        self.process = subprocess.Popen(self.command(), stdout=subprocess.PIPE, stderr=self.log,
+                                        env={**os.environ, **self.environment})
         self.ready_line = self.process.stdout.readline().decode()
         if " is ready at http://127.0.0.1:" not in self.ready_line:
             raise AssertionError("no ready line but %r; log: %s" % (self.ready_line, self.read_log()))
         self.port = int(self.ready_line.rsplit(":", 1)[1].strip().rstrip("/"))
+
+    def command(self):
+        return [BINARY, "serve", "--listen", "127.0.0.1:0", "--store", self.store, *self.arguments]
 
     def read_log(self):
         """What the service has logged; it gathers lines for some milliseconds before it writes them."""

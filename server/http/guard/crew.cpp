@@ -29,17 +29,18 @@ bool Crew::stop_within(std::chrono::milliseconds patience) {
     return left_.wait_for(lock, patience, [this] { return threads_ == 0; });
 }
 
-void Crew::post(std::function<void()> task) {
+bool Crew::post(std::function<void()> task) {
     const std::lock_guard lock(mutex_);
     tasks_.push_back(std::move(task));
-    if (idle_ >= tasks_.size()) return posted_.notify_one();
-    if (threads_ == most_) return;
+    if (idle_ >= tasks_.size()) return posted_.notify_one(), true;
+    if (threads_ == most_) return true;
     try {
         std::thread([this] { work(); }).detach();
         threads_++;
+        return true;
     } catch (const std::system_error&) {
-        // The system gives no more threads: those that there are do it, if there is one.
         if (threads_ == 0) throw;
+        return false;
     }
 }
 

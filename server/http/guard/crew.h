@@ -19,8 +19,9 @@ public:
     /// Ends the threads when they have done what was posted; false where that takes longer.
     bool stop_within(std::chrono::milliseconds patience);
 
-    /// Runs the task on a thread of its own, or when one of `most` is free. What it throws is logged.
-    void post(std::function<void()> task);
+    /// Runs the task on a thread of its own, or when one of `most` is free. What it throws is logged. False where the
+    /// system gives no more threads, so that it waits for one of those that there are.
+    bool post(std::function<void()> task);
 
 private:
     void work();

@@ -57,10 +57,7 @@ bool is_loopback(const std::string& address) {
 class Server::Guard::Queue : public httplib::TaskQueue {
 public:
     explicit Queue(Guard& guard) : guard_(guard) {}
-    void enqueue(std::function<void()> task) override {
-        guard_.expect_one();
-        guard_.crew_.post(std::move(task));
-    }
+    void enqueue(std::function<void()> task) override { guard_.expect_one(std::move(task)); }
     void shutdown() override {}
 
 private:
@@ -162,15 +159,21 @@ void Server::Guard::finish_under_way() {
 // ---- connections come and go ----
 
 /// Another connection is to be served. Where there are as many as there may be, one of whoever has the most gives way.
-void Server::Guard::expect_one() {
+void Server::Guard::expect_one(std::function<void()> task) {
+    {
+        const std::lock_guard lock(mutex_);
+        connections_++;
+    }
+    const bool has_thread = crew_.post(std::move(task));
     const std::lock_guard lock(mutex_);
-    connections_++;
+    starved_ = !has_thread;
     thin_out();
 }
 
 /// Under the lock. Who has the most is known when every thread has a connection.
 void Server::Guard::thin_out() {
-    if (connections_ - leaving_ <= limits_.connections || served_ < limits_.connections) return;
+    const std::size_t most = starved_ ? served_ : limits_.connections;
+    if (neighbours_.empty() || connections_ - leaving_ <= most || served_ < most) return;
     make_room(std::ranges::max_element(neighbours_, {}, [](const auto& item) { return item.second.size(); })->second);
 }
 

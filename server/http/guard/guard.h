@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <set>
@@ -34,7 +35,7 @@ private:
     /// Called by the library for each socket that it accepts; on a thread of the crew.
     bool process_and_close_socket(socket_t socket) override;
 
-    void expect_one();
+    void expect_one(std::function<void()> task);
     void thin_out();
     bool enter(Connection& connection);
     void leave(Connection& connection);
@@ -57,6 +58,7 @@ private:
     std::size_t connections_ = 0;                                ///< accepted, whether they have a thread yet or not
     std::size_t served_ = 0;                                     ///< of these: have a thread
     std::size_t leaving_ = 0;                                    ///< and of those: give way, and have not left yet
+    bool starved_ = false;                                       ///< the system had no thread for who came last
     Crew crew_;                                                  ///< last: its threads use all of the above
 };
 

@@ -200,6 +200,12 @@ class ComposeTest(unittest.TestCase):
         known = re.findall(r"^\s*server (\S+):8080 ", (DEPLOY / "nginx" / "nginx.conf").read_text(), re.M)
         self.assertEqual(known, replicas)
 
+    def test_a_replica_may_have_a_thread_for_each_connection(self):
+        limits = (ROOT / "server" / "http" / "guard" / "server.h").read_text()
+        connections = int(re.search(r"connections = (\d+);", limits).group(1))
+        for name in ("tunewright-1", "tunewright-2", "tunewright-3"):
+            self.assertGreaterEqual(self.services[name]["pids_limit"], connections + 100)
+
 
 class NginxConfiguration:
     """deploy/nginx/nginx.conf with the places of this test in it, and nothing else changed."""

@@ -309,6 +309,19 @@ class NginxTest(unittest.TestCase):
         self.assertEqual([row["name"] for row in rows], ["loop %d" % i for i in range(3000)])
         self.assertEqual({row["status"] for row in rows}, {"succeeded"})
 
+    def test_rows_that_come_as_their_jobs_end_are_waited_for_and_no_query_is_logged(self):
+        dumped = subprocess.run([*self.command, "-T"], capture_output=True, text=True).stdout
+        place = re.search(r"location ~ (\S+) \{\s+proxy_read_timeout 1d;", dumped).group(1)
+        self.assertRegex("/v1/batches/x/results", place)
+        self.assertNotRegex("/v1/batches", place)
+        self.call("GET", "/v1/batches/none/results?follow=true&secret=hidden")
+        log = pathlib.Path(self.configuration.path.parent, "access.log")
+        end = time.monotonic() + 20
+        while '"GET /v1/batches/none/results HTTP/1.1" 422' not in log.read_text():
+            self.assertLess(time.monotonic(), end, log.read_text()[-2000:])
+            time.sleep(0.05)
+        self.assertNotIn("hidden", log.read_text())
+
     def test_events_come_as_they_happen(self):
         slow = {"plant": {"type": "sopdt", "K": 1, "T1": 10, "T2": 4, "L": 3},
                 "tune": [{"method": "robust", "search": "grid", "surface": True} for _ in range(4)]}

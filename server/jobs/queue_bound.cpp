@@ -45,6 +45,12 @@ bool QueueBound::reserve_entries(std::size_t count) {
     return true;
 }
 
+void QueueBound::paused(bool paused) {
+    const std::lock_guard lock(mutex_);
+    waiting_.paused = paused;
+    changes_++;
+}
+
 void QueueBound::refresh(JobQueue& queue) {
     for (int i = 0; i < kTries; i++) {
         std::uint64_t before = 0;

@@ -22,6 +22,8 @@ public:
     void gone(std::size_t singles, std::size_t entries = 0);
     /// Counts so many entries as waiting where there is room for them; else changes nothing.
     bool reserve_entries(std::size_t count);
+    /// So it is now, whatever the store said when it was last asked.
+    void paused(bool paused);
     /// Asks the store. Throws StoreError.
     void refresh(JobQueue& queue);
 

@@ -156,6 +156,7 @@ void JobService::requeue(const std::string& id, Done<RequeueEffect> done) {
 
 void JobService::pause(bool paused, Done<bool> done) {
     store_.pause(paused, [this, paused, done = std::move(done)](Outcome<bool> outcome) {
+        if (std::holds_alternative<bool>(outcome)) depth_.paused(paused);
         done(outcome);
         if (!paused) claims_.arrived();
         look_again();

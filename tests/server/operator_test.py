@@ -82,6 +82,11 @@ class OperatorTest(unittest.TestCase):
         self.assertEqual(self.service.call("POST", "/v1/queue/resume", "", self.boss).json, {"paused": False})
         self.assertEqual(self.ended(job_id)["status"], "succeeded")
 
+    def test_the_queue_says_at_once_whether_it_is_paused(self):
+        for word, paused in (("pause", True), ("resume", False)) * 3:
+            self.service.call("POST", "/v1/queue/" + word, "", self.boss)
+            self.assertEqual(self.service.get("/v1/queue", self.boss).json["paused"], paused)
+
     def test_a_job_that_failed_is_queued_again_by_its_owner_or_by_him(self):
         job_id = self.post(dict(LONG, timeout_s=0.05), self.ann)
         failed = self.ended(job_id)

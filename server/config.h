@@ -49,6 +49,8 @@ struct Config {
     std::vector<std::string> allowed_hosts;  ///< names that it answers to, beside its address
     std::vector<std::string> cors_origins;
     bool behind_proxy = false;
+
+    std::vector<std::string> remarks;  ///< on how all this was given, for the log
 };
 
 struct HostPort {

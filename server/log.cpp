@@ -84,6 +84,8 @@ std::size_t dropped_log_lines() { return sink ? sink->dropped() : 0; }
 
 void log_info(std::string_view message) { log_message(spdlog::level::info, message); }
 
+void log_warning(std::string_view message) { log_message(spdlog::level::warn, message); }
+
 void log_error(std::string_view message) { log_message(spdlog::level::err, message); }
 
 void log_answer(const http::Answered& answered) {

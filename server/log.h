@@ -23,6 +23,8 @@ std::size_t dropped_log_lines();
 
 /// What happens to the service itself, in one line; the line breaks of a text log are not escaped.
 void log_info(std::string_view message);
+/// The same for what may be a mistake of whoever started it.
+void log_warning(std::string_view message);
 /// The same for what its operator has to look after.
 void log_error(std::string_view message);
 /// One answered request: at the level warn where the status is 500 or more, debug for probes (/healthz, /readyz,

@@ -348,6 +348,7 @@ int serve(const Config& config) {
     } catch (const std::invalid_argument& error) {
         return failed(kBadConfiguration, error.what());
     }
+    for (const std::string& remark : config.remarks) log_warning(remark);
     std::signal(SIGPIPE, SIG_IGN);  // a receiver or a client that goes is an error of one write
     raise_file_limit();
     keep_small_memory();

@@ -42,6 +42,10 @@ private:
 /// Each option of a service and of an operator's command has a variable of the same name: --max-body is
 /// TUNEWRIGHT_MAX_BODY.
 std::string variable_of(const std::string& name);
+/// A sentence for each variable of `environment` ("NAME=VALUE") that begins as those do and is none of `known`.
+/// Kubernetes' variables about a service of that name are left out.
+std::vector<std::string> strange_variables(const std::vector<std::string>& environment,
+                                           const std::vector<std::string>& known);
 
 template <class T>
 CLI::Option* option(CLI::App& app, const std::string& name, T& value, const std::string& help) {

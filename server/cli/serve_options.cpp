@@ -1,5 +1,6 @@
 // `tunewright serve` with its options.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <charconv>
 #include <stdexcept>
@@ -125,11 +126,25 @@ void add_port_options(CLI::App& app, Config& config) {
     flag(app, "behind-proxy", config.behind_proxy, "A client is the last address of X-Forwarded-For");
 }
 
+std::vector<std::string> environment() {
+    std::vector<std::string> variables;
+    for (char** each = environ; *each != nullptr; each++) variables.emplace_back(*each);
+    return variables;
+}
+
+std::vector<std::string> variables_of(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::Option* each : app.get_options())
+        if (!each->get_envname().empty()) names.push_back(each->get_envname());
+    return names;
+}
+
 }  // namespace
 
 void add_serve_command(CommandTree& tree) {
     Config& config = tree.keep<Config>();
     CLI::App& app = tree.add("serve", "Answer over HTTP until SIGTERM or Ctrl-C", [&config] { return serve(config); });
+    app.callback([&app, &config] { config.remarks = strange_variables(environment(), variables_of(app)); });
     add_process_options(app, config);
     add_job_options(app, config);
     add_notify_options(app, config);

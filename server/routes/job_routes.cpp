@@ -101,11 +101,22 @@ Submitted submit(JobService& jobs, Order order) {
     return std::move(*made);
 }
 
+std::optional<Response> refuse_parameters(const http::Request& request) {
+    api::Problem problem = bad_parameters("call");
+    for (const auto& [name, value] : request.query)
+        refuse_parameter(problem, name, value,
+                         "this call has no parameters: what the job is to do stands in its body, and how long to wait "
+                         "for it in the field Prefer.");
+    if (problem.errors.empty()) return std::nullopt;
+    return http::problem_response(problem);
+}
+
 Response post_job(JobService& jobs, Places& places, Turns& readers, NotifyPolicy& policy, const api::JobLimits& limits,
                   const Call& call) {
     if (auto refusal = refuse_call(call.request)) return *std::move(refusal);
     const std::string key(call.request.header("Idempotency-Key"));
     if (auto refusal = refuse_key(key)) return *std::move(refusal);
+    if (auto refusal = refuse_parameters(call.request)) return *std::move(refusal);
     auto prepared = api::prepare_job(call.request.body, limits);
     if (const auto* problem = std::get_if<api::Problem>(&prepared)) return http::problem_response(*problem);
 

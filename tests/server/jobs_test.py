@@ -213,6 +213,9 @@ class ListTest(unittest.TestCase):
         self.assertEqual(answer.status, 422)
         self.assertEqual({error["pointer"] for error in answer.json["errors"]},
                          {"/status", "/limit", "/cursor", "/colour"})
+        answer = self.service.post("/v1/jobs?Ms=1.2&wait=5", QUICK)
+        self.assertEqual(answer.status, 422)
+        self.assertEqual({error["pointer"] for error in answer.json["errors"]}, {"/Ms", "/wait"})
 
 
 class QueueTest(unittest.TestCase):

@@ -198,6 +198,18 @@ class CommandLineTest(unittest.TestCase):
             self.assertEqual(done.returncode, 2)
             self.assertIn("nowhere", done.stderr)
 
+    def test_a_variable_that_is_no_setting_is_told_with_the_nearest_one(self):
+        strange = {"TUNEWRIGHT_RETENTON": "30d", "TUNEWRIGHT_NOTHING_AT_ALL": "1", "TUNEWRIGHT_WORKERS": "1",
+                   "TUNEWRIGHT_SERVICE_HOST": "10.0.0.1", "TUNEWRIGHT_PORT": "tcp://10.0.0.1:80",
+                   "TUNEWRIGHT_PORT_80_TCP_ADDR": "10.0.0.1"}
+        with Service(environment=strange) as service:
+            log = service.read_log()
+        self.assertIn("the variable TUNEWRIGHT_RETENTON is set, and there is no such setting. Did you mean "
+                      "TUNEWRIGHT_RETENTION?", log)
+        self.assertIn("TUNEWRIGHT_NOTHING_AT_ALL is set, and there is no such setting. `tunewright serve --help`", log)
+        for known in ("WORKERS", "SERVICE_HOST", "PORT", "PORT_80_TCP_ADDR"):
+            self.assertNotIn("TUNEWRIGHT_%s is set" % known, log)
+
     def test_a_variable_of_an_option_that_may_be_repeated_is_a_list(self):
         hosts = {"TUNEWRIGHT_ALLOWED_HOST": "a.example,b.example"}
         with Service(environment=hosts) as service:

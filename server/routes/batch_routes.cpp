@@ -203,9 +203,10 @@ std::optional<Response> read_results_question(const http::Request& request, Resu
         }
     }
     if (!problem.errors.empty()) return http::problem_response(problem);
-    const bool ndjson = http::accepts(request, "application/x-ndjson"), csv = http::accepts(request, "text/csv");
-    question.csv = format.empty() ? !ndjson : format == "csv";
-    if (format.empty() && !ndjson && !csv)
+    const double ndjson = http::preference(request, "application/x-ndjson");
+    const double csv = http::preference(request, "text/csv");
+    question.csv = format.empty() ? csv > ndjson : format == "csv";
+    if (format.empty() && ndjson == 0 && csv == 0)
         return problem_response(406,
                                 "The results are application/x-ndjson or text/csv, neither of which the Accept field "
                                 "allows.");

@@ -86,7 +86,7 @@ std::string gzip(std::string_view text, int level) {
 }
 
 bool accepts_gzip(const Request& request) {
-    const std::string_view list = request.header("Accept-Encoding");
+    const std::string list = list_of(request, "Accept-Encoding");
     const double gzip = quality(list, "gzip").value_or(0);
     return gzip > 0 && gzip >= quality(list, "identity").value_or(0);
 }

@@ -40,11 +40,13 @@ std::string_view without_weakness(std::string_view tag) {
     return tag;
 }
 
-bool has_zero_quality(const std::vector<std::string_view>& parameters) {
-    return std::ranges::any_of(parameters, [](std::string_view parameter) {
-        const std::string text = lower_case(parameter);
-        return text.starts_with("q=0") && text.find_first_not_of("0.", 2) == std::string::npos;
-    });
+/// The weight that the list gives to the name itself.
+std::optional<double> said_of(std::string_view list, std::string_view name) {
+    for (const std::string_view item : split(list, ',')) {
+        const auto parts = split(item, ';');
+        if (lower_case(parts.front()) == name) return weight(parts);
+    }
+    return std::nullopt;
 }
 
 }  // namespace
@@ -56,25 +58,27 @@ std::string lower_case(std::string_view text) {
     return out;
 }
 
-bool accepts(const Request& request, std::string_view type) {
-    const std::string_view accept = request.header("Accept");
-    if (accept.empty()) return true;
-    const std::string family = std::string(type.substr(0, type.find('/'))) + "/*";
-    return std::ranges::any_of(split(accept, ','), [&](std::string_view range) {
-        const auto parts = split(range, ';');
-        const std::string name = lower_case(parts.front());
-        return (name == "*/*" || name == family || name == type) && !has_zero_quality(parts);
-    });
+std::string list_of(const Request& request, std::string_view name) {
+    std::string list;
+    const auto [first, last] = request.headers.equal_range(name);
+    for (auto field = first; field != last; ++field) list.append(list.empty() ? "" : ",").append(field->second);
+    return list;
 }
 
+double preference(const Request& request, std::string_view type) {
+    const std::string accept = list_of(request, "Accept");
+    if (accept.empty()) return 1;
+    const std::string family = std::string(type.substr(0, type.find('/'))) + "/*";
+    for (const std::string_view range : {type, std::string_view(family), std::string_view("*/*")})
+        if (const auto said = said_of(accept, range)) return *said;
+    return 0;
+}
+
+bool accepts(const Request& request, std::string_view type) { return preference(request, type) > 0; }
+
 std::optional<double> quality(std::string_view list, std::string_view name) {
-    std::optional<double> of_rest;
-    for (const std::string_view item : split(list, ',')) {
-        const auto parts = split(item, ';');
-        if (lower_case(parts.front()) == name) return weight(parts);
-        if (parts.front() == "*") of_rest = weight(parts);
-    }
-    return of_rest;
+    const std::optional<double> said = said_of(list, name);
+    return said ? said : said_of(list, "*");
 }
 
 std::string media_type(const Request& request) {
@@ -119,7 +123,8 @@ std::string entity_tag(std::string_view body) { return '"' + text_sum(body) + '"
 
 bool matches_entity_tag(const Request& request, const std::string& tag) {
     if (!request.has_header("If-Match")) return true;
-    const auto tags = split(request.header("If-Match"), ',');
+    const std::string list = list_of(request, "If-Match");
+    const auto tags = split(list, ',');
     return std::ranges::any_of(tags, [&](std::string_view candidate) {
         return candidate == "*" || without_weakness(candidate) == without_weakness(tag);
     });
@@ -127,7 +132,8 @@ bool matches_entity_tag(const Request& request, const std::string& tag) {
 
 void apply_entity_tag(const Request& request, Response& response, const std::string& tag) {
     response.set("ETag", tag);
-    const auto tags = split(request.header("If-None-Match"), ',');
+    const std::string list = list_of(request, "If-None-Match");
+    const auto tags = split(list, ',');
     const bool known = std::ranges::any_of(tags, [&](std::string_view candidate) {
         return candidate == "*" || without_weakness(candidate) == without_weakness(tag);
     });

@@ -13,7 +13,14 @@ namespace tunewright::server::http {
 /// The text with the letters A to Z in lower case, whatever the locale.
 std::string lower_case(std::string_view text);
 
-/// True where the client takes `type` ("application/json"): no Accept, or a range of it with q > 0.
+/// All fields of that name as the one list that they stand for (RFC 9110, section 5.3).
+std::string list_of(const Request& request, std::string_view name);
+
+/// How much the client wants `type` ("application/json"), 0 (not) to 1, by the narrowest range of Accept that it lies
+/// in (RFC 9110, section 12.5.1); 1 without Accept.
+double preference(const Request& request, std::string_view type);
+
+/// True where that is more than 0.
 bool accepts(const Request& request, std::string_view type);
 
 /// What a list such as that of Accept-Encoding says about `name`, or else about `*`: 0 (not wanted) to 1; nothing where

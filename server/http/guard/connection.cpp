@@ -60,12 +60,12 @@ bool Connection::receive(nanoseconds patience) {
 std::optional<Head> Connection::next_head() {
     if (in_.capacity() > kKeptCapacity) in_.shrink_to_fit();
     rest();
+    if (in_ == "\r\n") in_.clear();  // after a body, beyond its length: no request begins with it
     if (in_.empty() && !receive(limits_.idle)) return std::nullopt;
     begun = true;
     const auto end = Clock::now() + limits_.head;
     for (std::size_t scanned = 0;;) {
-        const bool ended = in_.find("\r\n\r\n", scanned) != std::string::npos;
-        const Head head = ended || in_.size() > kMaxLineBytes ? read_head(in_) : Head();
+        const Head head = may_be_read(in_, scanned) ? read_head(in_) : Head();
         if (head.state == Head::State::incomplete) {
             scanned = in_.size() < 3 ? 0 : in_.size() - 3;
             if (receive(end - Clock::now())) continue;

@@ -11,6 +11,8 @@
 namespace tunewright::server::http {
 namespace {
 
+constexpr std::string_view kLineEnd = "\r\n";
+
 bool equals(std::string_view a, std::string_view b) {
     return a.size() == b.size() && strncasecmp(a.data(), b.data(), a.size()) == 0;
 }
@@ -42,7 +44,8 @@ struct Fields {
     int lengths = 0;
     int transfers = 0;
     std::size_t count = 0;
-    std::string_view connection;
+    std::string_view host;
+    bool closes = false, keeps = false;
 };
 
 bool read_length(std::string_view value, std::size_t& length) {
@@ -81,6 +84,7 @@ bool is_known(std::string_view method) {
 bool take_field(std::string_view name, std::string_view value, Fields& seen, Head& head) {
     if (equals(name, "Host")) {
         seen.hosts++;
+        seen.host = value;
         if (!is_authority(value)) {
             head = refuse(400, "The field Host must be NAME or NAME:PORT, the port a number.");
             return false;
@@ -97,7 +101,8 @@ bool take_field(std::string_view name, std::string_view value, Fields& seen, Hea
         head = refuse(415, "Compressed bodies are not accepted; send the JSON text as it is.");
         return false;
     } else if (equals(name, "Connection")) {
-        seen.connection = value;
+        seen.closes = seen.closes || has_word(value, "close");
+        seen.keeps = seen.keeps || has_word(value, "keep-alive");
     } else if (equals(name, "Expect")) {
         if (!equals(value, "100-continue")) {
             head = refuse(417, "The only expectation that can be met is 100-continue.");
@@ -108,8 +113,30 @@ bool take_field(std::string_view name, std::string_view value, Fields& seen, Hea
     return true;
 }
 
+/// The first line as it is understood.
+struct RequestLine {
+    std::string_view method;
+    std::string_view authority;  ///< of a target that names it, as proxies are sent (RFC 9112, section 3.2.2)
+    std::string target;          ///< path and query
+};
+
+/// Takes scheme and authority off; false where the rest is no target.
+bool split_target(std::string_view target, RequestLine& read) {
+    for (const std::string_view scheme : {"http://", "https://"}) {
+        if (!equals(target.substr(0, scheme.size()), scheme)) continue;
+        target.remove_prefix(scheme.size());
+        read.authority = target.substr(0, target.find_first_of("/?"));
+        target.remove_prefix(read.authority.size());
+        read.target = target.starts_with('/') ? "" : "/";
+        read.target += target;
+        return !read.authority.empty() && is_authority(read.authority);
+    }
+    read.target = target;
+    return target.starts_with('/') || target == "*";
+}
+
 /// False after filling `head` with a refusal.
-bool read_request_line(std::string_view line, Head& head) {
+bool read_request_line(std::string_view line, RequestLine& read, Head& head) {
     const std::size_t first = line.find(' ');
     const std::size_t last = line.rfind(' ');
     if (first == std::string_view::npos || last <= first || !is_token(line.substr(0, first))) {
@@ -125,15 +152,16 @@ bool read_request_line(std::string_view line, Head& head) {
         return false;
     }
     const bool plain = std::ranges::all_of(target, [](unsigned char c) { return c > 0x20 && c < 0x7f; });
-    if (!plain || target.empty() || (target.front() != '/' && target != "*")) {
-        head = refuse(400, "The target must be an absolute path of printable ASCII characters.");
+    if (!plain || !split_target(target, read)) {
+        head = refuse(400, "The target must be an absolute path, or an http address, of printable ASCII characters.");
         return false;
     }
     if (!is_encoded(target)) {
         head = refuse(400, "The query has a % that is not followed by two hexadecimal digits; a plain % is %25.");
         return false;
     }
-    if (!is_known(line.substr(0, first))) {
+    read.method = line.substr(0, first);
+    if (!is_known(read.method)) {
         head = refuse(501, "There is no such method here; /openapi.json lists what can be done.");
         return false;
     }
@@ -141,20 +169,13 @@ bool read_request_line(std::string_view line, Head& head) {
     return true;
 }
 
-/// The next line without its CRLF; false (and a refusal) where it does not end properly.
+/// The next line without its CRLF; false (and a refusal) where it has a control character.
 bool next_line(std::string_view& rest, std::string_view& line, Head& head) {
-    const std::size_t end = rest.find('\n');
-    if (end == std::string_view::npos || end == 0 || rest[end - 1] != '\r') {
-        head = refuse(400, "Each line of the head must end with CR LF.");
-        return false;
-    }
-    line = rest.substr(0, end - 1);
-    rest.remove_prefix(end + 1);
-    if (has_control(line)) {
-        head = refuse(400, "The head contains a control character.");
-        return false;
-    }
-    return true;
+    line = rest.substr(0, rest.find(kLineEnd));
+    rest.remove_prefix(line.size() + kLineEnd.size());
+    if (!has_control(line)) return true;
+    head = refuse(400, "The head contains a control character.");
+    return false;
 }
 
 /// False after filling `head` with a refusal.
@@ -188,11 +209,22 @@ Head refuse(int status, std::string detail) {
 
 namespace {
 
+bool has_bare_line_feed(std::string_view text, std::size_t from = 0) {
+    for (std::size_t at = text.find('\n', from); at != std::string_view::npos; at = text.find('\n', at + 1))
+        if (at == 0 || text[at - 1] != '\r') return true;
+    return false;
+}
+
 Head read_strictly(std::string_view input) {
+    // Some clients send one after a body, beyond its length (RFC 9112, section 2.2).
+    const std::size_t skipped = input.starts_with(kLineEnd) ? kLineEnd.size() : 0;
+    input.remove_prefix(skipped);
+    if (input.starts_with(kLineEnd)) return refuse(400, "The first line must be METHOD TARGET HTTP/1.1.");
     // Each of these limits is found at the same byte however the input is cut.
     if (std::min(input.find('\n'), input.size()) > kMaxLineBytes + 1)
         return refuse(414, "The request line may have at most 8,000 bytes.");
     const std::size_t end = input.find("\r\n\r\n");
+    if (has_bare_line_feed(input.substr(0, end))) return refuse(400, "Each line of the head must end with CR LF.");
     if (end == std::string_view::npos || end + 4 > kMaxHeadBytes) {
         if (input.size() >= kMaxHeadBytes) return refuse(431, "The head of a request may have at most 16 KiB.");
         return {};
@@ -204,18 +236,22 @@ Head read_strictly(std::string_view input) {
     std::string_view line;
     if (!next_line(rest, line, head)) return head;
     if (line.size() > kMaxLineBytes) return refuse(414, "The request line may have at most 8,000 bytes.");
-    if (!read_request_line(line, head)) return head;
-    head.clean.assign(line.substr(0, line.rfind(' '))).append(" HTTP/1.1\r\n");
+    RequestLine read;
+    if (!read_request_line(line, read, head)) return head;
+    head.clean.assign(read.method).append(" ").append(read.target).append(" HTTP/1.1\r\n");
     if (!read_fields(rest, seen, head)) return head;
     if (head.content_length > 0)
         head.clean.append("Content-Length: ").append(std::to_string(head.content_length)).append("\r\n");
     head.clean.append("\r\n");
 
     if (seen.hosts > 1 || (seen.hosts == 0 && !head.http_1_0)) return refuse(400, "Exactly one Host field is needed.");
+    if (seen.hosts == 0 && !read.authority.empty()) head.fields.emplace_back("Host", read.authority);
+    if (seen.hosts > 0 && !read.authority.empty() && !equals(read.authority, seen.host))
+        return refuse(400, "The target names another host than the field Host.");
     if (seen.transfers > 0 && (seen.lengths > 0 || head.http_1_0))
         return refuse(400, "Transfer-Encoding is not possible with HTTP/1.0, nor beside a Content-Length.");
-    head.size = end + 4;
-    head.keep_alive = head.http_1_0 ? has_word(seen.connection, "keep-alive") : !has_word(seen.connection, "close");
+    head.size = skipped + end + 4;
+    head.keep_alive = !seen.closes && (!head.http_1_0 || seen.keeps);
     head.state = Head::State::complete;
     return head;
 }
@@ -236,6 +272,11 @@ void keep_names(std::string_view input, Head& head) {
 }
 
 }  // namespace
+
+bool may_be_read(std::string_view input, std::size_t from) {
+    return input.size() > kMaxLineBytes || input.find("\r\n\r\n", from) != std::string_view::npos ||
+           has_bare_line_feed(input, from);
+}
 
 Head read_head(std::string_view input) {
     Head head = read_strictly(input);

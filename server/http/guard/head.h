@@ -33,10 +33,14 @@ struct Head {
     std::string clean;
 };
 
-/// Reads the head at the start of `input`. Refused are: more than 16 KiB or 100 fields (431), a target over 8,000 bytes
-/// (414), another version than 1.0 and 1.1 (505), a Content-Encoding (415), and as malformed (400) bare line feeds,
-/// folded lines, spaces before a colon, control characters, a missing or double Host, a Content-Length that is repeated
-/// or not a number, and a Content-Length beside a Transfer-Encoding.
+/// Whether read_head() may have something to say that it had not when only `from` bytes and three more were there.
+bool may_be_read(std::string_view input, std::size_t from);
+
+/// Reads the head at the start of `input`, where one empty line may stand before it. Refused are: more than 16 KiB or
+/// 100 fields (431), a target over 8,000 bytes (414), another version than 1.0 and 1.1 (505), a Content-Encoding (415),
+/// and as malformed (400) bare line feeds, folded lines, spaces before a colon, control characters, a missing or double
+/// Host, a target that names another host, a Content-Length that is repeated or not a number, and a Content-Length
+/// beside a Transfer-Encoding.
 Head read_head(std::string_view input);
 
 /// A refusal: status, and a sentence for the client.

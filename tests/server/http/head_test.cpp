@@ -43,6 +43,8 @@ TEST(Head, KeepsTheConnectionAsVersionAndClientSay) {
     EXPECT_FALSE(read_head(head_of("connection: foo, CLOSE\r\n")).keep_alive);
     EXPECT_FALSE(read_head("GET / HTTP/1.0\r\n\r\n").keep_alive);
     EXPECT_TRUE(read_head("GET / HTTP/1.0\r\nConnection: keep-alive\r\n\r\n").keep_alive);
+    EXPECT_FALSE(read_head(head_of("Connection: close\r\nConnection: x\r\n")).keep_alive);
+    EXPECT_FALSE(read_head(head_of("Connection: keep-alive\r\nConnection: close\r\n")).keep_alive);
 }
 
 TEST(Head, GivesTheLibraryNothingThatItWouldActUpon) {
@@ -76,9 +78,43 @@ TEST(Head, RefusesWhatTwoParsersReadDifferently) {
     expect_refused("GET / HTTP/1.1\nHost: x\r\n\r\n", 400);
 }
 
+TEST(Head, TakesATargetWithTheNameOfTheHost) {
+    const auto first_line = [](const std::string& target, const std::string& host) {
+        const Head head = read_head("GET " + target + " HTTP/1.1\r\nHost: " + host + "\r\n\r\n");
+        return head.state == Head::State::complete ? head.clean.substr(0, head.clean.find("\r\n")) : head.detail;
+    };
+    EXPECT_EQ(first_line("http://x/a?b=1", "x"), "GET /a?b=1 HTTP/1.1");
+    EXPECT_EQ(first_line("HTTPS://x:80/a", "X:80"), "GET /a HTTP/1.1");
+    EXPECT_EQ(first_line("http://x", "x"), "GET / HTTP/1.1");
+    EXPECT_EQ(first_line("http://x?b", "x"), "GET /?b HTTP/1.1");
+    expect_refused("GET http://y/a HTTP/1.1\r\nHost: x\r\n\r\n", 400);
+    expect_refused("GET http://x@y/a HTTP/1.1\r\nHost: y\r\n\r\n", 400);
+    expect_refused("GET http://x/a HTTP/1.1\r\n\r\n", 400);
+    using Field = std::pair<std::string, std::string>;
+    EXPECT_EQ(read_head("GET http://x/a HTTP/1.0\r\n\r\n").fields.back(), Field("Host", "x"));
+}
+
+TEST(Head, SkipsOneEmptyLineBeforeARequest) {
+    const Head head = read_head("\r\n" + head_of(""));
+    EXPECT_EQ(head.state, Head::State::complete);
+    EXPECT_EQ(head.size, 2 + head_of("").size());
+    expect_refused("\r\n\r\n" + head_of(""), 400);
+    expect_refused("\n" + head_of(""), 400);
+}
+
+TEST(Head, RefusesABareLineFeedAsSoonAsItComes) {
+    const std::string text = "GET / HTTP/1.1\r\nHost: x\n";
+    expect_refused(text, 400);
+    EXPECT_FALSE(may_be_read(text.substr(0, text.size() - 1), 0));
+    EXPECT_TRUE(may_be_read(text, text.size() - 4));
+    EXPECT_FALSE(may_be_read("GET / HTTP/1.1\r\n", 15)) << "its CR has been looked at";
+    EXPECT_EQ(read_head(head_of("Content-Length: 2\r\n") + "\n\n").state, Head::State::complete) << "of the body";
+}
+
 TEST(Head, RefusesRequestLinesThatAreNone) {
     for (const char* line : {"", " ", "GET", "GET /", "GET  HTTP/1.1", "GE T / HTTP/1.1", "GET a HTTP/1.1",
-                             "GET http://x/ HTTP/1.1", "G\x80T / HTTP/1.1", "GET /\xc3\xa4 HTTP/1.1", "GET / http/1.1"})
+                             "GET http:/x HTTP/1.1", "GET http:///a HTTP/1.1", "GET ftp://x/ HTTP/1.1",
+                             "G\x80T / HTTP/1.1", "GET /\xc3\xa4 HTTP/1.1", "GET / http/1.1"})
         expect_refused(std::string(line) + "\r\nHost: x\r\n\r\n", 400);
     expect_refused("GET / HTTP/2.0\r\nHost: x\r\n\r\n", 505);
 }

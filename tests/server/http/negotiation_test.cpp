@@ -39,6 +39,17 @@ TEST(Negotiation, AcceptTakesRangesAndHonoursZeroQuality) {
         EXPECT_FALSE(accepts(with("accept", no), json)) << no;
 }
 
+TEST(Negotiation, TheNarrowestRangeOfAllAcceptFieldsDecides) {
+    EXPECT_FALSE(accepts(with("Accept", "*/*, text/csv;q=0"), "text/csv"));
+    EXPECT_EQ(preference(with("Accept", "text/*;q=0.3, */*;q=0.1, text/csv;q=0.7"), "text/csv"), 0.7);
+    EXPECT_EQ(preference(with("Accept", "text/*;q=0.3, */*;q=0.1"), "text/csv"), 0.3);
+    EXPECT_EQ(preference(with("Accept", "text/*;q=0.3, */*;q=0.1"), "application/json"), 0.1);
+    Request two = with("Accept", "text/html");
+    two.headers.emplace("accept", "text/csv;q=0.2");
+    EXPECT_EQ(preference(two, "text/csv"), 0.2);
+    EXPECT_FALSE(accepts(two, "application/json"));
+}
+
 TEST(Negotiation, JsonBodiesAreKnownByTheirTypeOrByNone) {
     EXPECT_TRUE(sends_json({}));
     for (const char* yes : {"application/json", "application/json; charset=utf-8", "APPLICATION/JSON",
@@ -58,6 +69,11 @@ TEST(Negotiation, AKnownTagTurnsTheAnswerInto304WithoutBody) {
         EXPECT_EQ(response.status, 304) << known;
         EXPECT_EQ(response.body, "");
     }
+    Request two = with("If-None-Match", "\"x\"");
+    two.headers.emplace("If-None-Match", tag);
+    Response same = json_response("body");
+    apply_entity_tag(two, same, tag);
+    EXPECT_EQ(same.status, 304);
     Response response = json_response("body");
     apply_entity_tag(with("If-None-Match", "\"other\""), response, tag);
     EXPECT_EQ(response.status, 200);

@@ -32,7 +32,8 @@ std::chrono::milliseconds Sweeper::sweep() {
     if (!sweeping_ && more_.exchange(false)) next_ = Clock::now() + pause_.load();
     // While a slice is under way: soon enough for the next one.
     if (sweeping_) return kBetweenSlices;
-    const auto wait = std::chrono::ceil<std::chrono::milliseconds>(next_ - Clock::now());
+    if (!next_) next_ = Clock::now() + before_first();
+    const auto wait = std::chrono::ceil<std::chrono::milliseconds>(*next_ - Clock::now());
     if (wait.count() > 0) return wait;
     sweeping_ = true;
     next_ = Clock::now() + std::min(kRest, *first);
@@ -42,13 +43,32 @@ std::chrono::milliseconds Sweeper::sweep() {
         return kBetweenSlices;
     }
     const auto begun = Clock::now();
-    store_.sweep(now, retention_, kSlice, [this, begun](const Outcome<std::size_t>& swept) {
+    store_.sweep(now, retention_, kSlice, [this, begun](const Outcome<std::size_t>& outcome) {
         pause_ = std::chrono::ceil<std::chrono::milliseconds>((Clock::now() - begun) / kPauseShare);
-        const auto* count = std::get_if<std::size_t>(&swept);
+        const auto* count = std::get_if<std::size_t>(&outcome);
         more_ = count != nullptr && *count >= kSlice;
+        if (count != nullptr) swept(*count);
         sweeping_ = false;
     });
     return kBetweenSlices;
+}
+
+/// A machine that has just been started may have a wrong clock, which is set soon after, and a process that was not
+/// there has not seen a jump: what would be deleted waits as long as after one.
+std::chrono::milliseconds Sweeper::before_first() const {
+    if (store_.shared()) return std::chrono::milliseconds(0);
+    return std::min<std::chrono::milliseconds>(kPause, *shortest(retention_));
+}
+
+/// Of the first sweep the log says what went: it comes all at once where the process, or its clock, was away for long.
+void Sweeper::swept(std::size_t count) {
+    if (!first_) return;
+    *first_ += count;
+    if (more_) return;
+    if (*first_ > 0)
+        log_info("the first sweep since the start has deleted " + std::to_string(*first_) +
+                 " ended jobs that had been kept as long as --retention says");
+    first_.reset();
 }
 
 /// A clock that was set says nothing about how long a job has been there. A shared store has a clock of its own.

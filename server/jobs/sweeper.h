@@ -21,16 +21,19 @@ public:
 
 private:
     using Clock = std::chrono::steady_clock;
+    std::chrono::milliseconds before_first() const;
     bool clock_jumped(UnixMs now);
+    void swept(std::size_t count);
 
     JobStore& store_;
     Retention retention_;
     std::function<UnixMs()> now_;
-    Clock::time_point next_{};  ///< this and the next of the caller's thread alone
+    std::optional<Clock::time_point> next_;  ///< this and the next of the caller's thread alone; nothing at the start
     WallDrift drift_;
     std::atomic<bool> sweeping_ = false;
     std::atomic<bool> more_ = false;
     std::atomic<std::chrono::milliseconds> pause_{};  ///< before the next slice, where there is more
+    std::optional<std::size_t> first_ = 0;            ///< jobs gone so far with the first sweep since the start
 };
 
 }  // namespace tunewright::server

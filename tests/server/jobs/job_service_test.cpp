@@ -202,10 +202,13 @@ TEST_F(JobServiceTest, AClockThatIsSetDeletesNothing) {
     EXPECT_FALSE(swept()) << "it is young";
     now_ += 8 * 24 * 3600 * 1000LL;
     EXPECT_FALSE(swept());
-    // A service that starts with that clock has seen no jump.
-    Sweeper fresh(*store_, second, [this] { return now_.load(); });
-    fresh.sweep();
-    while (store_->find(id)) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    // A service that starts with that clock has seen no jump, and waits as long as after one.
+    Retention week{std::chrono::hours(7 * 24), {}, {}};
+    Sweeper fresh(*store_, week, [this] { return now_.load(); });
+    EXPECT_GT(fresh.sweep(), std::chrono::minutes(59));
+    EXPECT_TRUE(store_->find(id));
+    Sweeper brief(*store_, second, [this] { return now_.load(); });
+    while (store_->find(id)) std::this_thread::sleep_for(brief.sweep());
 }
 
 TEST_F(JobServiceTest, WhatTheComputationRefusesIsAFailedJobWithItsError) {

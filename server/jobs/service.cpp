@@ -148,7 +148,16 @@ void JobService::cancel(const std::string& id, Done<CancelEffect> done) {
 }
 
 void JobService::requeue(const std::string& id, Done<RequeueEffect> done) {
-    store_.requeue(id, [this, done = std::move(done)](Outcome<RequeueEffect> outcome) {
+    const std::optional<JobState> found = state(id);
+    if (!found) return done(RequeueEffect::none);
+    if (!transition(found->status, JobEvent::requeue)) return done(RequeueEffect::not_failed);
+    const bool entry = !found->batch.empty();
+    if (entry ? !depth_.reserve_entries(1) : !depth_.reserve()) return done(RequeueEffect::queue_full);
+    store_.requeue(id, [this, entry, done = std::move(done)](Outcome<RequeueEffect> outcome) {
+        const auto* effect = std::get_if<RequeueEffect>(&outcome);
+        const bool waits = effect != nullptr && *effect == RequeueEffect::requeued;
+        if (entry && !waits) depth_.gone(0, 1);
+        if (!entry) waits ? depth_.accepted() : depth_.refused();
         done(outcome);
         claims_.arrived();
     });

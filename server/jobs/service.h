@@ -100,6 +100,7 @@ public:
     /// A running job is asked to stop; it ends soon after, not necessarily before `done`.
     void cancel(const std::string& id, Done<CancelEffect> done);
     void remove(const std::string& id, Done<RemoveEffect> done) { store_.remove(id, std::move(done)); }
+    /// Waits like a job that has just come, where there is room for it. Throws StoreError.
     void requeue(const std::string& id, Done<RequeueEffect> done);
     /// While the queue is paused no process on this store begins a job; those that run go on.
     void pause(bool paused, Done<bool> done);

@@ -26,6 +26,15 @@ Response job_response(JobService& jobs, Turns& readers, const http::Request& req
     });
 }
 
+Response queue_full(const JobService& jobs) {
+    const std::string seconds = std::to_string(jobs.seconds_until_room());
+    Response response =
+        problem_response(429, "The queue of jobs is full. Try again in " + seconds + " s (Retry-After).");
+    for (auto& [name, value] : response.headers)
+        if (name == "Retry-After") value = seconds;
+    return response;
+}
+
 Response submitted(const JobService& jobs, const Submission& submission) {
     switch (submission.kind) {
         case Submission::Kind::created: {
@@ -34,14 +43,7 @@ Response submitted(const JobService& jobs, const Submission& submission) {
         }
         case Submission::Kind::conflict:
             return problem_response(409, "This Idempotency-Key was used before with another request. Use a new key.");
-        case Submission::Kind::queue_full: {
-            const std::string seconds = std::to_string(jobs.seconds_until_room());
-            Response response =
-                problem_response(429, "The queue of jobs is full. Try again in " + seconds + " s (Retry-After).");
-            for (auto& [name, value] : response.headers)
-                if (name == "Retry-After") value = seconds;
-            return response;
-        }
+        case Submission::Kind::queue_full: return queue_full(jobs);
         case Submission::Kind::draining:
             return problem_response(503, "The service is being stopped and takes no more jobs. Try again shortly.");
         case Submission::Kind::existing:
@@ -226,24 +228,30 @@ Response cancel_job(JobService& jobs, Turns& readers, const Call& call) {
     return job_response(jobs, readers, call.request, id, 202);
 }
 
+/// What came of it, where the job does not wait again.
+Response not_requeued(const JobService& jobs, const std::string& id, RequeueEffect effect) {
+    if (effect == RequeueEffect::queue_full) return queue_full(jobs);
+    if (effect == RequeueEffect::batch_cancelled)
+        return problem_response(409, "The batch of this job was cancelled as a whole. Post its request anew.");
+    if (effect == RequeueEffect::not_failed)
+        return problem_response(409,
+                                "Only a job that failed or was cancelled, and whose request could be read, can be "
+                                "queued again. Post its request anew.");
+    return no_such_job(id);
+}
+
 Response requeue_job(JobService& jobs, Turns& readers, const Call& call) {
     if (auto refusal = refuse_call(call.request)) return *std::move(refusal);
     if (auto refusal = refuse_stranger(jobs, call)) return *std::move(refusal);
     const std::string& id = call.path.at("id");
-    const auto outcome =
-        await<Outcome<RequeueEffect>>([&](const Done<RequeueEffect>& done) { jobs.requeue(id, done); });
-    if (const auto* fault = std::get_if<StoreFault>(&outcome)) return store_failed(*fault);
-    switch (std::get<RequeueEffect>(outcome)) {
-        case RequeueEffect::none: return no_such_job(id);
-        case RequeueEffect::not_failed:
-            return problem_response(409,
-                                    "Only a job that failed or was cancelled, and whose request could be read, can be "
-                                    "queued again. Post its request anew.");
-        case RequeueEffect::batch_cancelled:
-            return problem_response(409, "The batch of this job was cancelled as a whole. Post its request anew.");
-        case RequeueEffect::requeued: break;
-    }
-    return job_response(jobs, readers, call.request, id, 202);
+    return guarded([&] {
+        const auto outcome =
+            await<Outcome<RequeueEffect>>([&](const Done<RequeueEffect>& done) { jobs.requeue(id, done); });
+        if (const auto* fault = std::get_if<StoreFault>(&outcome)) return store_failed(*fault);
+        const auto effect = std::get<RequeueEffect>(outcome);
+        if (effect != RequeueEffect::requeued) return not_requeued(jobs, id, effect);
+        return job_response(jobs, readers, call.request, id, 202);
+    });
 }
 
 /// 412 where If-Match names another state of the job than that which it ended with.

@@ -108,6 +108,7 @@ enum class RequeueEffect {
     requeued,
     not_failed,       ///< it waits, runs or has succeeded
     batch_cancelled,  ///< its batch as a whole was cancelled
+    queue_full,       ///< no more may wait; no store says so
 };
 
 /// What became of jobs whose worker is gone.

@@ -231,6 +231,13 @@ class QueueTest(unittest.TestCase):
             # A queued job is cancelled at once and makes room.
             self.assertEqual(service.post("/v1/jobs/%s/cancel" % waiting[0], "").json["status"], "cancelled")
             self.assertEqual(service.post("/v1/jobs", LONG).status, 202)
+            # One that is queued again waits like any other.
+            full = service.post("/v1/jobs/%s/requeue" % waiting[0], "")
+            self.assertEqual(full.status, 429)
+            self.assertIn(int(full.headers["Retry-After"]), range(1, 61))
+            service.post("/v1/jobs/%s/cancel" % waiting[1], "")
+            self.assertEqual(service.post("/v1/jobs/%s/requeue" % waiting[0], "").status, 202)
+            self.assertEqual(service.post("/v1/jobs", LONG).status, 429)
 
     def test_a_single_job_overtakes_the_entries_of_a_batch(self):
         with Service("--workers", "1", "--drain-timeout", "0") as service:

@@ -128,12 +128,13 @@ struct Reclaim {
     std::chrono::milliseconds period{0};
 };
 
+constexpr std::chrono::minutes kLongestPause{5};
+
 /// What a job waits, after it was interrupted so often, before it is handed out again: 1 s from the second time on,
 /// twice as long each time, at most 5 min.
 constexpr std::chrono::milliseconds pause_after(int crashes) {
     if (crashes < 2) return std::chrono::milliseconds(0);
-    return std::min<std::chrono::milliseconds>(std::chrono::minutes(5),
-                                               std::chrono::seconds(1 << std::min(crashes - 2, 20)));
+    return std::min<std::chrono::milliseconds>(kLongestPause, std::chrono::seconds(1 << std::min(crashes - 2, 20)));
 }
 
 struct QueueDepth {

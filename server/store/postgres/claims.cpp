@@ -59,8 +59,7 @@ std::vector<JobRecord> claim_by(Session& session, const std::string& sql, const 
 std::vector<JobRecord> claim_jobs(Session& session, const Claim& claim) {
     static const std::string usual = claim_sql(kGoing + "crashes < 2 ORDER BY class, turn, seq");
     static const std::string low = claim_sql(kGoing + "crashes < 2 AND class = 1 ORDER BY class, turn, seq");
-    static const std::string suspects =
-        claim_sql(kGoing + "crashes > 1 AND not_before <= clock_timestamp() ORDER BY not_before");
+    static const std::string suspects = claim_sql(kGoing + "crashes > 1 AND " + kPauseOver + " ORDER BY not_before");
     if (claim.suspects) return claim_by(session, suspects, claim);
     if (claim.low_first)
         if (std::vector<JobRecord> claimed = claim_by(session, low, claim); !claimed.empty()) return claimed;
@@ -132,7 +131,8 @@ std::optional<Released> release_job(Session& session, std::int64_t seq, int atte
 std::optional<Recovery> reclaim_jobs(Session& session, const Reclaim& what) {
     const pqxx::result turn = session.run(
         "UPDATE upkeep SET done_at = clock_timestamp() WHERE task = (SELECT task FROM upkeep WHERE task = 'reclaim' "
-        "AND done_at <= clock_timestamp() - $1::bigint * interval '1 millisecond' FOR UPDATE SKIP LOCKED) RETURNING 1",
+        "AND (done_at <= clock_timestamp() - $1::bigint * interval '1 millisecond' OR done_at > clock_timestamp()) "
+        "FOR UPDATE SKIP LOCKED) RETURNING 1",
         Values().number(what.period.count()));
     if (turn.empty() && what.period.count() > 0) return std::nullopt;
     Recovery recovery;

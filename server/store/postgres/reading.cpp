@@ -105,6 +105,10 @@ JobRecord read_claimed(const pqxx::row& row) {
     return job;
 }
 
+const std::string kPauseOver = "(not_before <= clock_timestamp() OR not_before > clock_timestamp() + " +
+                               std::to_string(std::chrono::milliseconds(kLongestPause).count()) +
+                               " * interval '1 millisecond')";
+
 const std::string kBatchColumns =
     "b.seq, b.id, b.name, b.owner, b.created_at, b.state = 'sealed', b.cancel_requested, coalesce(sum(c.queued), 0), "
     "coalesce(sum(c.running), 0), coalesce(sum(c.succeeded), 0), coalesce(sum(c.failed), 0), "
@@ -251,7 +255,9 @@ Counted count_waiting(Session& session) {
         "SELECT (SELECT count(*) FROM waiting WHERE batch IS NULL), "
         "(SELECT coalesce(sum(c.queued), 0) FROM batches b JOIN batch_counts c ON c.batch = b.seq "
         "WHERE b.ended_at IS NULL AND b.state <> 'leaving'), "
-        "(SELECT count(*) FROM waiting WHERE crashes > 1 AND not_before <= clock_timestamp()), "
+        "(SELECT count(*) FROM waiting WHERE crashes > 1 AND " +
+        kPauseOver +
+        "), "
         "(extract(epoch FROM clock_timestamp()) * 1000)::bigint, " +
         head + "0" + order + ", " + head + "1" + order +
         ", EXISTS (SELECT 1 FROM settings WHERE name = 'paused' AND value = '1')")[0];

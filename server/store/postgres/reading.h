@@ -22,6 +22,8 @@ extern const std::string kClaimedColumns;
 constexpr int kClaimedCount = 14;
 /// True for jobs that can be seen: those of a batch that is being deleted cannot.
 extern const std::string kVisible;
+/// Of one that waits after crashes: its pause is over, or longer than any, because the clock has been set back since.
+extern const std::string kPauseOver;
 
 JobSummary read_summary(const pqxx::row& row);
 JobState read_state(const pqxx::row& row);

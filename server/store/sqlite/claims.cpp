@@ -18,7 +18,7 @@ std::vector<Place> next_places(Connection& store, const Claim& claim) {
     static const std::string usual = std::string(kNext) + "crashes < 2 ORDER BY class, turn, seq LIMIT ?1";
     static const std::string low = std::string(kNext) + "crashes < 2 AND class = 1 ORDER BY turn, seq LIMIT ?1";
     static const std::string suspects =
-        std::string(kNext) + "crashes > 1 AND not_before <= ?2 ORDER BY not_before LIMIT ?1";
+        std::string(kNext) + "crashes > 1 AND " + pause_over("?2") + " ORDER BY not_before LIMIT ?1";
     const auto most = static_cast<std::int64_t>(claim.most);
     if (claim.suspects) {
         Connection::Use row = store.use(suspects);

@@ -220,6 +220,11 @@ std::size_t count(Connection& store, std::string_view sql) { return static_cast<
 
 }  // namespace
 
+std::string pause_over(const std::string& now) {
+    const std::string longest = std::to_string(std::chrono::milliseconds(kLongestPause).count());
+    return "(not_before <= " + now + " OR not_before > " + now + " + " + longest + ")";
+}
+
 QueueDepth count_waiting(Connection& store) {
     QueueDepth depth;
     depth.next_single = next_accepted(store, 0);
@@ -229,9 +234,9 @@ QueueDepth count_waiting(Connection& store) {
     depth.entries = count(store,
                           "SELECT coalesce(sum(queued), 0) FROM batches WHERE ended_at IS NULL "
                           "AND state <> 'leaving'");
-    depth.suspects = count(store,
-                           "SELECT count(*) FROM waiting WHERE crashes > 1 "
-                           "AND not_before <= (julianday('now') - 2440587.5) * 86400000");
+    static const std::string suspects =
+        "SELECT count(*) FROM waiting WHERE crashes > 1 AND " + pause_over("(julianday('now') - 2440587.5) * 86400000");
+    depth.suspects = count(store, suspects);
     depth.paused = is_paused(store);
     return depth;
 }

@@ -39,6 +39,9 @@ std::vector<JobState> find_states(Connection& store, const std::vector<std::stri
 JobPage list_jobs(Connection& store, const JobQuery& query);
 /// How many single jobs, and how many entries of batches, wait.
 QueueDepth count_waiting(Connection& store);
+/// A condition on one that waits after crashes: its pause is over at `now`, an expression, or longer than any, because
+/// the clock has been set back since.
+std::string pause_over(const std::string& now);
 /// A batch that is not being deleted.
 std::optional<BatchSummary> find_batch(Connection& store, const std::string& id);
 /// The id of the batch that `owner` posted under this idempotency key.

@@ -72,6 +72,21 @@ TEST_F(PostgresStore, ReplicasMayStartTogether) {
     EXPECT_EQ(database_->run("SELECT count(*) = max(step) FROM tunewright.schema_steps"), "t");
 }
 
+TEST_F(PostgresStore, WhatWasToComeLaterThanItCanHasBeenWrittenBeforeTheClockWasSetBack) {
+    const auto store = open();
+    for (const char* id : {"runs", "paused"}) accept(*store, id);
+    ASSERT_EQ(claim(*store).size(), 1U);
+    database_->run(
+        "SET search_path TO tunewright; UPDATE workers SET lease_until = clock_timestamp(); "
+        "UPDATE upkeep SET done_at = clock_timestamp() + interval '1 day'; "
+        "UPDATE waiting SET attempts = 2, crashes = 2, not_before = clock_timestamp() + interval '1 day'");
+    const Reclaim often{2000, 10, "", true, std::chrono::minutes(1)};
+    EXPECT_EQ(completed<Recovery>([&](auto done) { store->reclaim(often, done); }).interrupted, 1U);
+    EXPECT_EQ(store->depth().suspects, 1U);
+    const Claim suspects{"worker", 2000, std::chrono::minutes(10), 1, true};
+    EXPECT_EQ(completed<std::vector<JobRecord>>([&](auto done) { store->claim(suspects, done); }).size(), 1U);
+}
+
 TEST_F(PostgresStore, TwoProcessesShareTheJobsAndNeverTheSame) {
     const auto one = open();
     const auto two = open();

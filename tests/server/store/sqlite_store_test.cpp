@@ -52,6 +52,27 @@ TEST(SqliteStore, AFileOfANewerProgramIsLeftAlone) {
     }
 }
 
+TEST(SqliteStore, AJobWhosePauseIsLongerThanAnyIsHandedOutAsTheClockWasSetBack) {
+    const TemporaryFolder folder;
+    const auto store = open_sqlite_store(folder.file(), SchemaSteps::take);
+    NewJob job;
+    job.id = "twice";
+    job.request = "{}";
+    completed<Accepted>([&](auto done) { store->accept(job, done); });
+    const UnixMs now = wall_clock(), day = 86'400'000;
+    const auto claim = [&](UnixMs at, bool suspects) {
+        const Claim asked{"worker", at, std::chrono::milliseconds(0), 1, suspects};
+        return completed<std::vector<JobRecord>>([&](auto done) { store->claim(asked, done); }).size();
+    };
+    for (int crash = 0; crash < 2; crash++) {
+        ASSERT_EQ(claim(now + day, false), 1U);
+        completed<Recovery>([&](auto done) { store->reclaim({now + day, 10, ""}, done); });
+    }
+    EXPECT_EQ(claim(now + day, true), 0U) << "its pause is not over";
+    EXPECT_EQ(store->depth().suspects, 1U);
+    EXPECT_EQ(claim(now, true), 1U);
+}
+
 TEST(SqliteStore, AFailedWriteIsToldAndTheStoreRecovers) {
     const TemporaryFolder folder;
     const auto store = open_sqlite_store(folder.file(), SchemaSteps::take);

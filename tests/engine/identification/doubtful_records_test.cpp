@@ -130,7 +130,7 @@ TEST(DoubtfulRecords, AFirstRowOfBeforeTheFirstReadingIsLeftOut) {
     EXPECT_NEAR(plant_as<Fopdt>(model).K, 2, 0.02);
     EXPECT_NEAR(plant_as<Fopdt>(model).L, 12, 0.5);
     EXPECT_EQ(model.data_quality.steps, 1);
-    EXPECT_THAT(model.data_quality.notes, Contains(HasSubstr("The first 1 row left out")));
+    EXPECT_THAT(model.data_quality.notes, Contains(HasSubstr("1 row at the start left out")));
 }
 
 TEST(DoubtfulRecords, NoLoadTakesBackAMoveOfU) {

@@ -13,14 +13,21 @@ std::optional<UnixMs> moment(const pqxx::field& field) {
     return field.is_null() ? std::nullopt : std::optional<UnixMs>(field.as<UnixMs>());
 }
 
+/// Processes know the database's clock to some milliseconds each: what one has begun and another has ended is not over
+/// before it came.
+std::optional<UnixMs> moment_after(UnixMs earlier, const pqxx::field& field) {
+    const auto at = moment(field);
+    return at ? std::optional(std::max(*at, earlier)) : std::nullopt;
+}
+
 void fill_summary(const pqxx::row& row, JobSummary& job) {
     job.seq = row[0].as<std::int64_t>();
     job.id = text_of(row[1]);
     job.name = text_of(row[2]);
     job.status = job_status(row[3].c_str()).value();
     job.created_at = row[4].as<UnixMs>();
-    job.started_at = moment(row[5]);
-    job.finished_at = moment(row[6]);
+    job.started_at = moment_after(job.created_at, row[5]);
+    job.finished_at = moment_after(job.started_at.value_or(job.created_at), row[6]);
     job.attempts = row[7].as<int>();
     job.timeout_s = row[8].as<double>();
     job.request_hash = text_of(row[9]);

@@ -87,8 +87,8 @@ class LeavingTest(unittest.TestCase):
         self.assertIn(b"event: done", self.half_closed(request)[1])
 
     def test_turns_leaving_and_waiting_for_too_long(self):
-        with concurrent.futures.ThreadPoolExecutor() as pool:
-            calls = 6 * len(os.sched_getaffinity(0))
+        calls = 12 * len(os.sched_getaffinity(0))
+        with concurrent.futures.ThreadPoolExecutor(calls) as pool:
             heavy = [pool.submit(self.service.post, "/v1/design", HEAVY) for _ in range(calls)]
             end = time.monotonic() + 8
             while metric(self.service, "tunewright_synchronous_waiting") < 1:

@@ -191,6 +191,15 @@ export function browserTests(options = []) {
     /** A page at an address below the service; see withPage. */
     withPage: (address, options, body, expected) =>
       withPage(shared.service, shared.browser, address, options, body, expected),
+    /** What the API answers to a body; jobs are waited for. */
+    post: async (address, body) =>
+      (
+        await fetch(`${shared.service.base}/${address}`, {
+          method: "POST",
+          headers: { "Content-Type": "application/json", Prefer: "wait=20" },
+          body: JSON.stringify(body),
+        })
+      ).json(),
     /** The answer of the API for the job that the page's address names. */
     async jobOf(page) {
       const id = /#\/jobs\/([^/]+)\/(?:design|compare)/.exec(page.url())?.[1];

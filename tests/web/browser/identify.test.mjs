@@ -5,12 +5,9 @@ import test from "node:test";
 import { accessibilityViolations, browserTests, dropFile, overflow, root, tracesShown, WINDOWS } from "../harness.mjs";
 import { candidatesShown, disturbedTest, identified, rows, stepTest } from "../step_record.mjs";
 
-const tests = browserTests();
-const { withPage } = tests;
+const { withPage, jobOf } = browserTests();
 
 const shown = (value, digits = 3) => Number(Number(value).toPrecision(digits));
-const job = async (page) =>
-  (await fetch(`${tests.service.base}/v1/jobs/${/#\/jobs\/([^/]+)\/design/.exec(page.url())[1]}`)).json();
 
 test("a dropped record is identified at once, and Use and tune leads to its design", async () => {
   await withPage("", {}, async (page) => {
@@ -32,7 +29,7 @@ test("a dropped record is identified at once, and Use and tune leads to its desi
 
     await page.getByRole("button", { name: "Use and tune" }).click();
     await page.getByRole("heading", { name: "Model from the record" }).waitFor();
-    const { request, result } = await job(page);
+    const { request, result } = await jobOf(page);
     assert.equal(request.record.csv, stepTest);
     assert.deepEqual(result.model.plant, model.plant);
     assert.ok(Math.abs(result.model.plant.K / 2 - 1) < 0.01);
@@ -96,7 +93,7 @@ test("limits on all that the record leaves possible are asked for by a check box
     await box.check();
     await page.getByRole("button", { name: "Use and tune" }).click();
     await page.getByRole("link", { name: "Look at the record" }).waitFor();
-    assert.equal((await job(page)).request.uncertainty, "identified");
+    assert.equal((await jobOf(page)).request.uncertainty, "identified");
     await page.getByRole("link", { name: "Look at the record" }).click();
     await candidatesShown(page);
     assert.ok(await box.isChecked());
@@ -127,7 +124,7 @@ test("another candidate is drawn with its own run and tuned as that model", asyn
     );
     await page.getByRole("button", { name: "Use and tune" }).click();
     await page.getByRole("heading", { name: "Model from the record" }).waitFor();
-    const { request, result } = await job(page);
+    const { request, result } = await jobOf(page);
     assert.equal(request.identify.model, "sopdt");
     assert.equal(result.model.plant.type, "sopdt");
     assert.ok(Math.abs(result.model.plant.K / model.candidates[other].plant.K - 1) < 1e-6);
@@ -168,7 +165,7 @@ test("the part that counts is chosen by slider, by keys and by number, and ident
     await fifth;
     await page.getByRole("button", { name: "Use and tune" }).click();
     await page.getByRole("heading", { name: "Model from the record" }).waitFor();
-    assert.equal((await job(page)).request.record.to, 230);
+    assert.equal((await jobOf(page)).request.record.to, 230);
     await page.getByRole("link", { name: "Look at the record" }).click();
     await candidatesShown(page);
     assert.equal(await page.getByLabel("Use up to (s)", { exact: true }).inputValue(), "230");

@@ -3,11 +3,8 @@ import test from "node:test";
 import { browserTests, dropFile } from "../harness.mjs";
 import { candidatesShown, identified, rows, stepTest } from "../step_record.mjs";
 
-const tests = browserTests();
-const { withPage } = tests;
+const { withPage, jobOf } = browserTests();
 
-const job = async (page) =>
-  (await fetch(`${tests.service.base}/v1/jobs/${/#\/jobs\/([^/]+)\/design/.exec(page.url())[1]}`)).json();
 
 /** Another text in place of the record, identified. */
 async function replaceText(page, text) {
@@ -57,7 +54,7 @@ test("Use and tune takes the model that is shown, not what was typed since", asy
     await page.getByRole("textbox", { name: "y before" }).fill("10");
     await page.getByRole("button", { name: "Use and tune" }).click();
     await page.getByRole("heading", { name: "Model from the record" }).waitFor();
-    const { request, result } = await job(page);
+    const { request, result } = await jobOf(page);
     assert.equal(request.record.y0, undefined);
     assert.deepEqual(result.model.plant, model.plant);
   });
@@ -87,7 +84,7 @@ test("candidate and check box are as they were chosen after Back, and the record
     await page.getByRole("heading", { name: "Identify: TIC-9" }).waitFor();
     await page.getByRole("button", { name: "Use and tune" }).click();
     await page.getByRole("heading", { name: "Model from the record" }).waitFor();
-    const { request } = await job(page);
+    const { request } = await jobOf(page);
     assert.equal(request.record.csv, stepTest);
     assert.deepEqual([request.name, request.units], ["TIC-9", { time: "s", y: "degC" }]);
   });

@@ -6,17 +6,9 @@ import test from "node:test";
 import { accessibilityViolations, browserTests, overflow, root } from "../harness.mjs";
 
 const tests = browserTests();
-const { withPage } = tests;
+const { withPage, post } = tests;
 
 const PLANT = { type: "fopdt", K: 2, T: 10, L: 3 };
-const post = async (address, body) =>
-  (
-    await fetch(`${tests.service.base}/${address}`, {
-      method: "POST",
-      headers: { "Content-Type": "application/json", Prefer: "wait=20" },
-      body: JSON.stringify(body),
-    })
-  ).json();
 const settings = { form: "ideal", Kp: 1, Ti: 20, Td: 0 };
 
 test("a job is found, duplicated and deleted after one question", async () => {

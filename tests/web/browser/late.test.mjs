@@ -4,17 +4,9 @@ import test from "node:test";
 import { browserTests } from "../harness.mjs";
 
 const tests = browserTests();
-const { withPage } = tests;
+const { withPage, post } = tests;
 
 const PLANT = { type: "fopdt", K: 9, T: 90, L: 9 };
-const post = async (address, body) =>
-  (
-    await fetch(`${tests.service.base}/${address}`, {
-      method: "POST",
-      headers: { "Content-Type": "application/json", Prefer: "wait=20" },
-      body: JSON.stringify(body),
-    })
-  ).json();
 const screen = (page, name) =>
   page.getByRole("navigation", { name: "Screens" }).getByRole("link", { name, exact: true });
 

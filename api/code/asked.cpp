@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "api/contract/built/built.h"
 #include "api/csv/text.h"
 #include "engine/code/settings.h"
 #include "engine/number_text.h"
@@ -25,23 +26,18 @@ void read_words(const CodeWords& words, CodeQuestion& question, Reader& reader) 
 
 /// The rules by which the request has judged its program, where the words name no others.
 void take_implemented(const CodeWords& words, const Json& request, CodeQuestion& question) {
-    const Json::json_pointer place("/implement");
-    if (!request.is_object() || !request.contains(place) || !request.at(place).is_object()) return;
-    const Json& implement = request.at(place);
-    if (implement.contains("product")) return;  // which has rules of its own
+    if (!request.is_object() || !request.contains("implement")) return;
+    GivenBuild given;
+    Reader reader;  // a request that was answered has no faults
+    implement_contract().read(request.at("implement"), given, reader);
     const auto asked = [&](const char* name) {
         return std::ranges::any_of(words, [&](const auto& word) { return word.first == name; });
     };
-    const auto says = [&](const char* name, const char* value) {
-        return implement.contains(name) && implement.at(name) == value;
-    };
-    if (!asked("integral")) {
-        if (says("integral", "forward")) question.integral = IntegralRule::forward;
-        if (says("integral", "trapezoidal")) question.integral = IntegralRule::trapezoidal;
-    }
-    if (!asked("derivative") && says("derivative", "backward")) question.derivative = DerivativeRule::difference;
-    if (!asked("form") && !asked("anti_windup") && !asked("tracking_time") && says("algorithm", "velocity"))
-        question.velocity = true;
+    if (given.integral && !asked("integral")) question.integral = *given.integral;
+    if (given.derivative == GivenBuild::Derivative::difference && !asked("derivative"))
+        question.derivative = DerivativeRule::difference;
+    if (given.velocity && !asked("form") && !asked("anti_windup") && !asked("tracking_time"))
+        question.velocity = *given.velocity;
 }
 
 /// Seconds in the result's unit of time.

@@ -104,8 +104,7 @@ std::string open_guard(const std::string& functions) {
     const std::string own = fmt::format("TUNEWRIGHT_PID_{:016X}", sum);
     return "#ifndef " + own + "\n#define " + own + "\n#ifdef TUNEWRIGHT_PID_H\n" +
            "#error \"Two programs of Tunewright in one source: include each in a source of its own, or keep one and "
-           "set "
-           "the other loop's numbers after tunewright_pid_init.\"\n#endif\n#define TUNEWRIGHT_PID_H\n\n";
+           "set the other loop's numbers after tunewright_pid_init.\"\n#endif\n#define TUNEWRIGHT_PID_H\n\n";
 }
 
 std::string c_argument(const Declaration& input) {

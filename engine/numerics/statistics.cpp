@@ -39,4 +39,10 @@ Line straight_line(std::span<const double> t, std::span<const double> y) {
     return line;
 }
 
+std::vector<double> residuals(const Line& line, std::span<const double> t, std::span<const double> y) {
+    std::vector<double> left(t.size());
+    for (std::size_t i = 0; i < t.size(); ++i) left[i] = y[i] - line.y_mean - line.slope * (t[i] - line.t_mean);
+    return left;
+}
+
 }  // namespace tunewright

@@ -26,4 +26,7 @@ struct Line {
 /// all t are equal.
 Line straight_line(std::span<const double> t, std::span<const double> y);
 
+/// What the line leaves of each y.
+std::vector<double> residuals(const Line& line, std::span<const double> t, std::span<const double> y);
+
 }  // namespace tunewright

@@ -69,6 +69,8 @@ const Description<ScheduleRow>& schedule_row_contract() {
     return description;
 }
 
+Json number_or_null(SchemaBook&) { return Json{{"type", {"number", "null"}}}; }
+
 const Description<range::ScheduleDesign>& schedule_contract() {
     static const auto description = [] {
         using S = range::ScheduleDesign;
@@ -91,18 +93,13 @@ const Description<range::ScheduleDesign>& schedule_contract() {
                    "The IAE lies everywhere within the allowance of the place's own optimum.")
             .field(
                 "worst_relative_IAE", {}, [](const S& s, Writer& out) { out.number(s.worst_relative_IAE); },
-                [](SchemaBook&) {
-                    return Json{{"type", {"number", "null"}}};
-                },
-                "The largest that was met; null where some loop is not stable.")
+                number_or_null, "The largest that was met; null where some loop is not stable.")
             .field(
                 "longest_sample_time", {},
                 [](const S& s, Writer& out) {
                     s.longest_sample_time ? out.number(*s.longest_sample_time) : out.null();
                 },
-                [](SchemaBook&) {
-                    return Json{{"type", {"number", "null"}}};
-                },
+                number_or_null,
                 "The longest sample time of a program with backward rules that keeps Ms within 5 % of the continuous "
                 "loop's at the range's points and at the rows; null: none was found.",
                 {.unit = "time"});

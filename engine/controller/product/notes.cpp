@@ -169,10 +169,8 @@ void note_percent(const Comparison& it, std::vector<Note>& notes) {
     if (!it.product.in_percent || !it.context.u_span_given || same(span, kPercent)) return;
     const Parameter& gain = *parameter_of(it.product, Role::gain);
     notes.push_back({"percent", "The output of the block is in percent, and u spans " + text(span) +
-                                    " here: where u is "
-                                    "what the percent stand for, type " +
-                                    std::string(gain.name) + " times " + text(kPercent / span) +
-                                    ", or tune with u in percent."});
+                                    " here: where u is what the percent stand for, type " + std::string(gain.name) +
+                                    " times " + text(kPercent / span) + ", or tune with u in percent."});
 }
 
 void note_evidence(const Comparison& it, std::vector<Note>& notes) {

@@ -183,8 +183,8 @@ struct Product {
     std::string_view law = "";  ///< formula over the parameters' names
     std::string_view gain_basis = "";
     std::vector<Parameter> parameters = {};
-    bool in_percent =
-        false;  ///< the gain's output is in percent and no parameter scales it: u has to be in percent too
+    /// The gain's output is in percent and no parameter scales it: u has to be in percent too.
+    bool in_percent = false;
     double series_alpha = 0;  ///< of a series form, where no parameter's setting is given
     FilterRule filter = {};
     Weights weights = {};

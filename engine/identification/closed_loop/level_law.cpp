@@ -24,8 +24,7 @@ int turns_of(std::span<const double> u) {
 /// Root mean square of what the line over y leaves of u.
 double left_of(std::span<const double> u, std::span<const double> y, const Line& line) {
     double squares = 0;
-    for (std::size_t i = 0; i < u.size(); ++i)
-        squares += std::pow(u[i] - line.y_mean - line.slope * (y[i] - line.t_mean), 2);
+    for (const double left : residuals(line, y, u)) squares += left * left;
     return std::sqrt(squares / static_cast<double>(u.size()));
 }
 
@@ -33,15 +32,14 @@ double left_of(std::span<const double> u, std::span<const double> y, const Line&
 
 std::optional<LevelLaw> level_law(const CleanRecord& record, const std::vector<double>& u) {
     constexpr int kTurns = 12;
-    constexpr double kTimesRounding = 1.5;        // of the rounding's deviation
-    constexpr double kOfSpread = 0.3;             // of u's deviation: a line that explains less of u is none
-    constexpr double kUniform = 3.4641016151378;  // sqrt(12): a step over the deviation of its rounding
+    constexpr double kTimesRounding = 1.5;  // of the rounding's deviation
+    constexpr double kOfSpread = 0.3;       // of u's deviation: a line that explains less of u is none
     if (turns_of(u) < kTurns) return std::nullopt;
     const double of_u = quantisation_step(u), of_y = quantisation_step(record.y);
     if (!(of_u > 0) || !(of_y > 0)) return std::nullopt;
     const std::span v(u), y(record.y);
     const Line line = straight_line(y, v);
-    const double left = left_of(v, y, line), rounding = std::hypot(of_u, line.slope * of_y) / kUniform;
+    const double left = left_of(v, y, line), rounding = std::hypot(of_u, line.slope * of_y) / std::sqrt(12.0);
     if (left > kTimesRounding * rounding || left > kOfSpread * deviation(u)) return std::nullopt;
     const auto before = v.first(v.size() - 1), after = y.last(y.size() - 1);
     if (left_of(before, after, straight_line(after, before)) < left) return std::nullopt;

@@ -16,8 +16,7 @@ CleanRecord changed_between_rows(CleanRecord record);
 /// Somebody moves u at any instant, and the next row shows it: up to a row late, and the dead time of `fit` comes out
 /// too short by as much. Where a row is more than half of it (half of the lags but the slowest act as dead time too),
 /// the record with `moved_within`, the stretch that remains open:
-/// - a lone move stays where the rows show it, as a program that moves u with a row has it; it may have been up to a
-/// row
+/// - a lone move stays where the rows show it, as a program that moves u with a row has it; it may have been a row
 ///   earlier, and that row to either side is open;
 /// - two to five moves that y shows to lie differently in their rows are put apart as y shows it; open is what is left
 ///   of a row. Where y shows that all fall on rows, the recorder moved u itself, and nothing is open (empty). Where y

@@ -76,8 +76,7 @@ void describe_times(const Cleaning& done, DataQuality& quality) {
     if (done.unread > 0)
         notes.push_back(counted(done.unread, "row") +
                         " at the start left out: u and y both jump away from there with the next one, by more than "
-                        "they move in all "
-                        "others together, as where a logger writes before its first reading.");
+                        "they move in all others together, as where a logger writes before its first reading.");
     if (done.late_moves > 0)
         notes.push_back(counted(done.late_moves, "change") + " of u with the last sample left out: nothing follows.");
     if (done.limited_u > 0)

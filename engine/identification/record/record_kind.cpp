@@ -195,9 +195,7 @@ bool moves_at_first(std::span<const double> t, std::span<const double> values) {
     const Line line = straight_line(t, values);
     const double slope = std::abs(line.slope), moved = slope * (t.back() - t.front());
     if (slope <= kErrors * line.slope_std) return false;
-    std::vector<double> left;
-    for (std::size_t i = 0; i < t.size(); ++i)
-        left.push_back(values[i] - line.y_mean - line.slope * (t[i] - line.t_mean));
+    const std::vector<double> left = residuals(line, t, values);
     if (moved > kVisible && moved > kTimesScatter * deviation(left)) return true;
     return slope > kErrors * line.slope_std * std::sqrt(correlation_time(left)) && slope > kInTheEnd;
 }

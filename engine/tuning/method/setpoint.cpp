@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/figure.h"
 #include "engine/loop/loop.h"
 #include "engine/loop/stability.h"
 #include "engine/number_text.h"
@@ -61,8 +62,19 @@ public:
             integral = *zero_.error_integral_final + b * (*IE_of_one_ - *zero_.error_integral_final);
         return integral_of_absolute_error(weighted(b), 1, integral);
     }
-    /// Behind a filter.
-    double overshoot_filtered(double T, double b) const { return excess(filtered(weighted(b), T)); }
+    std::vector<ResponseNode> weighted(double b) const {
+        std::vector<ResponseNode> nodes = zero_.nodes;
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+            nodes[i].y += b * added_[i].y;
+            nodes[i].y_slope += b * added_[i].y_slope;
+            nodes[i].error_integral += b * added_[i].error_integral;
+        }
+        return nodes;
+    }
+    /// Of such a response behind a filter.
+    static double overshoot_filtered(const std::vector<ResponseNode>& weighted, double T) {
+        return excess(filtered(weighted, T));
+    }
     double time() const { return std::abs(zero_.error_integral_final.value_or(1)); }
 
 private:
@@ -87,16 +99,6 @@ private:
     }
 
     static double excess(const std::vector<ResponseNode>& nodes) { return 100 * (extremes_of_y(nodes).max - 1); }
-
-    std::vector<ResponseNode> weighted(double b) const {
-        std::vector<ResponseNode> nodes = zero_.nodes;
-        for (std::size_t i = 0; i < nodes.size(); ++i) {
-            nodes[i].y += b * added_[i].y;
-            nodes[i].y_slope += b * added_[i].y_slope;
-            nodes[i].error_integral += b * added_[i].error_integral;
-        }
-        return nodes;
-    }
 
     /// T z' = y - z, exact for the cubic y between nodes: z = p - T p' + T^2 p'' - T^3 p''' plus an exponential.
     static std::vector<ResponseNode> filtered(const std::vector<ResponseNode>& of, double T) {
@@ -169,7 +171,8 @@ bool never(double, double) { return false; }
 
 /// The shortest filter that keeps the limit, with this b; empty: none that was looked at does.
 std::optional<double> shortest_filter(const StepResponses& responses, double limit, double b) {
-    const auto beyond = [&](double T) { return responses.overshoot_filtered(T, b) - limit; };
+    const auto response = responses.weighted(b);
+    const auto beyond = [&](double T) { return StepResponses::overshoot_filtered(response, T) - limit; };
     double T = kFirstFilter * responses.time(), here = beyond(T);
     if (here <= 0) return T;
     for (int i = 0; i < kLongestFilter; ++i, T *= 2) {
@@ -185,8 +188,10 @@ std::optional<double> shortest_filter(const StepResponses& responses, double lim
     return std::nullopt;
 }
 
+double overshoot_limit(double asked) { return std::max(asked - kSpare, kSpare); }
+
 std::vector<Warning> keep_overshoot(const StepResponses& responses, double asked, IdealPid& pid) {
-    const double limit = std::max(asked - kSpare, kSpare);
+    const double limit = overshoot_limit(asked);
     const auto overshoot = [&](double b) { return responses.overshoot(b); };
     const auto keeps = [&](double b) { return overshoot(b) <= limit; };
     pid.setpoint_lag = 0;
@@ -208,8 +213,14 @@ std::vector<Warning> keep_overshoot(const StepResponses& responses, double asked
                                        " %; raise the set point slowly instead of in a step."}};
 }
 
-std::vector<Warning> left(const std::string& reason) {
-    return {{"setpoint-left", "The set-point weight is left as it is: " + reason}};
+/// Empty where nothing can be said of a set-point step, with the reason.
+OrReason<StepResponses> responses_of(const LinearPlant& plant, const IdealPid& pid) {
+    if (!pid.has_integral()) return {std::nullopt, "without integral action the output does not reach the set point."};
+    const auto loop = Loop::make(plant, to_parallel(pid));
+    if (!loop || !count_unstable_poles(*loop).stable()) return {std::nullopt, "the loop is not stable."};
+    StepResponses responses(plant, pid);
+    if (!responses.usable()) return {std::nullopt, "the response does not settle."};
+    return responses;
 }
 
 }  // namespace
@@ -220,14 +231,11 @@ std::vector<Warning> choose_setpoint(const LinearPlant& plant, const SetpointOpt
         return {};
     }
     if (!options.given()) return {};
-    if (!pid.has_integral()) return left("without integral action the output does not reach the set point.");
-    const auto loop = Loop::make(plant, to_parallel(pid));
-    if (!loop || !count_unstable_poles(*loop).stable()) return left("the loop is not stable.");
-    const StepResponses responses(plant, pid);
-    if (!responses.usable()) return left("the response does not settle.");
-    if (options.overshoot) return keep_overshoot(responses, *options.overshoot, pid);
+    const auto responses = responses_of(plant, pid);
+    if (!responses) return {{"setpoint-left", "The set-point weight is left as it is: " + responses.why}};
+    if (options.overshoot) return keep_overshoot(*responses, *options.overshoot, pid);
     pid.setpoint_lag = 0;
-    pid.b = std::round(least([&](double b) { return responses.IAE(b); }) * kDigits) / kDigits;
+    pid.b = std::round(least([&](double b) { return responses->IAE(b); }) * kDigits) / kDigits;
     return {};
 }
 
@@ -304,14 +312,12 @@ void settle_weight(built::Fitted& fitted, const built::Build& build, const Linea
 /// What the block's own weight leaves of a wished overshoot: it may have no weight to set, and has no filter of the set
 /// point.
 std::vector<Warning> remark_overshoot(const LinearPlant& plant, double asked, const IdealPid& pid) {
-    if (!pid.has_integral() || pid.setpoint_lag > 0) return {};
-    const auto loop = Loop::make(plant, to_parallel(pid));
-    if (!loop || !count_unstable_poles(*loop).stable()) return {};
-    const StepResponses responses(plant, pid);
-    if (!responses.usable()) return {};
-    const double is = responses.overshoot(pid.b);
+    if (pid.setpoint_lag > 0) return {};
+    const auto responses = responses_of(plant, pid);
+    if (!responses) return {};
+    const double is = responses->overshoot(pid.b);
     if (is <= asked + kWorthSaying) return {};
-    const auto T = shortest_filter(responses, std::max(asked - kSpare, kSpare), pid.b);
+    const auto T = shortest_filter(*responses, overshoot_limit(asked), pid.b);
     return {{"overshoot-not-held",
              "With the controller's own set-point weight, b = " + text(pid.b) + ", a set-point step overshoots by " +
                  text(is, 3) + " %, more than " + text(asked, 3) + " %. " +

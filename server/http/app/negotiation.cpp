@@ -121,22 +121,24 @@ std::string text_sum(std::string_view text) {
 
 std::string entity_tag(std::string_view body) { return '"' + text_sum(body) + '"'; }
 
-bool matches_entity_tag(const Request& request, const std::string& tag) {
-    if (!request.has_header("If-Match")) return true;
-    const std::string list = list_of(request, "If-Match");
-    const auto tags = split(list, ',');
-    return std::ranges::any_of(tags, [&](std::string_view candidate) {
+namespace {
+
+bool lists_tag(const Request& request, std::string_view field, const std::string& tag) {
+    const std::string list = list_of(request, field);
+    return std::ranges::any_of(split(list, ','), [&](std::string_view candidate) {
         return candidate == "*" || without_weakness(candidate) == without_weakness(tag);
     });
 }
 
+}  // namespace
+
+bool matches_entity_tag(const Request& request, const std::string& tag) {
+    return !request.has_header("If-Match") || lists_tag(request, "If-Match", tag);
+}
+
 void apply_entity_tag(const Request& request, Response& response, const std::string& tag) {
     response.set("ETag", tag);
-    const std::string list = list_of(request, "If-None-Match");
-    const auto tags = split(list, ',');
-    const bool known = std::ranges::any_of(tags, [&](std::string_view candidate) {
-        return candidate == "*" || without_weakness(candidate) == without_weakness(tag);
-    });
+    const bool known = lists_tag(request, "If-None-Match", tag);
     if (!known) return;
     response.status = 304;
     response.body.clear();

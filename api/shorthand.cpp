@@ -30,14 +30,33 @@ std::vector<std::string> words_of(std::string_view text) {
     return words;
 }
 
+/// What says how a CSV file is read, and stands beside anything else.
+std::optional<Problem> without_csv(const CsvRequest& question) {
+    const std::pair<const char*, bool> given[] = {{"--t", !question.t.empty()},
+                                                  {"--u", !question.u.empty()},
+                                                  {"--y", !question.y.empty()},
+                                                  {"--r", !question.r.empty()},
+                                                  {"--dt", !question.dt.empty()},
+                                                  {"--kind", !question.kind.empty()},
+                                                  {"--u-limits", !question.u_limits.empty()}};
+    for (const auto& [name, is] : given)
+        if (is)
+            return unclear(std::string(name) +
+                           " says how a CSV file is read, and there is none; a request as JSON has it in its record. "
+                           "Leave it out.");
+    return std::nullopt;
+}
+
 std::variant<Json, Problem> subject(const TuneWords& words, const std::optional<std::string>& file) {
     if (!words.plant.empty() && file)
         return unclear("Both a plant and a file are given; the file says which plant. Leave one of them out.");
+    const auto request = file ? request_text(*file) : std::nullopt;
+    if (auto problem = without_csv(words.record); problem && (!words.plant.empty() || request)) return *problem;
     if (!words.plant.empty()) return Json{{"plant", words.plant}};
     if (!file) return unclear("There is nothing to tune: name a file, or give --plant \"2 e^(-3s)/(10s+1)\".");
     if (file->find_first_not_of(kBlank) == file->npos)
         return unclear("The body is empty; give a recorded test as CSV, or a request as JSON.");
-    if (const auto request = request_text(*file)) return parse(*request);
+    if (request) return parse(*request);
     std::string storage;
     return Json{{"record", record_of(words.record, std::string(utf8_text(*file, storage)))}};
 }

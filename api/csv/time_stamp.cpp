@@ -5,9 +5,11 @@
 #include <cctype>
 #include <charconv>
 #include <chrono>
+#include <cmath>
 #include <string>
 #include <utility>
 
+#include "api/csv/cell.h"
 #include "api/csv/text.h"
 
 namespace tunewright::api {
@@ -357,10 +359,13 @@ std::optional<double> seconds_per(std::string_view unit) {
                                                                                     {"horas", 3600},
                                                                                     {"uren", 3600},
                                                                                     {"secondes", 1}}};
+    double count = 1;
+    const auto [end, fault] = std::from_chars(unit.data(), unit.data() + unit.size(), count);
+    if (fault == std::errc{}) unit = trimmed(unit.substr(static_cast<std::size_t>(end - unit.data())));
     std::string lower;
     for (const char c : unit) lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     for (const auto& [name, seconds] : kUnits) {
-        if (lower == name) return seconds;
+        if (lower == name && count > 0 && std::isfinite(count)) return count * seconds;
     }
     return std::nullopt;
 }

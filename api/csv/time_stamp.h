@@ -31,7 +31,8 @@ std::optional<TimeStamp> read_time_stamp(std::string_view text, DateOrder order 
 /// Whether fourteen digits alone are a date of 1970 to 2099 and a time of day, 20240301120000.
 bool is_compact_stamp(std::string_view text);
 
-/// Seconds of a unit of time as people write it ("s", "sec", "min", "h", "ms", "day", ...); empty for an unknown one.
+/// Seconds of a unit of time as people write it ("s", "sec", "min", "h", "ms", "day", ..., "100 ms" of a counter of
+/// scans); empty for an unknown one.
 std::optional<double> seconds_per(std::string_view unit);
 
 }  // namespace tunewright::api

@@ -56,6 +56,17 @@ TEST(Shorthand, ATestInAFileBecomesTheRecord) {
     EXPECT_FALSE(request_of({}, "{\n\"plant\": \"1/(s+1)\"}").contains("record"));
 }
 
+TEST(Shorthand, WhatSaysHowACsvFileIsReadIsRefusedWithoutOne) {
+    TuneWords words;
+    words.record.dt = "0.5";
+    EXPECT_NE(refusal_of(words, R"x({"plant": "1/(s+1)"})x").find("--dt says how a CSV file is read"),
+              std::string::npos);
+    words.record.dt = "";
+    words.record.u_limits = {"0", "100"};
+    words.plant = "1/(s+1)";
+    EXPECT_NE(refusal_of(words).find("--u-limits says how a CSV file is read"), std::string::npos);
+}
+
 TEST(Shorthand, TheModelIsThatOfTheRecord) {
     TuneWords words;
     words.record.model = "sopdt";

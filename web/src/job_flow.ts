@@ -4,7 +4,7 @@ import { newest } from "./api/latest.ts";
 import { isFinal } from "./api/types.ts";
 import type { Job, TuningRequest } from "./api/types.ts";
 import { byAllMethods } from "./form/tuning_request.ts";
-import { addressOfJob, formatRoute, showsJob } from "./routes.ts";
+import { addressOfJob, rewriteAddress, showsJob } from "./routes.ts";
 import type { JobScreen, Route } from "./routes.ts";
 import type { Store } from "./store.ts";
 
@@ -51,7 +51,7 @@ export function jobFlow(store: Store): JobFlow {
     const { values: _turned, ...kept } = now;
     const route: Route = { ...kept, job: job.id };
     store.set((workspace) => ({ ...workspace, route, job, jobTrouble: "" }));
-    history.replaceState(null, "", formatRoute({ ...route, entry: store.get().selected }));
+    rewriteAddress(now, { ...route, entry: store.get().selected });
     if (!isFinal(job.status)) follow(job.id);
   }
 

@@ -116,6 +116,16 @@ export function formatRoute(route: Route): string {
   }
 }
 
+/**
+ * Writes the address anew, as no step of its own. After Back or a link the address is another screen's before the page
+ * follows: then it stays, or that step of the history would be lost. `from`: what the page shows.
+ */
+export function rewriteAddress(from: Route, next: Route): void {
+  const now = parseRoute(location.hash);
+  const same = showsStart(from) ? showsStart(now) : now.screen === from.screen;
+  if (same && (!showsJob(from) || !showsJob(now) || from.job === now.job)) history.replaceState(null, "", formatRoute(next));
+}
+
 function decode(text: string): string {
   try {
     return decodeURIComponent(text);

@@ -8,7 +8,7 @@ import { h } from "./dom.ts";
 import type { TuneSubject } from "./form/tuning_request.ts";
 import type { JobFlow } from "./job_flow.ts";
 import type { RangeView } from "./range/view.ts";
-import { addressOfJob, formatRoute, parseRoute, showsJob, showsStart } from "./routes.ts";
+import { addressOfJob, formatRoute, parseRoute, rewriteAddress, showsJob, showsStart } from "./routes.ts";
 import type { JobRoute, Route } from "./routes.ts";
 import type { Store } from "./store.ts";
 import type { CandidateChoice } from "./views/cards/candidates_card.ts";
@@ -66,9 +66,10 @@ export function screens(
 
   /** A plant that was typed goes into the address, if its screen is still shown when the service has read it. */
   function typed(own: (route: Route) => boolean, route: Route): void {
-    if (!own(store.get().route)) return;
+    const from = store.get().route;
+    if (!own(from)) return;
     store.set((workspace) => ({ ...workspace, route }));
-    history.replaceState(null, "", formatRoute(route));
+    rewriteAddress(from, route);
   }
 
   /** The start screen is kept: what was typed is still there when one comes back. */
@@ -102,7 +103,7 @@ export function screens(
     const { rangeView } = part;
     range ??= rangeView(store, announce, {
       onExample(id) {
-        history.replaceState(null, "", formatRoute({ screen: "range", example: id, job: null }));
+        rewriteAddress(route, { screen: "range", example: id, job: null });
       },
       onJob: (request) => flow.tune(request as TuningRequest),
     });
@@ -219,7 +220,7 @@ export function screens(
 
   /** What is typed or sorted there goes into the address, but is no step of its own. */
   function listScreen(route: Extract<Route, { screen: "jobs" | "batch" }>): View {
-    const rename = (next: Route): void => history.replaceState(null, "", formatRoute(next));
+    const rename = (next: Route): void => rewriteAddress(route, next);
     const onBatch = (batch: Batch): void => {
       location.hash = formatRoute({ screen: "batch", id: batch.id, sort: "" });
     };
@@ -244,7 +245,7 @@ export function screens(
     }));
     // A link to the table alone leads to what was chosen there; so does its address then.
     const { drawn: rows, rankMs } = store.get();
-    if (route.screen === "compare") history.replaceState(null, "", formatRoute({ ...route, rows, rankMs }));
+    if (route.screen === "compare") rewriteAddress(route, { ...route, rows, rankMs });
     if (route.screen === "design") {
       const events = { onJob: flow.take, onTune: flow.tune, onRetune: flow.retune, onCompareAll: flow.compareAll };
       mount(designView(store, announce, events), "Design · Tunewright", focus);
@@ -293,14 +294,11 @@ export function screens(
     const parts = ["selected", "drawn", "sort", "rankMs"] as const;
     const changed = parts.some((part) => workspace[part] !== previous[part]);
     if (changed && workspace.job?.id === previous.job?.id)
-      history.replaceState(
-        null,
-        "",
-        formatRoute(
-          route.screen === "design"
-            ? { screen: "design", job: route.job, entry: selected }
-            : { ...route, sort, rows: drawn, rankMs },
-        ),
+      rewriteAddress(
+        route,
+        route.screen === "design"
+          ? { screen: "design", job: route.job, entry: selected }
+          : { ...route, sort, rows: drawn, rankMs },
       );
     // A range has no league table.
     if (route.screen === "compare" && workspace.job?.id === route.job && isRangeRequest(workspace.job.request))

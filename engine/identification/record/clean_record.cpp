@@ -144,12 +144,13 @@ Expected<CleanRecord> clean_record(const Record& record) {
     CleanRecord clean;
     RecordRows rows = collect_rows(record, clean.cleaning);
     if (!record.u0) drop_unread_rows(rows, clean.cleaning);
+    drop_silent_rows(rows, clean.cleaning);
     drop_false_readings(rows, clean.cleaning);
     drop_late_moves(rows, clean.cleaning);
     if (auto error = check_rows(record, rows, clean.cleaning)) return *error;
     const Cleaning& done = clean.cleaning;
     clean.u_only = done.missing_y + static_cast<int>(done.spikes.size());
-    clean.dropped = clean.u_only + done.without_time + done.unread + done.backward + done.early_stamps;
+    clean.dropped = clean.u_only + done.without_time + done.unread + done.silent + done.backward + done.early_stamps;
     scale_rows(rows, clean);
     const RecordScale& s = clean.scale;
     if (!std::isfinite(s.t_scale) || !std::isfinite(s.y_scale) || !std::isfinite(s.u_scale) || s.t_scale <= 0 ||

@@ -32,6 +32,7 @@ struct Cleaning {
     std::vector<int> spikes;                ///< left out: readings of y that are false plainly (record_rows.h)
     std::vector<double> spike_times;        ///< of the same, record's unit
     int unread = 0;                         ///< left out: first rows of before the logger's first reading
+    int silent = 0;                         ///< left out: first rows of before the sensor's first reading
     int late_moves = 0;                     ///< left out: changes of u that no sample follows
     int limited_u = 0;                      ///< rows in which u was cut to its limits
 };

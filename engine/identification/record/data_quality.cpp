@@ -77,6 +77,10 @@ void describe_times(const Cleaning& done, DataQuality& quality) {
         notes.push_back(counted(done.unread, "row") +
                         " at the start left out: u and y both jump away from there with the next one, by more than "
                         "they move in all others together, as where a logger writes before its first reading.");
+    if (done.silent > 0)
+        notes.push_back(counted(done.silent, "row") +
+                        " at the start left out: y holds one number there and leaves it in one row, ten times as far "
+                        "as it ever moves again, while u stands still, as where a sensor is not read yet.");
     if (done.late_moves > 0)
         notes.push_back(counted(done.late_moves, "change") + " of u with the last sample left out: nothing follows.");
     if (done.limited_u > 0)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 namespace tunewright {
@@ -212,6 +213,16 @@ RecordRows collect_rows(const Record& r, Cleaning& cleaning) {
     return rows;
 }
 
+namespace {
+
+void drop_first(RecordRows& rows, std::ptrdiff_t count) {
+    rows.t.erase(rows.t.begin(), rows.t.begin() + count);
+    rows.y.erase(rows.y.begin(), rows.y.begin() + count);
+    rows.number.erase(rows.number.begin(), rows.number.begin() + count);
+}
+
+}  // namespace
+
 void drop_unread_rows(RecordRows& rows, Cleaning& cleaning) {
     constexpr std::size_t kMost = 3, kMin = 12;  // rows: left out; of a record that shows how far it moves
     if (rows.t.size() < kMin || rows.change_time.size() < 2) return;
@@ -231,10 +242,23 @@ void drop_unread_rows(RecordRows& rows, Cleaning& cleaning) {
     rows.u_rest = rows.change_level.front();
     rows.change_time.erase(rows.change_time.begin());
     rows.change_level.erase(rows.change_level.begin());
-    rows.t.erase(rows.t.begin(), rows.t.begin() + first);
-    rows.y.erase(rows.y.begin(), rows.y.begin() + first);
-    rows.number.erase(rows.number.begin(), rows.number.begin() + first);
+    drop_first(rows, first);
     cleaning.unread = static_cast<int>(first);
+}
+
+void drop_silent_rows(RecordRows& rows, Cleaning& cleaning) {
+    constexpr double kFarther = 10;  // than y moves between any rows that follow
+    const auto held = std::adjacent_find(rows.y.begin(), rows.y.end(), std::not_equal_to<>());
+    if (held == rows.y.end()) return;
+    const auto first = held + 1 - rows.y.begin();
+    const double began = rows.t[static_cast<std::size_t>(first)];
+    if (!rows.change_time.empty() && rows.change_time.front() <= began) return;
+    double farthest = 0;
+    for (auto y = rows.y.begin() + first; y + 1 != rows.y.end(); ++y)
+        farthest = std::max(farthest, std::abs(y[1] - *y));
+    if (std::abs(held[1] - *held) <= kFarther * farthest || farthest == 0) return;
+    drop_first(rows, first);
+    cleaning.silent = static_cast<int>(first);
 }
 
 void drop_late_moves(RecordRows& rows, Cleaning& cleaning) {

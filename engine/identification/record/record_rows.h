@@ -25,6 +25,10 @@ RecordRows collect_rows(const Record& record, Cleaning& cleaning);
 /// than it moves in all others together, and u moves later on too: a logger's rows of before its first reading.
 void drop_unread_rows(RecordRows& rows, Cleaning& cleaning);
 
+/// Takes the first rows out whose y is one number to the digit, where the next row leaves it ten times as far as y
+/// moves between any that follow, while u stands still: a sensor that was not read yet.
+void drop_silent_rows(RecordRows& rows, Cleaning& cleaning);
+
 /// Takes changes of u out that come with the last sample or after it: nothing of the record shows what they do. A lone
 /// change stays, and so do all changes of an input that moves more than twice, as that of a relay or a loop does.
 void drop_late_moves(RecordRows& rows, Cleaning& cleaning);

@@ -17,7 +17,7 @@ struct Limits {
 /// Where a peak stands: on the loop alone, on it as it is built, on the worst of several plants.
 struct PlacedPeak {
     double value = 0;
-    std::string where;  ///< "", " on your controller as it is built", " on the worst plant"
+    std::string where;  ///< "", " on your controller as it is built", " on the worst plant" or of the ideal loop on it
 };
 
 /// A limit counts as reached within this relative distance; beyond it, as broken. On several plants the worst of them
@@ -44,7 +44,7 @@ struct Case {
     bool has_integral() const;
     bool warned_of(const std::string& code) const;
     Limits limits() const;
-    /// The largest Ms that the answer knows of: alone, as built, of the worst plant.
+    /// The larger of the loop that runs and of the worst of several plants (which is known of the ideal loop alone).
     std::optional<PlacedPeak> worst_Ms() const;
     std::optional<PlacedPeak> worst_Mt() const;
 };

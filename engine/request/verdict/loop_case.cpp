@@ -12,8 +12,11 @@ std::optional<double> above(std::optional<double> value, double floor) {
     return value && *value > floor ? value : std::nullopt;
 }
 
-void keep_larger(std::optional<PlacedPeak>& largest, const Figure& value, const char* where) {
-    if (value && (!largest || *value > largest->value)) largest = PlacedPeak{*value, where};
+/// Of the loop that runs; of the ideal one where nothing else is known.
+std::optional<PlacedPeak> running(const Figure& runs, const Figure& ideal, bool built) {
+    if (runs) return PlacedPeak{*runs, built ? kAsBuilt : ""};
+    if (ideal) return PlacedPeak{*ideal, ""};
+    return {};
 }
 
 }  // namespace
@@ -39,19 +42,15 @@ Limits Case::limits() const {
 }
 
 std::optional<PlacedPeak> Case::worst_Ms() const {
-    std::optional<PlacedPeak> largest;
-    keep_larger(largest, evaluation.robustness.Ms, "");
-    if (built()) keep_larger(largest, robustness().Ms, kAsBuilt);
-    if (evaluation.region) keep_larger(largest, evaluation.region->worst_Ms, " on the worst plant");
+    std::optional<PlacedPeak> largest = running(robustness().Ms, evaluation.robustness.Ms, built());
+    if (!evaluation.region) return largest;
+    const Figure& worst = evaluation.region->worst_Ms;
+    if (worst && (!largest || *worst > largest->value))
+        largest = {*worst, built() ? " of the ideal loop on the worst plant" : " on the worst plant"};
     return largest;
 }
 
-std::optional<PlacedPeak> Case::worst_Mt() const {
-    std::optional<PlacedPeak> largest;
-    keep_larger(largest, evaluation.robustness.Mt, "");
-    if (built()) keep_larger(largest, robustness().Mt, kAsBuilt);
-    return largest;
-}
+std::optional<PlacedPeak> Case::worst_Mt() const { return running(robustness().Mt, evaluation.robustness.Mt, built()); }
 
 std::string printed_unit(const std::string& unit) { return unit == "degC" ? "°C" : unit == "degF" ? "°F" : unit; }
 

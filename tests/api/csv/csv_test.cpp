@@ -103,6 +103,11 @@ TEST(Csv, AUnitOfTimeInTheHeadingIsConvertedAndSaid) {
     EXPECT_THAT(record.notes, testing::Contains(HasSubstr("from ms to min")));
 }
 
+TEST(Csv, AUnitMayBeAnyCountOfOne) {
+    EXPECT_THAT(read("Time (100ms),u,y\n0,1,2\n30,1,2\n").t, ElementsAre(0, 3));
+    EXPECT_THAT(read("Time [0.5 min],u,y\n0,1,2\n30,1,2\n").t, ElementsAre(0, 900));
+}
+
 TEST(Csv, ALineOfUnitsBelowTheHeadingsIsNoData) {
     const CsvRecord record = read("time,u,y\nh,%,degC\n1,0,5\n2,0,5\n");
     EXPECT_THAT(record.t, ElementsAre(3600, 7200));

@@ -150,6 +150,20 @@ TEST(Verdict, IsContradictedByNoFigureOfControllersThatWereSent) {
     EXPECT_GE(entries, 1500);
 }
 
+/// The loop that runs is designed for: its ideal twin may lie above the limit, and runs nowhere.
+TEST(Verdict, OfADesignForAControllerIsThatOfTheLoopAsItIsBuilt) {
+    const Json request = {{"plant", {{"type", "fopdt"}, {"K", 2}, {"T", 10}, {"L", 3}}},
+                          {"tune", {{{"method", "robust"}, {"Ms", 1.6}}}},
+                          {"implement", {{"product", "simulink_pid_parallel"}, {"sample_time", 0.5}}},
+                          {"evaluate", {{"points", 0}}}};
+    const auto outcome = run_job(std::get<PreparedJob>(prepare_job(request.dump())), {});
+    const Json entry = Json::parse(outcome.result_json)["controllers"][0];
+    ASSERT_NEAR(entry["implemented"]["robustness"]["Ms"], 1.6, 2e-3);
+    ASSERT_GT(entry["robustness"]["Ms"], 1.62);
+    EXPECT_EQ(entry["verdict"][0]["code"], "robust") << entry["verdict"].dump();
+    EXPECT_EQ(entry["verdict"][0]["text"], "Robust, limited by the margin you asked for.");
+}
+
 /// A check that sees nothing would pass too.
 TEST(Verdict, ContradictionsAreSeen) {
     const Json request = Json::parse(request_with(R"("baseline": {"Kp": 0.4, "Ti": 12}, "evaluate": {"points": 0})"));

@@ -133,6 +133,23 @@ TEST(DoubtfulRecords, AFirstRowOfBeforeTheFirstReadingIsLeftOut) {
     EXPECT_THAT(model.data_quality.notes, Contains(HasSubstr("1 row at the start left out")));
 }
 
+TEST(DoubtfulRecords, RowsOfBeforeTheSensorIsReadAreLeftOut) {
+    Record record = simulate(even_times(600, 1), 40, 25, {{100, 60}}, first_order(2, 60, 12));
+    add_noise(record, 0.05, 5);
+    const IdentifiedModel whole = identified(record, ModelChoice::fopdt);
+    std::fill_n(record.y.begin(), 10, 0);
+    const IdentifiedModel model = identified(record, ModelChoice::fopdt);
+    EXPECT_NEAR(plant_as<Fopdt>(model).K, plant_as<Fopdt>(whole).K, 1e-3);
+    EXPECT_NEAR(plant_as<Fopdt>(model).L, plant_as<Fopdt>(whole).L, 0.05);
+    EXPECT_THAT(model.data_quality.notes, Contains(HasSubstr("10 rows at the start left out")));
+    // A plant that is a gain leaves one number for another in one row too, after u.
+    Record gain = simulate(even_times(100, 1), 40, 0, {{20, 60}}, first_order(2, 0.01, 3));
+    add_noise(gain, 0.01, 6);
+    std::fill_n(gain.y.begin(), 23, 0);
+    for (const std::string& note : identified(gain, ModelChoice::fopdt).data_quality.notes)
+        EXPECT_EQ(note.find("left out"), note.npos) << note;
+}
+
 TEST(DoubtfulRecords, NoLoadTakesBackAMoveOfU) {
     // The valve ends at 49: the second and third move do nothing.
     const Steps at_plant = {{100, 49}, {800, 49}, {1150, 40}};

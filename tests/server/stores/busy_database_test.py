@@ -81,10 +81,10 @@ class FrozenTest(unittest.TestCase):
 
 
 class SearchTest(unittest.TestCase):
-    # Outlines so long that to look through them all takes a second or more.
+    # Outlines so long that to look through them all takes half a second or more.
     FILL = """INSERT INTO tunewright.jobs (id, name, class, turn, owner, flow, created_at, timeout_s, request_hash, request)
         SELECT 'id' || lpad(i::text, 24, '0'), 'loop', 0, i, '', 'f', 1795730000000 + i, 60, 'h', '{}'
-        FROM generate_series(1, 4000) i;
+        FROM generate_series(1, 1200) i;
         INSERT INTO tunewright.ended (seq, single, status, attempts, cancel_requested, started_at, finished_at, version,
         outline, result) SELECT seq, true, 'succeeded', 1, false, created_at, %d, '0.1.0',
         '{"method": "simc", "more": "' || repeat('a', 300000) || '"}', '{}' FROM tunewright.jobs WHERE id LIKE 'id0%%'"""

@@ -63,6 +63,20 @@ test("another entry is looked at and the turned one is as it was left, its steps
   });
 });
 
+test("an entry without a controller shows its reason, whatever was turned before", async () => {
+  await withPage("", {}, async (page) => {
+    await openJob(page, [{ method: "robust" }, { method: "robust", controller: "PI", Mks: 1e-6 }]);
+    await slider(page, "Robustness Ms").focus();
+    await page.keyboard.press("Shift+ArrowRight");
+    await page.waitForURL(/Ms=1\.5/);
+    const { controller } = await designAt(page, 1.5);
+    await shows(page, "Kp", controller.Kp);
+    await page.locator(".legend").getByRole("button", { name: "robust controller PI", exact: true }).click();
+    await page.getByText("No controller meets these limits.").first().waitFor();
+    assert.equal(await page.getByRole("textbox", { name: "Kp" }).count(), 0);
+  });
+});
+
 test("ticking Mt = Ms makes them equal, also where the request has no Ms of its own", async () => {
   await withPage("", {}, async (page) => {
     await openJob(page, [{ method: "robust" }]);

@@ -7,7 +7,8 @@ import { fieldsOf, readField, typedText } from "../../../web/src/form/fields.ts"
 import { keptWords } from "../../../web/src/form/kept_note.ts";
 import { atRecordText } from "../../../web/src/form/record_text.ts";
 import { formOf, PLANT_FORMS, readPlant } from "../../../web/src/form/plant.ts";
-import { formatRoute, parseRoute } from "../../../web/src/routes.ts";
+import { formatRoute, parseRoute, rewriteAddress } from "../../../web/src/routes.ts";
+import type { Route } from "../../../web/src/routes.ts";
 
 const schema: Schema = {
   type: "object",
@@ -160,6 +161,27 @@ test("addresses are read back as the routes they came from", () => {
   }
   assert.deepEqual(parseRoute("#/nowhere/%E0%A4%A"), { screen: "start" });
   assert.deepEqual(parseRoute(""), { screen: "start" });
+});
+
+test("an address that Back has changed already is not overwritten by the screen that is left", () => {
+  const written: string[] = [];
+  const page = globalThis as unknown as { location?: object; history?: object };
+  const { location, history } = page;
+  const at = (hash: string, from: Route, next: Route): string[] => {
+    page.location = { hash };
+    rewriteAddress(from, next);
+    return written.splice(0);
+  };
+  page.history = { replaceState: (_state: unknown, _title: string, to: string) => written.push(to) };
+  const design = (job: string, entry: number | null): Route => ({ screen: "design", job, entry });
+  assert.deepEqual(at("#/jobs/a/design", design("a", null), design("a", 1)), ["#/jobs/a/design?entry=1"]);
+  assert.deepEqual(at("#/jobs/a/design", design("a", null), design("b", 1)), ["#/jobs/b/design?entry=1"]);
+  assert.deepEqual(at("#/jobs/a/compare?Ms=1.7", design("a", null), design("a", 1)), []);
+  assert.deepEqual(at("#/jobs/b/design", design("a", null), design("a", 1)), []);
+  const typed: Route = { screen: "new", plant: "fopdt", values: { K: "2" } };
+  assert.deepEqual(at("#/", { screen: "start" }, typed), ["#/new/fopdt?K=2"]);
+  assert.deepEqual(at("#/jobs", { screen: "start" }, typed), []);
+  Object.assign(page, { location, history });
 });
 
 const emulation: Schema = {

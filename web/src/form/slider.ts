@@ -70,9 +70,12 @@ export function slider(options: SliderOptions, errors: FormErrors): Slider {
     return Math.max(1, Math.round(Math.abs(count)));
   };
 
+  /** Rounding leaves no limit behind: beyond one a method may have no answer. */
+  const within = (rounded: number): number => Math.min(Math.max(lo, hi), Math.max(Math.min(lo, hi), rounded));
+
   /** No more digits than a hand can set: those of the slider's step, at its ends the ends themselves. */
   function reachable(wanted: number): number {
-    if (options.log) return Number(wanted.toPrecision(4));
+    if (options.log) return within(Number(wanted.toPrecision(4)));
     const near = (end: number): boolean => Math.abs(wanted - end) < (hi - lo) / (2 * steps());
     if (near(lo)) return lo;
     if (near(hi)) return hi;

@@ -40,6 +40,8 @@ export interface Live {
   readonly steps: ReadonlySignal<Steps | null>;
   /** Starts from an entry; `at`: where its sliders stand, as the address or the steps that led there say. */
   start(proposal: Proposal, at: Steps): void;
+  /** There is nothing to turn. */
+  stop(): void;
   /** While something is held. */
   move(point: Point): void;
   /** Where the hand may go next, the likeliest first. */
@@ -165,6 +167,26 @@ export function liveDesign(onSettled: (point: Point) => void): Live {
     onSettled(to.now);
   }
 
+  /** Whatever is still asked for. */
+  function forget(): void {
+    calls.drop();
+    next.drop();
+    clearTimeout(retryTimer);
+    expectNothing();
+  }
+
+  function standAt(from: Proposal | null, at: Steps | null): void {
+    forget();
+    batch(() => {
+      proposal.value = from;
+      steps.value = at;
+      point.value = at?.now ?? null;
+      answer.value = null;
+      held.value = false;
+      trouble.value = "";
+    });
+  }
+
   return {
     point,
     answer,
@@ -175,20 +197,10 @@ export function liveDesign(onSettled: (point: Point) => void): Live {
     canRedo: computed(() => (steps.value?.future.length ?? 0) > 0),
     steps,
     start(from, { past, now: at, future }) {
-      calls.drop();
-      next.drop();
-      clearTimeout(retryTimer);
-      expectNothing();
-      batch(() => {
-        proposal.value = from;
-        steps.value = { past, now: at, future };
-        point.value = at;
-        answer.value = null;
-        held.value = false;
-        trouble.value = "";
-      });
+      standAt(from, { past, now: at, future });
       if (!samePoint(at, from.point)) ask({ point: at, held: false });
     },
+    stop: () => standAt(null, null),
     move(to) {
       batch(() => {
         held.value = true;
@@ -212,11 +224,6 @@ export function liveDesign(onSettled: (point: Point) => void): Live {
       if (steps.peek() && proposal.peek()) go(stepTo(steps.peek()!, proposal.peek()!.point));
     },
     retry,
-    dispose() {
-      calls.drop();
-      next.drop();
-      expectNothing();
-      clearTimeout(retryTimer);
-    },
+    dispose: forget,
   };
 }

@@ -11,7 +11,7 @@ import { liveDesign } from "../live/live.ts";
 import type { Answer } from "../live/live.ts";
 import { firstStep, pointOf, samePoint, tiedAt, valuesOf } from "../live/point.ts";
 import type { Point, Steps } from "../live/point.ts";
-import { formatRoute } from "../routes.ts";
+import { rewriteAddress } from "../routes.ts";
 import type { Store } from "../store.ts";
 import { formatNumber, unitNames } from "../words/numbers.ts";
 import { controlsCard } from "./cards/controls_card.ts";
@@ -87,7 +87,7 @@ export function turnedDesign(
     const values = valuesOf(point, proposal, base()?.controller, knobs);
     const next = { ...bare, entry: store.get().selected, ...(Object.keys(values).length > 0 ? { values } : {}) };
     store.set((workspace) => ({ ...workspace, route: next }));
-    history.replaceState(null, "", formatRoute(next));
+    rewriteAddress(route, next);
     showFront();
   }
 
@@ -221,7 +221,7 @@ export function turnedDesign(
     const usable = Boolean(subject && entry.controller && !entry.error && isFinal(job.status));
     controls.element.hidden = !usable;
     front.element.hidden = !usable;
-    if (!usable || !subject) return;
+    if (!usable || !subject) return live.stop();
     proposal = { tune: job.request ? tuneEntryOf(job.request, result, index) : null, hand: null };
     knobs = controls.show(proposal, entry, methodOf(entry), unitNames(job.request?.units));
     const at = to ?? firstStep(addressedPoint(proposal, entry));

@@ -2,6 +2,7 @@
 import { sentenceOf, waitAfter } from "./api/client.ts";
 import { getExamples, getMethods } from "./api/jobs.ts";
 import { askForKeyWith } from "./api/key.ts";
+import { watchPresses } from "./api/press.ts";
 import { getProducts } from "./api/products.ts";
 import { h } from "./dom.ts";
 import { header } from "./header.ts";
@@ -86,6 +87,7 @@ function fault(reason: unknown): void {
 window.addEventListener("error", (event) => fault(event.error ?? event.message));
 window.addEventListener("unhandledrejection", (event) => fault(event.reason));
 askForKeyWith(askInDialog);
+watchPresses(document);
 applyTheme();
 document.body.append(skip, header(store), stage, status);
 const shownScreen = screens(store, jobFlow(store), stage, announce, loadLists());

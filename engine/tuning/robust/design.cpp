@@ -15,9 +15,14 @@ using Complex = std::complex<double>;
 constexpr double kBeyondCorners = 100;  // the phase is followed so many times beyond the outer corners
 constexpr int kLagPointsPerDecade = 60;
 
+constexpr double kBarelyDamped = 0.05;  // damping below which a resonance may keep a loop far below it
+constexpr double kSlower = 1.1, kSlowest = 1e-8;
+constexpr double kFarBelow = 0.02;  // times the usual reference: what lies above is within its grid and its scans
+
 }  // namespace
 
 double reference_frequency(const DesignProblem& problem) {
+    if (problem.reference) return *problem.reference;
     if (problem.measured) return problem.measured->phase_crossover().value_or(problem.measured->high() / 3);
     const LinearPlant& plant = *problem.plant;
     const double L = plant.dead_time();
@@ -59,6 +64,24 @@ double reference_frequency(const DesignProblem& problem) {
     if (L > 0) return 1 / L;
     if (fallen > 0) return fallen;
     return Tf > 0 ? 1 / Tf : slowest;
+}
+
+std::vector<double> slower_references(const DesignProblem& problem) {
+    if (problem.plant == nullptr || problem.plant->integrators() <= 0) return {};
+    const LinearPlant& plant = *problem.plant;
+    const auto size = [&](double omega) { return magnitude(plant.at({0, omega})); };
+    double slowest = std::numeric_limits<double>::infinity();
+    for (const auto pole : plant.poles()) {
+        const double top = std::abs(pole);
+        if (pole.imag() <= 0 || std::abs(pole.real()) > kBarelyDamped * top) continue;
+        const double crossing = size(top) / (1 - 1 / problem.limits.Ms);
+        double omega = top;
+        while (omega > kSlowest * top && size(omega) < crossing) omega /= kSlower;
+        slowest = std::min(slowest, omega);
+    }
+    const double usual = reference_frequency(problem);
+    if (!(slowest < kFarBelow * usual)) return {};
+    return {slowest, std::sqrt(slowest * usual)};
 }
 
 }  // namespace tunewright::robust

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "engine/controller/pid.h"
 #include "engine/plant/frequency_response.h"
@@ -66,6 +67,7 @@ struct DesignProblem {
     double rho = 0.5;         ///< weight of the load in `weighted`
     double load_optimum = 1;  ///< IAE of the load-optimal design, for `weighted`
     double setpoint_optimum = 1;
+    std::optional<double> reference = {};  ///< where the loop is looked for; empty: reference_frequency() says
 
     int dimension() const { return pid ? 3 : 2; }
     std::size_t plants() const { return 1 + others.size(); }
@@ -91,5 +93,10 @@ inline IdealPid controller_at(const DesignProblem& problem, const DesignPoint& x
 /// falls through -180 degrees; else 1/L; else where it last falls through -135 degrees, as two lags far apart do at the
 /// faster one; else the filter's or the slowest lag's corner.
 double reference_frequency(const DesignProblem& problem);
+
+/// Where else to look on an integrating plant whose resonance is so lightly damped that a gain which keeps its peak
+/// within Ms crosses over far below: that crossover, and half way to the usual reference in the logarithm, where a
+/// filter takes the peak down. Empty: nowhere.
+std::vector<double> slower_references(const DesignProblem& problem);
 
 }  // namespace tunewright::robust

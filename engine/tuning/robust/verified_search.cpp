@@ -265,12 +265,26 @@ Expected<Found> or_without_derivative(Expected<Found> found, const DesignProblem
 
 Expected<Found> verified_search(SearchKind kind, DesignProblem& problem, const PlaneStart& start, CostSurface* surface,
                                 const RunControl& control, const Found* before) {
-    const Sweep sweep(problem, reference_frequency(problem));
     // A design without derivative is no start for one with it.
     const Found* near = before != nullptr && (!problem.pid || std::isfinite(before->x[2])) ? before : nullptr;
-    const bool promising = has_reference_optima(problem, sweep);
-    return or_without_derivative(checked_search(kind, sweep, problem, promising, start, surface, control, near),
-                                 problem, sweep.reference(), control, before);
+    const auto about = [&](DesignProblem& posed, CostSurface* drawn) {
+        const Sweep sweep(posed, reference_frequency(posed));
+        const bool promising = has_reference_optima(posed, sweep);
+        return or_without_derivative(checked_search(kind, sweep, posed, promising, start, drawn, control, near), posed,
+                                     sweep.reference(), control, before);
+    };
+    auto found = about(problem, surface);
+    for (const double reference : slower_references(problem)) {
+        if (control.stop.stop_requested() || (found && found->stopped)) break;
+        DesignProblem slower = problem;
+        slower.reference = reference;
+        auto other = about(slower, nullptr);
+        if (!other || (found && !(other->log_cost < found->log_cost))) continue;
+        found = std::move(other);
+        problem.sign = slower.sign;
+        problem.reference = reference;
+    }
+    return found;
 }
 
 namespace {

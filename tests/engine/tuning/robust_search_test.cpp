@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <tuple>
 
 #include "engine/tuning/robust/search.h"
 #include "tests/engine/tuning/best_known_design.h"
@@ -48,6 +49,40 @@ TEST(RobustSearch, FastIsWithinAThousandthOfTheBestKnown) {
                                       static_cast<std::uint64_t>(i), drawn.description);
     }
     EXPECT_GE(compared, 15) << "the others have no controller within the limits";
+}
+
+/// K/(s (s^2 + 2 zeta s + 1)) e^(-Ls): its gain is held down by the resonance alone, which a loop far below it never
+/// sees, and which a filter between the two takes down.
+Plant integrator_with_resonance(double zeta, double L) {
+    return TransferFunction{.num = {1}, .den = {1, 2 * zeta, 1, 0}, .L = L};
+}
+
+TEST(RobustSearch, ABarelyDampedResonanceBehindAnIntegratorIsStayedFarBelow) {
+    for (const auto& [zeta, L, M] : {std::tuple{7e-3, 0.1, 1.2}, {5.4e-3, 0.0, 1.1}, {3.3e-3, 1.0, 1.1}}) {
+        const DesignTask task{integrator_with_resonance(zeta, L), M};
+        const LinearPlant linear = *LinearPlant::make(task.plant);
+        const auto fast = designed(task, "fast");
+        ASSERT_TRUE(fast) << fast.error().message;
+        robust::DesignProblem problem = problem_of(task, linear, fast->controller);
+        const double cost = checked_cost(problem, point_of(fast->controller)).value_or(INFINITY);
+        for (const double reference : {1.0, 0.1, 0.03, 0.01, 1e-3}) {
+            problem.reference = reference;
+            EXPECT_LE(cost, best_from_random_starts(problem, 8, 1).value_or(INFINITY) * (1 + kAllowed)) << reference;
+        }
+    }
+}
+
+TEST(RobustSearch, NoResonanceIsTooLightlyDampedForAnAnswer) {
+    Random random(1);
+    for (int i = 0; i < 12; ++i) {
+        const DesignTask task{integrator_with_resonance(random.log_uniform(1e-4, 1e-2), random.uniform(0, 2)),
+                              random.uniform(1.1, 1.6)};
+        const auto fast = designed(task, "fast");
+        ASSERT_TRUE(fast) << fast.error().message;
+        const LinearPlant linear = *LinearPlant::make(task.plant);
+        const robust::DesignProblem problem = problem_of(task, linear, fast->controller);
+        EXPECT_LT(robust::excess_on(linear, problem, point_of(fast->controller), {.step = 0.05, .density = 60}), 2e-5);
+    }
 }
 
 /// `fast` costs at most what `known` does, a design within the limits whose filter follows the same rule.

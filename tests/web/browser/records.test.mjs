@@ -109,6 +109,24 @@ test("a file without a header shows its columns, and is tuned after they are cho
   });
 });
 
+test("a press that leaves a field ends on its button, whatever the service answers meanwhile", async () => {
+  await withPage("", {}, async (page) => {
+    await dropFile(page, ".drop", "log.csv", file(["OP,PV"], (i) => `${u(i)},${fixed(y(i))}`));
+    await page.getByText("300 rows, columns separated by commas").waitFor();
+    await page.getByLabel("Sampling time (s)").fill("2");
+    const button = page.getByRole("button", { name: "Identify this test" });
+    await button.scrollIntoViewIfNeeded();
+    const { x, y: top, width, height } = await button.boundingBox();
+    await page.mouse.move(x + width / 2, top + height / 2);
+    const looked = page.waitForResponse(/\/v1\/records\/preview/);
+    await page.mouse.down();
+    await looked;
+    await page.waitForTimeout(200);
+    await page.mouse.up();
+    await page.getByRole("heading", { name: "Model candidates" }).waitFor();
+  });
+});
+
 test("a file without times is tuned after the sampling time is entered", async () => {
   await withPage("", {}, async (page) => {
     await dropFile(page, ".drop", "log.csv", file(["OP,PV"], (i) => `${u(i)},${fixed(y(i))}`));

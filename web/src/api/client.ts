@@ -1,5 +1,6 @@
 // Calls to the service. Every failure becomes an ApiError with a sentence that can be shown as it is.
 import { currentKey, otherKey } from "./key.ts";
+import { untilReleased } from "./press.ts";
 import type { Problem } from "./types.ts";
 
 export class ApiError extends Error {
@@ -105,7 +106,9 @@ async function send(
       ...(body === undefined ? {} : { body: body instanceof Blob ? body : JSON.stringify(body) }),
       ...(signal ? { signal } : {}),
     });
-    return { response, text: response.status === 304 ? "" : await response.text() };
+    const text = response.status === 304 ? "" : await response.text();
+    await untilReleased();
+    return { response, text };
   } catch {
     throw notConnected();
   }

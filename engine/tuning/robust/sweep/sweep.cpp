@@ -16,23 +16,24 @@ constexpr int kPointsPerDecade = 40;
 constexpr double kDecades = 3;      // below and above the reference
 constexpr int kTurnsResolved = 24;  // of the dead time, one by one
 constexpr int kPointsPerTurn = 20;
-constexpr double kFilterDecade = 30;     // times 1/Tf: where a fixed filter has ended the loop
-constexpr double kTiedDecade = 10;       // times 1/(Tf of the least Td)
-constexpr double kFallen = 3;            // times the plant's fastest root: where it falls as steeply as it ever will
-constexpr double kHighest = 1e12;        // times the reference
-constexpr double kResonant = 0.3;        // damping below which a root gets points of its own
-constexpr double kLeastWidth = 1e-5;     // of a resonance, over its frequency
-constexpr int kResonancePoints = 12;     // to either side, ever wider apart
-constexpr double kLeastDistance = 1e-6;  // of L from -1 where the dead time takes every phase: far beyond any limit
-constexpr double kPeakRoom = 0.05;       // ln: grid points so far below the threshold may lie beside a peak above it
-constexpr int kMaxParabolas = 6;         // around one peak; three are usual
-constexpr double kParabolaEdge = 0.02;   // of its interval, which a parabola's top stays away from
-constexpr double kSameFrequency = 1e-7;  // ln omega: an error of 1e-14 of ln M
-constexpr double kSameValue = 1e-10;     // ln M
-constexpr double kFarBelow = -0.05;      // ln M: below it a peak limits no step, and is known well enough sooner
-constexpr double kSameFarBelow = 1e-6;   // ln M
-constexpr double kParabolaRoom = 0.03;   // ln M: how much higher than the first parabola says a peak may be
-constexpr double kBeyondAll = 50;        // ln of a ratio that has no end
+constexpr double kFilterDecade = 30;       // times 1/Tf: where a fixed filter has ended the loop
+constexpr double kTiedDecade = 10;         // times 1/(Tf of the least Td)
+constexpr double kFallen = 3;              // times the plant's fastest root: where it falls as steeply as it ever will
+constexpr double kHighest = 1e12;          // times the reference
+constexpr double kResonant = 0.3;          // damping below which a root gets points of its own
+constexpr double kLeastWidth = 1e-5;       // of a resonance, over its frequency
+constexpr int kResonancePoints = 12;       // to either side, ever wider apart
+constexpr double kResonanceGrowth = 1.17;  // of their distance beyond, until the grid's own points are as near
+constexpr double kLeastDistance = 1e-6;    // of L from -1 where the dead time takes every phase: far beyond any limit
+constexpr double kPeakRoom = 0.05;         // ln: grid points so far below the threshold may lie beside a peak above it
+constexpr int kMaxParabolas = 6;           // around one peak; three are usual
+constexpr double kParabolaEdge = 0.02;     // of its interval, which a parabola's top stays away from
+constexpr double kSameFrequency = 1e-7;    // ln omega: an error of 1e-14 of ln M
+constexpr double kSameValue = 1e-10;       // ln M
+constexpr double kFarBelow = -0.05;        // ln M: below it a peak limits no step, and is known well enough sooner
+constexpr double kSameFarBelow = 1e-6;     // ln M
+constexpr double kParabolaRoom = 0.03;     // ln M: how much higher than the first parabola says a peak may be
+constexpr double kBeyondAll = 50;          // ln of a ratio that has no end
 constexpr double kMostChange =
     0.5;  // of L, over its distance from -1: far from what could hide between the grid's points
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -67,9 +68,16 @@ std::vector<double> frequencies(const DesignProblem& problem, const LinearPlant&
     const auto add_resonance = [&](Complex root) {
         if (root.imag() <= 0 || std::abs(root.real()) > kResonant * std::abs(root)) return;
         const double centre = std::abs(root), width = std::max(std::abs(root.real()), kLeastWidth * centre);
-        for (int k = -kResonancePoints; k <= kResonancePoints; ++k) {
-            const double w = centre + width * k * std::abs(k) / kResonancePoints;
+        const auto add = [&](double w) {
             if (w > low && w < std::min(high, resolved_to)) omega.push_back(w);
+        };
+        for (int k = -kResonancePoints; k <= kResonancePoints; ++k)
+            add(centre + width * k * std::abs(k) / kResonancePoints);
+        // L may pass 1 far out on the flanks of a resonance that is high above it.
+        const double nearest = std::min((ratio - 1) * centre, spacing);
+        for (double far = kResonanceGrowth * kResonancePoints * width; far < nearest; far *= kResonanceGrowth) {
+            add(centre - far);
+            add(centre + far);
         }
     };
     for (const auto pole : plant.poles()) add_resonance(pole);

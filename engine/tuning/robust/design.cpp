@@ -17,7 +17,9 @@ constexpr int kLagPointsPerDecade = 60;
 
 constexpr double kBarelyDamped = 0.05;  // damping below which a resonance may keep a loop far below it
 constexpr double kSlower = 1.1, kSlowest = 1e-8;
-constexpr double kFarBelow = 0.02;  // times the usual reference: what lies above is within its grid and its scans
+constexpr double kFarBelow = 0.1;  // times the usual reference: what lies above is within its grid and its scans
+constexpr double kBelow = 0.5;     // the same, of a loop that must be met more nearly
+constexpr double kSparePhase[] = {0.1, 0.01};  // rad, of a PID's lead over what Ms and Mt need on two integrators
 
 }  // namespace
 
@@ -66,11 +68,13 @@ double reference_frequency(const DesignProblem& problem) {
     return Tf > 0 ? 1 / Tf : slowest;
 }
 
-std::vector<double> slower_references(const DesignProblem& problem) {
-    if (problem.plant == nullptr || problem.plant->integrators() <= 0) return {};
+namespace {
+
+/// Where a gain that keeps the peak of a barely damped resonance within Ms crosses over, if that is far below.
+std::optional<double> crossover_below_resonance(const DesignProblem& problem, double usual) {
     const LinearPlant& plant = *problem.plant;
     const auto size = [&](double omega) { return magnitude(plant.at({0, omega})); };
-    double slowest = std::numeric_limits<double>::infinity();
+    double slowest = kFarBelow * usual;
     for (const auto pole : plant.poles()) {
         const double top = std::abs(pole);
         if (pole.imag() <= 0 || std::abs(pole.real()) > kBarelyDamped * top) continue;
@@ -79,9 +83,31 @@ std::vector<double> slower_references(const DesignProblem& problem) {
         while (omega > kSlowest * top && size(omega) < crossing) omega /= kSlower;
         slowest = std::min(slowest, omega);
     }
+    return slowest < kFarBelow * usual ? std::optional(slowest) : std::nullopt;
+}
+
+/// Where the lags beside the integrators have used up that phase, rad.
+double frequency_of_lag(const LinearPlant& plant, double phase) {
+    double delay = plant.dead_time();
+    for (const auto pole : plant.poles())
+        if (pole != 0.0) delay += std::abs(pole.real()) / std::norm(pole);
+    for (const auto zero : plant.zeros()) delay += zero.real() / std::norm(zero);
+    return phase / delay;
+}
+
+}  // namespace
+
+std::vector<double> slower_references(const DesignProblem& problem) {
+    if (problem.plant == nullptr || problem.plant->integrators() <= 0) return {};
     const double usual = reference_frequency(problem);
-    if (!(slowest < kFarBelow * usual)) return {};
-    return {slowest, std::sqrt(slowest * usual)};
+    std::vector<double> slower;
+    if (const auto crossover = crossover_below_resonance(problem, usual))
+        slower = {*crossover, std::sqrt(*crossover * usual)};
+    if (problem.plant->integrators() > 1)
+        for (const double phase : kSparePhase)
+            if (const double omega = frequency_of_lag(*problem.plant, phase); omega > 0 && omega < kBelow * usual)
+                slower.push_back(omega);
+    return slower;
 }
 
 }  // namespace tunewright::robust

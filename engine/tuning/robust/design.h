@@ -94,9 +94,10 @@ inline IdealPid controller_at(const DesignProblem& problem, const DesignPoint& x
 /// faster one; else the filter's or the slowest lag's corner.
 double reference_frequency(const DesignProblem& problem);
 
-/// Where else to look on an integrating plant whose resonance is so lightly damped that a gain which keeps its peak
-/// within Ms crosses over far below: that crossover, and half way to the usual reference in the logarithm, where a
-/// filter takes the peak down. Empty: nowhere.
+/// Where else to look on an integrating plant. Its resonance may be so lightly damped that a gain which keeps the peak
+/// within Ms crosses over far below: at that crossover, and half way to the usual reference in the logarithm, where a
+/// filter takes the peak down. Behind two integrators, with no phase to spare, where the other lags have used up little
+/// of it. Empty: nowhere.
 std::vector<double> slower_references(const DesignProblem& problem);
 
 }  // namespace tunewright::robust

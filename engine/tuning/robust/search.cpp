@@ -13,6 +13,7 @@ namespace tunewright::robust {
 namespace {
 
 constexpr double kResonant = 0.4;          // damping of a pair below which a plant may have several valleys
+constexpr double kSlowZero = 0.3;          // times the reference
 constexpr double kShortTd = 0.1;           // times 1/reference: below it the cost hardly depends on ln Td
 constexpr double kSameDesign = 0.02;       // of each logarithm
 constexpr double kSameValley = 0.1;        // of each logarithm: a rough run that comes so near to an end goes there
@@ -36,9 +37,13 @@ constexpr ScanBox kWideBox = {
 // An integral so much alone that Td is but the filter's measure.
 constexpr ScanBox kIntegralBox = {
     .Ti_points = 1, .Td_points = 8, .Ti_low = 1e-4, .Ti_high = 1e-4, .Td_low = 1, .Td_high = 250};
+// An integral behind a filter that is long beside the reference, as a slow zero may want it.
+constexpr ScanBox kFilteredBox = {
+    .Ti_points = 4, .Td_points = 4, .Ti_low = 0.05, .Ti_high = 2, .Td_low = 10, .Td_high = 250};
 // A loop of so high a gain that a set-point step hardly needs the integral.
 constexpr ScanBox kLongTiBox = {
     .Ti_points = 4, .Td_points = 5, .Ti_low = 40, .Ti_high = 1000, .Td_low = 0.02, .Td_high = 2};
+constexpr double kBeyondLag = 2;  // times it
 
 bool has_setpoint(const DesignProblem& problem) {
     return problem.objective == Objective::setpoint_iae || problem.objective == Objective::weighted;
@@ -49,6 +54,13 @@ bool has_resonant_plant(const DesignProblem& problem) {
     for (std::size_t i = 0; i < problem.plants(); ++i)
         if (is_resonant(problem.plant_at(i))) return true;
     return false;
+}
+
+/// Above a slow zero, on either side, the loop may want a filter that keeps it below.
+bool has_slow_zero(const DesignProblem& problem, double reference) {
+    return problem.plant != nullptr && std::ranges::any_of(problem.plant->zeros(), [&](std::complex<double> zero) {
+               return std::abs(zero) < kSlowZero * reference;
+           });
 }
 
 bool has_kinks(const DesignProblem& problem) {
@@ -169,9 +181,20 @@ void look_beyond_short_Td(Runs& runs, const Sweep& sweep, const DesignProblem& p
     runs.from(cheapest(problem, points));
 }
 
+/// A Ti that cancels the slowest lag lies inside.
+ScanBox long_Ti_box(const DesignProblem& problem, double reference) {
+    ScanBox box = kLongTiBox;
+    const double spacing = std::pow(box.Ti_high / box.Ti_low, 1.0 / (box.Ti_points - 1));
+    if (problem.plant != nullptr)
+        for (const auto pole : problem.plant->poles())
+            if (pole != 0.0) box.Ti_high = std::max(box.Ti_high, kBeyondLag * reference / std::abs(pole));
+    box.Ti_points = 1 + static_cast<int>(std::ceil(std::log(box.Ti_high / box.Ti_low) / std::log(spacing)));
+    return box;
+}
+
 /// Where a long Ti wins from the start, kinks lie so close that one run rarely ends beside the lowest.
 void look_at_long_Ti(Runs& runs, const Sweep& sweep, const DesignProblem& problem) {
-    const auto points = scan(sweep, kLongTiBox);
+    const auto points = scan(sweep, long_Ti_box(problem, sweep.reference()));
     const double before = runs.best()->log_cost;
     const auto best = cheapest(problem, points, before + kHopeless);
     runs.from(best);
@@ -186,11 +209,17 @@ void look_for_valleys(Runs& runs, const Sweep& sweep, const DesignProblem& probl
     if (problem.limits.Mks)
         for (const auto& valley : valley_starts(problem, points)) runs.from(valley);
     if (has_setpoint(problem)) look_at_long_Ti(runs, sweep, problem);
-    if (!has_resonant_plant(problem)) return;
+    const auto look_in = [&](const ScanBox& box) {
+        runs.explore(cheapest(problem, scan(sweep, box), runs.best()->log_cost + kHopeless));
+    };
+    if (!has_resonant_plant(problem)) {
+        if (has_slow_zero(problem, sweep.reference())) look_in(kFilteredBox);
+        return;
+    }
     const double hopeless = runs.best()->log_cost + kHopeless;
     for (const auto& valley : valley_starts(problem, scan(sweep, kWideBox, Stability::told, hopeless), short_Td(sweep)))
         runs.explore(valley);
-    runs.explore(cheapest(problem, scan(sweep, kIntegralBox), runs.best()->log_cost + kHopeless));
+    look_in(kIntegralBox);
     runs.explore(cheapest_island(sweep, problem, runs.best()->log_cost));
 }
 
@@ -214,6 +243,8 @@ std::optional<Found> fast_search(const Sweep& sweep, const DesignProblem& proble
     if (problem.pid) {
         look_beyond_short_Td(runs, sweep, problem, points);
         look_for_valleys(runs, sweep, problem, points);
+    } else if (has_setpoint(problem)) {
+        look_at_long_Ti(runs, sweep, problem);
     }
     if (has_kinks(problem)) runs.polish();
     return runs.best();

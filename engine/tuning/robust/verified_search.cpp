@@ -205,10 +205,11 @@ constexpr double kMostTightening = 0.5;
 constexpr double kExactRuns = 1e-5;            // tolerance of runs that compare two designs
 constexpr double kShortestTd = 1.01 * kMinTd;  // over the reference frequency: the derivative's time is at its end
 
-/// The search and its check. `promising`: a search from the usual starts may find something.
+/// The search and its check. `promising`: a search from the usual starts may find something. `explain`: where nothing
+/// is found, look harder, and say why.
 Expected<Found> checked_search(SearchKind kind, const Sweep& sweep, DesignProblem& problem, bool promising,
                                const PlaneStart& start, CostSurface* surface, const RunControl& control,
-                               const Found* before) {
+                               const Found* before, bool explain = true) {
     ProgressReport progress(problem, control);
     const Report report = [&](const DesignPoint& x, double cost) { return progress(x, cost); };
     std::optional<Found> found;
@@ -216,6 +217,7 @@ Expected<Found> checked_search(SearchKind kind, const Sweep& sweep, DesignProble
     if (promising && !found) found = search(kind, sweep, problem, start, surface, report);
     if (control.stop.stop_requested() && !found)
         return Error{ErrorKind::cancelled, "", "The search was stopped before a feasible controller was found."};
+    if (!found && !explain) return Error{ErrorKind::no_feasible_controller, "", "Nothing was found here."};
     if (!found) found = search_from_least_peak(problem, report);
     if (!found.has_value()) return why_infeasible(problem, least_common_peak(problem));
     double tighter = 0;
@@ -263,35 +265,67 @@ Expected<Found> or_without_derivative(Expected<Found> found, const DesignProblem
 
 }  // namespace
 
+namespace {
+
+constexpr double kSlower = 0.1;            // times the reference, where nothing is found about it
+constexpr double kFarTi = 30, kFarTd = 8;  // over the reference: near the ends of the scan
+constexpr double kWide = 8;                // times these, where the valleys of a resonant plant are looked for
+constexpr double kUsualTi = 10;            // over the reference of a loop within limits as narrow
+constexpr int kMoves = 3;                  // of the reference
+constexpr double kWorthMoving = 1e-3;      // of ln of the cost
+
+/// Where the loop of a design lives that lies beyond the box that was scanned; empty where it lies inside.
+std::optional<double> reference_of(const Found& found, const DesignProblem& problem) {
+    if (problem.measured) return std::nullopt;
+    const double reference = reference_frequency(problem), Ti = std::exp(found.x[1]);
+    const double wide = problem.pid && is_resonant(*problem.plant) ? kWide : 1;
+    if (problem.pid && std::isfinite(found.x[2]) && std::exp(found.x[2]) * reference > wide * kFarTd)
+        return 1 / std::exp(found.x[2]);
+    return Ti * reference > wide * kFarTi ? std::optional(kUsualTi / Ti) : std::nullopt;
+}
+
+}  // namespace
+
 Expected<Found> verified_search(SearchKind kind, DesignProblem& problem, const PlaneStart& start, CostSurface* surface,
                                 const RunControl& control, const Found* before) {
     // A design without derivative is no start for one with it.
     const Found* near = before != nullptr && (!problem.pid || std::isfinite(before->x[2])) ? before : nullptr;
-    const auto about = [&](DesignProblem& posed, CostSurface* drawn) {
+    const auto about = [&](DesignProblem& posed, CostSurface* drawn, bool explain) {
         const Sweep sweep(posed, reference_frequency(posed));
         const bool promising = has_reference_optima(posed, sweep);
-        return or_without_derivative(checked_search(kind, sweep, posed, promising, start, drawn, control, near), posed,
-                                     sweep.reference(), control, before);
+        return or_without_derivative(
+            checked_search(kind, sweep, posed, promising, start, drawn, control, near, explain), posed,
+            sweep.reference(), control, before);
     };
-    auto found = about(problem, surface);
-    for (const double reference : slower_references(problem)) {
-        if (control.stop.stop_requested() || (found && found->stopped)) break;
-        DesignProblem slower = problem;
-        slower.reference = reference;
-        auto other = about(slower, nullptr);
-        if (!other || (found && !(other->log_cost < found->log_cost))) continue;
+    auto found = about(problem, surface, false);
+    const auto over = [&] { return control.stop.stop_requested() || (found && found->stopped); };
+    const auto look_at = [&](double reference) {
+        DesignProblem moved = problem;
+        moved.reference = reference;
+        auto other = about(moved, nullptr, false);
+        if (!other || (found && !(other->log_cost < found->log_cost))) return false;
+        const bool worth = !found || other->log_cost < found->log_cost - kWorthMoving;
         found = std::move(other);
-        problem.sign = slower.sign;
+        problem.sign = moved.sign;
         problem.reference = reference;
+        return worth;
+    };
+    for (const double reference : slower_references(problem))
+        if (!over()) look_at(reference);
+    if (!found && !over() && !problem.measured) look_at(kSlower * reference_frequency(problem));
+    if (!found) return about(problem, surface, true);
+    for (int moves = 0; found && moves < kMoves && !over() && before == nullptr; ++moves) {
+        const auto reference = reference_of(*found, problem);
+        if (!reference || !look_at(*reference)) break;
     }
     return found;
 }
 
 namespace {
 
-constexpr double kPeakTolerance = 1e-5;        // of ln M: a hundredth of what is promised
-constexpr double kFarTi = 200, kFarTd = 1e-3;  // times the period over 2 pi at the reference frequency
-constexpr double kUnstable = 20;               // ln of the larger peak, where the loop is unstable
+constexpr double kPeakTolerance = 1e-5;                     // of ln M: a hundredth of what is promised
+constexpr double kLongestTi = 200, kShortestPeakTd = 1e-3;  // times the period over 2 pi at the reference frequency
+constexpr double kUnstable = 20;                            // ln of the larger peak, where the loop is unstable
 
 double larger_measured_peak(const MeasuredPlant& plant, const ParallelPid& gains) {
     const auto loop = MeasuredLoop::make(plant, gains);
@@ -335,7 +369,7 @@ std::optional<LeastPeak> least_common_peak(const DesignProblem& problem) {
     const auto n = static_cast<std::size_t>(problem.dimension());
     // The least peak itself often lies at Ti = infinity, where nothing returns to the set point: kept within what a
     // design would use.
-    const double longest = std::log(kFarTi / reference), shortest = std::log(kFarTd / reference);
+    const double longest = std::log(kLongestTi / reference), shortest = std::log(kShortestPeakTd / reference);
     DesignPoint centre = *start;
     // The unknowns are steps from the centre: a logarithm's own size depends on the unit of time.
     const auto stepped = [&](const std::vector<double>& step) {

@@ -6,7 +6,7 @@
 #include "api/json/json.h"
 #include "api/json/writer.h"
 #include "engine/number_text.h"
-#include "engine/tuning/robust/verified_search.h"
+#include "engine/tuning/robust/feasibility.h"
 
 namespace tunewright::api {
 namespace {

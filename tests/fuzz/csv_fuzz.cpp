@@ -13,7 +13,7 @@
 #include "api/contract/terms.h"
 #include "api/csv/record.h"
 #include "api/json/json.h"
-#include "engine/tuning/robust/verified_search.h"
+#include "engine/tuning/robust/feasibility.h"
 
 namespace tunewright::api {
 

@@ -7,6 +7,7 @@
 #include "engine/tuning/method/setpoint.h"
 #include "engine/tuning/reaction_curve/amigo.h"
 #include "engine/tuning/robust/family.h"
+#include "engine/tuning/robust/feasibility.h"
 #include "engine/tuning/robust/verified_search.h"
 
 namespace tunewright {

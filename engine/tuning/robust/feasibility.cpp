@@ -1,0 +1,180 @@
+#include "engine/tuning/robust/feasibility.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include "engine/loop/measured_loop.h"
+#include "engine/loop/peaks.h"
+#include "engine/loop/stability.h"
+#include "engine/number_text.h"
+#include "engine/numerics/extremum.h"
+#include "engine/tuning/robust/sqp.h"
+#include "engine/tuning/robust/starts.h"
+#include "engine/tuning/robust/sweep/sweep.h"
+
+namespace tunewright::robust {
+
+namespace {
+
+constexpr double kPeakTolerance = 1e-5;                     // of ln M: a hundredth of what is promised
+constexpr double kLongestTi = 200, kShortestPeakTd = 1e-3;  // times the period over 2 pi at the reference frequency
+constexpr double kUnstable = 20;                            // ln of the larger peak, where the loop is unstable
+
+double larger_measured_peak(const MeasuredPlant& plant, const ParallelPid& gains) {
+    const auto loop = MeasuredLoop::make(plant, gains);
+    if (!loop || loop->band_too_short() || !loop->count_unstable_poles().stable()) return kUnstable;
+    const Peaks peaks = loop->peaks();
+    return std::log(std::max(peaks.S.value, peaks.T.value));
+}
+
+/// ln of the larger of Ms and Mt, on the grid that the loop itself chooses: far from any limit a search's fixed grid
+/// may be left behind.
+double larger_peak(const DesignProblem& problem, const DesignPoint& x) {
+    const ParallelPid gains = to_parallel(controller_at(problem, x));
+    if (problem.measured) return larger_measured_peak(*problem.measured, gains);
+    double largest = 0;
+    for (std::size_t i = 0; i < problem.plants(); ++i) {
+        const auto loop = Loop::make(problem.plant_at(i), gains);
+        if (!loop || !count_unstable_poles(*loop).stable()) return kUnstable;
+        const Peaks peaks = find_peaks(*loop, make_loop_grid(*loop));
+        largest = std::max({largest, peaks.S.value, peaks.T.value});
+    }
+    return std::log(largest);
+}
+
+/// A feasible point under ever wider limits.
+std::optional<DesignPoint> stabilising_point(DesignProblem problem, double reference) {
+    for (double excess = 0.5; excess < 40; excess *= 1.6) {
+        problem.limits = Limits{.Ms = 1 + excess, .Mt = 1 + excess, .Mks = std::nullopt, .m_circle = false};
+        const Sweep sweep(problem, reference);
+        for (const auto& point : scan(sweep, {.Ti_points = 13, .Td_points = 11}))
+            if (point.proved || is_stable(problem, point.x)) return point.x;
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<LeastPeak> least_common_peak(const DesignProblem& problem) {
+    const double reference = reference_frequency(problem);
+    const auto start = stabilising_point(problem, reference);
+    if (!start) return std::nullopt;
+    const auto n = static_cast<std::size_t>(problem.dimension());
+    // The least peak itself often lies at Ti = infinity, where nothing returns to the set point: kept within what a
+    // design would use.
+    const double longest = std::log(kLongestTi / reference), shortest = std::log(kShortestPeakTd / reference);
+    DesignPoint centre = *start;
+    // The unknowns are steps from the centre: a logarithm's own size depends on the unit of time.
+    const auto stepped = [&](const std::vector<double>& step) {
+        DesignPoint x = centre;
+        for (std::size_t i = 0; i < n; ++i) x[i] += step[i];
+        return x;
+    };
+    const auto cost = [&](const std::vector<double>& step, bool&) {
+        const DesignPoint x = stepped(step);
+        const double beyond = std::max(0.0, x[1] - longest) + (n > 2 ? std::max(0.0, shortest - x[2]) : 0);
+        return larger_peak(problem, x) + 0.1 * beyond;
+    };
+    double least = kUnstable;
+    // Started anew with shorter steps, ever more exactly: the larger of two peaks has kinks on which a search stalls.
+    constexpr std::array<std::pair<double, double>, 3> kStages = {
+        {{0.4, 100 * kPeakTolerance}, {0.1, 10 * kPeakTolerance}, {0.1, kPeakTolerance}}};
+    for (const auto& [step, tolerance] : kStages) {
+        const auto found = find_local_minimum(LocalSearch::subplex, cost, std::vector<double>(n, 0.0),
+                                              {.step = std::vector<double>(n, step), .tolerance = tolerance});
+        centre = stepped(found.x);
+        least = found.value;
+    }
+    if (least >= kUnstable) return std::nullopt;
+    return LeastPeak{std::exp(least), centre};
+}
+
+bool has_no_finite_optimum(const DesignProblem& problem) {
+    for (std::size_t i = 0; i < problem.others.size(); ++i) {
+        DesignProblem alone = problem;
+        alone.plant = &problem.others[i];
+        alone.others = {};
+        if (!has_no_finite_optimum(alone)) return false;
+    }
+    const LinearPlant& plant = *problem.plant;
+    if (plant.dead_time() > 0 || plant.has_right_half_plane_zero() || problem.limits.Mks) return false;
+    const int excess = plant.pole_excess();
+    // A fixed second-order filter adds one to a PID's pole excess, two to a PI's.
+    if (problem.filter.Tf && *problem.filter.Tf > 0) return problem.pid && excess == 0;
+    if (excess == 0) return true;
+    const bool tied = problem.pid && problem.filter.Tf_over_Td.has_value();
+    if (excess > (problem.pid ? 2 : 1)) return false;
+    if (excess <= 1 || !tied) return true;
+    // Far above every corner the plant is K/s^2: feasible there means feasible at every higher speed.
+    const auto asymptote = LinearPlant::make(Zpk{.K = problem.sign, .zeros = {}, .poles = {0.0, 0.0}, .L = 0});
+    DesignProblem limit = problem;
+    limit.plant = &*asymptote;
+    limit.others = {};
+    limit.sign = 1;
+    return !scan(Sweep(limit, 1), {.Ti_points = 13, .Td_points = 11}, Stability::proved).empty();
+}
+
+namespace {
+
+/// The smallest common limit at which a controller is really found, from 1 % above the least peak upward; empty if none
+/// is.
+std::optional<double> workable_limit(DesignProblem problem, const LeastPeak& least) {
+    for (double M = least.M * 1.01; M < 4 * least.M; M = 1 + (M - 1) * 1.1) {
+        problem.limits.Ms = problem.limits.Mt = std::ceil(M * 1000) / 1000;
+        if (feasible_near(Sweep(problem, reference_frequency(problem)), least.x)) return problem.limits.Ms;
+    }
+    return std::nullopt;
+}
+
+std::string on_plants(const DesignProblem& problem) {
+    return problem.others.empty() ? " on this plant"
+                                  : " on all " + std::to_string(problem.plants()) + " plants looked at";
+}
+
+constexpr std::string_view kNamesLimit = ". The smallest common limit that works is Ms = Mt = ";
+
+}  // namespace
+
+Error why_infeasible(const DesignProblem& problem, const std::optional<LeastPeak>& least) {
+    const std::string name = problem.pid ? "PID" : "PI";
+    if (!least)
+        return {ErrorKind::unstable_plant, "",
+                "No " + name + " controller was found that stabilises " +
+                    (problem.others.empty() ? "this plant" : "all of these plants") +
+                    (problem.pid ? ". " : "; a PID might. ") +
+                    "Check the signs and the unit of the dead time, or shorten the dead time."};
+    const auto workable = workable_limit(problem, *least);
+    if (problem.limits.Mks && (!workable || *workable <= std::min(problem.limits.Ms, problem.limits.Mt)))
+        return {ErrorKind::no_feasible_controller, "Mks",
+                "No " + name + " controller keeps Mks <= " + text(*problem.limits.Mks) +
+                    " together with the other limits. Raise Mks or leave it out."};
+    if (workable && *workable <= std::min(problem.limits.Ms, problem.limits.Mt) && !problem.limits.m_circle)
+        return {ErrorKind::numerical_failure, "",
+                "Controllers within the limits exist, but none whose response could be computed. Check the units of "
+                "the time constants and the dead time: "
+                "they lie very far apart."};
+    constexpr double kGreatest = 4;  // that may be asked for
+    const double named = workable.value_or(least->M * 1.01);
+    return {ErrorKind::no_feasible_controller, "",
+            "No " + name + " controller keeps Ms <= " + text(problem.limits.Ms) +
+                " and Mt <= " + text(problem.limits.Mt) + on_plants(problem) +
+                (problem.limits.Mks ? " with Mks <= " + text(*problem.limits.Mks) : std::string()) +
+                (named > kGreatest ? ", nor was one found for any common limit up to " + text(kGreatest) +
+                                         ". Shorten the dead time, or stabilise the plant by an inner loop."
+                                   : std::string(kNamesLimit) + text(named) + "; use that or more.")};
+}
+
+std::optional<double> named_limit(const Error& error) {
+    const std::size_t at = error.message.find(kNamesLimit);
+    if (error.kind != ErrorKind::no_feasible_controller || at == std::string::npos) return std::nullopt;
+    const char* begin = error.message.data() + at + kNamesLimit.size();
+    double limit = 0;
+    const auto read = std::from_chars(begin, error.message.data() + error.message.size(), limit);
+    return read.ec == std::errc() ? std::optional(limit) : std::nullopt;
+}
+
+}  // namespace tunewright::robust

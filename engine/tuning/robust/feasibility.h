@@ -1,0 +1,33 @@
+// Whether a robust design exists: the least that Ms and Mt can be together, whether its optimum has an end,
+// and the sentence where there is none.
+#pragma once
+
+#include <optional>
+
+#include "engine/expected.h"
+#include "engine/tuning/robust/design.h"
+
+namespace tunewright::robust {
+
+/// The controller whose larger peak of |S| and |T| is smallest.
+struct LeastPeak {
+    double M = 0;  ///< that peak, to about 0.1 %
+    DesignPoint x{};
+};
+
+/// Empty if no controller was found that stabilises the plant. Limits play no part, the filter rule does.
+std::optional<LeastPeak> least_common_peak(const DesignProblem& problem);
+
+/// True where the gain is unbounded within the limits: no dead time, no right-half-plane zero, and a design of the
+/// plant's high-frequency asymptote that scales with frequency exists (Tf tied to Td, no filter, or a filter that
+/// leaves a pole excess of one).
+bool has_no_finite_optimum(const DesignProblem& problem);
+
+/// The sentence where there is no controller, with the limit that works; `least`: of the same problem.
+Error why_infeasible(const DesignProblem& problem, const std::optional<LeastPeak>& least);
+
+/// The common limit on Ms and Mt that the sentence of a no_feasible_controller names as its cure; empty where it names
+/// none. Read back from the sentence, which is all that an error carries.
+std::optional<double> named_limit(const Error& error);
+
+}  // namespace tunewright::robust

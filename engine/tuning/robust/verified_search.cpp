@@ -198,10 +198,6 @@ Expected<Found> or_without_derivative(Expected<Found> found, const DesignProblem
     return other;
 }
 
-}  // namespace
-
-namespace {
-
 constexpr double kSlower = 0.1;            // times the reference, where nothing is found about it
 constexpr double kFarTi = 30, kFarTd = 8;  // over the reference: near the ends of the scan
 constexpr double kWide = 8;                // times these, where the valleys of a resonant plant are looked for
@@ -217,6 +213,21 @@ std::optional<double> reference_of(const Found& found, const DesignProblem& prob
     if (problem.pid && std::isfinite(found.x[2]) && std::exp(found.x[2]) * reference > wide * kFarTd)
         return 1 / std::exp(found.x[2]);
     return Ti * reference > wide * kFarTi ? std::optional(kUsualTi / Ti) : std::nullopt;
+}
+
+/// `other` and its problem in the place of what was found, if it is the cheaper; whether it was worth the look.
+bool take_cheaper(Expected<Found>& found, DesignProblem& problem, Expected<Found> other, const DesignProblem& posed) {
+    if (!other) return false;
+    // Of a weighted cost each place has reference optima of its own.
+    const bool own_scale = problem.objective == Objective::weighted;
+    const double standing = !found ? INFINITY : own_scale ? log_cost(posed, found->x, kExactRuns) : found->log_cost;
+    const bool stopped = other->stopped;
+    if (other->log_cost < standing) {
+        found = std::move(other);
+        problem = posed;
+    }
+    found->stopped = stopped;
+    return found->log_cost < standing - kWorthMoving;
 }
 
 }  // namespace
@@ -238,17 +249,19 @@ Expected<Found> verified_search(SearchKind kind, DesignProblem& problem, const P
         DesignProblem moved = problem;
         moved.reference = reference;
         auto other = about(moved, nullptr, false);
-        if (!other || (found && !(other->log_cost < found->log_cost))) return false;
-        const bool worth = !found || other->log_cost < found->log_cost - kWorthMoving;
-        found = std::move(other);
-        problem.sign = moved.sign;
-        problem.reference = reference;
-        return worth;
+        return take_cheaper(found, problem, std::move(other), moved);
     };
     for (const double reference : slower_references(problem))
         if (!over()) look_at(reference);
-    if (!found && !over() && !problem.measured) look_at(kSlower * reference_frequency(problem));
-    if (!found) return about(problem, surface, true);
+    if (!found) {
+        // Where the scans saw nothing a small feasible set may be left about the least peak.
+        const DesignProblem usual = problem;
+        if (!over() && !problem.measured) look_at(kSlower * reference_frequency(problem));
+        DesignProblem harder = usual;
+        auto last = about(harder, surface, true);
+        if (!found && !last) return last;
+        take_cheaper(found, problem, std::move(last), harder);
+    }
     for (int moves = 0; found && moves < kMoves && !over() && before == nullptr; ++moves) {
         const auto reference = reference_of(*found, problem);
         if (!reference || !look_at(*reference)) break;

@@ -55,10 +55,13 @@ protected:
         reopen();
     }
 
-    Recovery reopen(int most_attempts = 10) {
+    /// No store's clock is later: a job ends no earlier than it began.
+    static constexpr UnixMs kIn2096{4'000'000'000'000};
+
+    Recovery reopen(int most_attempts = 10, UnixMs at = 9000) {
         store_.reset();
         store_ = place_->open();
-        return store_->recover(9000, most_attempts, kGivenUp);
+        return store_->recover(at, most_attempts, kGivenUp);
     }
 
     static UnixMs now() { return wall_clock(); }

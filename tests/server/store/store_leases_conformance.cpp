@@ -1,5 +1,4 @@
 // Jobs that a worker has: attempts as fencing tokens, what becomes of a job whose worker is gone or gives it back.
-#include <algorithm>
 #include <thread>
 
 #include "tests/server/store/store_conformance.h"
@@ -35,13 +34,13 @@ TEST_P(StoreConformance, AJobThatWasInterruptedTooOftenFails) {
     claim(kDead);
     reopen(2);
     claim(kDead);
-    const Recovery recovery = reopen(2);
+    const Recovery recovery = reopen(2, kIn2096);
     EXPECT_EQ(recovery.given_up, 1U);
     EXPECT_EQ(waiting(), 0U);
     const JobRecord found = store_->find("a").value();
     EXPECT_EQ(found.status, JobStatus::failed);
     EXPECT_EQ(found.error, R"({"type":"given-up"})");
-    EXPECT_EQ(found.finished_at, std::max<UnixMs>(9000, found.started_at.value())) << "no earlier than it began";
+    EXPECT_EQ(found.finished_at, kIn2096);
 }
 
 TEST_P(StoreConformance, GivingAJobBackIsNoCrash) {

@@ -15,8 +15,8 @@ using Complex = std::complex<double>;
 constexpr double kBeyondCorners = 100;  // the phase is followed so many times beyond the outer corners
 constexpr int kLagPointsPerDecade = 60;
 
-constexpr double kBarelyDamped = 0.05;  // damping below which a resonance may keep a loop far below it
-constexpr double kSlower = 1.1, kSlowest = 1e-8;
+constexpr double kBarelyDamped = 0.05;              // damping below which a resonance may keep a loop far below it
+constexpr double kStepDown = 1.1, kSlowest = 1e-8;  // down from the resonance: one step, and the end
 constexpr double kFarBelow = 0.1;  // times the usual reference: what lies above is within its grid and its scans
 constexpr double kBelow = 0.5;     // the same, of a loop that must be met more nearly
 constexpr double kSparePhase[] = {0.1, 0.01};  // rad, of a PID's lead over what Ms and Mt need on two integrators
@@ -80,7 +80,7 @@ std::optional<double> crossover_below_resonance(const DesignProblem& problem, do
         if (pole.imag() <= 0 || std::abs(pole.real()) > kBarelyDamped * top) continue;
         const double crossing = size(top) / (1 - 1 / problem.limits.Ms);
         double omega = top;
-        while (omega > kSlowest * top && size(omega) < crossing) omega /= kSlower;
+        while (omega > kSlowest * top && size(omega) < crossing) omega /= kStepDown;
         slowest = std::min(slowest, omega);
     }
     return slowest < kFarBelow * usual ? std::optional(slowest) : std::nullopt;

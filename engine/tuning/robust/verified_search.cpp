@@ -222,7 +222,7 @@ bool take_cheaper(Expected<Found>& found, DesignProblem& problem, Expected<Found
     const bool own_scale = problem.objective == Objective::weighted;
     const double standing = !found ? INFINITY : own_scale ? log_cost(posed, found->x, kExactRuns) : found->log_cost;
     const bool stopped = other->stopped;
-    if (other->log_cost < standing) {
+    if (!found || other->log_cost < standing) {
         found = std::move(other);
         problem = posed;
     }
@@ -255,12 +255,11 @@ Expected<Found> verified_search(SearchKind kind, DesignProblem& problem, const P
         if (!over()) look_at(reference);
     if (!found) {
         // Where the scans saw nothing a small feasible set may be left about the least peak.
-        const DesignProblem usual = problem;
+        DesignProblem usual = problem;
         if (!over() && !problem.measured) look_at(kSlower * reference_frequency(problem));
-        DesignProblem harder = usual;
-        auto last = about(harder, surface, true);
+        auto last = about(usual, surface, true);
         if (!found && !last) return last;
-        take_cheaper(found, problem, std::move(last), harder);
+        take_cheaper(found, problem, std::move(last), usual);
     }
     for (int moves = 0; found && moves < kMoves && !over() && before == nullptr; ++moves) {
         const auto reference = reference_of(*found, problem);

@@ -51,9 +51,13 @@ protected:
         const Claim claim{"worker", 2000, std::chrono::minutes(10), most};
         return completed<std::vector<JobRecord>>([&](auto done) { store.claim(claim, done); });
     }
-    /// Until the database says so; the test program's own time-out ends what never happens.
+    /// Until the database says so. Throws where it has not within a minute.
     void wait_until(const std::string& question) const {
-        while (database_->run(question) != "t") std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+        while (database_->run(question) != "t") {
+            if (std::chrono::steady_clock::now() > end) throw std::runtime_error("never came true: " + question);
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        }
     }
     static void wait_until_healthy(const JobStore& store) {
         while (!store.healthy()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -187,15 +191,31 @@ TEST_F(PostgresStore, WhatIsReportedAsAcceptedIsThereHoweverOftenConnectionsBrea
     EXPECT_EQ(database_->run("SELECT count(*) = count(DISTINCT id) FROM tunewright.jobs"), "t");
 }
 
-TEST_F(PostgresStore, ACommitWhoseAnswerWasLostIsFoundOutAndNotDoneTwice) {
+/// What every database of the cluster feels: no other test may run beside it (tests/CMakeLists.txt sees to that). A
+/// commit that notifies holds a lock of the whole cluster, so that one of another database would be waited for.
+class PostgresCluster : public PostgresStore {
+protected:
+    void TearDown() override {
+        if (database_) stop_waiting_for_standbys();
+    }
+    /// From now on a commit waits for ever, after it has become durable.
+    void wait_for_standbys() const {
+        database_->run("ALTER SYSTEM SET synchronous_standby_names = 'nobody'");
+        database_->run("SELECT pg_reload_conf()");
+        // Commits wait once the checkpointer has read it, which a checkpoint of another database may hold up.
+        wait_until("SELECT current_setting('synchronous_standby_names') = 'nobody'");
+        database_->run("CHECKPOINT");
+    }
+    void stop_waiting_for_standbys() const {
+        database_->run("ALTER SYSTEM RESET synchronous_standby_names");
+        database_->run("SELECT pg_reload_conf()");
+    }
+};
+
+TEST_F(PostgresCluster, ACommitWhoseAnswerWasLostIsFoundOutAndNotDoneTwice) {
     const auto store = open();
     accept(*store, "a");
-    // A commit that waits for a standby is durable already; whoever is cut off then does not hear of it.
-    database_->run("ALTER SYSTEM SET synchronous_standby_names = 'nobody'");
-    database_->run("SELECT pg_reload_conf()");
-    // Commits wait once the checkpointer has read it, which a checkpoint of another test's database may hold up.
-    wait_until("SELECT current_setting('synchronous_standby_names') = 'nobody'");
-    database_->run("CHECKPOINT");
+    wait_for_standbys();
     std::promise<Outcome<std::vector<JobRecord>>> claimed;
     std::promise<Outcome<Accepted>> accepted;
     store->accept(job("b"), [&](auto outcome) { accepted.set_value(std::move(outcome)); });
@@ -204,8 +224,7 @@ TEST_F(PostgresStore, ACommitWhoseAnswerWasLostIsFoundOutAndNotDoneTwice) {
     const std::string waiting = " FROM pg_stat_activity WHERE wait_event = 'SyncRep' AND datname = current_database()";
     wait_until("SELECT count(*) > 0" + waiting);
     database_->run("SELECT pg_terminate_backend(pid)" + waiting);
-    database_->run("ALTER SYSTEM RESET synchronous_standby_names");
-    database_->run("SELECT pg_reload_conf()");
+    stop_waiting_for_standbys();
     const Outcome<Accepted> outcome = accepted.get_future().get();
     ASSERT_TRUE(std::holds_alternative<Accepted>(outcome)) << std::get<StoreFault>(outcome).detail;
     EXPECT_EQ(std::get<Accepted>(outcome).kind, Accepted::Kind::created);

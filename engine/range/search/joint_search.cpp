@@ -17,7 +17,9 @@ using robust::ActivePeak;
 using robust::DesignPoint;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kPenalty = 40;           // of ln of the price for one of ln of a limit: far above any multiplier
+constexpr double kPenalty = 40;           // of ln of the price for one of ln of a limit: above most multipliers
+constexpr double kMostPenalty = 4e4;      // next to the least limits that any design keeps they grow without bound
+constexpr double kHarder = 10;            // times the penalty, where the limits were not held
 constexpr double kNear = -0.25;           // limits below it cannot become active within a step
 constexpr double kNearPrice = 0.5;        // prices so far below the largest cannot become it within a step
 constexpr double kAimBelow = 1e-6;        // feasibility is aimed this far inside
@@ -55,14 +57,15 @@ struct State {
     VectorXd v;
     std::vector<PlaceState> places;
     double price = kInfinity, excess = kInfinity;
-    double merit() const { return price + kPenalty * std::max(0.0, excess); }
+    double merit(double penalty) const { return price + penalty * std::max(0.0, excess); }
 };
 
 Eigen::Vector3d as_vector(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
 
 class JointSearch {
 public:
-    JointSearch(const JointProblem& problem, const JointOptions& options) : problem_(problem), options_(options) {
+    JointSearch(const JointProblem& problem, const JointOptions& options, double penalty)
+        : problem_(problem), options_(options), penalty_(penalty) {
         layout_.n = problem.low.size();
         H_ = MatrixXd::Zero(layout_.n, layout_.n);
         for (Index i = 0; i < layout_.n; ++i) H_(i, i) = kFirstCurvature * std::pow(0.5 / problem.step[i], 2);
@@ -72,7 +75,7 @@ public:
         State now = with_limits(start);
         ask_price(now);
         JointResult result;
-        if (!std::isfinite(now.merit())) return answer(now, result);
+        if (!std::isfinite(now.merit(penalty_))) return answer(now, result);
         add_gradients(now);
         double radius = 1;
         for (; result.iterations < options_.most_iterations && !done(now); ++result.iterations) {
@@ -88,11 +91,11 @@ public:
                 continue;
             }
             const VectorXd p = step->z.head(layout_.n);
-            const double promised = now.merit() - model_merit(now, *step, program.g);
+            const double promised = now.merit(penalty_) - model_merit(now, *step, program.g);
             if (promised < options_.cost_tolerance) break;
             State next = corrected(now, p, radius);
-            if (std::isfinite(next.excess) && kPenalty * next.excess < now.merit()) ask_price(next);
-            const double won = now.merit() - next.merit();
+            if (std::isfinite(next.excess) && penalty_ * next.excess < now.merit(penalty_)) ask_price(next);
+            const double won = now.merit(penalty_) - next.merit(penalty_);
             if (!(won > kEnoughWon * promised)) {
                 radius = 0.3 * std::min(radius, (p.cwiseQuotient(problem_.step)).cwiseAbs().maxCoeff());
                 if (radius < kLeastRadius) break;
@@ -193,7 +196,7 @@ private:
         add(none, -1, 0, kSlackSize);
         add_box(now.v, radius, add);
         g[layout_.price()] = problem_.aim == Aim::worst ? 1 : 0;
-        g[layout_.excess()] = kPenalty;
+        g[layout_.excess()] = penalty_;
         QuadraticProgram program{.H = MatrixXd::Zero(layout_.size(), layout_.size()), .g = g, .A = {}, .b = {}};
         program.H.topLeftCorner(layout_.n, layout_.n) = H_;
         program.H(layout_.price(), layout_.price()) = program.H(layout_.excess(), layout_.excess()) = kSlackCurvature;
@@ -224,7 +227,7 @@ private:
     double model_merit(const State& now, const ProgramSolution& step, const VectorXd& g) const {
         const VectorXd p = step.z.head(layout_.n);
         const double linear = problem_.aim == Aim::worst ? step.z[layout_.price()] : double(g.head(layout_.n).dot(p));
-        return now.price + linear + 0.5 * p.dot(H_ * p) + kPenalty * std::max(0.0, step.z[layout_.excess()]);
+        return now.price + linear + 0.5 * p.dot(H_ * p) + penalty_ * std::max(0.0, step.z[layout_.excess()]);
     }
 
     /// The step, and after it back to the curved limits along the shortest way.
@@ -262,7 +265,7 @@ private:
         QuadraticProgram program{.H = MatrixXd::Zero(size, size), .g = VectorXd::Zero(size), .A = {}, .b = {}};
         for (Index i = 0; i < layout_.n; ++i) program.H(i, i) = std::pow(0.5 / problem_.step[i], 2);
         program.H(layout_.n, layout_.n) = kSlackCurvature;
-        program.g[layout_.n] = kPenalty;
+        program.g[layout_.n] = penalty_;
         fill(program, rows, bounds);
         return program;
     }
@@ -312,6 +315,7 @@ private:
 
     const JointProblem& problem_;
     const JointOptions& options_;
+    double penalty_;
     Layout layout_;
     MatrixXd H_;
     int slow_steps_ = 0;
@@ -321,7 +325,11 @@ private:
 
 JointResult search_jointly(const JointProblem& problem, const VectorXd& start, const JointOptions& options,
                            const std::function<void(const JointResult&)>& report) {
-    return JointSearch(problem, options).run(start, report);
+    JointResult end = JointSearch(problem, options, kPenalty).run(start, report);
+    const auto failed = [&] { return !end.holds() && !end.stopped && std::isfinite(end.log_price); };
+    for (double penalty = kHarder * kPenalty; failed() && penalty <= kMostPenalty; penalty *= kHarder)
+        end = JointSearch(problem, options, penalty).run(end.v, report);
+    return end;
 }
 
 }  // namespace tunewright::range

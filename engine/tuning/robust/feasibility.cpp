@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "engine/loop/measured_loop.h"
 #include "engine/loop/peaks.h"
@@ -46,31 +47,50 @@ double larger_peak(const DesignProblem& problem, const DesignPoint& x) {
     return std::log(largest);
 }
 
-/// A feasible point under ever wider limits.
-std::optional<DesignPoint> stabilising_point(DesignProblem problem, double reference) {
-    for (double excess = 0.5; excess < 40; excess *= 1.6) {
-        problem.limits = Limits{.Ms = 1 + excess, .Mt = 1 + excess, .Mks = std::nullopt, .m_circle = false};
-        const Sweep sweep(problem, reference);
-        for (const auto& point : scan(sweep, {.Ti_points = 13, .Td_points = 11}))
-            if (point.proved || is_stable(problem, point.x)) return point.x;
-    }
+constexpr double kLeastExcess = 0.01, kFirstExcess = 0.5, kMostExcess = 40;  // of peaks over 1, for a start
+constexpr double kExcessStep = 1.6;                                          // from one look to the next
+constexpr double kCloseStart = 1.05;  // over the least excess at which a scan sees anything
+
+/// A stable loop whose peaks exceed 1 by no more than `excess`; empty if a scan sees none.
+std::optional<DesignPoint> stable_within(DesignProblem problem, double reference, double excess) {
+    problem.limits = Limits{.Ms = 1 + excess, .Mt = 1 + excess, .Mks = std::nullopt, .m_circle = false};
+    for (const auto& point : scan(Sweep(problem, reference), {.Ti_points = 13, .Td_points = 11}))
+        if (point.proved || is_stable(problem, point.x)) return point.x;
     return std::nullopt;
 }
 
-}  // namespace
+/// Two stable loops: one of the widest limits needed, and one with nearly the least peaks that a scan sees. From either
+/// a search may stall on the kinks of the larger of two peaks.
+std::vector<DesignPoint> stable_starts(const DesignProblem& problem, double reference) {
+    double enough = kFirstExcess;
+    auto found = stable_within(problem, reference, enough);
+    while (!found && enough < kMostExcess) found = stable_within(problem, reference, enough *= kExcessStep);
+    if (!found) return {};
+    std::vector<DesignPoint> starts = {*found};
+    double too_little = enough / kExcessStep;
+    const auto look = [&](double excess) {
+        const auto point = stable_within(problem, reference, excess);
+        (point ? enough : too_little) = excess;
+        if (point) found = point;
+        return point.has_value();
+    };
+    if (enough == kFirstExcess)
+        while (too_little > kLeastExcess && look(too_little)) too_little = enough / kExcessStep;
+    while (enough > kCloseStart * too_little) look(std::sqrt(enough * too_little));
+    if (*found != starts.front()) starts.push_back(*found);
+    return starts;
+}
 
-std::optional<LeastPeak> least_common_peak(const DesignProblem& problem) {
-    const double reference = reference_frequency(problem);
-    const auto start = stabilising_point(problem, reference);
-    if (!start) return std::nullopt;
+/// From one start; kUnstable where it leads nowhere.
+LeastPeak least_peak_from(const DesignProblem& problem, double reference, const DesignPoint& start) {
     const auto n = static_cast<std::size_t>(problem.dimension());
     // The least peak itself often lies at Ti = infinity, where nothing returns to the set point: kept within what a
     // design would use.
     const double longest = std::log(kLongestTi / reference), shortest = std::log(kShortestPeakTd / reference);
-    DesignPoint centre = *start;
+    LeastPeak least{.M = std::exp(kUnstable), .x = start, .reference = reference};
     // The unknowns are steps from the centre: a logarithm's own size depends on the unit of time.
     const auto stepped = [&](const std::vector<double>& step) {
-        DesignPoint x = centre;
+        DesignPoint x = least.x;
         for (std::size_t i = 0; i < n; ++i) x[i] += step[i];
         return x;
     };
@@ -79,18 +99,30 @@ std::optional<LeastPeak> least_common_peak(const DesignProblem& problem) {
         const double beyond = std::max(0.0, x[1] - longest) + (n > 2 ? std::max(0.0, shortest - x[2]) : 0);
         return larger_peak(problem, x) + 0.1 * beyond;
     };
-    double least = kUnstable;
     // Started anew with shorter steps, ever more exactly: the larger of two peaks has kinks on which a search stalls.
     constexpr std::array<std::pair<double, double>, 3> kStages = {
         {{0.4, 100 * kPeakTolerance}, {0.1, 10 * kPeakTolerance}, {0.1, kPeakTolerance}}};
     for (const auto& [step, tolerance] : kStages) {
         const auto found = find_local_minimum(LocalSearch::subplex, cost, std::vector<double>(n, 0.0),
                                               {.step = std::vector<double>(n, step), .tolerance = tolerance});
-        centre = stepped(found.x);
-        least = found.value;
+        least.x = stepped(found.x);
+        least.M = std::exp(found.value);
     }
-    if (least >= kUnstable) return std::nullopt;
-    return LeastPeak{std::exp(least), centre};
+    return least;
+}
+
+}  // namespace
+
+std::optional<LeastPeak> least_common_peak(const DesignProblem& problem) {
+    std::vector<double> references = slower_references(problem);
+    references.insert(references.begin(), reference_frequency(problem));
+    LeastPeak least{.M = std::exp(kUnstable)};
+    for (const double reference : references)
+        for (const DesignPoint& start : stable_starts(problem, reference)) {
+            const LeastPeak found = least_peak_from(problem, reference, start);
+            if (found.M < least.M) least = found;
+        }
+    return least.M < std::exp(kUnstable) ? std::optional(least) : std::nullopt;
 }
 
 bool has_no_finite_optimum(const DesignProblem& problem) {
@@ -125,7 +157,7 @@ namespace {
 std::optional<double> workable_limit(DesignProblem problem, const LeastPeak& least) {
     for (double M = least.M * 1.01; M < 4 * least.M; M = 1 + (M - 1) * 1.1) {
         problem.limits.Ms = problem.limits.Mt = std::ceil(M * 1000) / 1000;
-        if (feasible_near(Sweep(problem, reference_frequency(problem)), least.x)) return problem.limits.Ms;
+        if (feasible_near(Sweep(problem, least.reference), least.x)) return problem.limits.Ms;
     }
     return std::nullopt;
 }

@@ -11,11 +11,13 @@ namespace tunewright::robust {
 
 /// The controller whose larger peak of |S| and |T| is smallest.
 struct LeastPeak {
-    double M = 0;  ///< that peak, to about 0.1 %
+    double M = 0;  ///< that peak, to about 0.1 %, of loops whose Ti is no longer than a design would use
     DesignPoint x{};
+    double reference = 0;  ///< where its loop was looked for, rad/time
 };
 
-/// Empty if no controller was found that stabilises the plant. Limits play no part, the filter rule does.
+/// Looks about the problem's reference and about the slower ones (slower_references()). Empty if no controller was
+/// found that stabilises the plant. Limits play no part but in these, the filter rule does.
 std::optional<LeastPeak> least_common_peak(const DesignProblem& problem);
 
 /// True where the gain is unbounded within the limits: no dead time, no right-half-plane zero, and a design of the

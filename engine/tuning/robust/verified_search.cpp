@@ -86,20 +86,25 @@ bool has_reference_optima(DesignProblem& problem, const Sweep& sweep) {
     return true;
 }
 
-/// Where the scan saw nothing: the feasible set may be a small one around the least peak, or belong to the other sign
-/// of Kp.
-std::optional<Found> search_from_least_peak(DesignProblem& problem, const Report& report) {
-    for (int attempt = 0; attempt < 2; ++attempt, problem.sign = -problem.sign) {
-        const auto least = least_common_peak(problem);
-        if (!least) continue;
-        const Sweep sweep(problem, reference_frequency(problem));
-        const auto start = feasible_near(sweep, least->x);
-        if (!start) return std::nullopt;
-        const SqpResult result = minimise(sweep, problem, *start, {}, report);
-        if (std::isfinite(result.log_cost)) return Found{result.x, result.log_cost, false, result.curvature};
-        return std::nullopt;
-    }
-    return std::nullopt;
+/// With the other sign of Kp, which `problem` then has, where none stabilises with its own.
+std::optional<LeastPeak> least_peak_of_either_sign(DesignProblem& problem) {
+    if (const auto least = least_common_peak(problem)) return least;
+    DesignProblem other = problem;
+    other.sign = -problem.sign;
+    const auto least = least_common_peak(other);
+    if (least) problem.sign = other.sign;
+    return least;
+}
+
+/// Where the scan saw nothing: the feasible set may be a small one around the least peak.
+std::optional<Found> search_from(const LeastPeak& least, DesignProblem& problem, const Report& report) {
+    const Sweep sweep(problem, least.reference);
+    const auto start = feasible_near(sweep, least.x);
+    if (!start) return std::nullopt;
+    const SqpResult result = minimise(sweep, problem, *start, {}, report);
+    if (!std::isfinite(result.log_cost)) return std::nullopt;
+    if (least.reference != reference_frequency(problem)) problem.reference = least.reference;
+    return Found{result.x, result.log_cost, false, result.curvature};
 }
 
 constexpr double kShortLags = 0.01;              // of the dead time
@@ -153,8 +158,11 @@ Expected<Found> checked_search(SearchKind kind, const Sweep& sweep, DesignProble
     if (control.stop.stop_requested() && !found)
         return Error{ErrorKind::cancelled, "", "The search was stopped before a feasible controller was found."};
     if (!found && !explain) return Error{ErrorKind::no_feasible_controller, "", "Nothing was found here."};
-    if (!found) found = search_from_least_peak(problem, report);
-    if (!found.has_value()) return why_infeasible(problem, least_common_peak(problem));
+    if (!found) {
+        const auto least = least_peak_of_either_sign(problem);
+        if (least) found = search_from(*least, problem, report);
+        if (!found) return why_infeasible(problem, least);
+    }
     double tighter = 0;
     for (int round = 0; round < kRounds; ++round) {
         const double excess = measured_excess(problem, found->x);
@@ -162,7 +170,7 @@ Expected<Found> checked_search(SearchKind kind, const Sweep& sweep, DesignProble
         if (!std::isfinite(excess) || round + 1 == kRounds) break;
         tighter += 1.5 * excess * problem.limits.Ms / (problem.limits.Ms - 1) + kLeastTightening;
         const DesignProblem narrowed = tightened(problem, std::min(tighter, kMostTightening));
-        const Sweep narrow_sweep(narrowed, sweep.reference());
+        const Sweep narrow_sweep(narrowed, reference_frequency(problem));
         const auto again = minimise(narrow_sweep, narrowed, restore(narrow_sweep, found->x).value_or(found->x),
                                     {.curvature = found->curvature}, {});
         found->x = again.x;

@@ -170,6 +170,40 @@ TEST(OneSetting, HoldsTheLimitsOnEveryPlantOfARegionAtAPoint) {
         }
 }
 
+// Two integrators with lags: the loops live far below the lags. The second set asks for little more than the least
+// peaks that any PID has there, where the price of a setting grows a hundred times as fast as its limits narrow.
+TEST(OneSetting, IsFoundBehindTwoIntegrators) {
+    struct Set {
+        double M, worst;
+        std::vector<Plant> plants;
+    };
+    const auto plant = [](double K, std::vector<double> den, double L) {
+        return Plant(TransferFunction{.num = {K}, .den = std::move(den), .L = L});
+    };
+    for (const Set& set :
+         {Set{1.67,
+              1.16,
+              {plant(0.70673, {1, 1.71, 0.7207, 0, 0}, 0.01475), plant(0.7557, {1, 1.733, 0.7403, 0, 0}, 0.01455),
+               plant(0.68108, {1, 1.694, 0.7074, 0, 0}, 0.01489)}},
+          Set{1.342,
+              3.1,
+              {plant(16.43, {1, 16.07, 0, 0}, 0.0988), plant(16.64, {1, 16.39, 0, 0}, 0.09691),
+               plant(15.19, {1, 15.51, 0, 0}, 0.1024), plant(15.96, {1, 15.63, 0, 0}, 0.1016)}}}) {
+        RangeOptions options;
+        options.limits.Ms = options.limits.Mt = set.M;
+        const auto one = one_setting(points_of(set.plants), options);
+        ASSERT_TRUE(one) << one.error().message;
+        EXPECT_LE(one->worst_relative_IAE, set.worst);
+        for (const Plant& each : set.plants) {
+            const auto linear = LinearPlant::make(each);
+            const auto loop = Loop::make(*linear, to_parallel(one->controller));
+            ASSERT_TRUE(count_unstable_poles(*loop).stable());
+            const Peaks peaks = find_peaks(*loop, make_loop_grid(*loop));
+            EXPECT_LE(std::max(peaks.S.value, peaks.T.value), set.M * (1 + 2e-5));
+        }
+    }
+}
+
 TEST(OneSetting, SaysHowFarLimitsThatNoControllerKeepsMustBeRaised) {
     const auto one = one_setting(points_of({Fopdt{1, -4, 1}, Fopdt{1, -2.6, 1}}), {});
     ASSERT_FALSE(one);

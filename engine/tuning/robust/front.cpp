@@ -97,8 +97,10 @@ Expected<RobustFront::Design> RobustFront::at(double M, const RunControl& contro
     limits.Ms = M;
     limits.Mt = terms_.Mt.value_or(M);
     Design design;
-    // A neighbour's valley need not be the deepest: of a resonant plant each limit's are all looked at.
-    const bool valleys = terms_.options.controller == ControllerKind::PID && is_resonant(problem_.linear);
+    // A neighbour's valley need not be the deepest: of a resonant plant, or one with zeros, each limit's are all looked
+    // at.
+    const bool valleys = !problem_.linear.zeros().empty() ||
+                         (terms_.options.controller == ControllerKind::PID && is_resonant(problem_.linear));
     const auto before = valleys ? std::nullopt : expected_at(M);
     auto found = searched(limits, before ? &*before : nullptr, control, design);
     if (before && (!found || !in_order(M, design.load_IAE))) found = searched(limits, nullptr, control, design);

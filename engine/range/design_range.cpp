@@ -164,7 +164,10 @@ private:
         for (const PlaceFigures& place : design_.one_curve.places) rows.push_back(place.at);
         auto curve = curve_over(places_, own_, in_use_at, kCurvePlaces, rows, options_.allowance);
         design_.partial = design_.partial || schedule.partial;
-        if (curve) schedule.worst_relative_IAE = std::max(schedule.worst_relative_IAE, largest_relative_IAE(*curve));
+        if (curve) {
+            schedule.worst_relative_IAE = std::max(schedule.worst_relative_IAE, largest_relative_IAE(*curve));
+            schedule.holds_limits = schedule.holds_limits && largest_excess(*curve) <= kAllowedBetween;
+        }
         remark_price(schedule, options_.allowance);
         design_.warnings.insert(design_.warnings.end(), schedule.warnings.begin(), schedule.warnings.end());
         if (!curve) {

@@ -9,21 +9,33 @@ namespace tunewright::range {
 namespace {
 
 constexpr int kLooks = 48;             // places over the range at which a schedule is verified first
-constexpr int kLooksOfPart = 9;        // and between two rows
+constexpr int kLooksOfPart = 9;        // and between two places where plant or settings bend
 constexpr double kSmallExcess = 5e-4;  // of it: all limits are tightened by it, rather than a place added
 constexpr double kNearLimit = -5e-3;   // of it: tops above it are looked at more closely
 constexpr double kNearPrice = 0.01;    // of ln of the price, below what is allowed: the same
 constexpr std::size_t kMostAdded = 6;  // places a round
 
+/// Where the plants or the settings bend, ascending: what is largest over the range is largest there or between.
+std::vector<double> bends_of(const Places& places, const Schedule& schedule) {
+    std::vector<double> bends = places.model().points();
+    for (const ScheduleRow& row : schedule.rows) bends.push_back(row.at);
+    std::ranges::sort(bends);
+    bends.erase(std::ranges::unique(bends).begin(), bends.end());
+    return bends;
+}
+
 std::vector<double> looked_at(const Places& places, const Schedule& schedule) {
     const double low = places.model().low(), high = places.model().high();
     std::vector<double> at;
     for (int i = 0; i <= kLooks; ++i) at.push_back(low + (high - low) * i / kLooks);
-    for (std::size_t k = 1; k < schedule.rows.size(); ++k) {
-        const double from = schedule.rows[k - 1].at, width = schedule.rows[k].at - from;
+    const std::vector<double> bends = bends_of(places, schedule);
+    at.insert(at.end(), bends.begin(), bends.end());
+    for (std::size_t k = 1; k < bends.size(); ++k) {
+        const double from = bends[k - 1], width = bends[k] - from;
         for (int i = 0; i < kLooksOfPart; ++i) at.push_back(from + width * (i + 0.5) / kLooksOfPart);
     }
-    std::sort(at.begin(), at.end());
+    std::ranges::sort(at);
+    at.erase(std::ranges::unique(at).begin(), at.end());
     return at;
 }
 

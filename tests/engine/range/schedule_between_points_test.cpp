@@ -1,0 +1,114 @@
+// A schedule between given points: where the plant or the settings bend, the limits are nearest.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "engine/range/design_range.h"
+#include "tests/engine/range/dense_loop.h"
+
+namespace tunewright::range {
+namespace {
+
+using range_tests::Complex;
+
+struct Point {
+    double at, K, T, L;
+};
+
+/// ln of K, T and L linear between neighbours.
+Point between(const std::vector<Point>& points, double at) {
+    std::size_t k = 1;
+    while (k + 1 < points.size() && at > points[k].at) ++k;
+    const Point &a = points[k - 1], &b = points[k];
+    const double part = (at - a.at) / (b.at - a.at);
+    const auto mean = [&](double x, double y) { return x * std::pow(y / x, part); };
+    return {at, mean(a.K, b.K), mean(a.T, b.T), mean(a.L, b.L)};
+}
+
+/// Kp, Ti (or 1/Ti), Td and Tf linear between neighbouring rows.
+IdealPid settings_between(const Schedule& schedule, double at) {
+    const auto& rows = schedule.rows;
+    std::size_t k = 1;
+    while (k + 1 < rows.size() && at > rows[k].at) ++k;
+    const ScheduleRow &a = rows[k - 1], &b = rows[k];
+    const double part = (at - a.at) / (b.at - a.at);
+    const auto mean = [&](double x, double y) { return x + part * (y - x); };
+    IdealPid pid{.Kp = mean(a.Kp, b.Kp), .Ti = mean(a.Ti, b.Ti), .Td = mean(a.Td, b.Td)};
+    if (schedule.interpolation == Interpolation::linear_in_gains) pid.Ti = 1 / mean(1 / a.Ti, 1 / b.Ti);
+    if (a.Tf > 0 || b.Tf > 0) pid.filter = {FilterType::measurement_second_order, mean(a.Tf, b.Tf)};
+    return pid;
+}
+
+struct Set {
+    std::vector<Point> points;
+    ControllerKind controller;
+    double Ms, Mt;
+    Interpolation interpolation;
+    std::optional<int> rows = {};
+};
+
+// Of 200 random sets these exceeded a limit by 0.29 %, 0.10 % and 0.05 % of it: at a point beside a row, and between
+// two points three units apart.
+TEST(Schedule, HoldsItsLimitsWhereThePlantBends) {
+    const Set sets[] = {
+        {{{9, 5.509, 43.0, 2.216}, {38, 2.509, 122.6, 7.76}, {76, 2.056, 47.48, 2.449}},
+         ControllerKind::PI,
+         1.46294,
+         1.3,
+         Interpolation::linear_in_times},
+        {{{5, 1.754, 132.3, 255.5},
+          {55, 0.352, 86.18, 342.1},
+          {58, 2.178, 27.07, 192.8},
+          {74, 1.683, 67.96, 100.7},
+          {93, 0.8283, 36.07, 117.5},
+          {98, 1.772, 164.5, 45.42}},
+         ControllerKind::PID,
+         1.3572,
+         1.3,
+         Interpolation::linear_in_gains,
+         5},
+        {{{7, 0.6197, 1.621, 0.9641},
+          {25, 0.6278, 2.197, 0.9665},
+          {55, 0.6464, 1.808, 0.9243},
+          {63, 0.7551, 1.605, 1.051},
+          {67, 0.7584, 1.936, 1.022},
+          {97, 0.7654, 1.611, 0.9912}},
+         ControllerKind::PID,
+         1.98363,
+         1.98363,
+         Interpolation::linear_in_times},
+    };
+    for (const Set& set : sets) {
+        std::vector<RangePoint> points;
+        for (const Point& p : set.points) points.push_back({p.at, family_of(Fopdt{p.K, p.T, p.L})});
+        RangeOptions options;
+        options.controller = set.controller;
+        options.limits.Ms = set.Ms;
+        options.limits.Mt = set.Mt;
+        options.interpolation = set.interpolation;
+        options.rows = set.rows;
+        const auto model = model_of_points(points, options.between);
+        ASSERT_TRUE(model);
+        const auto design = design_range({.scheduling = {}, .model = *model, .options = options}, {});
+        ASSERT_TRUE(design && design->schedule);
+        ASSERT_TRUE(design->schedule->holds_limits);
+        const double low = set.points.front().at, high = set.points.back().at;
+        std::vector<double> places;
+        for (int i = 0; i <= 800; ++i) places.push_back(low + (high - low) * i / 800);
+        for (const Point& p : set.points) places.push_back(p.at);
+        double excess = -1;
+        for (const double at : places) {
+            const Point p = between(set.points, at);
+            const auto plant = [&](Complex s) { return p.K * std::exp(-s * p.L) / (p.T * s + 1.0); };
+            const auto peaks = range_tests::dense_peaks(plant, settings_between(design->schedule->schedule, at),
+                                                        1e-3 / (p.T + p.L), 300 / std::min(p.T, p.L), 2000);
+            EXPECT_TRUE(peaks.stable) << at;
+            excess = std::max({excess, peaks.Ms / set.Ms - 1, peaks.Mt / set.Mt - 1});
+        }
+        EXPECT_LE(excess, 5e-5) << set.points.size() << " points";
+    }
+}
+
+}  // namespace
+}  // namespace tunewright::range

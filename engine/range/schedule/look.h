@@ -38,8 +38,9 @@ struct Verified {
     std::vector<double> worst;  ///< places where the price allowed is exceeded, and limits by more than a little (5e-4)
 };
 
-/// At 49 places evenly over the range, at nine between each two rows, and at the tops of the parabolas through those
-/// that come near a limit or near `allowed`, the ln of the price. Errors: the model's.
+/// At 49 places evenly over the range, at its points and rows, at nine places between each two of these, and at the
+/// tops of the parabolas through those that come near a limit or near `allowed`, the ln of the price. Errors: the
+/// model's.
 Expected<Verified> verify(const Places& places, const OwnOptima& own, const Schedule& schedule, double allowed);
 
 /// x of a controller, as the searches know it.

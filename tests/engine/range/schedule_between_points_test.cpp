@@ -110,5 +110,32 @@ TEST(Schedule, HoldsItsLimitsWhereThePlantBends) {
     }
 }
 
+// A third of a per cent of the range, about 57.2, alone is above a limit, by 0.1 % of it: none of the curve's evenly
+// spread places lies there.
+TEST(Schedule, ThatIsGivenIsFoundToExceedALimitBetweenTheCurvesPlaces) {
+    const std::vector<RangePoint> points = {
+        {5, family_of(Fopdt{1.754, 132.3, 255.5})},   {55, family_of(Fopdt{0.352, 86.18, 342.1})},
+        {58, family_of(Fopdt{2.178, 27.07, 192.8})},  {74, family_of(Fopdt{1.683, 67.96, 100.7})},
+        {93, family_of(Fopdt{0.8283, 36.07, 117.5})}, {98, family_of(Fopdt{1.772, 164.5, 45.42})}};
+    const Schedule given{.interpolation = Interpolation::linear_in_gains,
+                         .hysteresis = 0,
+                         .rows = {{5, 0.228167, 190.358, 88.2156, 8.82156},
+                                  {54.406, 0.441218, 178.125, 79.9511, 7.99511},
+                                  {57.894, 0.103589, 99.4963, 31.446, 3.1446},
+                                  {86.375, 0.171959, 66.3315, 46.2529, 4.62529},
+                                  {98, 0.522742, 81.159, 20.3231, 2.03231}}};
+    RangeOptions options;
+    options.limits.Ms = 1.3573;
+    options.limits.Mt = 1.3;
+    const auto model = model_of_points(points, options.between);
+    ASSERT_TRUE(model);
+    const auto judged = judge_schedule({.scheduling = {}, .model = *model, .options = options}, given, {});
+    ASSERT_TRUE(judged && judged->schedule);
+    EXPECT_FALSE(judged->schedule->holds_limits);
+    const WorstPlace& worst = *std::ranges::find(judged->schedule_curve.worst, Quantity::Ms, &WorstPlace::quantity);
+    EXPECT_NEAR(worst.at, 57.18, 0.1);
+    EXPECT_NEAR(worst.value.value_or(0), 1.3586, 3e-4);  // 1.35858 at 57.196 by a dense sweep
+}
+
 }  // namespace
 }  // namespace tunewright::range

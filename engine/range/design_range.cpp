@@ -158,11 +158,9 @@ private:
 
     std::optional<Error> take(ScheduleDesign schedule) {
         const auto in_use_at = [&](double at) { return in_use(schedule.schedule, at); };
-        std::vector<double> rows;
-        for (const ScheduleRow& row : schedule.schedule.rows)
-            if (row.at >= problem_.model->low() && row.at <= problem_.model->high()) rows.push_back(row.at);
-        for (const PlaceFigures& place : design_.one_curve.places) rows.push_back(place.at);
-        auto curve = curve_over(places_, own_, in_use_at, kCurvePlaces, rows, options_.allowance);
+        std::vector<double> extra = bends_of(*problem_.model, schedule.schedule);
+        for (const PlaceFigures& place : design_.one_curve.places) extra.push_back(place.at);
+        auto curve = curve_over(places_, own_, in_use_at, kCurvePlaces, extra, options_.allowance);
         design_.partial = design_.partial || schedule.partial;
         if (curve) {
             schedule.worst_relative_IAE = std::max(schedule.worst_relative_IAE, largest_relative_IAE(*curve));
@@ -176,7 +174,7 @@ private:
         }
         // Both curves over the same places, so that they can be drawn and read beside each other.
         if (design_.one && !design_.one_curve.places.empty())
-            if (auto error = add_places(design_.one_curve, places_, own_, always(design_.one->controller), rows))
+            if (auto error = add_places(design_.one_curve, places_, own_, always(design_.one->controller), extra))
                 return error;
         design_.schedule_curve = std::move(*curve);
         design_.schedule = std::move(schedule);

@@ -26,10 +26,8 @@ Expected<RangeDesign> judge_schedule(const RangeProblem& problem, const Schedule
     // The curve's places are too few to see every limit exceeded; it has those where one is.
     const auto verified = verify(places, *own, schedule, std::log1p(problem.options.allowance));
     if (!verified) return verified.error();
-    std::vector<double> extra = model.points();
-    for (const double at : verified->worst) extra.push_back(at);
-    for (const ScheduleRow& row : schedule.rows)
-        if (row.at >= model.low() && row.at <= model.high()) extra.push_back(row.at);
+    std::vector<double> extra = bends_of(model, schedule);
+    extra.insert(extra.end(), verified->worst.begin(), verified->worst.end());
     const auto settings = [&schedule](double at) { return in_use(schedule, at); };
     auto curve = curve_over(places, *own, settings, kCurvePlaces, extra, problem.options.allowance);
     if (!curve) return curve.error();

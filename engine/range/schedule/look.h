@@ -29,6 +29,10 @@ Look look_at(const Place& place, const std::vector<IdealPid>& settings, double l
 Expected<Look> look_between(const Places& places, const OwnOptima& own, const std::vector<IdealPid>& settings,
                             double at, bool all_peaks);
 
+/// Where the plants or the settings bend, ascending: the points, and the rows within the range. What is largest over
+/// the range is largest there or between.
+std::vector<double> bends_of(const RangeModel& model, const Schedule& schedule);
+
 /// Of ln of a limit: what a verified schedule may exceed it by.
 constexpr double kAllowedLogExcess = 2e-5;
 
@@ -38,9 +42,8 @@ struct Verified {
     std::vector<double> worst;  ///< places where the price allowed is exceeded, and limits by more than a little (5e-4)
 };
 
-/// At 49 places evenly over the range, at its points and rows, at nine places between each two of these, and at the
-/// tops of the parabolas through those that come near a limit or near `allowed`, the ln of the price. Errors: the
-/// model's.
+/// At 49 places evenly over the range, where it bends, at nine places between each two bends, and at the tops of the
+/// parabolas through those that come near a limit or near `allowed`, the ln of the price. Errors: the model's.
 Expected<Verified> verify(const Places& places, const OwnOptima& own, const Schedule& schedule, double allowed);
 
 /// x of a controller, as the searches know it.

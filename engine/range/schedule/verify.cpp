@@ -15,20 +15,11 @@ constexpr double kNearLimit = -5e-3;   // of it: tops above it are looked at mor
 constexpr double kNearPrice = 0.01;    // of ln of the price, below what is allowed: the same
 constexpr std::size_t kMostAdded = 6;  // places a round
 
-/// Where the plants or the settings bend, ascending: what is largest over the range is largest there or between.
-std::vector<double> bends_of(const Places& places, const Schedule& schedule) {
-    std::vector<double> bends = places.model().points();
-    for (const ScheduleRow& row : schedule.rows) bends.push_back(row.at);
-    std::ranges::sort(bends);
-    bends.erase(std::ranges::unique(bends).begin(), bends.end());
-    return bends;
-}
-
 std::vector<double> looked_at(const Places& places, const Schedule& schedule) {
     const double low = places.model().low(), high = places.model().high();
     std::vector<double> at;
     for (int i = 0; i <= kLooks; ++i) at.push_back(low + (high - low) * i / kLooks);
-    const std::vector<double> bends = bends_of(places, schedule);
+    const std::vector<double> bends = bends_of(places.model(), schedule);
     at.insert(at.end(), bends.begin(), bends.end());
     for (std::size_t k = 1; k < bends.size(); ++k) {
         const double from = bends[k - 1], width = bends[k] - from;
@@ -99,6 +90,15 @@ private:
 };
 
 }  // namespace
+
+std::vector<double> bends_of(const RangeModel& model, const Schedule& schedule) {
+    std::vector<double> bends = model.points();
+    for (const ScheduleRow& row : schedule.rows)
+        if (row.at >= model.low() && row.at <= model.high()) bends.push_back(row.at);
+    std::ranges::sort(bends);
+    bends.erase(std::ranges::unique(bends).begin(), bends.end());
+    return bends;
+}
 
 Expected<Verified> verify(const Places& places, const OwnOptima& own, const Schedule& schedule, double allowed) {
     Looks looks(places, own, schedule);

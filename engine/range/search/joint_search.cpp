@@ -57,7 +57,6 @@ struct State {
     VectorXd v;
     std::vector<PlaceState> places;
     double price = kInfinity, excess = kInfinity;
-    double merit(double penalty) const { return price + penalty * std::max(0.0, excess); }
 };
 
 Eigen::Vector3d as_vector(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
@@ -75,7 +74,7 @@ public:
         State now = with_limits(start);
         ask_price(now);
         JointResult result;
-        if (!std::isfinite(now.merit(penalty_))) return answer(now, result);
+        if (!std::isfinite(merit(now))) return answer(now, result);
         add_gradients(now);
         double radius = 1;
         for (; result.iterations < options_.most_iterations && !done(now); ++result.iterations) {
@@ -91,11 +90,11 @@ public:
                 continue;
             }
             const VectorXd p = step->z.head(layout_.n);
-            const double promised = now.merit(penalty_) - model_merit(now, *step, program.g);
+            const double promised = merit(now) - model_merit(now, *step, program.g);
             if (promised < options_.cost_tolerance) break;
             State next = corrected(now, p, radius);
-            if (std::isfinite(next.excess) && penalty_ * next.excess < now.merit(penalty_)) ask_price(next);
-            const double won = now.merit(penalty_) - next.merit(penalty_);
+            if (std::isfinite(next.excess) && penalty_ * next.excess < merit(now)) ask_price(next);
+            const double won = merit(now) - merit(next);
             if (!(won > kEnoughWon * promised)) {
                 radius = 0.3 * std::min(radius, (p.cwiseQuotient(problem_.step)).cwiseAbs().maxCoeff());
                 if (radius < kLeastRadius) break;
@@ -120,6 +119,8 @@ private:
         result.excess = state.excess;
         return result;
     }
+
+    double merit(const State& state) const { return state.price + penalty_ * std::max(0.0, state.excess); }
 
     bool done(const State& now) const { return now.price <= options_.enough && now.excess <= 0; }
 

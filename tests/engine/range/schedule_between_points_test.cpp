@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "engine/range/design_range.h"
+#include "engine/range/equations/steady_branch.h"
 #include "tests/engine/range/dense_loop.h"
+#include "tests/engine/range/range_plants.h"
 
 namespace tunewright::range {
 namespace {
@@ -40,6 +42,17 @@ IdealPid settings_between(const Schedule& schedule, double at) {
     return pid;
 }
 
+Expected<std::shared_ptr<const RangeModel>> model_of(const std::vector<Point>& points) {
+    std::vector<RangePoint> given;
+    for (const Point& p : points) given.push_back({p.at, family_of(Fopdt{p.K, p.T, p.L})});
+    return model_of_points(given, Between::parameters);
+}
+
+std::vector<Point> six_points() {
+    return {{5, 1.754, 132.3, 255.5},  {55, 0.352, 86.18, 342.1},  {58, 2.178, 27.07, 192.8},
+            {74, 1.683, 67.96, 100.7}, {93, 0.8283, 36.07, 117.5}, {98, 1.772, 164.5, 45.42}};
+}
+
 struct Set {
     std::vector<Point> points;
     ControllerKind controller;
@@ -57,17 +70,7 @@ TEST(Schedule, HoldsItsLimitsWhereThePlantBends) {
          1.46294,
          1.3,
          Interpolation::linear_in_times},
-        {{{5, 1.754, 132.3, 255.5},
-          {55, 0.352, 86.18, 342.1},
-          {58, 2.178, 27.07, 192.8},
-          {74, 1.683, 67.96, 100.7},
-          {93, 0.8283, 36.07, 117.5},
-          {98, 1.772, 164.5, 45.42}},
-         ControllerKind::PID,
-         1.3572,
-         1.3,
-         Interpolation::linear_in_gains,
-         5},
+        {six_points(), ControllerKind::PID, 1.3572, 1.3, Interpolation::linear_in_gains, 5},
         {{{7, 0.6197, 1.621, 0.9641},
           {25, 0.6278, 2.197, 0.9665},
           {55, 0.6464, 1.808, 0.9243},
@@ -80,15 +83,13 @@ TEST(Schedule, HoldsItsLimitsWhereThePlantBends) {
          Interpolation::linear_in_times},
     };
     for (const Set& set : sets) {
-        std::vector<RangePoint> points;
-        for (const Point& p : set.points) points.push_back({p.at, family_of(Fopdt{p.K, p.T, p.L})});
         RangeOptions options;
         options.controller = set.controller;
         options.limits.Ms = set.Ms;
         options.limits.Mt = set.Mt;
         options.interpolation = set.interpolation;
         options.rows = set.rows;
-        const auto model = model_of_points(points, options.between);
+        const auto model = model_of(set.points);
         ASSERT_TRUE(model);
         const auto design = design_range({.scheduling = {}, .model = *model, .options = options}, {});
         ASSERT_TRUE(design && design->schedule);
@@ -113,10 +114,6 @@ TEST(Schedule, HoldsItsLimitsWhereThePlantBends) {
 // A third of a per cent of the range, about 57.2, alone is above a limit, by 0.1 % of it: none of the curve's evenly
 // spread places lies there.
 TEST(Schedule, ThatIsGivenIsFoundToExceedALimitBetweenTheCurvesPlaces) {
-    const std::vector<RangePoint> points = {
-        {5, family_of(Fopdt{1.754, 132.3, 255.5})},   {55, family_of(Fopdt{0.352, 86.18, 342.1})},
-        {58, family_of(Fopdt{2.178, 27.07, 192.8})},  {74, family_of(Fopdt{1.683, 67.96, 100.7})},
-        {93, family_of(Fopdt{0.8283, 36.07, 117.5})}, {98, family_of(Fopdt{1.772, 164.5, 45.42})}};
     const Schedule given{.interpolation = Interpolation::linear_in_gains,
                          .hysteresis = 0,
                          .rows = {{5, 0.228167, 190.358, 88.2156, 8.82156},
@@ -127,7 +124,7 @@ TEST(Schedule, ThatIsGivenIsFoundToExceedALimitBetweenTheCurvesPlaces) {
     RangeOptions options;
     options.limits.Ms = 1.3573;
     options.limits.Mt = 1.3;
-    const auto model = model_of_points(points, options.between);
+    const auto model = model_of(six_points());
     ASSERT_TRUE(model);
     const auto judged = judge_schedule({.scheduling = {}, .model = *model, .options = options}, given, {});
     ASSERT_TRUE(judged && judged->schedule);
@@ -135,6 +132,25 @@ TEST(Schedule, ThatIsGivenIsFoundToExceedALimitBetweenTheCurvesPlaces) {
     const WorstPlace& worst = *std::ranges::find(judged->schedule_curve.worst, Quantity::Ms, &WorstPlace::quantity);
     EXPECT_NEAR(worst.at, 57.18, 0.1);
     EXPECT_NEAR(worst.value.value_or(0), 1.3586, 3e-4);  // 1.35858 at 57.196 by a dense sweep
+}
+
+// A product's table may reach beyond the range: what its settings would do there is not judged.
+TEST(Schedule, ThatIsGivenMayHaveRowsBeyondTheRange) {
+    const auto branch =
+        SteadyBranch::follow({.plant = range_tests::conical_tank(20), .along = Along::output, .from = 10, .to = 32});
+    ASSERT_TRUE(branch);
+    const auto model = model_of_branch(std::make_shared<SteadyBranch>(*branch));
+    ASSERT_TRUE(model);
+    const Schedule given{.interpolation = Interpolation::linear_in_gains,
+                         .hysteresis = 0,
+                         .rows = {{5, 5, 60, 0, 0}, {20, 8, 80, 0, 0}, {45, 12, 100, 0, 0}}};
+    RangeOptions options;
+    options.controller = ControllerKind::PI;
+    const auto judged = judge_schedule({.scheduling = {}, .model = *model, .options = options}, given, {});
+    ASSERT_TRUE(judged) << judged.error().message;
+    EXPECT_TRUE(judged->schedule->holds_limits);
+    EXPECT_EQ(judged->schedule_curve.places.front().at, 10);
+    EXPECT_EQ(judged->schedule_curve.places.back().at, 32);
 }
 
 }  // namespace

@@ -31,19 +31,6 @@ double now_ms() {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// Both parts of a weighted objective are measured against the same optima for every search.
-void set_reference_optima(const DesignTask& task, robust::DesignProblem& problem) {
-    for (const char* part : {"load_iae", "setpoint_iae"}) {
-        DesignTask alone = task;
-        alone.objective = part;
-        const auto tuned = designed(alone, "fast");
-        if (!tuned) continue;
-        const robust::DesignProblem its = problem_of(alone, *problem.plant, tuned->controller);
-        (alone.objective == "load_iae" ? problem.load_optimum : problem.setpoint_optimum) =
-            std::exp(robust::log_cost(its, point_of(tuned->controller), 1e-6));
-    }
-}
-
 std::optional<Comparison> compare(const DesignTask& task, std::uint64_t seed) {
     const LinearPlant linear = *LinearPlant::make(task.plant);
     Comparison result;
@@ -55,7 +42,7 @@ std::optional<Comparison> compare(const DesignTask& task, std::uint64_t seed) {
     const auto& any = fast ? fast : simplex ? simplex : grid;
     if (!any) return std::nullopt;
     robust::DesignProblem problem = problem_of(task, linear, any->controller);
-    if (task.objective == "weighted") set_reference_optima(task, problem);
+    set_reference_optima(task, problem);
     std::optional<double> best;
     const auto take = [&](const char* name, std::optional<double> cost) {
         if (!cost || (best && *best <= *cost)) return;

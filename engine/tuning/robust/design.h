@@ -67,6 +67,7 @@ struct DesignProblem {
     double rho = 0.5;         ///< weight of the load in `weighted`
     double load_optimum = 1;  ///< IAE of the load-optimal design, for `weighted`
     double setpoint_optimum = 1;
+    std::vector<DesignPoint> optimal_for_part = {};  ///< those designs: the weighted optimum's valley may be of one
     std::optional<double> reference = {};  ///< where the loop is looked for; empty: reference_frequency() says
 
     int dimension() const { return pid ? 3 : 2; }

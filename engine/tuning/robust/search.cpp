@@ -255,6 +255,7 @@ std::optional<Found> fast_search(const Sweep& sweep, const DesignProblem& proble
     } else if (has_setpoint(problem)) {
         look_at_long_Ti(runs, sweep, problem);
     }
+    for (const auto& x : problem.optimal_for_part) runs.explore(Candidate{.x = x, .stable = true});
     if (has_kinks(problem)) runs.polish();
     return runs.best();
 }

@@ -76,12 +76,14 @@ std::optional<Found> search(SearchKind kind, const Sweep& sweep, const DesignPro
 /// The weighted objective measures each part against its own optimum. False: no controller meets the limits.
 bool has_reference_optima(DesignProblem& problem, const Sweep& sweep) {
     if (problem.objective != Objective::weighted) return true;
+    problem.optimal_for_part.clear();
     for (const Objective part : {Objective::load_iae, Objective::setpoint_iae}) {
         DesignProblem alone = problem;
         alone.objective = part;
         const auto found = fast_search(sweep, alone, {});
         if (!found) return false;
         (part == Objective::load_iae ? problem.load_optimum : problem.setpoint_optimum) = std::exp(found->log_cost);
+        problem.optimal_for_part.push_back(found->x);
     }
     return true;
 }

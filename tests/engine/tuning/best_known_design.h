@@ -78,4 +78,19 @@ inline std::optional<double> best_from_random_starts(const robust::DesignProblem
     return best;
 }
 
+/// Both parts of a weighted objective are measured against the same optima for every search; of other objectives
+/// nothing changes.
+inline void set_reference_optima(const DesignTask& task, robust::DesignProblem& problem) {
+    if (task.objective != "weighted") return;
+    for (const char* part : {"load_iae", "setpoint_iae"}) {
+        DesignTask alone = task;
+        alone.objective = part;
+        const auto tuned = designed(alone, "fast");
+        if (!tuned) continue;
+        const robust::DesignProblem its = problem_of(alone, *problem.plant, tuned->controller);
+        (alone.objective == "load_iae" ? problem.load_optimum : problem.setpoint_optimum) =
+            std::exp(robust::log_cost(its, point_of(tuned->controller), 1e-6));
+    }
+}
+
 }  // namespace tunewright::test

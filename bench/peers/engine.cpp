@@ -1,7 +1,7 @@
 // The engine's side of the comparison. Lines of fields between tabs, a plant's name first:
 //
 //   peers_engine plants              name, num, den (descending powers, between spaces), dead time
-//   peers_engine design SEARCH       name, Kp, Ti, Td, ms: the method `robust`, the shorter of two runs
+//   peers_engine design SEARCH [pi]  name, Kp, Ti, Td, ms: the method `robust`, the shorter of two runs
 //   peers_engine price < answers     name, load IAE to infinity of the Kp, Ti, Td beside the name; nan where unstable
 
 #include <algorithm>
@@ -54,10 +54,13 @@ void print_plants() {
     }
 }
 
-void print_designs(const std::string& search) {
+void print_designs(const std::string& search, bool pi) {
     MethodOptions options;
     options.set("search", search);
-    options.set("filter/Tf_over_Td", kTfOverTd);
+    if (pi)
+        options.set("controller", std::string("PI"));
+    else
+        options.set("filter/Tf_over_Td", kTfOverTd);
     for (const auto& [name, plant] : amigo_batch()) {
         double best = INFINITY;
         IdealPid pid;
@@ -91,7 +94,7 @@ void price_answers() {
         if (tab == std::string::npos || plant == plants.end()) continue;
         IdealPid pid;
         std::istringstream(line.substr(tab)) >> pid.Kp >> pid.Ti >> pid.Td;
-        pid.filter = {FilterType::measurement_second_order, kTfOverTd * pid.Td};
+        if (pid.Td > 0) pid.filter = {FilterType::measurement_second_order, kTfOverTd * pid.Td};
         std::printf("%s\t%.9g\n", plant->first.c_str(), load_iae(plant->second, pid));
     }
 }
@@ -107,10 +110,10 @@ int main(int argc, char** argv) {
     else if (command == "plants")
         print_plants();
     else if (command == "design" && argc > 2)
-        print_designs(argv[2]);
+        print_designs(argv[2], argc > 3 && std::string(argv[3]) == "pi");
     else if (command == "price")
         price_answers();
     else
-        return std::fprintf(stderr, "peers_engine plants | design SEARCH | price\n"), 2;
+        return std::fprintf(stderr, "peers_engine plants | design SEARCH [pi] | price\n"), 2;
     return 0;
 }

@@ -270,6 +270,31 @@ test("the point on the front is taken and moves the limit", async () => {
   });
 });
 
+test("what is wrong in a field is said when the button that was pressed on leaving it is let go", async () => {
+  await withPage(PLANT, {}, async (page) => {
+    await openDesign(page);
+    const field = page.getByRole("textbox", { name: "Robustness Ms" });
+    await field.fill("much");
+    // The next thing below that can be pressed.
+    const spot = await field.evaluate((input) => {
+      const under = [...document.querySelectorAll(".controls button, .controls summary, .card button, .card summary")]
+        .map((item) => [item, item.getBoundingClientRect()])
+        .filter(([item, box]) => box.top > input.getBoundingClientRect().bottom && document.elementFromPoint(box.x + box.width / 2, box.y + box.height / 2) === item);
+      const [next, box] = under.sort(([, a], [, b]) => a.top - b.top)[0];
+      next.toggleAttribute("data-next");
+      return { x: box.x + box.width / 2, y: box.y + box.height / 2 };
+    });
+    const wrong = page.getByText('"much" is not a number');
+    await page.mouse.move(spot.x, spot.y);
+    await page.mouse.down();
+    await page.waitForTimeout(100);
+    assert.ok(await page.evaluate(({ x, y }) => document.elementFromPoint(x, y).closest("[data-next]") !== null, spot), "it has moved");
+    assert.equal(await wrong.count(), 0);
+    await page.mouse.up();
+    await wrong.first().waitFor();
+  });
+});
+
 test("a busy service keeps the last plots and says so; the design follows when it answers again", async () => {
   await withPage(
     PLANT,

@@ -1,5 +1,5 @@
-// A button that is pressed stays under the pointer. Leaving a field for it asks the service anew; what the answer changes
-// above it would move it, and the press that began on it would end beside it and do nothing.
+// A button that is pressed stays under the pointer. Leaving a field for it judges what stands there and asks the service
+// anew; what that changes above the button would move it, and the press that began on it would end beside it and do nothing.
 
 let pressed = false;
 let waiting: (() => void)[] = [];
@@ -25,5 +25,10 @@ export function watchPresses(page: Document): void {
   page.defaultView?.addEventListener("blur", release);
 }
 
-/** At once, unless a button is pressed: then when it has been let go. */
-export const untilReleased = (): Promise<void> => (pressed ? new Promise((go) => waiting.push(go)) : Promise.resolve());
+/** Goes at once, unless a button is pressed: then when it has been let go. */
+export function whenReleased(go: () => void): void {
+  if (pressed) waiting.push(go);
+  else go();
+}
+
+export const untilReleased = (): Promise<void> => new Promise(whenReleased);

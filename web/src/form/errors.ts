@@ -1,4 +1,5 @@
 // Faults at their fields: one sentence beside the field, the same in a summary that takes the focus.
+import { whenReleased } from "../api/press.ts";
 import type { FieldError } from "../api/types.ts";
 import { h } from "../dom.ts";
 
@@ -39,10 +40,11 @@ export class FormErrors {
     tabindex: -1,
     hidden: true,
   });
-  private readonly controls = new Set<Control>();
+  /** With what is said beside each. */
+  private readonly controls = new Map<Control, string>();
 
   add(control: Control): void {
-    this.controls.add(control);
+    this.controls.set(control, "");
     control.input.addEventListener("input", () => this.settle(control));
     control.input.addEventListener("change", () => this.settle(control));
   }
@@ -66,12 +68,12 @@ export class FormErrors {
   clear(): void {
     this.summary.hidden = true;
     this.summary.replaceChildren();
-    for (const control of this.controls) this.clearControl(control);
+    for (const control of this.controls.keys()) this.clearControl(control);
   }
 
   /** The faults below a pointer as they are now, each at its field, without taking the focus; answers those that have none. */
   mark(scope: string, errors: FieldError[]): FieldError[] {
-    for (const control of this.controls) if (control.pointer()?.startsWith(`${scope}/`)) this.clearControl(control);
+    for (const control of this.controls.keys()) if (control.pointer()?.startsWith(`${scope}/`)) this.clearControl(control);
     return errors.filter((error) => !this.place(error));
   }
 
@@ -99,19 +101,16 @@ export class FormErrors {
 
   /** The control that now shows the fault. */
   private place(error: FieldError): Control | undefined {
-    const controls = [...this.controls];
+    const controls = [...this.controls.keys()];
     const control = controls[matchPointer(error.pointer, controls.map((item) => item.pointer()))];
     if (!control) return undefined;
     const words = this.inWords(control, error);
-    if (words !== control.fault)
-      control.error.textContent = [control.error.textContent, words].filter(Boolean).join(" ");
-    control.error.hidden = false;
-    control.input.setAttribute("aria-invalid", "true");
+    if (words !== control.fault) this.say(control, [this.controls.get(control), words].filter(Boolean).join(" "));
     return control;
   }
 
   private inWords(control: Control, error: FieldError): string {
-    const beside = [...this.controls].flatMap((item) => {
+    const beside = [...this.controls.keys()].flatMap((item) => {
       const pointer = item.pointer();
       if (pointer === null || parentOf(pointer) !== parentOf(error.pointer)) return [];
       return [[memberOf(pointer), labelOf(item)] as const];
@@ -120,10 +119,20 @@ export class FormErrors {
   }
 
   private clearControl(control: Control): void {
-    control.error.textContent = control.fault ?? "";
-    control.error.hidden = control.fault === undefined;
-    if (control.fault === undefined) control.input.removeAttribute("aria-invalid");
-    else control.input.setAttribute("aria-invalid", "true");
+    this.say(control, control.fault ?? "");
+  }
+
+  /** A sentence comes and goes beside its field, and moves what lies below. */
+  private say(control: Control, words: string): void {
+    if (!this.controls.has(control)) return;
+    this.controls.set(control, words);
+    whenReleased(() => {
+      const now = this.controls.get(control) ?? "";
+      control.error.textContent = now;
+      control.error.hidden = now === "";
+      if (now === "") control.input.removeAttribute("aria-invalid");
+      else control.input.setAttribute("aria-invalid", "true");
+    });
   }
 }
 

@@ -47,7 +47,7 @@ std::optional<Error> Place::find_optimum(const RunControl& control, const Design
         const auto found = robust::verified_search(robust::SearchKind::fast, problem, std::nullopt, nullptr, quiet,
                                                    near ? &*near : nullptr);
         if (!found) return found.error();
-        look_about(problem.reference);
+        look_about(*problem.reference);
         optimum_ = found->x;
         optimum_log_cost_ = found->log_cost;
         // A PI that does better than any PID has ln Td = -infinity, which no search over logarithms can start from.
@@ -62,8 +62,8 @@ std::optional<Error> Place::find_optimum(const RunControl& control, const Design
 }
 
 /// What follows looks where the optimum was found: its loop may live far below the usual reference.
-void Place::look_about(const std::optional<double>& reference) {
-    if (problem_.reference == reference) return;
+void Place::look_about(double reference) {
+    if (sweep_->reference() == reference) return;
     problem_.reference = reference;
     pose();
 }

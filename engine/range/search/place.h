@@ -66,7 +66,7 @@ public:
 
 private:
     void pose();
-    void look_about(const std::optional<double>& reference);
+    void look_about(double reference);
     void keep_active_members();
 
     PlaceModel model_;

@@ -11,8 +11,11 @@ constexpr double kSettled = 1e-4;     // the tail beyond it is closed by the exa
 constexpr double kDifference = 1e-5;  // of a logarithm: noise 1e-13/1e-5, curvature error 1e-5
 constexpr int kMaxSteps = 12000;      // a design that needs more is no candidate
 
+constexpr std::array<double, 3> kOfIntegratedError = {-1, 1, 0};  // of ln(Ti/Kp)
+
 struct CostRun {
     double IAE = std::numeric_limits<double>::infinity();
+    bool keeps_sign = false;  // the error
     StepSchedule schedule;
 };
 
@@ -28,6 +31,7 @@ CostRun run(const DesignProblem& problem, const DesignPoint& x, bool setpoint, d
     CostRun result;
     if (!response.settles || !response.error_integral_final) return result;
     result.IAE = integral_of_absolute_error(response.nodes, inputs.r, response.error_integral_final);
+    result.keeps_sign = result.IAE == std::abs(*response.error_integral_final);
     result.schedule = std::move(response.schedule);
     return result;
 }
@@ -75,10 +79,11 @@ PricedDesign::PricedDesign(const DesignProblem& problem, const DesignPoint& x, d
 
 PricedDesign::Part PricedDesign::priced(bool setpoint) const {
     CostRun done = run(*problem_, x_, setpoint, tolerance_, nullptr);
-    return {std::log(done.IAE), std::move(done.schedule)};
+    return {std::log(done.IAE), done.keeps_sign, std::move(done.schedule)};
 }
 
 std::array<double, 3> PricedDesign::gradient_of(const Part& part, bool setpoint) const {
+    if (part.keeps_sign && !setpoint) return kOfIntegratedError;
     std::array<double, 3> gradient{};
     for (std::size_t i = 0; i < std::size_t(problem_->dimension()); ++i) {
         DesignPoint moved = x_;
@@ -91,7 +96,7 @@ std::array<double, 3> PricedDesign::gradient_of(const Part& part, bool setpoint)
 
 std::array<double, 3> PricedDesign::gradient() const {
     switch (problem_->objective) {
-        case Objective::load_ie: return {-1, 1, 0};
+        case Objective::load_ie: return kOfIntegratedError;
         case Objective::load_iae: return gradient_of(load_, false);
         case Objective::setpoint_iae: return gradient_of(setpoint_, true);
         case Objective::weighted: break;

@@ -38,13 +38,15 @@ public:
     double log_cost() const { return log_cost_; }
 
     /// With its derivatives by the logarithms: forward differences of runs on the same instants, so that the error of
-    /// the time grid cancels; exact for `load_ie`. All 0 where the cost is infinite.
+    /// the time grid cancels; exact for `load_ie` and for a load error that keeps its sign, whose IAE is Ti/Kp. All 0
+    /// where the cost is infinite.
     CostWithGradient with_gradient() const;
 
 private:
     /// One response: ln of its IAE, and its instants.
     struct Part {
         double log_iae = 0;
+        bool keeps_sign = false;  // the error
         StepSchedule schedule;
     };
     Part priced(bool setpoint) const;

@@ -105,7 +105,7 @@ std::optional<Found> search_from(const LeastPeak& least, DesignProblem& problem,
     if (!start) return std::nullopt;
     const SqpResult result = minimise(sweep, problem, *start, {}, report);
     if (!std::isfinite(result.log_cost)) return std::nullopt;
-    if (least.reference != reference_frequency(problem)) problem.reference = least.reference;
+    problem.reference = least.reference;
     return Found{result.x, result.log_cost, false, result.curvature};
 }
 
@@ -244,6 +244,7 @@ bool take_cheaper(Expected<Found>& found, DesignProblem& problem, Expected<Found
 
 Expected<Found> verified_search(SearchKind kind, DesignProblem& problem, const PlaneStart& start, CostSurface* surface,
                                 const RunControl& control, const Found* before) {
+    if (!problem.reference) problem.reference = reference_frequency(problem);
     // A design without derivative is no start for one with it.
     const Found* near = before != nullptr && (!problem.pid || std::isfinite(before->x[2])) ? before : nullptr;
     const auto about = [&](DesignProblem& posed, CostSurface* drawn, bool explain) {

@@ -21,7 +21,7 @@ using PlaneStart = std::optional<std::pair<double, double>>;
 /// ones. `before`, if not null: a design of nearly the same problem (fewer plants, another limit), from which alone it
 /// is searched; where that finds nothing, the whole search is made. A PID's ln Td is -infinity where a PI does better
 /// than any derivative. `problem` receives the reference optima of a weighted objective, the sign of Kp that was found
-/// to work, and where the loop was found if that is not the usual reference (slower_references()).
+/// to work, and where the loop was found: about the usual reference or another (slower_references()).
 ///
 /// Errors: cancelled, unstable_plant, no_feasible_controller (with the smallest limit that
 /// works), numerical_failure.

@@ -2,6 +2,9 @@
 // 400 points.
 #include <benchmark/benchmark.h>
 
+#include <atomic>
+#include <thread>
+
 #include "engine/request/tune.h"
 
 namespace tunewright {
@@ -14,12 +17,22 @@ TuningRequest request_for(double L_over_T) {
     return request;
 }
 
-void run(benchmark::State& state, bool with_optima) {
+/// As a service's worker has it while another core is idle.
+void on_two_cores(int n, const std::function<void(int)>& f) {
+    std::atomic<int> next = 0;
+    const auto work = [&] {
+        for (int i = next++; i < n; i = next++) f(i);
+    };
+    const std::jthread other(work);
+    work();
+}
+
+void run(benchmark::State& state, bool with_optima, const Spread& spread = {}) {
     TuningRequest request = request_for(static_cast<double>(state.range(0)) / 100);
     request.evaluate.optimum_at_Ms = with_optima;
     int rows = 0;
     for (auto _ : state) {
-        const auto result = tune(request, {});
+        const auto result = tune(request, {.stop = {}, .progress = {}, .now_ms = {}, .spread = spread});
         if (!result) return state.SkipWithError(result.error().message.c_str());
         rows = static_cast<int>(result->ranking.size());
     }
@@ -32,6 +45,18 @@ BENCHMARK(comparison)->Arg(10)->Arg(30)->Arg(100)->Arg(200)->Unit(benchmark::kMi
 
 void comparison_with_optima(benchmark::State& state) { run(state, true); }
 BENCHMARK(comparison_with_optima)->Arg(10)->Arg(30)->Arg(100)->Arg(200)->Unit(benchmark::kMillisecond);
+
+void comparison_two_cores(benchmark::State& state) { run(state, false, on_two_cores); }
+BENCHMARK(comparison_two_cores)->Arg(10)->Arg(30)->Arg(100)->Arg(200)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void comparison_with_optima_two_cores(benchmark::State& state) { run(state, true, on_two_cores); }
+BENCHMARK(comparison_with_optima_two_cores)
+    ->Arg(10)
+    ->Arg(30)
+    ->Arg(100)
+    ->Arg(200)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 
 }  // namespace
 }  // namespace tunewright

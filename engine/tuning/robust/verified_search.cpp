@@ -76,15 +76,17 @@ std::optional<Found> search(SearchKind kind, const Sweep& sweep, const DesignPro
 /// The weighted objective measures each part against its own optimum. False: no controller meets the limits.
 bool has_reference_optima(DesignProblem& problem, const Sweep& sweep) {
     if (problem.objective != Objective::weighted) return true;
-    problem.optimal_for_part.clear();
+    std::vector<DesignPoint> optima;
     for (const Objective part : {Objective::load_iae, Objective::setpoint_iae}) {
         DesignProblem alone = problem;
         alone.objective = part;
+        alone.optimal_for_part = {};
         const auto found = fast_search(sweep, alone, {});
         if (!found) return false;
         (part == Objective::load_iae ? problem.load_optimum : problem.setpoint_optimum) = std::exp(found->log_cost);
-        problem.optimal_for_part.push_back(found->x);
+        optima.push_back(found->x);
     }
+    problem.optimal_for_part = std::move(optima);
     return true;
 }
 
@@ -193,6 +195,7 @@ Expected<Found> or_without_derivative(Expected<Found> found, const DesignProblem
     if (!doubtful) return found;
     DesignProblem without = problem;
     without.pid = false;
+    without.optimal_for_part = {};  // of which a PI need not be stable
     const Sweep sweep(without, reference);
     const Found near = before != nullptr ? Found{.x = {before->x[0], before->x[1], 0}} : Found{};
     auto other = checked_search(SearchKind::fast, sweep, without, true, std::nullopt, nullptr, control,

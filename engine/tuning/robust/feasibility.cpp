@@ -1,7 +1,6 @@
 #include "engine/tuning/robust/feasibility.h"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <string_view>
@@ -52,24 +51,34 @@ constexpr double kExcessStep = 1.6;                                          // 
 constexpr double kCloseStart = 1.05;  // over the least excess at which a scan sees anything
 
 /// A stable loop whose peaks exceed 1 by no more than `excess`; empty if a scan sees none.
-std::optional<DesignPoint> stable_within(DesignProblem problem, double reference, double excess) {
+std::optional<DesignPoint> stable_within(DesignProblem problem, double reference, double excess, Stability wanted) {
     problem.limits = Limits{.Ms = 1 + excess, .Mt = 1 + excess, .Mks = std::nullopt, .m_circle = false};
-    for (const auto& point : scan(Sweep(problem, reference), {.Ti_points = 13, .Td_points = 11}))
-        if (point.proved || is_stable(problem, point.x)) return point.x;
-    return std::nullopt;
+    return first_stable(Sweep(problem, reference), {.Ti_points = 13, .Td_points = 11}, wanted);
 }
+
+/// How far and how hard stable loops are looked for.
+struct Look {
+    double most;  // of the excess
+    Stability wanted;
+};
+// Loops of any peaks are looked for where none of usual ones is seen about any reference. Those of which the sweep's
+// grid tells nothing come last: most of their gains reach to where the dead time turns faster than the grid follows,
+// and none of these is stable.
+constexpr Look kLooks[] = {
+    {kFirstExcess, Stability::told}, {kMostExcess, Stability::told}, {kMostExcess, Stability::proved}};
 
 /// Two stable loops: one of the widest limits needed, and one with nearly the least peaks that a scan sees. From either
 /// a search may stall on the kinks of the larger of two peaks.
-std::vector<DesignPoint> stable_starts(const DesignProblem& problem, double reference) {
+std::vector<DesignPoint> stable_starts(const DesignProblem& problem, double reference, const Look& how) {
+    const auto within = [&](double excess) { return stable_within(problem, reference, excess, how.wanted); };
     double enough = kFirstExcess;
-    auto found = stable_within(problem, reference, enough);
-    while (!found && enough < kMostExcess) found = stable_within(problem, reference, enough *= kExcessStep);
+    auto found = within(enough);
+    while (!found && enough < how.most) found = within(enough *= kExcessStep);
     if (!found) return {};
     std::vector<DesignPoint> starts = {*found};
     double too_little = enough / kExcessStep;
     const auto look = [&](double excess) {
-        const auto point = stable_within(problem, reference, excess);
+        const auto point = within(excess);
         (point ? enough : too_little) = excess;
         if (point) found = point;
         return point.has_value();
@@ -81,13 +90,22 @@ std::vector<DesignPoint> stable_starts(const DesignProblem& problem, double refe
     return starts;
 }
 
-/// From one start; kUnstable where it leads nowhere.
-LeastPeak least_peak_from(const DesignProblem& problem, double reference, const DesignPoint& start) {
+/// Of a descent.
+struct Stage {
+    double step, tolerance;
+};
+// Started anew with shorter steps, ever more exactly: the larger of two peaks has kinks on which a search stalls.
+constexpr Stage kFirstStage = {0.4, 100 * kPeakTolerance};
+constexpr Stage kLaterStages[] = {{0.1, 10 * kPeakTolerance}, {0.1, kPeakTolerance}};
+constexpr double kWorthRefining = 0.1;  // of ln M: what the later stages may still win
+
+/// From `least.x` on; M is kUnstable where it leads nowhere.
+void descend(LeastPeak& least, const DesignProblem& problem, const Stage& stage) {
     const auto n = static_cast<std::size_t>(problem.dimension());
     // The least peak itself often lies at Ti = infinity, where nothing returns to the set point: kept within what a
     // design would use.
-    const double longest = std::log(kLongestTi / reference), shortest = std::log(kShortestPeakTd / reference);
-    LeastPeak least{.M = std::exp(kUnstable), .x = start, .reference = reference};
+    const double longest = std::log(kLongestTi / least.reference),
+                 shortest = std::log(kShortestPeakTd / least.reference);
     // The unknowns are steps from the centre: a logarithm's own size depends on the unit of time.
     const auto stepped = [&](const std::vector<double>& step) {
         DesignPoint x = least.x;
@@ -99,16 +117,10 @@ LeastPeak least_peak_from(const DesignProblem& problem, double reference, const 
         const double beyond = std::max(0.0, x[1] - longest) + (n > 2 ? std::max(0.0, shortest - x[2]) : 0);
         return larger_peak(problem, x) + 0.1 * beyond;
     };
-    // Started anew with shorter steps, ever more exactly: the larger of two peaks has kinks on which a search stalls.
-    constexpr std::array<std::pair<double, double>, 3> kStages = {
-        {{0.4, 100 * kPeakTolerance}, {0.1, 10 * kPeakTolerance}, {0.1, kPeakTolerance}}};
-    for (const auto& [step, tolerance] : kStages) {
-        const auto found = find_local_minimum(LocalSearch::subplex, cost, std::vector<double>(n, 0.0),
-                                              {.step = std::vector<double>(n, step), .tolerance = tolerance});
-        least.x = stepped(found.x);
-        least.M = std::exp(found.value);
-    }
-    return least;
+    const auto found = find_local_minimum(LocalSearch::subplex, cost, std::vector<double>(n, 0.0),
+                                          {.step = std::vector<double>(n, stage.step), .tolerance = stage.tolerance});
+    least.x = stepped(found.x);
+    least.M = std::exp(found.value);
 }
 
 }  // namespace
@@ -116,12 +128,21 @@ LeastPeak least_peak_from(const DesignProblem& problem, double reference, const 
 std::optional<LeastPeak> least_common_peak(const DesignProblem& problem) {
     std::vector<double> references = slower_references(problem);
     references.insert(references.begin(), reference_frequency(problem));
+    std::vector<LeastPeak> valleys;
+    for (const Look& how : kLooks)
+        if (valleys.empty())
+            for (const double reference : references)
+                for (const DesignPoint& start : stable_starts(problem, reference, how))
+                    valleys.push_back({.M = std::exp(kUnstable), .x = start, .reference = reference});
+    for (LeastPeak& valley : valleys) descend(valley, problem, kFirstStage);
+    const auto lower = [](const LeastPeak& a, const LeastPeak& b) { return a.M < b.M; };
+    std::ranges::sort(valleys, lower);
     LeastPeak least{.M = std::exp(kUnstable)};
-    for (const double reference : references)
-        for (const DesignPoint& start : stable_starts(problem, reference)) {
-            const LeastPeak found = least_peak_from(problem, reference, start);
-            if (found.M < least.M) least = found;
-        }
+    for (LeastPeak& valley : valleys) {
+        if (std::log(valley.M / least.M) > kWorthRefining) break;
+        for (const Stage& stage : kLaterStages) descend(valley, problem, stage);
+        least = std::min(least, valley, lower);
+    }
     return least.M < std::exp(kUnstable) ? std::optional(least) : std::nullopt;
 }
 

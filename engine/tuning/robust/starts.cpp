@@ -91,6 +91,7 @@ std::optional<Candidate> cheapest(const DesignProblem& problem, const std::vecto
 namespace {
 
 constexpr double kInside = 1e-9;  // of a gain: from the end of a gap
+constexpr double kWide = 1.3;     // ends of a gap: narrower ones lie between the grid's own points
 
 std::vector<double> spaced(double low, double high, int n) {
     std::vector<double> values;
@@ -103,13 +104,24 @@ std::vector<double> spaced(double low, double high, int n) {
 
 namespace {
 
+/// False: there is no design between the gap's ends.
+bool is_open(const GainGap& gap) {
+    return std::isfinite(gap.upper) && gap.upper > gap.lower * (1 + kInside) && gap.stable != false;
+}
+
 /// Whether the loop is proved stable between a gap's ends; empty: there is no design.
 std::optional<bool> usable(const DesignProblem& problem, const GainGap& gap, double Ti, double Td, Stability wanted) {
-    if (!std::isfinite(gap.upper) || gap.upper <= gap.lower * (1 + kInside) || gap.stable == false) return std::nullopt;
+    if (!is_open(gap)) return std::nullopt;
     if (gap.proved || (wanted == Stability::told && gap.stable)) return gap.proved;
     if (!is_stable(problem, {std::log(gap.middle()), std::log(Ti), problem.pid ? std::log(Td) : 0}))
         return std::nullopt;
     return true;
+}
+
+/// The upper one, with its largest gain.
+ScanPoint end_of(const GainGap& gap, const DesignProblem& problem, double Ti, double Td, bool proved) {
+    const double Kp = gap.upper * (1 - kInside);
+    return {{std::log(Kp), std::log(Ti), problem.pid ? std::log(Td) : 0}, std::log(Ti / Kp), proved};
 }
 
 /// With the largest of feasible_gains; empty if there is none, or if it certainly costs not less than `below`.
@@ -117,11 +129,12 @@ std::optional<ScanPoint> point_at(const Sweep& sweep, double Ti, double Td, Stab
     const DesignProblem& problem = sweep.problem();
     const auto gaps = sweep.gain_gaps(Ti, Td);
     for (std::size_t i = gaps.size(); i-- > 0;) {
-        const double Kp = gaps[i].upper * (1 - kInside);
-        const DesignPoint x = {std::log(Kp), std::log(Ti), problem.pid ? std::log(Td) : 0};
-        if (std::isfinite(Kp) && log_cost_bound(problem, x) >= below) continue;
-        if (const auto proved = usable(problem, gaps[i], Ti, Td, wanted))
-            return ScanPoint{x, std::log(Ti / Kp), *proved};
+        ScanPoint end = end_of(gaps[i], problem, Ti, Td, false);
+        if (std::isfinite(end.x[0]) && log_cost_bound(problem, end.x) >= below) continue;
+        if (const auto proved = usable(problem, gaps[i], Ti, Td, wanted)) {
+            end.proved = *proved;
+            return end;
+        }
     }
     return std::nullopt;
 }
@@ -141,17 +154,43 @@ std::vector<FeasibleGain> feasible_gains(const Sweep& sweep, double Ti, double T
     return gains;
 }
 
-std::vector<ScanPoint> scan(const Sweep& sweep, const ScanBox& box, Stability wanted, double below) {
-    const DesignProblem& problem = sweep.problem();
+namespace {
+
+/// visit(Ti, Td) at every place of the box; what it adds to `found` is sorted then.
+template <class Visit>
+void look_over(const Sweep& sweep, const ScanBox& box, std::vector<ScanPoint>& found, const Visit& visit) {
     const double unit = 1 / sweep.reference();
-    std::vector<ScanPoint> found;
     const auto Td_values =
-        problem.pid ? spaced(box.Td_low * unit, box.Td_high * unit, box.Td_points) : std::vector<double>{1.0};
+        sweep.problem().pid ? spaced(box.Td_low * unit, box.Td_high * unit, box.Td_points) : std::vector<double>{1.0};
     for (const double Ti : spaced(box.Ti_low * unit, box.Ti_high * unit, box.Ti_points))
-        for (const double Td : Td_values)
-            if (const auto point = point_at(sweep, Ti, Td, wanted, below)) found.push_back(*point);
+        for (const double Td : Td_values) visit(Ti, Td);
     std::sort(found.begin(), found.end(), [](const ScanPoint& a, const ScanPoint& b) { return a.log_ie < b.log_ie; });
+}
+
+}  // namespace
+
+std::vector<ScanPoint> scan(const Sweep& sweep, const ScanBox& box, Stability wanted, double below) {
+    std::vector<ScanPoint> found;
+    look_over(sweep, box, found, [&](double Ti, double Td) {
+        if (const auto point = point_at(sweep, Ti, Td, wanted, below)) found.push_back(*point);
+    });
     return found;
+}
+
+std::optional<DesignPoint> first_stable(const Sweep& sweep, const ScanBox& box, Stability wanted) {
+    const bool measured = sweep.problem().measured != nullptr;
+    const auto worth_counting = [&](const GainGap& gap) {
+        return wanted == Stability::proved && (measured || gap.upper > kWide * gap.lower);
+    };
+    std::vector<ScanPoint> open;
+    look_over(sweep, box, open, [&](double Ti, double Td) {
+        for (const GainGap& gap : sweep.gain_gaps(Ti, Td))
+            if (is_open(gap) && (gap.stable || worth_counting(gap)))
+                open.push_back(end_of(gap, sweep.problem(), Ti, Td, gap.proved));
+    });
+    for (const ScanPoint& point : open)
+        if (point.proved || is_stable(sweep.problem(), point.x)) return point.x;
+    return std::nullopt;
 }
 
 namespace {

@@ -45,6 +45,10 @@ struct ScanBox {
 std::vector<ScanPoint> scan(const Sweep& sweep, const ScanBox& box = {}, Stability wanted = Stability::told,
                             double below = std::numeric_limits<double>::infinity());
 
+/// The first of these points, with any gap of a place, whose loop is stable. `told`: of those alone of which the
+/// sweep's grid tells so; `proved`: also of those of which it tells nothing, slivers between its points left out.
+std::optional<DesignPoint> first_stable(const Sweep& sweep, const ScanBox& box, Stability wanted);
+
 struct Candidate {
     DesignPoint x{};
     double log_cost = std::numeric_limits<double>::infinity();  ///< to a thousandth; infinite: no response settles

@@ -141,7 +141,9 @@ std::optional<LeastPeak> least_common_peak(const DesignProblem& problem) {
     for (LeastPeak& valley : valleys) {
         if (std::log(valley.M / least.M) > kWorthRefining) break;
         for (const Stage& stage : kLaterStages) descend(valley, problem, stage);
+        const double won = std::log(least.M / valley.M);
         least = std::min(least, valley, lower);
+        if (won < kPeakTolerance) break;  // what follows seemed higher than this one, which is not the lower
     }
     return least.M < std::exp(kUnstable) ? std::optional(least) : std::nullopt;
 }

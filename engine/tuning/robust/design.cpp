@@ -55,9 +55,8 @@ double reference_frequency(const DesignProblem& problem) {
     constexpr double kFallen = -0.75 * std::numbers::pi;
     const double ratio = std::pow(10, 1.0 / kLagPointsPerDecade);
     for (; w < fastest * kBeyondCorners; w *= ratio) {
-        const double wrapped = std::arg(lagging(w)), turned = wrapped - before;
-        unwrapped +=
-            std::abs(turned) > std::numbers::pi ? turned - std::copysign(2 * std::numbers::pi, turned) : turned;
+        const double wrapped = std::arg(lagging(w));
+        unwrapped += std::remainder(wrapped - before, 2 * std::numbers::pi);
         before = wrapped;
         const double total = unwrapped - w * L;
         if (total_before > -std::numbers::pi && total <= -std::numbers::pi) return w;

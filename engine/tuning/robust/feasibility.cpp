@@ -58,20 +58,21 @@ std::optional<DesignPoint> stable_within(DesignProblem problem, double reference
 
 /// How far and how hard stable loops are looked for.
 struct Look {
-    double most;  // of the excess
+    double first, most;  // excess
     Stability wanted;
 };
 // Loops of any peaks are looked for where none of usual ones is seen about any reference. Those of which the sweep's
 // grid tells nothing come last: most of their gains reach to where the dead time turns faster than the grid follows,
 // and none of these is stable.
-constexpr Look kLooks[] = {
-    {kFirstExcess, Stability::told}, {kMostExcess, Stability::told}, {kMostExcess, Stability::proved}};
+constexpr Look kLooks[] = {{kFirstExcess, kFirstExcess, Stability::told},
+                           {kExcessStep * kFirstExcess, kMostExcess, Stability::told},
+                           {kFirstExcess, kMostExcess, Stability::proved}};
 
 /// Two stable loops: one of the widest limits needed, and one with nearly the least peaks that a scan sees. From either
 /// a search may stall on the kinks of the larger of two peaks.
 std::vector<DesignPoint> stable_starts(const DesignProblem& problem, double reference, const Look& how) {
     const auto within = [&](double excess) { return stable_within(problem, reference, excess, how.wanted); };
-    double enough = kFirstExcess;
+    double enough = how.first;
     auto found = within(enough);
     while (!found && enough < how.most) found = within(enough *= kExcessStep);
     if (!found) return {};

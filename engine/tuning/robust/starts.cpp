@@ -119,9 +119,9 @@ std::optional<bool> usable(const DesignProblem& problem, const GainGap& gap, dou
 }
 
 /// The upper one, with its largest gain.
-ScanPoint end_of(const GainGap& gap, const DesignProblem& problem, double Ti, double Td, bool proved) {
+ScanPoint end_of(const GainGap& gap, const DesignProblem& problem, double Ti, double Td) {
     const double Kp = gap.upper * (1 - kInside);
-    return {{std::log(Kp), std::log(Ti), problem.pid ? std::log(Td) : 0}, std::log(Ti / Kp), proved};
+    return {{std::log(Kp), std::log(Ti), problem.pid ? std::log(Td) : 0}, std::log(Ti / Kp), gap.proved};
 }
 
 /// With the largest of feasible_gains; empty if there is none, or if it certainly costs not less than `below`.
@@ -129,7 +129,7 @@ std::optional<ScanPoint> point_at(const Sweep& sweep, double Ti, double Td, Stab
     const DesignProblem& problem = sweep.problem();
     const auto gaps = sweep.gain_gaps(Ti, Td);
     for (std::size_t i = gaps.size(); i-- > 0;) {
-        ScanPoint end = end_of(gaps[i], problem, Ti, Td, false);
+        ScanPoint end = end_of(gaps[i], problem, Ti, Td);
         if (std::isfinite(end.x[0]) && log_cost_bound(problem, end.x) >= below) continue;
         if (const auto proved = usable(problem, gaps[i], Ti, Td, wanted)) {
             end.proved = *proved;
@@ -156,25 +156,25 @@ std::vector<FeasibleGain> feasible_gains(const Sweep& sweep, double Ti, double T
 
 namespace {
 
-/// visit(Ti, Td) at every place of the box; what it adds to `found` is sorted then.
-template <class Visit>
-void look_over(const Sweep& sweep, const ScanBox& box, std::vector<ScanPoint>& found, const Visit& visit) {
+/// What add(found, Ti, Td) adds at every place of the box, ascending in `log_ie`.
+template <class Add>
+std::vector<ScanPoint> points_over(const Sweep& sweep, const ScanBox& box, const Add& add) {
     const double unit = 1 / sweep.reference();
+    std::vector<ScanPoint> found;
     const auto Td_values =
         sweep.problem().pid ? spaced(box.Td_low * unit, box.Td_high * unit, box.Td_points) : std::vector<double>{1.0};
     for (const double Ti : spaced(box.Ti_low * unit, box.Ti_high * unit, box.Ti_points))
-        for (const double Td : Td_values) visit(Ti, Td);
+        for (const double Td : Td_values) add(found, Ti, Td);
     std::sort(found.begin(), found.end(), [](const ScanPoint& a, const ScanPoint& b) { return a.log_ie < b.log_ie; });
+    return found;
 }
 
 }  // namespace
 
 std::vector<ScanPoint> scan(const Sweep& sweep, const ScanBox& box, Stability wanted, double below) {
-    std::vector<ScanPoint> found;
-    look_over(sweep, box, found, [&](double Ti, double Td) {
+    return points_over(sweep, box, [&](std::vector<ScanPoint>& found, double Ti, double Td) {
         if (const auto point = point_at(sweep, Ti, Td, wanted, below)) found.push_back(*point);
     });
-    return found;
 }
 
 std::optional<DesignPoint> first_stable(const Sweep& sweep, const ScanBox& box, Stability wanted) {
@@ -182,13 +182,12 @@ std::optional<DesignPoint> first_stable(const Sweep& sweep, const ScanBox& box, 
     const auto worth_counting = [&](const GainGap& gap) {
         return wanted == Stability::proved && (measured || gap.upper > kWide * gap.lower);
     };
-    std::vector<ScanPoint> open;
-    look_over(sweep, box, open, [&](double Ti, double Td) {
+    const auto add_open = [&](std::vector<ScanPoint>& open, double Ti, double Td) {
         for (const GainGap& gap : sweep.gain_gaps(Ti, Td))
             if (is_open(gap) && (gap.stable || worth_counting(gap)))
-                open.push_back(end_of(gap, sweep.problem(), Ti, Td, gap.proved));
-    });
-    for (const ScanPoint& point : open)
+                open.push_back(end_of(gap, sweep.problem(), Ti, Td));
+    };
+    for (const ScanPoint& point : points_over(sweep, box, add_open))
         if (point.proved || is_stable(sweep.problem(), point.x)) return point.x;
     return std::nullopt;
 }

@@ -117,7 +117,9 @@ LoopGrid make_peak_grid(const Loop& loop) {
     for (const auto& point : grid.point) largest = std::max(largest, magnitude(point.S));
     // Where S never rises far above one, its maximum is as flat: look closer.
     const double rise = largest - 1;
-    if (rise < kLowRise) grid = make_loop_grid(loop, std::clamp(kLowRise * rise, kFinestStep, kUsualStep));
+    if (rise < kLowRise)
+        grid = refined_grid([&](double omega) { return loop.at(omega); }, grid,
+                            std::clamp(kLowRise * rise, kFinestStep, kUsualStep));
     return grid;
 }
 

@@ -1,10 +1,12 @@
 // Exact steps of x' = F x + G v + b for an input v that is a cubic polynomial within the step.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
 
+#include "engine/numerics/columns.h"
 #include "engine/numerics/cubic.h"
 
 namespace tunewright {
@@ -14,16 +16,19 @@ struct ExactStep {
     double h = 0;
     std::size_t n = 0;
     /// n + 5 columns: those of Phi; Gamma_j, the integrals of e^(F (h - s)) G s^j/j!, j = 0 to 3; the constant, the
-    /// integral of e^(F s) b. Together, so that a step is one product; each filled up to an even length.
+    /// integral of e^(F s) b. Together, so that a step is one product; each of length().
     std::vector<double> columns;
 
-    std::size_t length() const { return n + n % 2; }
+    std::size_t length() const { return column_length(n); }
     std::span<const double> column(std::size_t k) const { return {columns.data() + k * length(), n}; }
     std::span<const double> Gamma(std::size_t j) const { return column(n + j); }
 };
 
-/// x := Phi x + Gamma v + constant. `scratch`: of any size.
-void advance(const ExactStep& step, const Cubic& v, std::vector<double>& x, std::vector<double>& scratch);
+/// x := Phi x + Gamma v + constant.
+inline void advance(const ExactStep& step, const Cubic& v, std::vector<double>& x) {
+    const std::array<double, 5> inputs = {v[0], v[1], v[2], v[3], 1};
+    map_columns(step.columns.data(), x, inputs);
+}
 
 /// row Phi for a row of n numbers.
 std::vector<double> carried_over(const ExactStep& step, std::span<const double> row);

@@ -141,7 +141,9 @@ LoopGrid SampledLoop::grid_of(int density) const {
     double largest = 0;
     for (const LoopPoint& point : grid.point) largest = std::max(largest, magnitude(point.S));
     const double rise = largest - 1;
-    return rise < kLowRise ? grid_from(std::clamp(kLowRise * rise, kFinestStep, kGridStep), density) : grid;
+    if (rise >= kLowRise) return grid;
+    return refined_grid([&](double omega) { return at(omega); }, grid,
+                        std::clamp(kLowRise * rise, kFinestStep, kGridStep));
 }
 
 LoopPoint SampledLoop::at_zero() const {

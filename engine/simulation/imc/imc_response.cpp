@@ -205,12 +205,12 @@ private:
         const Signal e0 = seen(from, true);
         const bool looks_ahead = h > theta_ + slack_ || (L_ > 0 && h > L_ + slack_);
         const ExactStep& step = exact(h);
-        std::vector<double> next, scratch(x.size());
+        std::vector<double> next;
         for (int i = 0; i < (looks_ahead ? kCorrections : 1); ++i) {
             const Signal e1 = seen(t, false);
             if (i > 0) memory_.pop_back();
             next = x;
-            advance(step, hermite_taylor(h, e0, e1), next, scratch);
+            advance(step, hermite_taylor(h, e0, e1), next);
             remember(t, next, e1);
         }
         x = next;

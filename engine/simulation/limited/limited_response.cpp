@@ -71,7 +71,6 @@ public:
           scale_y_(scale_of_y(plant, in, limits, rest_.y)),
           history_(response_.nodes, in.d),
           echoes_(echoes_that_count(std::abs(loop_.system().N), options.tolerance, kRetardedEchoes)),
-          scratch_(Index(loop_.states())),
           stopping_(options.settled, loop_.dead_time()) {
         choose_h0(plant, controller);
     }
@@ -190,7 +189,7 @@ private:
         to.t = from.t + stride.h;
         to.x = from.x;
         if (!loop_.delayed()) {
-            tunewright::advance(stride.whole, {}, to.x, scratch_);
+            tunewright::advance(stride.whole, {}, to.x);
             to.out = loop_.output(region_, to.x, {});
             return 0;
         }
@@ -200,13 +199,13 @@ private:
         const Signal v1 = stride.longer_than_L ? w0 : history_.at(start + first, slack()).before;
         const double missed = miss(first, v0, history_.at(start + 0.5 * first, slack()).after, v1);
         if (stride.implicit) {
-            stride.implicit->start(v0, w0, from.x, scratch_, start_);
+            stride.implicit->start(v0, w0, from.x, start_);
             to.out = loop_.output(region_, to.x, stride.implicit->finish(start_, {}, to.x));
             return missed;
         }
-        tunewright::advance(stride.whole, hermite_taylor(first, v0, v1), to.x, scratch_);
+        tunewright::advance(stride.whole, hermite_taylor(first, v0, v1), to.x);
         // At a limit what the plant gets is constant.
-        if (stride.longer_than_L) tunewright::advance(stride.rest, {w0.value, 0, 0, 0}, to.x, scratch_);
+        if (stride.longer_than_L) tunewright::advance(stride.rest, {w0.value, 0, 0, 0}, to.x);
         to.out = loop_.output(region_, to.x, stride.longer_than_L ? Signal{w0.value, 0} : v1);
         return missed;
     }
@@ -340,7 +339,6 @@ private:
     std::array<std::map<int, Stride>, 3> strides_;  // of each region, by level: length h0 2^level
     Echoes echoes_;
     LongStep::Start start_;
-    std::vector<double> scratch_;
     double h0_ = 1;
     int level_ = 0;
     Region region_ = Region::inside;

@@ -9,7 +9,7 @@ namespace {
 
 using Index = std::size_t;
 
-constexpr double kZeroTolerance = 1e-14;  // of a zero of a cubic, in parts of its step
+constexpr double kZeroTolerance = 1e-8;  // of Newton's last way to a zero, in parts of a step: its square is left
 constexpr int kMaxIterations = 50;
 
 /// c0 + c1 s + c2 s^2 + c3 s^3 over s in [0, 1], through values and slopes at both ends.
@@ -39,6 +39,7 @@ struct UnitCubic {
     /// Points in (0, 1) where the slope changes sign.
     int turning_points(std::array<double, 2>& s) const {
         int count = 0;
+        if (plainly_monotone()) return 0;
         const auto keep = [&](double root) {
             if (root > 0 && root < 1) s[Index(count++)] = root;
         };
@@ -172,7 +173,7 @@ double total_variation(const std::vector<ResponseNode>& nodes) {
         if (h > 0) {
             const UnitCubic u = UnitCubic::through(h, a.u, a.u_slope, b.u, b.u_slope);
             std::array<double, 2> turns{};
-            const int n = u.plainly_monotone() ? 0 : u.turning_points(turns);
+            const int n = u.turning_points(turns);
             for (int k = 0; k < n; ++k) {
                 const double value = u.at(turns[Index(k)]);
                 sum += std::abs(value - from);
@@ -200,7 +201,6 @@ Extremes extremes_of_y(const std::vector<ResponseNode>& nodes) {
         note(nodes[i].t, nodes[i].y);
         if (i == 0 || nodes[i].t <= nodes[i - 1].t) continue;
         const UnitCubic y = cubic_of_y(nodes[i - 1], nodes[i]);
-        if (y.plainly_monotone()) continue;
         std::array<double, 2> turns{};
         const int n = y.turning_points(turns);
         for (int k = 0; k < n; ++k)

@@ -27,7 +27,6 @@ constexpr double kFloor = 2e-3;                        // of the largest deviati
 constexpr int kLeastLevelOfL = 3, kMostLevelOfL = 30;  // of steps a dead time, as a power of 2
 constexpr double kOfGrowth = 0.25;                     // of an unstable mode's time: the longest step
 constexpr std::size_t kUsualSteps = 120, kUsualJumps = 16;  // of a run
-constexpr double kRough = 40;  // tolerances: 16 are what doubling a step costs at order 4, and a margin
 
 /// Chooses step lengths, keeps the nodes, knows when to stop.
 class LinearRun {
@@ -57,13 +56,11 @@ public:
 
     StepResponse run() {
         x_.assign(Index(system_.n), 0.0);
-        scratch_ = x_;
         const std::size_t steps = options_.repeat != nullptr ? options_.repeat->level.size() : kUsualSteps;
         response_.nodes.reserve(steps + kUsualJumps);
         response_.schedule.level.reserve(steps);
-        ResponseNode first = node_at(system_, 0, x_, {});
-        scale(first);
-        push(first);
+        scale(add(node_at(system_, 0, x_, {})));
+        note_node();
         response_.schedule.h0 = propagator_.h0();
         for (int step = 0; options_.repeat != nullptr || step < options_.max_steps; ++step) {
             const bool over = options_.repeat != nullptr && step == static_cast<int>(options_.repeat->level.size());
@@ -136,9 +133,13 @@ private:
         return std::ldexp(system_.s.L, -level_of_L_);
     }
 
-    void push(const ResponseNode& node) {
-        if (options_.tail && !response_.nodes.empty()) tail_.add(response_.nodes.back(), node, system_.in.r);
-        response_.nodes.push_back(node);
+    /// In its place at once: a node on its way there would be copied from memory that has just been written.
+    ResponseNode& add(const ResponseNode& node) { return response_.nodes.emplace_back() = node; }
+
+    /// What the run keeps in mind of the node that was added last, its slopes scaled.
+    void note_node() {
+        const ResponseNode& node = response_.nodes.back();
+        if (options_.tail && response_.nodes.size() > 1) tail_.add(response_.nodes.end()[-2], node, system_.in.r);
         if (scaling_ != nullptr) excesses_.push_back(excess_);
         largest_y_ = std::max(largest_y_, std::abs(node.y - steady_.y));
         largest_u_ = std::max(largest_u_, std::abs(node.u - steady_.u));
@@ -186,12 +187,11 @@ private:
         const ExactStep step = propagator_.step(left / parts);
         for (int i = 1; i <= parts; ++i) {
             const double end = i == parts ? *options_.horizon : from + step.h * i;
-            ResponseNode node;
             if (system_.delayed)
-                take_short_step(step, end, node);
+                take_short_step(step, end);
             else
-                take_closed_step(step, end, true, node);
-            push(node);
+                take_closed_step(step, end, true);
+            note_node();
         }
         response_.schedule.to_horizon = parts;
     }
@@ -216,70 +216,67 @@ private:
         if (levels_.equal_steps() < 2 || nodes.size() < 3) return Smoothness::unknown;
         const ResponseNode &a = nodes[nodes.size() - 3], &b = nodes[nodes.size() - 2], &c = nodes.back();
         const double h = c.t - a.t;
-        const auto error = [&](Signal start, double middle, Signal end, double rest, double largest) {
+        const auto fit = [&](Signal start, double middle, Signal end, double rest, double largest) -> Misfit {
             const double scale = std::max(
                 {std::abs(start.value - rest), std::abs(middle - rest), std::abs(end.value - rest), kFloor * largest});
-            return scale > 0 ? std::abs(middle - hermite_midpoint(h, start, end)) / scale : 0;
+            return {std::abs(middle - hermite_midpoint(h, start, end)), scale};
         };
-        double worst = std::max(error({a.y, a.y_slope}, b.y, {c.y, c.y_slope}, steady_.y, largest_y_),
-                                error({a.u, a.u_slope}, b.u, {c.u, c.u_slope}, steady_.u, largest_u_));
-        if (scaling_ != nullptr) worst = std::max(worst, roughness_of_excess());
-        if (worst < options_.tolerance) return Smoothness::fine;
-        return worst > kRough * options_.tolerance ? Smoothness::rough : Smoothness::enough;
+        const Misfit y = fit({a.y, a.y_slope}, b.y, {c.y, c.y_slope}, steady_.y, largest_y_),
+                     u = fit({a.u, a.u_slope}, b.u, {c.u, c.u_slope}, steady_.u, largest_u_);
+        return smoothness_of({y, u, scaling_ != nullptr ? fit_of_excess() : Misfit()}, options_.tolerance);
     }
 
-    /// Of the last two steps' cubic, relative to the local error of control.
-    double roughness_of_excess() const {
+    /// Of the last two steps' cubic, against the local error of control.
+    Misfit fit_of_excess() const {
         const Index last = excesses_.size() - 1;
         const Signal &a = excesses_[last - 2], &b = excesses_[last - 1], &c = excesses_[last];
         const auto& nodes = response_.nodes;
         double size = kFloor * largest_y_;
         for (Index i = last - 2; i <= last; ++i) size = std::max(size, std::abs(nodes[i].y - system_.in.r));
         const double h = nodes[last].t - nodes[last - 2].t;
-        return size > 0 ? std::abs(b.value - hermite_midpoint(h, a, c)) / size : 0;
+        return {std::abs(b.value - hermite_midpoint(h, a, c)), size};
     }
 
     /// False: the step is too long for the scaled integral, and nothing has happened.
     bool take_step() {
-        ResponseNode node;
         if (levels_.longer_than_L()) {
-            if (!take_long_step(node)) return false;
+            if (!take_long_step()) return false;
         } else {
             const ExactStep& step = propagator_.level(levels_.level());
             const double end = time() + step.h;
             if (system_.delayed)
-                take_short_step(step, end, node);
-            else if (!take_closed_step(step, end, levels_.level() == 0, node))
+                take_short_step(step, end);
+            else if (!take_closed_step(step, end, levels_.level() == 0))
                 return false;
         }
         const bool may_jump = levels_.count();
-        push(node);
+        note_node();
         if (may_jump) add_jump();
         return true;
     }
 
     /// Up to the dead time: the delayed signal is known.
-    void take_short_step(const ExactStep& step, double end, ResponseNode& node) {
+    void take_short_step(const ExactStep& step, double end) {
         const Signal v0 = delayed_to(end - step.h);
-        delayed_ = {end, history_.at(end - system_.s.L, slack())};
-        const Signal v1 = delayed_->limits.before;
-        advance(step, hermite_taylor(step.h, v0, v1), x_, scratch_);
-        node = node_at(system_, end, x_, v1);
+        const auto [v1, after] = history_.at(end - system_.s.L, slack());
+        delayed_end_ = end;
+        delayed_after_ = after;
+        advance(step, hermite_taylor(step.h, v0, v1), x_);
+        ResponseNode& node = add(node_at(system_, end, x_, v1));
         if (scaling_ != nullptr) add_excess(step.h, node);
     }
 
     double slack() const { return kSameInstant * propagator_.h0(); }
     /// The delayed signal at the start of a step, after a jump there.
     Signal delayed_to(double t) {
-        if (delayed_ && std::abs(delayed_->t - t) <= slack()) return delayed_->limits.after;
+        if (std::abs(delayed_end_ - t) <= slack()) return delayed_after_;
         return history_.at(t - system_.s.L, slack()).after;
     }
 
     /// The delayed signal may jump now, and with it u.
     void add_jump() {
-        ResponseNode node = node_at(system_, time(), x_, delayed_to(time()));
-        scale(node);
-        push(node);
+        scale(add(node_at(system_, time(), x_, delayed_to(time()))));
+        note_node();
         levels_.note_jump();
     }
 
@@ -293,12 +290,12 @@ private:
     }
 
     /// Longer than the dead time.
-    bool take_long_step(ResponseNode& node) {
+    bool take_long_step() {
         const LongStep& step = long_step();
         const double end = time() + step.h();
         const ResponseNode& now = response_.nodes.back();
-        step.start(delayed_to(time()), {now.u + system_.in.d, now.u_slope}, x_, scratch_, start_);
-        return settle(step.h(), false, node, [&](double added, std::vector<double>& x, ResponseNode& at_end) {
+        step.start(delayed_to(time()), {now.u + system_.in.d, now.u_slope}, x_, start_);
+        return settle(step.h(), false, [&](double added, std::vector<double>& x, ResponseNode& at_end) {
             const Signal v =
                 step.finish(start_, {into_u_ * added, into_u_ * excess_.value, into_u_ * excess_.slope}, x);
             if (scaling_ != nullptr) x[Index(system_.s.integral_state)] += added;
@@ -307,11 +304,11 @@ private:
     }
 
     /// Without dead time.
-    bool take_closed_step(const ExactStep& step, double end, bool shortest, ResponseNode& node) {
+    bool take_closed_step(const ExactStep& step, double end, bool shortest) {
         const Signal before = excess_;
-        return settle(step.h, shortest, node, [&](double, std::vector<double>& x, ResponseNode& at_end) {
+        return settle(step.h, shortest, [&](double, std::vector<double>& x, ResponseNode& at_end) {
             x = x_;
-            advance(step, hermite_taylor(step.h, before, excess_), x, scratch_);
+            advance(step, hermite_taylor(step.h, before, excess_), x);
             at_end = node_at(system_, end, x, {});
         });
     }
@@ -320,8 +317,9 @@ private:
     /// with the excess assumed there. False where that does not converge, which a shorter step cures; the `shortest` is
     /// accepted all the same.
     template <class TryEnd>
-    bool settle(double h, bool shortest, ResponseNode& node, const TryEnd& try_end) {
+    bool settle(double h, bool shortest, const TryEnd& try_end) {
         end_x_.resize(x_.size());
+        ResponseNode& node = response_.nodes.emplace_back();
         const Signal before = excess_;
         if (scaling_ == nullptr) {
             try_end(0, end_x_, node);
@@ -341,6 +339,7 @@ private:
         }
         if (!shortest) {
             excess_ = before;
+            response_.nodes.pop_back();
             return false;
         }
         x_.swap(end_x_);
@@ -367,16 +366,14 @@ private:
     Propagator propagator_;
     StepResponse response_;
     InputHistory history_;
-    struct Delayed {
-        double t;
-        InputHistory::Limits limits;
-    };
-    std::optional<Delayed> delayed_;  // at the end of the last step that looked it up
+    // The delayed signal at the end of the last step that looked it up, after a jump there.
+    double delayed_end_ = -std::numeric_limits<double>::infinity();
+    Signal delayed_after_;
     StepLevels levels_;
     StoppingRule stopping_;
     std::deque<LongStep> long_steps_;  // of level_of_L_ + 1, ...
     LongStep::Start start_;
-    std::vector<double> x_, end_x_, scratch_;
+    std::vector<double> x_, end_x_;
     Signal excess_;                 // phi(e) - e at the last node
     std::vector<Signal> excesses_;  // of each node
     double into_u_ = 0, into_y_ = 0, escape_ = 0;

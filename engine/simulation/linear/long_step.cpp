@@ -37,8 +37,7 @@ void LongStep::work_out_rows() {
     to_curvature_ = row_times(to_slope_, system_->F);
 }
 
-void LongStep::start(Signal v0, Signal w0, const std::vector<double>& x, std::vector<double>& scratch,
-                     Start& start) const {
+void LongStep::start(Signal v0, Signal w0, const std::vector<double>& x, Start& start) const {
     const Cubic over_L = hermite_taylor(over_L_.h, v0, w0);
     const Cubic known = cubic(w0.value, {});
     start.v_end = delayed_end(known);
@@ -50,8 +49,8 @@ void LongStep::start(Signal v0, Signal w0, const std::vector<double>& x, std::ve
     start.w_end[2] += dot(to_curvature_, x) + slope_G_ * v0.value + slope_b_ + whole_G_ * v0.slope + m[0] * over_L[2] +
                       m[1] * over_L[3] - rest_G_ * w0.slope;
     start.x = x;
-    advance(over_L_, over_L, start.x, scratch);
-    advance(rest_, known, start.x, scratch);
+    advance(over_L_, over_L, start.x);
+    advance(rest_, known, start.x);
     // The value from the states themselves: the input over the rest is in them.
     const DelaySystem& s = system_->s;
     start.w_end[0] = s.N * start.v_end.value + s.R * system_->in.r + system_->in.d;

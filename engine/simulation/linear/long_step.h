@@ -36,7 +36,7 @@ public:
         Jet w_end{};   ///< the same of the output
         std::vector<double> x;
     };
-    void start(Signal v0, Signal w0, const std::vector<double>& x, std::vector<double>& scratch, Start& start) const;
+    void start(Signal v0, Signal w0, const std::vector<double>& x, Start& start) const;
 
     /// Puts the states at the step's end into x; gives the delayed signal there. `added` is what the controller's
     /// output gets on top at the end, not from x.

@@ -39,6 +39,23 @@ double first_step(const ResponseSystem& system, double fastest);
 double own_time(const LinearPlant& plant);
 
 /// Measurement and controller output at states x and delayed signal v (not used without dead time).
-ResponseNode node_at(const ResponseSystem& system, double t, const std::vector<double>& x, Signal v);
+///
+/// It stands here because a node that a call returns is copied from memory that has just been written number by number:
+/// that costs a response a tenth.
+inline ResponseNode node_at(const ResponseSystem& system, double t, const std::vector<double>& x, Signal v) {
+    const DelaySystem& s = system.s;
+    if (!system.delayed) v = {system.in.d, 0};
+    double u = s.N * v.value + s.R * system.in.r, u_slope = system.MG * v.value + system.MH + s.N * v.slope;
+    double y = s.Z * v.value + s.Y_r * system.in.r, y_slope = system.YG * v.value + system.YH + s.Z * v.slope;
+    // One loop: with four calls of dot() a whole response takes 3 to 4 % longer.
+    const auto n = static_cast<std::size_t>(s.n);
+    for (std::size_t i = 0; i < n; ++i) {
+        u += s.M[i] * x[i];
+        u_slope += system.MF[i] * x[i];
+        y += s.Y[i] * x[i];
+        y_slope += system.YF[i] * x[i];
+    }
+    return {.t = t, .y = y, .y_slope = y_slope, .u = u, .u_slope = u_slope, .error_integral = -x[n]};
+}
 
 }  // namespace tunewright

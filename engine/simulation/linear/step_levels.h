@@ -8,6 +8,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -16,6 +17,23 @@ namespace tunewright {
 /// How a cubic over the last two steps fits: fine, a step twice as long would do; rough, even these were too long;
 /// unknown, too few equal steps to tell.
 enum class Smoothness { unknown, rough, enough, fine };
+
+/// How far from the value between them such a cubic passes, and what that is measured by.
+struct Misfit {
+    double error = 0, scale = 0;
+
+    bool within(double tolerance) const { return error <= tolerance * scale; }  // without a division
+};
+
+/// What the worst of them says.
+inline Smoothness smoothness_of(const std::array<Misfit, 3>& fits, double tolerance) {
+    constexpr double kRough = 40;  // tolerances: 16 are what doubling a step costs at order 4, and a margin
+    const auto all_within = [&](double limit) {
+        return fits[0].within(limit) && fits[1].within(limit) && fits[2].within(limit);
+    };
+    if (all_within(tolerance)) return Smoothness::fine;
+    return all_within(kRough * tolerance) ? Smoothness::enough : Smoothness::rough;
+}
 
 class StepLevels {
 public:

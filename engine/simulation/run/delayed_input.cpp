@@ -5,25 +5,14 @@
 
 namespace tunewright {
 
-InputHistory::Limits InputHistory::at(double t, double slack) {
+InputHistory::Limits InputHistory::at_node(std::size_t i, double t, double slack) const {
     if (t < -slack) return {};
-    // The first node at t or later.
-    std::size_t i = std::min(cursor_, nodes_.size());
-    while (i < nodes_.size() && nodes_[i].t < t - slack) ++i;
-    while (i > 0 && nodes_[i - 1].t >= t - slack) --i;
-    cursor_ = i;
     const auto node = [this](std::size_t k) -> Signal { return {nodes_[k].u + d_, nodes_[k].u_slope}; };
     if (i == nodes_.size()) return {node(i - 1), node(i - 1)};
-    if (nodes_[i].t <= t + slack) {
-        // Several of equal times are the values before and after a jump.
-        std::size_t last = i;
-        while (last + 1 < nodes_.size() && nodes_[last + 1].t <= t + slack) ++last;
-        return {t <= slack ? Signal{} : node(i), node(last)};
-    }
-    const ResponseNode &a = nodes_[i - 1], &b = nodes_[i];
-    const Cubic u = hermite_taylor(b.t - a.t, {a.u, a.u_slope}, {b.u, b.u_slope});
-    const Signal between{value_at(u, t - a.t) + d_, slope_at(u, t - a.t)};
-    return {between, between};
+    // Several of equal times are the values before and after a jump.
+    std::size_t last = i;
+    while (last + 1 < nodes_.size() && nodes_[last + 1].t <= t + slack) ++last;
+    return {t <= slack ? Signal{} : node(i), node(last)};
 }
 
 int echoes_that_count(double q, double tolerance, int smoothing) {

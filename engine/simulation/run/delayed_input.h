@@ -17,6 +17,8 @@ namespace tunewright {
 ///
 /// w = u + d, controller output and load: 0 before t = 0, then a cubic between neighbouring nodes; after the last node
 /// its value is held.
+///
+/// The look-up stands here because a call of it costs a response a seventh.
 class InputHistory {
 public:
     /// `nodes`: of ascending t; must live as long as this. They may grow, and lose their last ones again.
@@ -29,10 +31,26 @@ public:
     Limits at(double t, double slack);
 
 private:
+    /// At the node i or, near it, at those of the same time; before the first one or after the last.
+    Limits at_node(std::size_t i, double t, double slack) const;
+
     const std::vector<ResponseNode>& nodes_;
     double d_;
     std::size_t cursor_ = 0;  // the node that was found last: times are asked for in nearly ascending order
 };
+
+inline InputHistory::Limits InputHistory::at(double t, double slack) {
+    // The first node at t or later.
+    std::size_t i = std::min(cursor_, nodes_.size());
+    while (i < nodes_.size() && nodes_[i].t < t - slack) ++i;
+    while (i > 0 && nodes_[i - 1].t >= t - slack) --i;
+    cursor_ = i;
+    if (i == 0 || i == nodes_.size() || nodes_[i].t <= t + slack) return at_node(i, t, slack);
+    const ResponseNode &a = nodes_[i - 1], &b = nodes_[i];
+    const Cubic u = hermite_taylor(b.t - a.t, {a.u, a.u_slope}, {b.u, b.u_slope});
+    const Signal between{value_at(u, t - a.t) + d_, slope_at(u, t - a.t)};
+    return {between, between};
+}
 
 /// The number of passages through the loop after which a jump is no longer met with a step's end. Each passage smooths
 /// it by one derivative: after `smoothing` of them the method's order no longer sees it. Where the loop returns a share

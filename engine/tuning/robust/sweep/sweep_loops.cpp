@@ -3,17 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-// The bodies are inlined into a function for each kind of register. Other compilers and processors get the common one
-// alone.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
-#define TUNEWRIGHT_WIDE 1
-#define TUNEWRIGHT_FOR_AVX2 [[gnu::target("avx2")]]
-#else
-#define TUNEWRIGHT_WIDE 0
-#define TUNEWRIGHT_FOR_AVX2
-#endif
-#define TUNEWRIGHT_INLINED [[gnu::always_inline]] inline
-
 namespace tunewright::robust {
 namespace {
 
@@ -163,15 +152,6 @@ TUNEWRIGHT_FOR_AVX2 bool change_within_avx2(const CurveGrid& grid, const LoopGai
 std::complex<double> controller_response(const LoopGains& gains, double omega) {
     const Response C = response_of(gains, omega);
     return {C.re, C.im};
-}
-
-Registers widest_registers() {
-#if TUNEWRIGHT_WIDE
-    static const bool wide = __builtin_cpu_supports("avx2");
-    return wide ? Registers::avx2 : Registers::common;
-#else
-    return Registers::common;
-#endif
 }
 
 void peak_levels(const CurveGrid& grid, const LoopGains& gains, const InverseLimits& limits, double* S, double* T,

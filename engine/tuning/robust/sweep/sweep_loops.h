@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <span>
 
+#include "engine/numerics/registers.h"
+
 namespace tunewright::robust {
 
 /// A curve's frequencies and P there; all of one length.
@@ -35,10 +37,6 @@ struct InverseLimits {
 struct Circle {
     double centre, radius;
 };
-
-enum class Registers { common, avx2 };
-/// What this processor has.
-Registers widest_registers();
 
 /// Where the dead time turns faster than the grid, a loop is taken at its worst phase: L = -|L|.
 enum class Phase { as_it_is, worst };

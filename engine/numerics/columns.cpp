@@ -1,0 +1,192 @@
+#include "engine/numerics/columns.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "engine/numerics/pair.h"
+
+namespace tunewright {
+namespace {
+
+using Index = std::size_t;
+using Quad = double __attribute__((vector_size(32)));
+
+constexpr double kNegligible = 1e-18;  // of a number: well below rounding
+
+// Blocks are passed by reference alone: how a call hands over a wide one depends on the processor.
+
+template <class Block>
+constexpr Index kWidth = sizeof(Block) / sizeof(double);
+
+template <class Block, Index kBlocks>
+using Column = std::array<Block, kBlocks>;
+
+/// act(0), ..., act(kCount - 1), each with a constant of the program: a loop would keep the blocks in memory.
+template <Index kCount, class Act>
+TUNEWRIGHT_INLINED void for_each_index(const Act& act) {
+    [&]<Index... kIndex>(std::index_sequence<kIndex...>) { (act(std::integral_constant<Index, kIndex>()), ...); }
+    (std::make_index_sequence<kCount>());
+}
+
+/// sum += the columns' combination with these weights, for columns of kBlocks blocks: so many sums stay in registers.
+template <class Block, Index kBlocks>
+TUNEWRIGHT_INLINED void combine(const double* columns, const double* weights, Index count,
+                                Column<Block, kBlocks>& sum) {
+    for (Index k = 0; k < count; ++k)
+        for (Index i = 0; i < kBlocks; ++i) {
+            Block part;
+            std::memcpy(&part, columns + (k * kBlocks + i) * kWidth<Block>, sizeof part);
+            sum[i] += part * weights[k];
+        }
+}
+
+/// For columns of any length; what is not weighted costs nothing: a chain of lags has more of that than of anything
+/// else.
+TUNEWRIGHT_INLINED void combine(const double* columns, const double* weights, Index count, Index length, double* sum) {
+    for (Index k = 0; k < count; ++k) {
+        if (weights[k] == 0) continue;
+        for (Index i = 0; i < length; ++i) sum[i] += columns[k * length + i] * weights[k];
+    }
+}
+
+template <class Block, Index kBlocks>
+TUNEWRIGHT_INLINED void multiply(const double* columns, const double* weights, Index n, Index count, double factor,
+                                 double* to) {
+    constexpr Index kLength = kBlocks * kWidth<Block>;
+    for (Index k = 0; k < count; ++k) {
+        Column<Block, kBlocks> sum{};
+        combine<Block, kBlocks>(columns, weights + k * kLength, n, sum);
+        for_each_index<kBlocks>([&](auto i) {
+            sum[i] *= factor;
+            std::memcpy(to + k * kLength + i * kWidth<Block>, &sum[i], sizeof(Block));
+        });
+    }
+}
+
+TUNEWRIGHT_INLINED void multiply_long(const double* columns, const double* weights, Index n, Index count, double factor,
+                                      double* to) {
+    const Index length = column_length(n);
+    std::vector<double> sum(length);
+    for (Index k = 0; k < count; ++k) {
+        std::fill(sum.begin(), sum.end(), 0.0);
+        combine(columns, weights + k * length, n, length, sum.data());
+        for (Index i = 0; i < length; ++i) to[k * length + i] = factor * sum[i];
+    }
+}
+
+template <class Block>
+TUNEWRIGHT_INLINED void multiply(const double* columns, const double* weights, Index n, Index count, double factor,
+                                 double* to) {
+    constexpr Index kPerFour = 4 / kWidth<Block>;
+    switch (column_length(n) / 4) {
+        case 1: return multiply<Block, kPerFour>(columns, weights, n, count, factor, to);
+        case 2: return multiply<Block, 2 * kPerFour>(columns, weights, n, count, factor, to);
+        case 3: return multiply<Block, 3 * kPerFour>(columns, weights, n, count, factor, to);
+        case 4: return multiply<Block, 4 * kPerFour>(columns, weights, n, count, factor, to);
+        case 5: return multiply<Block, 5 * kPerFour>(columns, weights, n, count, factor, to);
+        default: return multiply_long(columns, weights, n, count, factor, to);
+    }
+}
+
+template <class Block, Index kBlocks>
+TUNEWRIGHT_INLINED void map(const double* columns, std::span<double> x, std::span<const double> inputs) {
+    Column<Block, kBlocks> sum{}, inflow{};
+    combine<Block, kBlocks>(columns, x.data(), x.size(), sum);
+    combine<Block, kBlocks>(columns + x.size() * kBlocks * kWidth<Block>, inputs.data(), inputs.size(), inflow);
+    // All but the last four numbers are full blocks; of those x may lack some.
+    constexpr Index kFull = kBlocks * kWidth<Block> - 4;
+    std::array<double, 4> last;
+    for_each_index<kBlocks>([&](auto i) {
+        constexpr Index at = i * kWidth<Block>;
+        sum[i] += inflow[i];
+        std::memcpy(at < kFull ? x.data() + at : last.data() + (at - kFull), &sum[i], sizeof(Block));
+    });
+    for (Index i = kFull; i < x.size(); ++i) x[i] = last[i - kFull];
+}
+
+TUNEWRIGHT_INLINED void map_long(const double* columns, std::span<double> x, std::span<const double> inputs) {
+    const Index length = column_length(x.size());
+    std::vector<double> sum(length);
+    combine(columns, x.data(), x.size(), length, sum.data());
+    combine(columns + x.size() * length, inputs.data(), inputs.size(), length, sum.data());
+    std::copy_n(sum.begin(), x.size(), x.begin());
+}
+
+template <class Block>
+TUNEWRIGHT_INLINED void map(const double* columns, std::span<double> x, std::span<const double> inputs) {
+    constexpr Index kPerFour = 4 / kWidth<Block>;
+    switch (column_length(x.size()) / 4) {
+        case 1: return map<Block, kPerFour>(columns, x, inputs);
+        case 2: return map<Block, 2 * kPerFour>(columns, x, inputs);
+        case 3: return map<Block, 3 * kPerFour>(columns, x, inputs);
+        case 4: return map<Block, 4 * kPerFour>(columns, x, inputs);
+        case 5: return map<Block, 5 * kPerFour>(columns, x, inputs);
+        default: return map_long(columns, x, inputs);
+    }
+}
+
+template <class Block>
+TUNEWRIGHT_INLINED void without_sign(Block& x) {
+    using Bits = decltype(x < x);
+    Bits bits;
+    std::memcpy(&bits, &x, sizeof bits);
+    bits &= std::int64_t{0x7fffffffffffffff};
+    std::memcpy(&x, &bits, sizeof x);
+}
+
+template <class Block>
+TUNEWRIGHT_INLINED bool add(double* to, const double* from, Index count, double weight) {
+    decltype(Block{} < Block{}) counting{};
+    for (Index i = 0; i < count; i += kWidth<Block>) {
+        Block sum, term;
+        std::memcpy(&sum, to + i, sizeof sum);
+        std::memcpy(&term, from + i, sizeof term);
+        term *= weight;
+        sum += term;
+        std::memcpy(to + i, &sum, sizeof sum);
+        without_sign(term);
+        without_sign(sum);
+        counting |= term > kNegligible * sum;
+    }
+    std::int64_t any = 0;
+    for (Index i = 0; i < kWidth<Block>; ++i) any |= counting[i];
+    return any != 0;
+}
+
+TUNEWRIGHT_FOR_AVX2 void multiply_avx2(const double* columns, const double* weights, Index n, Index count,
+                                       double factor, double* to) {
+    multiply<Quad>(columns, weights, n, count, factor, to);
+}
+
+TUNEWRIGHT_FOR_AVX2 void map_avx2(const double* columns, std::span<double> x, std::span<const double> inputs) {
+    map<Quad>(columns, x, inputs);
+}
+
+TUNEWRIGHT_FOR_AVX2 bool add_avx2(double* to, const double* from, Index count, double weight) {
+    return add<Quad>(to, from, count, weight);
+}
+
+}  // namespace
+
+void multiply_columns(const double* columns, const double* weights, Index n, Index count, double factor, double* to,
+                      Registers registers) {
+    if (registers == Registers::avx2) return multiply_avx2(columns, weights, n, count, factor, to);
+    multiply<Pair>(columns, weights, n, count, factor, to);
+}
+
+void map_columns(const double* columns, std::span<double> x, std::span<const double> inputs, Registers registers) {
+    if (registers == Registers::avx2) return map_avx2(columns, x, inputs);
+    map<Pair>(columns, x, inputs);
+}
+
+bool add_columns(double* to, const double* from, Index count, double weight, Registers registers) {
+    if (registers == Registers::avx2) return add_avx2(to, from, count, weight);
+    return add<Pair>(to, from, count, weight);
+}
+
+}  // namespace tunewright

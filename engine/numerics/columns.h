@@ -1,0 +1,31 @@
+// Matrices whose columns are each filled up with zeros to a whole number of registers, so that their combinations take
+// no other instructions than products and sums of registers: what a step of a linear system is made of.
+//
+// Both kinds of registers add in the same order: their results are equal.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "engine/numerics/registers.h"
+
+namespace tunewright {
+
+/// The length of a column of n numbers.
+constexpr std::size_t column_length(std::size_t n) { return (n + 3) / 4 * 4; }
+
+/// to_k := factor times the combination of the n columns with the first n numbers of weights_k, for k < count: a
+/// product of matrices whose columns have the same length. `to` may be `weights`.
+void multiply_columns(const double* columns, const double* weights, std::size_t n, std::size_t count, double factor,
+                      double* to, Registers registers = widest_registers());
+
+/// x := the combination of the columns with x and, of those that follow, with the inputs.
+void map_columns(const double* columns, std::span<double> x, std::span<const double> inputs,
+                 Registers registers = widest_registers());
+
+/// to += weight times from, for so many whole columns. False: no number of `to` is changed by more than 1e-18 of
+/// itself.
+bool add_columns(double* to, const double* from, std::size_t count, double weight,
+                 Registers registers = widest_registers());
+
+}  // namespace tunewright

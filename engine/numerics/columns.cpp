@@ -55,78 +55,74 @@ TUNEWRIGHT_INLINED void combine(const double* columns, const double* weights, In
 }
 
 template <class Block, Index kBlocks>
-TUNEWRIGHT_INLINED void multiply(const double* columns, const double* weights, Index n, Index count, double factor,
-                                 double* to) {
-    constexpr Index kLength = kBlocks * kWidth<Block>;
-    for (Index k = 0; k < count; ++k) {
+TUNEWRIGHT_INLINED void multiply(const ColumnProduct& p) {
+    for (Index k = 0; k < p.count; ++k) {
         Column<Block, kBlocks> sum{};
-        combine<Block, kBlocks>(columns, weights + k * kLength, n, sum);
+        combine<Block, kBlocks>(p.columns, p.weights + k * p.weights_apart, p.n, sum);
+        double* to = p.to + k * p.to_apart;
         for_each_index<kBlocks>([&](auto i) {
-            sum[i] *= factor;
-            std::memcpy(to + k * kLength + i * kWidth<Block>, &sum[i], sizeof(Block));
+            sum[i] *= p.factor;
+            std::memcpy(to + i * kWidth<Block>, &sum[i], sizeof(Block));
         });
     }
 }
 
-TUNEWRIGHT_INLINED void multiply_long(const double* columns, const double* weights, Index n, Index count, double factor,
-                                      double* to) {
-    const Index length = column_length(n);
-    std::vector<double> sum(length);
-    for (Index k = 0; k < count; ++k) {
+TUNEWRIGHT_INLINED void multiply_long(const ColumnProduct& p) {
+    std::vector<double> sum(p.length);
+    for (Index k = 0; k < p.count; ++k) {
         std::fill(sum.begin(), sum.end(), 0.0);
-        combine(columns, weights + k * length, n, length, sum.data());
-        for (Index i = 0; i < length; ++i) to[k * length + i] = factor * sum[i];
+        combine(p.columns, p.weights + k * p.weights_apart, p.n, p.length, sum.data());
+        for (Index i = 0; i < p.length; ++i) p.to[k * p.to_apart + i] = p.factor * sum[i];
     }
 }
 
 template <class Block>
-TUNEWRIGHT_INLINED void multiply(const double* columns, const double* weights, Index n, Index count, double factor,
-                                 double* to) {
+TUNEWRIGHT_INLINED void multiply(const ColumnProduct& p) {
     constexpr Index kPerFour = 4 / kWidth<Block>;
-    switch (column_length(n) / 4) {
-        case 1: return multiply<Block, kPerFour>(columns, weights, n, count, factor, to);
-        case 2: return multiply<Block, 2 * kPerFour>(columns, weights, n, count, factor, to);
-        case 3: return multiply<Block, 3 * kPerFour>(columns, weights, n, count, factor, to);
-        case 4: return multiply<Block, 4 * kPerFour>(columns, weights, n, count, factor, to);
-        case 5: return multiply<Block, 5 * kPerFour>(columns, weights, n, count, factor, to);
-        default: return multiply_long(columns, weights, n, count, factor, to);
+    switch (p.length / 4) {
+        case 1: return multiply<Block, kPerFour>(p);
+        case 2: return multiply<Block, 2 * kPerFour>(p);
+        case 3: return multiply<Block, 3 * kPerFour>(p);
+        case 4: return multiply<Block, 4 * kPerFour>(p);
+        case 5: return multiply<Block, 5 * kPerFour>(p);
+        default: return multiply_long(p);
     }
 }
 
 template <class Block, Index kBlocks>
-TUNEWRIGHT_INLINED void map(const double* columns, std::span<double> x, std::span<const double> inputs) {
+TUNEWRIGHT_INLINED void map(const double* columns, Index n, std::span<double> z, std::span<const double> inputs) {
     Column<Block, kBlocks> sum{}, inflow{};
-    combine<Block, kBlocks>(columns, x.data(), x.size(), sum);
-    combine<Block, kBlocks>(columns + x.size() * kBlocks * kWidth<Block>, inputs.data(), inputs.size(), inflow);
-    // All but the last four numbers are full blocks; of those x may lack some.
+    combine<Block, kBlocks>(columns, z.data(), n, sum);
+    combine<Block, kBlocks>(columns + n * kBlocks * kWidth<Block>, inputs.data(), inputs.size(), inflow);
+    // All but the last four numbers are full blocks; of those z may lack some.
     constexpr Index kFull = kBlocks * kWidth<Block> - 4;
     std::array<double, 4> last;
     for_each_index<kBlocks>([&](auto i) {
         constexpr Index at = i * kWidth<Block>;
         sum[i] += inflow[i];
-        std::memcpy(at < kFull ? x.data() + at : last.data() + (at - kFull), &sum[i], sizeof(Block));
+        std::memcpy(at < kFull ? z.data() + at : last.data() + (at - kFull), &sum[i], sizeof(Block));
     });
-    for (Index i = kFull; i < x.size(); ++i) x[i] = last[i - kFull];
+    for (Index i = kFull; i < z.size(); ++i) z[i] = last[i - kFull];
 }
 
-TUNEWRIGHT_INLINED void map_long(const double* columns, std::span<double> x, std::span<const double> inputs) {
-    const Index length = column_length(x.size());
+TUNEWRIGHT_INLINED void map_long(const double* columns, Index n, std::span<double> z, std::span<const double> inputs) {
+    const Index length = column_length(z.size());
     std::vector<double> sum(length);
-    combine(columns, x.data(), x.size(), length, sum.data());
-    combine(columns + x.size() * length, inputs.data(), inputs.size(), length, sum.data());
-    std::copy_n(sum.begin(), x.size(), x.begin());
+    combine(columns, z.data(), n, length, sum.data());
+    combine(columns + n * length, inputs.data(), inputs.size(), length, sum.data());
+    std::copy_n(sum.begin(), z.size(), z.begin());
 }
 
 template <class Block>
-TUNEWRIGHT_INLINED void map(const double* columns, std::span<double> x, std::span<const double> inputs) {
+TUNEWRIGHT_INLINED void map(const double* columns, Index n, std::span<double> z, std::span<const double> inputs) {
     constexpr Index kPerFour = 4 / kWidth<Block>;
-    switch (column_length(x.size()) / 4) {
-        case 1: return map<Block, kPerFour>(columns, x, inputs);
-        case 2: return map<Block, 2 * kPerFour>(columns, x, inputs);
-        case 3: return map<Block, 3 * kPerFour>(columns, x, inputs);
-        case 4: return map<Block, 4 * kPerFour>(columns, x, inputs);
-        case 5: return map<Block, 5 * kPerFour>(columns, x, inputs);
-        default: return map_long(columns, x, inputs);
+    switch (column_length(z.size()) / 4) {
+        case 1: return map<Block, kPerFour>(columns, n, z, inputs);
+        case 2: return map<Block, 2 * kPerFour>(columns, n, z, inputs);
+        case 3: return map<Block, 3 * kPerFour>(columns, n, z, inputs);
+        case 4: return map<Block, 4 * kPerFour>(columns, n, z, inputs);
+        case 5: return map<Block, 5 * kPerFour>(columns, n, z, inputs);
+        default: return map_long(columns, n, z, inputs);
     }
 }
 
@@ -158,13 +154,10 @@ TUNEWRIGHT_INLINED bool add(double* to, const double* from, Index count, double 
     return any != 0;
 }
 
-TUNEWRIGHT_FOR_AVX2 void multiply_avx2(const double* columns, const double* weights, Index n, Index count,
-                                       double factor, double* to) {
-    multiply<Quad>(columns, weights, n, count, factor, to);
-}
+TUNEWRIGHT_FOR_AVX2 void multiply_avx2(const ColumnProduct& product) { multiply<Quad>(product); }
 
-TUNEWRIGHT_FOR_AVX2 void map_avx2(const double* columns, std::span<double> x, std::span<const double> inputs) {
-    map<Quad>(columns, x, inputs);
+TUNEWRIGHT_FOR_AVX2 void map_avx2(const double* columns, Index n, std::span<double> z, std::span<const double> inputs) {
+    map<Quad>(columns, n, z, inputs);
 }
 
 TUNEWRIGHT_FOR_AVX2 bool add_avx2(double* to, const double* from, Index count, double weight) {
@@ -173,15 +166,15 @@ TUNEWRIGHT_FOR_AVX2 bool add_avx2(double* to, const double* from, Index count, d
 
 }  // namespace
 
-void multiply_columns(const double* columns, const double* weights, Index n, Index count, double factor, double* to,
-                      Registers registers) {
-    if (registers == Registers::avx2) return multiply_avx2(columns, weights, n, count, factor, to);
-    multiply<Pair>(columns, weights, n, count, factor, to);
+void multiply_columns(const ColumnProduct& product, Registers registers) {
+    if (registers == Registers::avx2) return multiply_avx2(product);
+    multiply<Pair>(product);
 }
 
-void map_columns(const double* columns, std::span<double> x, std::span<const double> inputs, Registers registers) {
-    if (registers == Registers::avx2) return map_avx2(columns, x, inputs);
-    map<Pair>(columns, x, inputs);
+void map_columns(const double* columns, Index n, std::span<double> z, std::span<const double> inputs,
+                 Registers registers) {
+    if (registers == Registers::avx2) return map_avx2(columns, n, z, inputs);
+    map<Pair>(columns, n, z, inputs);
 }
 
 bool add_columns(double* to, const double* from, Index count, double weight, Registers registers) {

@@ -14,13 +14,23 @@ namespace tunewright {
 /// The length of a column of n numbers.
 constexpr std::size_t column_length(std::size_t n) { return (n + 3) / 4 * 4; }
 
-/// to_k := factor times the combination of the n columns with the first n numbers of weights_k, for k < count: a
-/// product of matrices whose columns have the same length. `to` may be `weights`.
-void multiply_columns(const double* columns, const double* weights, std::size_t n, std::size_t count, double factor,
-                      double* to, Registers registers = widest_registers());
+/// A product of matrices: to_k := factor times the combination of n columns with the first n numbers of weights_k, for
+/// k < count.
+struct ColumnProduct {
+    const double* columns;
+    std::size_t length;  ///< of a column, a multiple of four
+    std::size_t n;
+    const double* weights;
+    std::size_t weights_apart;  ///< from weights_k to the next
+    std::size_t count;
+    double factor = 1;
+    double* to;  ///< may be `weights`, where each stands in place of the other
+    std::size_t to_apart;
+};
+void multiply_columns(const ColumnProduct& product, Registers registers = widest_registers());
 
-/// x := the combination of the columns with x and, of those that follow, with the inputs.
-void map_columns(const double* columns, std::span<double> x, std::span<const double> inputs,
+/// z := the combination of the columns with the first n numbers of z and, of those that follow, with the inputs.
+void map_columns(const double* columns, std::size_t n, std::span<double> z, std::span<const double> inputs,
                  Registers registers = widest_registers());
 
 /// to += weight times from, for so many whole columns. False: no number of `to` is changed by more than 1e-18 of

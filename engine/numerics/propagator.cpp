@@ -38,7 +38,15 @@ public:
     ExactStep sum() {
         for (int m = 0; m < kMaxTerms; ++m) {
             if (!add(m) && m > 0) break;
-            multiply_columns(F_.data(), term_.data(), n_, n_ + 2, h_ / (m + 1), term_.data());
+            multiply_columns({.columns = F_.data(),
+                              .length = length_,
+                              .n = n_,
+                              .weights = term_.data(),
+                              .weights_apart = length_,
+                              .count = n_ + 2,
+                              .factor = h_ / (m + 1),
+                              .to = term_.data(),
+                              .to_apart = length_});
         }
         return std::move(step_);
     }
@@ -97,10 +105,21 @@ const ExactStep& Propagator::level(int level) {
     return levels_[Index(level)];
 }
 
+ColumnProduct carried_over(const ExactStep& second, const ExactStep& first, double* to) {
+    return {.columns = second.columns.data(),
+            .length = second.length(),
+            .n = second.n,
+            .weights = first.columns.data(),
+            .weights_apart = first.length(),
+            .count = first.n + kInputs,
+            .to = to,
+            .to_apart = first.length()};
+}
+
 ExactStep Propagator::compose(const ExactStep& first, const ExactStep& second) const {
     const Index n = Index(n_), length = first.length();
     ExactStep whole{.h = first.h + second.h, .n = n, .columns = std::vector<double>(first.columns.size())};
-    multiply_columns(second.columns.data(), first.columns.data(), n, n + kInputs, 1, whole.columns.data());
+    multiply_columns(carried_over(second, first, whole.columns.data()));
     // v(a + s) has Taylor coefficients sum_{j >= i} v_j a^(j-i)/(j-i)! in s.
     const double a = first.h, a2 = a * a / 2, a3 = a2 * a / 3;
     const double* from = second.columns.data() + n * length;

@@ -27,8 +27,11 @@ struct ExactStep {
 /// x := Phi x + Gamma v + constant.
 inline void advance(const ExactStep& step, const Cubic& v, std::vector<double>& x) {
     const std::array<double, 5> inputs = {v[0], v[1], v[2], v[3], 1};
-    map_columns(step.columns.data(), x, inputs);
+    map_columns(step.columns.data(), step.n, x, inputs);
 }
+
+/// What `first` leaves at its end, column by column, carried on by the states alone over `second`.
+ColumnProduct carried_over(const ExactStep& second, const ExactStep& first, double* to);
 
 /// row Phi for a row of n numbers.
 std::vector<double> carried_over(const ExactStep& step, std::span<const double> row);

@@ -1,6 +1,7 @@
 #include "engine/simulation/linear/long_step.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <utility>
 
 #include "engine/numerics/matrix/linear_algebra.h"
@@ -37,39 +38,97 @@ void LongStep::work_out_rows() {
     to_curvature_ = row_times(to_slope_, system_->F);
 }
 
+/// What the output at the end gets from what comes in, but for what the states bring with them; `constant`: times the
+/// inputs that are constant.
+LongStep::Jet LongStep::end_of(const Cubic& over_L, const Cubic& known, Signal v0, Signal w0, double constant) const {
+    Jet end = through_cubic(known);
+    // x' = F x + G v0 + b at the start, then x'' = F x' + G v'; v' jumps to the cubic's where the rest begins.
+    const auto& m = over_L_moments_;
+    end[0] = system_->s.N * delayed_end(known).value + constant * (system_->s.R * system_->in.r + system_->in.d);
+    end[1] += whole_G_ * v0.value + constant * whole_b_ + m[0] * over_L[1] + m[1] * over_L[2] + m[2] * over_L[3];
+    end[2] += slope_G_ * v0.value + constant * slope_b_ + whole_G_ * v0.slope + m[0] * over_L[2] + m[1] * over_L[3] -
+              rest_G_ * w0.slope;
+    return end;
+}
+
 void LongStep::start(Signal v0, Signal w0, const std::vector<double>& x, Start& start) const {
     const Cubic over_L = hermite_taylor(over_L_.h, v0, w0);
     const Cubic known = cubic(w0.value, {});
     start.v_end = delayed_end(known);
-    start.w_end = through_cubic(known);
-    // x' = F x + G v0 + b at the start, then x'' = F x' + G v'; v' jumps to the cubic's where the rest begins.
-    const auto& m = over_L_moments_;
-    start.w_end[1] +=
-        dot(to_slope_, x) + whole_G_ * v0.value + whole_b_ + m[0] * over_L[1] + m[1] * over_L[2] + m[2] * over_L[3];
-    start.w_end[2] += dot(to_curvature_, x) + slope_G_ * v0.value + slope_b_ + whole_G_ * v0.slope + m[0] * over_L[2] +
-                      m[1] * over_L[3] - rest_G_ * w0.slope;
+    start.w_end = end_of(over_L, known, v0, w0, 1);
+    start.w_end[1] += dot(to_slope_, x);
+    start.w_end[2] += dot(to_curvature_, x);
     start.x = x;
     advance(over_L_, over_L, start.x);
     advance(rest_, known, start.x);
     // The value from the states themselves: the input over the rest is in them.
-    const DelaySystem& s = system_->s;
-    start.w_end[0] = s.N * start.v_end.value + s.R * system_->in.r + system_->in.d;
-    for (Index i = 0; i < Index(s.n); ++i) start.w_end[0] += s.M[i] * start.x[i];
+    start.w_end[0] += output_of(start.x.data());
+}
+
+double LongStep::output_of(const double* x) const {
+    double w = 0;
+    for (Index i = 0; i < Index(system_->s.n); ++i) w += system_->s.M[i] * x[i];
+    return w;
+}
+
+/// The unknowns are w, h w' and h^2 w'' at the end: known part + effects of the unknowns.
+LongStep::Jet LongStep::solved(const Jet& known) const {
+    Jet w{};
+    for (Index k = 0; k < 3; ++k)
+        w[k] = solution_[3 * k] * known[0] + solution_[3 * k + 1] * (h_ * known[1]) +
+               solution_[3 * k + 2] * (h_ * h_ * known[2]);
+    return w;
+}
+
+/// Adds what the output at the end, w, h w' and h^2 w'', leaves to the states and to the delayed signal there.
+Signal LongStep::with_effects(const Jet& w, Signal v, double* x) const {
+    for (Index k = 0; k < 3; ++k) {
+        for (Index i = 0; i < rest_.n; ++i) x[i] += effects_[k].x[i] * w[k];
+        v.value += effects_[k].v.value * w[k];
+        v.slope += effects_[k].v.slope * w[k];
+    }
+    return v;
 }
 
 Signal LongStep::finish(const Start& start, const Jet& added, std::vector<double>& x) const {
-    // The unknowns are w, h w' and h^2 w'' at the end: known part + effects of the unknowns.
-    const Jet known{start.w_end[0] + added[0], h_ * (start.w_end[1] + added[1]), h_ * h_ * (start.w_end[2] + added[2])};
-    Signal v = start.v_end;
+    const Jet w = solved({start.w_end[0] + added[0], start.w_end[1] + added[1], start.w_end[2] + added[2]});
     x = start.x;
-    for (Index k = 0; k < 3; ++k) {
-        const double w =
-            solution_[3 * k] * known[0] + solution_[3 * k + 1] * known[1] + solution_[3 * k + 2] * known[2];
-        for (Index i = 0; i < x.size(); ++i) x[i] += effects_[k].x[i] * w;
-        v.value += effects_[k].v.value * w;
-        v.slope += effects_[k].v.slope * w;
+    return with_effects(w, start.v_end, x.data());
+}
+
+StepMap LongStep::map() const {
+    const Index n = rest_.n, length = rest_.length();
+    // What the dead time leaves, carried over the rest: by the states, by the cubic's coefficients and by 1.
+    std::vector<double> carried(over_L_.columns.size());
+    multiply_columns(carried_over(rest_, over_L_, carried.data()));
+    StepMap map(*system_, h_);
+    std::vector<Signal> v(n + kStepInputs);
+    const auto solve = [&](Index k, Jet end, Signal delayed) {
+        double* x = map.column(k);
+        end[0] += output_of(x);
+        v[k] = with_effects(solved(end), delayed, x);
+    };
+    for (Index k = 0; k < n; ++k) {
+        std::copy_n(carried.data() + k * length, n, map.column(k));
+        solve(k, {0, to_slope_[k], to_curvature_[k]}, {});
     }
-    return v;
+    const auto from_input = [&](Index k, Signal v0, Signal w0, double constant) {
+        const Cubic over_L = hermite_taylor(over_L_.h, v0, w0), known = cubic(w0.value, {});
+        const double *moments = carried.data() + n * length, *of_rest = rest_.columns.data() + n * length;
+        double* x = map.column(n + k);
+        for (Index j = 0; j < 4; ++j)
+            for (Index i = 0; i < n; ++i)
+                x[i] += moments[j * length + i] * over_L[j] + of_rest[j * length + i] * known[j];
+        for (Index i = 0; i < n; ++i) x[i] += constant * (moments[4 * length + i] + of_rest[4 * length + i]);
+        solve(n + k, end_of(over_L, known, v0, w0, constant), delayed_end(known));
+    };
+    from_input(0, {}, {}, 1);
+    from_input(1, {1, 0}, {}, 0);
+    from_input(2, {0, 1}, {}, 0);
+    from_input(3, {}, {1, 0}, 0);
+    from_input(4, {}, {0, 1}, 0);
+    map.add_outputs(*system_, v);
+    return map;
 }
 
 Cubic LongStep::cubic(double w0, const Jet& end) const {

@@ -15,6 +15,7 @@
 
 #include "engine/numerics/propagator.h"
 #include "engine/simulation/linear/response_system.h"
+#include "engine/simulation/linear/step_map.h"
 
 namespace tunewright {
 
@@ -42,6 +43,9 @@ public:
     /// output gets on top at the end, not from x.
     Signal finish(const Start& start, const Jet& added, std::vector<double>& x) const;
 
+    /// Both as one map (step_map.h), where nothing is added.
+    StepMap map() const;
+
 private:
     struct Effect {
         std::vector<double> x;
@@ -53,6 +57,10 @@ private:
     Cubic cubic(double w0, const Jet& end) const;
     Signal delayed_end(const Cubic& c) const;
     Jet through_cubic(const Cubic& c) const;
+    Jet end_of(const Cubic& over_L, const Cubic& known, Signal v0, Signal w0, double constant) const;
+    Jet solved(const Jet& known) const;
+    double output_of(const double* x) const;
+    Signal with_effects(const Jet& w, Signal v, double* x) const;
     Effect effect(const Jet& end) const;
     void invert();
 

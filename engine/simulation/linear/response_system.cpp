@@ -36,12 +36,13 @@ ResponseSystem make_response_system(const LinearPlant& plant, const ParallelPid&
         system.F[Index(n * system.n + i)] = s.Y[Index(i)];
         system.b[Index(i)] = s.H[Index(i)] * in.r;
     }
-    system.MF.assign(Index(n), 0);
-    system.YF.assign(Index(n), 0);
+    system.outputs.assign(Index(4 * system.n), 0);
     for (int i = 0; i < n; ++i) {
+        system.outputs[Index(4 * i)] = s.Y[Index(i)];
+        system.outputs[Index(4 * i + 2)] = s.M[Index(i)];
         for (int j = 0; j < n; ++j) {
-            system.MF[Index(j)] += s.M[Index(i)] * s.F[Index(i * n + j)];
-            system.YF[Index(j)] += s.Y[Index(i)] * s.F[Index(i * n + j)];
+            system.outputs[Index(4 * j + 1)] += s.Y[Index(i)] * s.F[Index(i * n + j)];
+            system.outputs[Index(4 * j + 3)] += s.M[Index(i)] * s.F[Index(i * n + j)];
         }
         system.MG += s.M[Index(i)] * s.G[Index(i)];
         system.YG += s.Y[Index(i)] * s.G[Index(i)];
@@ -76,6 +77,19 @@ double first_step(const ResponseSystem& system, double fastest) {
 double own_time(const LinearPlant& plant) {
     const double time = plant.time_scale();
     return time > 0 ? time : 1;
+}
+
+ResponseNode node_at(const ResponseSystem& system, double t, std::span<const double> x, Signal v) {
+    auto [y, y_slope, u, u_slope] = outputs_of(system, system.delayed ? v : Signal{system.in.d, 0}, 1);
+    const auto n = Index(system.s.n);
+    for (Index i = 0; i < n; ++i) {
+        const double* out = &system.outputs[4 * i];
+        y += out[0] * x[i];
+        y_slope += out[1] * x[i];
+        u += out[2] * x[i];
+        u_slope += out[3] * x[i];
+    }
+    return {.t = t, .y = y, .y_slope = y_slope, .u = u, .u_slope = u_slope, .error_integral = -x[n]};
 }
 
 }  // namespace tunewright

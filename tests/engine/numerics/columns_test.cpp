@@ -45,7 +45,16 @@ TEST_P(OfLength, AProductIsThatOfPlainSums) {
     std::vector<std::vector<double>> products;
     for (const auto registers : all_registers()) {
         auto to = weights;  // in place
-        multiply_columns(columns.data(), to.data(), n, count, 0.3, to.data(), registers);
+        multiply_columns({.columns = columns.data(),
+                          .length = length,
+                          .n = n,
+                          .weights = to.data(),
+                          .weights_apart = length,
+                          .count = count,
+                          .factor = 0.3,
+                          .to = to.data(),
+                          .to_apart = length},
+                         registers);
         for (Index k = 0; k < count; ++k) {
             std::vector<double> sums(n, 0.0);
             for (Index j = 0; j < n; ++j)
@@ -57,30 +66,60 @@ TEST_P(OfLength, AProductIsThatOfPlainSums) {
     EXPECT_EQ(products.front(), products.back()) << "the registers give different digits";
 }
 
-TEST_P(OfLength, AMapAddsWhatComesIn) {
-    const Index n = GetParam(), length = column_length(n);
-    Random random(n + 100);
-    const auto columns = random_columns(random, n, n + 5);
+TEST_P(OfLength, AProductMayStandBesideItsWeights) {
+    // Two numbers more of each column, behind the n that they are made of.
+    const Index n = GetParam(), apart = column_length(n + 4);
+    Random random(n + 50);
+    const auto of_two = random_columns(random, 2, n), weights = random_columns(random, n + 4, 3);
+    for (const auto registers : all_registers()) {
+        auto both = weights;
+        multiply_columns({.columns = of_two.data(),
+                          .length = 4,
+                          .n = n,
+                          .weights = both.data(),
+                          .weights_apart = apart,
+                          .count = 3,
+                          .to = both.data() + n,
+                          .to_apart = apart},
+                         registers);
+        for (Index k = 0; k < 3; ++k) {
+            std::vector<double> sums(2, 0.0);
+            for (Index j = 0; j < n; ++j)
+                for (Index i = 0; i < 2; ++i) sums[i] += of_two[4 * j + i] * weights[k * apart + j];
+            expect_column(both.data() + k * apart + n, sums);
+            for (Index i = 0; i < n; ++i) EXPECT_EQ(both[k * apart + i], weights[k * apart + i]);
+        }
+    }
+}
+
+/// A map of z, whose first `n` numbers count.
+void expect_map(Index n, Index size) {
+    const Index length = column_length(size);
+    Random random(n + 100 + size);
+    const auto columns = random_columns(random, size, n + 5);
     const std::vector<double> inputs = {0.5, -2, 0, 3, 1};
-    std::vector<double> x;
-    for (Index i = 0; i < n; ++i) x.push_back(random.uniform(-1, 1));
-    std::vector<double> sums(n, 0.0);
-    for (Index i = 0; i < n; ++i) {
-        for (Index k = 0; k < n; ++k) sums[i] += columns[k * length + i] * x[k];
+    std::vector<double> z, sums(size, 0.0);
+    for (Index i = 0; i < size; ++i) z.push_back(random.uniform(-1, 1));
+    for (Index i = 0; i < size; ++i) {
+        for (Index k = 0; k < n; ++k) sums[i] += columns[k * length + i] * z[k];
         for (Index k = 0; k < inputs.size(); ++k) sums[i] += columns[(n + k) * length + i] * inputs[k];
     }
     std::vector<std::vector<double>> mapped;
     for (const auto registers : all_registers()) {
-        // What lies beside x stays as it is.
-        std::vector<double> room(n + 8, 7.0);
-        std::copy(x.begin(), x.end(), room.begin());
-        map_columns(columns.data(), {room.data(), n}, inputs, registers);
-        for (Index i = 0; i < n; ++i) EXPECT_NEAR(room[i], sums[i], kRounding) << i;
-        for (Index i = n; i < room.size(); ++i) EXPECT_EQ(room[i], 7.0) << i - n << " beyond x";
+        // What lies beside z stays as it is.
+        std::vector<double> room(size + 8, 7.0);
+        std::copy(z.begin(), z.end(), room.begin());
+        map_columns(columns.data(), n, {room.data(), size}, inputs, registers);
+        for (Index i = 0; i < size; ++i) EXPECT_NEAR(room[i], sums[i], kRounding) << i;
+        for (Index i = size; i < room.size(); ++i) EXPECT_EQ(room[i], 7.0) << i - size << " beyond z";
         mapped.push_back(room);
     }
     EXPECT_EQ(mapped.front(), mapped.back()) << "the registers give different digits";
 }
+
+TEST_P(OfLength, AMapAddsWhatComesIn) { expect_map(GetParam(), GetParam()); }
+
+TEST_P(OfLength, AMapMayGiveMoreThanItsOwnNumbers) { expect_map(GetParam(), GetParam() + 4); }
 
 TEST_P(OfLength, AnAdditionTellsWhetherItCounted) {
     const Index n = GetParam();

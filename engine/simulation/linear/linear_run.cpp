@@ -1,0 +1,53 @@
+#include "engine/simulation/linear/linear_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace tunewright {
+namespace {
+
+using Index = std::size_t;
+
+constexpr int kLeastLevelOfL = 3, kMostLevelOfL = 30;  // of steps a dead time, as a power of 2
+constexpr double kOfGrowth = 0.25;                     // of an unstable mode's time: the longest step
+
+double longest_step(const LinearPlant& plant) {
+    double longest = std::numeric_limits<double>::infinity();
+    for (const auto pole : plant.poles())
+        if (pole.real() > 0) longest = std::min(longest, kOfGrowth / pole.real());
+    return longest;
+}
+
+void choose_h0(RunSetup& setup, const LinearPlant& plant, const ParallelPid& controller) {
+    const ResponseSystem& system = setup.system;
+    double fastest = fastest_rate(system, plant, controller);
+    if (!system.delayed) {
+        // The rates of the single states count beside the loop's own.
+        for (int i = 0; i < system.s.n; ++i)
+            fastest = std::max(fastest, std::abs(system.s.F[Index(i * system.s.n + i)]));
+        setup.h0 = first_step(system, std::max(fastest, std::numeric_limits<double>::min()));
+        return;
+    }
+    const double doublings = std::log2(system.s.L / first_step(system, fastest));
+    setup.level_of_L = std::clamp(static_cast<int>(std::ceil(doublings)), kLeastLevelOfL, kMostLevelOfL);
+    setup.h0 = std::ldexp(system.s.L, -setup.level_of_L);
+}
+
+}  // namespace
+
+RunSetup set_up_run(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& in,
+                    const StepSchedule* repeat) {
+    RunSetup setup{.system = make_response_system(plant, controller, in),
+                   .steady = steady_outputs(plant, controller, in),
+                   .longest = longest_step(plant)};
+    if (repeat == nullptr) {
+        choose_h0(setup, plant, controller);
+        return setup;
+    }
+    setup.h0 = repeat->h0;
+    if (setup.system.delayed) setup.level_of_L = static_cast<int>(std::lround(std::log2(setup.system.s.L / setup.h0)));
+    return setup;
+}
+
+}  // namespace tunewright

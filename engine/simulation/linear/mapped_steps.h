@@ -1,0 +1,71 @@
+// The steps of a run whose controller is linear: each is one map of the states (step_map.h).
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "engine/simulation/linear/delayed_signal.h"
+#include "engine/simulation/linear/long_step.h"
+#include "engine/simulation/linear/step_levels.h"
+#include "engine/simulation/linear/step_map.h"
+
+namespace tunewright {
+
+/// The maps of steps of length h0 2^level, each made when it is asked for.
+class StepMaps {
+public:
+    /// With a dead time, it is h0 2^level_of_L. `system` must outlive this.
+    StepMaps(const ResponseSystem& system, double h0, int level_of_L);
+
+    /// Up to the dead time; any, where there is none.
+    const StepMap& level(int level);
+    /// Longer than the dead time.
+    const LongStep& long_step(int level);
+    const StepMap& long_map(int level);
+    StepMap of_length(double h) const { return {*system_, propagator_.step(h)}; }
+
+private:
+    const ResponseSystem* system_;
+    int level_of_L_;
+    Propagator propagator_;
+    std::deque<StepMap> maps_;         // of levels 0, 1, ..., as far as they stand up to the dead time
+    std::deque<LongStep> long_steps_;  // of level_of_L + 1, ...
+    std::deque<StepMap> long_maps_;    // the same
+};
+
+class MappedSteps {
+public:
+    MappedSteps(const ResponseSystem& system, double h0, int level_of_L, std::vector<ResponseNode>& nodes);
+
+    /// The first node.
+    void begin();
+    /// A step of this level from t on, and the node at its end. True: such a step can always be taken.
+    bool take(int level, double t, double largest_y);
+    /// Steps of other lengths, up to a horizon.
+    void prepare_last(double h) { last_ = maps_.of_length(h); }
+    void take_last(double t, double end, double largest_y);
+    /// The delayed signal may jump at t, and with it u.
+    void add_jump(double t);
+
+    double error_integral() const { return nodes_.back().error_integral; }
+    bool escaped() const { return false; }
+    Misfit fit(double) const { return {}; }
+    std::optional<double> final_integral(std::optional<double> exact) const { return exact; }
+
+private:
+    void take_short(const StepMap& map, double t, double end);
+    void take_long(int level, double t);
+
+    const ResponseSystem& system_;
+    std::vector<ResponseNode>& nodes_;
+    int level_of_L_;
+    DelayedSignal delayed_;
+    StepMaps maps_;
+    RunState state_;
+    LongStep::Start start_;
+    std::vector<double> x_;
+    std::optional<StepMap> last_;
+};
+
+}  // namespace tunewright

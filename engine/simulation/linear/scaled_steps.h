@@ -1,0 +1,67 @@
+// The steps of a run with the nonlinear PID, whose integral sees phi(e): what that adds to e comes in as one more cubic
+// (linear_response.h).
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "engine/simulation/linear/delayed_signal.h"
+#include "engine/simulation/linear/long_step.h"
+#include "engine/simulation/linear/step_levels.h"
+
+namespace tunewright {
+
+class ScaledSteps {
+public:
+    /// `system` has an integral's state. `beyond`: |y| of a response that grows without bound.
+    ScaledSteps(const ResponseSystem& system, const ErrorScaling& scaling, double beyond, double h0, int level_of_L,
+                std::vector<ResponseNode>& nodes);
+
+    /// The first node.
+    void begin();
+    /// A step of this level from t on, and the node at its end. False: the step is too long for the scaled integral,
+    /// and nothing has happened. `largest_y`: so far, from rest.
+    bool take(int level, double t, double largest_y);
+    /// Steps of other lengths, up to a horizon.
+    void prepare_last(double h) { last_ = propagator_.step(h); }
+    void take_last(double t, double end, double largest_y);
+    /// The delayed signal may jump at t, and with it u.
+    void add_jump(double t);
+
+    /// What the integral has seen: near the end that is the error as it is.
+    double error_integral() const { return x_[integral_]; }
+    bool escaped() const { return !(std::abs(nodes_.back().y) <= beyond_); }
+    /// Of the last two steps' cubic of phi(e) - e, against the local error of control, at least `floor`.
+    Misfit fit(double floor) const;
+    /// The integral so far plus what the integral's state has yet to change.
+    std::optional<double> final_integral(std::optional<double> exact) const;
+
+private:
+    std::vector<double> input() const;
+    void add(const ResponseNode& node);
+    void scale(ResponseNode& node);
+    void take_short(const ExactStep& step, double t, double end);
+    bool take_long(const LongStep& step, double t, double largest_y);
+    bool take_closed(const ExactStep& step, double end, bool shortest, double largest_y);
+    template <class TryEnd>
+    bool settle(double h, bool shortest, double largest_y, const TryEnd& try_end);
+    const LongStep& long_step(int level);
+
+    const ResponseSystem& system_;
+    ErrorScaling scaling_;
+    std::vector<ResponseNode>& nodes_;
+    int level_of_L_;
+    std::size_t integral_;  // its state
+    double into_u_, into_y_, beyond_;
+    DelayedSignal delayed_;
+    Propagator propagator_;
+    std::deque<LongStep> long_steps_;  // of level_of_L + 1, ...
+    LongStep::Start start_;
+    std::vector<double> x_, end_x_;
+    Signal excess_;                 // phi(e) - e at the last node
+    std::vector<Signal> excesses_;  // of each node
+    std::optional<ExactStep> last_;
+};
+
+}  // namespace tunewright

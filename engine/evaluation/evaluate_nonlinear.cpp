@@ -11,7 +11,7 @@
 #include "engine/loop/loop.h"
 #include "engine/loop/stability.h"
 #include "engine/number_text.h"
-#include "engine/simulation/linear/response_system.h"
+#include "engine/simulation/linear/run_setup.h"
 #include "engine/simulation/nonlinear/nonlinear_loop.h"
 #include "engine/simulation/nonlinear/nonlinear_response.h"
 

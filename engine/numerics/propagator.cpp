@@ -89,6 +89,11 @@ std::vector<double> in_columns(const std::vector<double>& F, Index n) {
 Propagator::Propagator(int n, const std::vector<double>& F, std::vector<double> G, std::vector<double> b, double h0)
     : n_(n), F_(in_columns(F, Index(n))), G_(std::move(G)), b_(std::move(b)), h0_(h0), norm_(balanced_norm(F, n)) {}
 
+bool Propagator::is_of(const std::vector<double>& F, const std::vector<double>& G, const std::vector<double>& b,
+                       double h0) const {
+    return h0 == h0_ && G == G_ && b == b_ && in_columns(F, Index(n_)) == F_;
+}
+
 ExactStep Propagator::step(double h) const {
     // Taylor series on a step short enough for it (norm <= 1/2 in the states' own units), then doubling up to h.
     const int halvings = std::max(

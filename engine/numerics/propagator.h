@@ -48,6 +48,10 @@ public:
     /// A step of length first.h + second.h.
     ExactStep compose(const ExactStep& first, const ExactStep& second) const;
 
+    /// Whether it was made of these.
+    bool is_of(const std::vector<double>& F, const std::vector<double>& G, const std::vector<double>& b,
+               double h0) const;
+
     int states() const { return n_; }
     double h0() const { return h0_; }
 

@@ -6,7 +6,7 @@
 #include "engine/numerics/sign_change.h"
 #include "engine/plant/linear/linear_plant.h"
 #include "engine/simulation/experiment/nonlinear_experiments.h"
-#include "engine/simulation/linear/response_system.h"
+#include "engine/simulation/linear/run_setup.h"
 #include "engine/simulation/nonlinear/plant_run.h"
 #include "engine/simulation/relay/relay_cycle.h"
 #include "engine/simulation/relay/relay_refusal.h"

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "engine/numerics/matrix/linear_algebra.h"
-#include "engine/simulation/linear/response_system.h"
+#include "engine/simulation/linear/run_setup.h"
 
 namespace tunewright {
 namespace {

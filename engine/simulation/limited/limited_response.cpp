@@ -9,6 +9,7 @@
 #include "engine/simulation/limited/limited_loop.h"
 #include "engine/simulation/linear/long_step.h"
 #include "engine/simulation/linear/response_end.h"
+#include "engine/simulation/linear/run_setup.h"
 #include "engine/simulation/run/delayed_input.h"
 #include "engine/simulation/run/stopping_rule.h"
 

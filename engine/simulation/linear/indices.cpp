@@ -77,6 +77,10 @@ UnitCubic cubic_of_y(const ResponseNode& a, const ResponseNode& b) {
     return UnitCubic::through(b.t - a.t, a.y, a.y_slope, b.y, b.y_slope);
 }
 
+UnitCubic cubic_of_error(const ResponseNode& a, const ResponseNode& b, double target) {
+    return UnitCubic::through(b.t - a.t, target - a.y, -a.y_slope, target - b.y, -b.y_slope);
+}
+
 /// Calls piece(s_from, s_to) for the parts of [0, 1] on which the cubic keeps its sign.
 template <class Piece>
 void signed_pieces(const UnitCubic& e, Piece&& piece) {
@@ -114,26 +118,44 @@ bool stays_within(const ResponseNode& a, const ResponseNode& b, double target, d
 
 }  // namespace
 
-double integral_of_absolute_error(const std::vector<ResponseNode>& nodes, double target,
-                                  std::optional<double> error_integral_final) {
-    double sum = 0, last = 0;  // `last`: the error's integral at the last change of sign
+std::vector<SignChange> changes_of_sign(const std::vector<ResponseNode>& nodes, double target) {
+    std::vector<SignChange> changes;
     for (Index i = 1; i < nodes.size(); ++i) {
         const ResponseNode &a = nodes[i - 1], &b = nodes[i];
         const double h = b.t - a.t;
-        if (h <= 0 && (target - a.y < 0) != (target - b.y < 0)) {  // a jump across the target
-            sum += std::abs(a.error_integral - last);
-            last = a.error_integral;
+        if (h <= 0) {
+            if ((target - a.y < 0) != (target - b.y < 0)) changes.push_back({i, 0});
+        } else if (may_change_sign(a, b, target, h)) {
+            signed_pieces(cubic_of_error(a, b, target), [&](double, double to) {
+                if (to < 1) changes.push_back({i, to});
+            });
         }
-        if (h <= 0 || !may_change_sign(a, b, target, h)) continue;
-        const UnitCubic e = UnitCubic::through(h, target - a.y, -a.y_slope, target - b.y, -b.y_slope);
-        signed_pieces(e, [&](double, double to) {
-            if (to >= 1) return;
-            // From the nearer end, so that the interpolation's error stays smallest.
-            const double here = to < 0.5 ? a.error_integral + h * e.integral(to)
-                                         : b.error_integral - h * (e.integral(1) - e.integral(to));
-            sum += std::abs(here - last);
-            last = here;
-        });
+    }
+    return changes;
+}
+
+double change_near(const ResponseNode& a, const ResponseNode& b, double target, double part) {
+    constexpr double kFarthest = 0.01;
+    const UnitCubic e = cubic_of_error(a, b, target);
+    const double step = e.at(part) / e.slope(part);
+    return std::abs(step) <= kFarthest ? std::clamp(part - step, 0.0, 1.0) : part;
+}
+
+double error_integral_at(const ResponseNode& a, const ResponseNode& b, double target, double part) {
+    const UnitCubic e = cubic_of_error(a, b, target);
+    const double h = b.t - a.t;
+    // From the nearer end, so that the interpolation's error stays smallest.
+    return part < 0.5 ? a.error_integral + h * e.integral(part)
+                      : b.error_integral - h * (e.integral(1) - e.integral(part));
+}
+
+double integral_of_absolute_error(const std::vector<ResponseNode>& nodes, double target,
+                                  std::optional<double> error_integral_final) {
+    double sum = 0, last = 0;  // `last`: the error's integral at the last change of sign
+    for (const auto& change : changes_of_sign(nodes, target)) {
+        const double here = error_integral_at(nodes[change.node - 1], nodes[change.node], target, change.part);
+        sum += std::abs(here - last);
+        last = here;
     }
     return sum + std::abs(error_integral_final.value_or(nodes.back().error_integral) - last);
 }
@@ -146,7 +168,7 @@ ErrorIntegrals error_integrals(const std::vector<ResponseNode>& nodes, double ta
         const ResponseNode &a = nodes[i - 1], &b = nodes[i];
         const double h = b.t - a.t;
         if (h <= 0) continue;
-        const UnitCubic e = UnitCubic::through(h, target - a.y, -a.y_slope, target - b.y, -b.y_slope);
+        const UnitCubic e = cubic_of_error(a, b, target);
         result.ISE += h * e.square();
         // The integral of t e from the step's start on, t = a.t + s h.
         const auto first_moment = [&](double s) { return h * (a.t * e.integral(s) + h * e.moment(s)); };

@@ -2,6 +2,7 @@
 // exact integral of error.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -18,6 +19,20 @@ struct ErrorIntegrals {
 /// `error_integral_final` closes the IAE's tail, in which e keeps its sign; absent: the integrals end with the nodes.
 ErrorIntegrals error_integrals(const std::vector<ResponseNode>& nodes, double target,
                                std::optional<double> error_integral_final);
+
+/// Where the error changes its sign: in the step that ends with this node, after this part of it, 0 to 1.
+struct SignChange {
+    std::size_t node;
+    double part;
+};
+std::vector<SignChange> changes_of_sign(const std::vector<ResponseNode>& nodes, double target);
+
+/// The error's integral from 0 to a part of the step from a to b.
+double error_integral_at(const ResponseNode& a, const ResponseNode& b, double target, double part);
+
+/// The part of a step after which the error changes its sign, where that of a similar response does after `part`: by
+/// one Newton step, at most a hundredth of the step.
+double change_near(const ResponseNode& a, const ResponseNode& b, double target, double part);
 
 /// The same IAE alone, as searches need it thousands of times.
 double integral_of_absolute_error(const std::vector<ResponseNode>& nodes, double target,

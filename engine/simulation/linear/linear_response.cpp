@@ -18,18 +18,22 @@ double beyond_bounds(const LinearPlant& plant, const RunSetup& setup, double del
                                 std::abs(in.d) * std::abs(plant.rational({0, 1 / time}))});
 }
 
+StepResponse run_mapped(const RunSetup& setup, const ResponseOptions& options) {
+    const auto known = options.repeat != nullptr ? options.repeat->propagator : nullptr;
+    return LinearRun<MappedSteps>(setup, options, known).run();
+}
+
 }  // namespace
 
 StepResponse simulate_linear(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& inputs,
                              const ResponseOptions& options) {
-    const RunSetup setup = set_up_run(plant, controller, inputs, options.repeat);
-    return LinearRun<MappedSteps>(setup, options).run();
+    return run_mapped(set_up_run(plant, controller, inputs, options.repeat), options);
 }
 
 StepResponse simulate_npid(const LinearPlant& plant, const ParallelPid& linear_part, double delta_r,
                            const StepInputs& inputs, const ResponseOptions& options) {
     const RunSetup setup = set_up_run(plant, linear_part, inputs, options.repeat);
-    if (setup.system.s.integral_state < 0) return LinearRun<MappedSteps>(setup, options).run();
+    if (setup.system.s.integral_state < 0) return run_mapped(setup, options);
     return LinearRun<ScaledSteps>(setup, options, ErrorScaling{delta_r}, beyond_bounds(plant, setup, delta_r)).run();
 }
 

@@ -16,11 +16,16 @@
 // Units: t in the plant's time; y, r in units of y; u, d in units of u; all deviations from the operating point.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "engine/controller/pid.h"
 #include "engine/plant/linear/linear_plant.h"
+
+namespace tunewright {
+class Propagator;
+}
 
 namespace tunewright {
 
@@ -42,6 +47,8 @@ struct StepSchedule {
     double h0 = 0;                   ///< > 0
     std::vector<signed char> level;  ///< of each step: its length is h0 2^level, 0 <= level <= 60
     int to_horizon = 0;              ///< after these, as many equal steps up to the horizon
+    std::shared_ptr<Propagator> propagator =
+        {};  ///< of the run: who repeats it may find its steps there. One thread's own
 };
 
 struct ResponseOptions {

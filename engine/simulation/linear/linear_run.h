@@ -7,25 +7,11 @@
 #include <utility>
 
 #include "engine/simulation/linear/delayed_signal.h"
-#include "engine/simulation/linear/response_end.h"
-#include "engine/simulation/linear/response_system.h"
+#include "engine/simulation/linear/run_setup.h"
 #include "engine/simulation/linear/step_levels.h"
 #include "engine/simulation/run/stopping_rule.h"
 
 namespace tunewright {
-
-/// What a run is made of before its first step.
-struct RunSetup {
-    ResponseSystem system;
-    SteadyState steady;
-    double h0 = 0;       ///< the shortest step
-    int level_of_L = 0;  ///< with a dead time: it is h0 2^level_of_L
-    double longest;      ///< step, with a dead time: an unstable plant's own modes amplify what a step gets wrong
-};
-
-/// `repeat`: the steps of an earlier run, or null.
-RunSetup set_up_run(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& in,
-                    const StepSchedule* repeat);
 
 template <class Steps>
 class LinearRun {
@@ -35,7 +21,7 @@ public:
     LinearRun(const RunSetup& setup, const ResponseOptions& options, const Own&... own)
         : setup_(setup),
           options_(options),
-          steps_(setup.system, own..., setup.h0, setup.level_of_L, response_.nodes),
+          steps_(setup, own..., response_.nodes),
           levels_({.delayed = setup.system.delayed,
                    .h0 = setup.h0,
                    .level_of_L = setup.level_of_L,
@@ -48,6 +34,7 @@ public:
         response_.y_final = setup.steady.y;
         response_.u_final = setup.steady.u;
         response_.schedule.h0 = setup.h0;
+        response_.schedule.propagator = steps_.propagator();
     }
 
     StepResponse run() {

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <deque>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "engine/simulation/linear/delayed_signal.h"
 #include "engine/simulation/linear/long_step.h"
+#include "engine/simulation/linear/run_setup.h"
 #include "engine/simulation/linear/step_levels.h"
 #include "engine/simulation/linear/step_map.h"
 
@@ -15,20 +17,21 @@ namespace tunewright {
 /// The maps of steps of length h0 2^level, each made when it is asked for.
 class StepMaps {
 public:
-    /// With a dead time, it is h0 2^level_of_L. `system` must outlive this.
-    StepMaps(const ResponseSystem& system, double h0, int level_of_L);
+    /// `setup` must outlive this. `known`: of another run, whose states may move as this one's do; or null.
+    StepMaps(const RunSetup& setup, const std::shared_ptr<Propagator>& known);
 
-    /// Up to the dead time; any, where there is none.
     const StepMap& level(int level);
     /// Longer than the dead time.
     const LongStep& long_step(int level);
-    const StepMap& long_map(int level);
-    StepMap of_length(double h) const { return {*system_, propagator_.step(h)}; }
+    const std::shared_ptr<Propagator>& propagator() const { return propagator_; }
+    StepMap of_length(double h) const { return {*system_, propagator_->step(h)}; }
 
 private:
+    const StepMap& long_map(int level);
+
     const ResponseSystem* system_;
     int level_of_L_;
-    Propagator propagator_;
+    std::shared_ptr<Propagator> propagator_;
     std::deque<StepMap> maps_;         // of levels 0, 1, ..., as far as they stand up to the dead time
     std::deque<LongStep> long_steps_;  // of level_of_L + 1, ...
     std::deque<StepMap> long_maps_;    // the same
@@ -36,7 +39,8 @@ private:
 
 class MappedSteps {
 public:
-    MappedSteps(const ResponseSystem& system, double h0, int level_of_L, std::vector<ResponseNode>& nodes);
+    /// `setup` and `nodes` must outlive this.
+    MappedSteps(const RunSetup& setup, const std::shared_ptr<Propagator>& known, std::vector<ResponseNode>& nodes);
 
     /// The first node.
     void begin();
@@ -49,17 +53,18 @@ public:
     void add_jump(double t);
 
     double error_integral() const { return nodes_.back().error_integral; }
+    std::shared_ptr<Propagator> propagator() const { return maps_.propagator(); }
     bool escaped() const { return false; }
     Misfit fit(double) const { return {}; }
     std::optional<double> final_integral(std::optional<double> exact) const { return exact; }
 
 private:
-    void take_short(const StepMap& map, double t, double end);
-    void take_long(int level, double t);
+    void take_mapped(const StepMap& map, double t, double end, bool longer);
+    void take_unmapped(const LongStep& step, double t);
 
+    const RunSetup& setup_;
     const ResponseSystem& system_;
     std::vector<ResponseNode>& nodes_;
-    int level_of_L_;
     DelayedSignal delayed_;
     StepMaps maps_;
     RunState state_;

@@ -1,21 +1,8 @@
 #include "engine/simulation/linear/response_system.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
-#include "engine/numerics/matrix/eigenvalues.h"
-#include "engine/numerics/matrix/linear_algebra.h"
-
 namespace tunewright {
-namespace {
 
 using Index = std::size_t;
-
-constexpr double kOfFastest = 0.25;    // of the fastest mode's time: the cubic through a step's ends follows it
-constexpr double kOfDeadTime = 0.125;  // a power of 2, as the lengths of the steps double
-
-}  // namespace
 
 ResponseSystem make_response_system(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& in) {
     ResponseSystem system;
@@ -57,26 +44,6 @@ ResponseSystem make_response_system(const LinearPlant& plant, const ParallelPid&
         system.b[Index(n)] = s.Z * in.d + s.Y_r * in.r - in.r;
     }
     return system;
-}
-
-double fastest_rate(const ResponseSystem& system, const LinearPlant& plant, const ParallelPid& controller) {
-    double fastest = 0;
-    for (const auto pole : plant.poles()) fastest = std::max(fastest, std::abs(pole));
-    if (controller.setpoint_lag > 0) fastest = std::max(fastest, 1 / controller.setpoint_lag);
-    if (controller.filter.type != FilterType::none) fastest = std::max(fastest, 1 / controller.filter.Tf);
-    if (!system.delayed)
-        for (const auto pole : eigenvalues(system.s.F, system.s.n)) fastest = std::max(fastest, std::abs(pole));
-    return fastest;
-}
-
-double first_step(const ResponseSystem& system, double fastest) {
-    const double by_rate = fastest > 0 ? kOfFastest / fastest : std::numeric_limits<double>::infinity();
-    return system.delayed ? std::min(kOfDeadTime * system.s.L, by_rate) : by_rate;
-}
-
-double own_time(const LinearPlant& plant) {
-    const double time = plant.time_scale();
-    return time > 0 ? time : 1;
 }
 
 ResponseNode node_at(const ResponseSystem& system, double t, std::span<const double> x, Signal v) {

@@ -1,5 +1,4 @@
-// The equations that a response is stepped with (the delay system, the integral of y - r and the constant inputs), and
-// the times that its steps are measured by.
+// The equations that a response is stepped with (the delay system, the integral of y - r and the constant inputs).
 #pragma once
 
 #include <array>
@@ -27,18 +26,6 @@ struct ResponseSystem {
 
 /// Without a dead time the loop is closed: v is the load alone.
 ResponseSystem make_response_system(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& in);
-
-/// The largest |p| of the plant's poles, of the measurement or derivative filter and, without a dead time, of the
-/// closed loop; 1/time. 0: nothing moves by itself.
-double fastest_rate(const ResponseSystem& system, const LinearPlant& plant, const ParallelPid& controller);
-
-/// The step that a run starts with: a quarter of the time 1/`fastest`, with a dead time at most an eighth of it;
-/// infinite where neither limits it.
-double first_step(const ResponseSystem& system, double fastest);
-
-/// The plant's own time: its dead time plus 1/|p| of its poles except those at 0 (LinearPlant::time_scale), in the
-/// plant's unit. 1 where it has neither, so that it can be divided by.
-double own_time(const LinearPlant& plant);
 
 /// What y, y', u and u' get from the delayed signal v and, `constant` times, from what is constant; the rest is from
 /// the states.

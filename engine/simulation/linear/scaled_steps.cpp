@@ -13,19 +13,19 @@ constexpr double kConverged = 1e-10;  // of the response's size
 
 }  // namespace
 
-ScaledSteps::ScaledSteps(const ResponseSystem& system, const ErrorScaling& scaling, double beyond, double h0,
-                         int level_of_L, std::vector<ResponseNode>& nodes)
-    : system_(system),
+ScaledSteps::ScaledSteps(const RunSetup& setup, const ErrorScaling& scaling, double beyond,
+                         std::vector<ResponseNode>& nodes)
+    : system_(setup.system),
       scaling_(scaling),
       nodes_(nodes),
-      level_of_L_(level_of_L),
-      integral_(Index(system.s.integral_state)),
-      into_u_(system.s.M[integral_]),
-      into_y_(system.s.Y[integral_]),
+      level_of_L_(setup.level_of_L),
+      integral_(Index(system_.s.integral_state)),
+      into_u_(system_.s.M[integral_]),
+      into_y_(system_.s.Y[integral_]),
       beyond_(beyond),
-      delayed_(nodes, system.in.d, system.s.L, h0),
-      propagator_(system.n, system.F, input(), system.b, h0),
-      x_(Index(system.n), 0.0) {}
+      delayed_(nodes, system_.in.d, system_.s.L, setup.h0),
+      propagator_(system_.n, system_.F, input(), system_.b, setup.h0),
+      x_(Index(system_.n), 0.0) {}
 
 /// What comes into the steps as a cubic: the delayed signal or, without dead time, what scaling adds to the integral's
 /// input.

@@ -8,15 +8,16 @@
 
 #include "engine/simulation/linear/delayed_signal.h"
 #include "engine/simulation/linear/long_step.h"
+#include "engine/simulation/linear/run_setup.h"
 #include "engine/simulation/linear/step_levels.h"
 
 namespace tunewright {
 
 class ScaledSteps {
 public:
-    /// `system` has an integral's state. `beyond`: |y| of a response that grows without bound.
-    ScaledSteps(const ResponseSystem& system, const ErrorScaling& scaling, double beyond, double h0, int level_of_L,
-                std::vector<ResponseNode>& nodes);
+    /// `setup` and `nodes` must outlive this; the system has an integral's state. `beyond`: |y| of a response that
+    /// grows without bound.
+    ScaledSteps(const RunSetup& setup, const ErrorScaling& scaling, double beyond, std::vector<ResponseNode>& nodes);
 
     /// The first node.
     void begin();
@@ -31,6 +32,7 @@ public:
 
     /// What the integral has seen: near the end that is the error as it is.
     double error_integral() const { return x_[integral_]; }
+    std::shared_ptr<Propagator> propagator() const { return nullptr; }
     bool escaped() const { return !(std::abs(nodes_.back().y) <= beyond_); }
     /// Of the last two steps' cubic of phi(e) - e, against the local error of control, at least `floor`.
     Misfit fit(double floor) const;

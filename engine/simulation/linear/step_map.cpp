@@ -44,6 +44,7 @@ void StepMap::add_outputs(const ResponseSystem& system, std::span<const Signal> 
                       .to = columns_.data() + n_,
                       .to_apart = length_});
     for (Index k = 0; k < v.size(); ++k) {
+        if (k != n_ && v[k].value == 0 && v[k].slope == 0) continue;
         const auto fed_through = outputs_of(system, v[k], k == n_ ? 1 : 0);
         for (Index i = 0; i < 4; ++i) column(k)[n_ + i] += fed_through[i];
     }

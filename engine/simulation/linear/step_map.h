@@ -48,6 +48,7 @@ public:
 
     /// The states at the end by state or, from n on, input k.
     double* column(std::size_t k) { return columns_.data() + k * length_; }
+    const double* column(std::size_t k) const { return columns_.data() + k * length_; }
     /// What the columns leave of y, y', u and u'; `v`: the delayed signal at the end, of each column.
     void add_outputs(const ResponseSystem& system, std::span<const Signal> v);
 

@@ -5,14 +5,17 @@
 
 namespace tunewright {
 
-InputHistory::Limits InputHistory::at_node(std::size_t i, double t, double slack) const {
-    if (t < -slack) return {};
-    const auto node = [this](std::size_t k) -> Signal { return {nodes_[k].u + d_, nodes_[k].u_slope}; };
-    if (i == nodes_.size()) return {node(i - 1), node(i - 1)};
-    // Several of equal times are the values before and after a jump.
+InputHistory::Place InputHistory::near_node(std::size_t i, double t, double slack) const {
+    if (t < -slack) return {.first = 0, .last = 0, .rest_before = true, .rest_after = true};
+    if (i == nodes_.size()) return {.first = i - 1, .last = i - 1};
     std::size_t last = i;
     while (last + 1 < nodes_.size() && nodes_[last + 1].t <= t + slack) ++last;
-    return {t <= slack ? Signal{} : node(i), node(last)};
+    return {.first = i, .last = last, .rest_before = t <= slack};
+}
+
+InputHistory::Limits InputHistory::at_nodes(const Place& place) const {
+    const auto node = [this](std::size_t k) -> Signal { return {nodes_[k].u + d_, nodes_[k].u_slope}; };
+    return {place.rest_before ? Signal{} : node(place.first), place.rest_after ? Signal{} : node(place.last)};
 }
 
 int echoes_that_count(double q, double tolerance, int smoothing) {

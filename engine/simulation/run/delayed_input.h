@@ -24,32 +24,52 @@ public:
     /// `nodes`: of ascending t; must live as long as this. They may grow, and lose their last ones again.
     InputHistory(const std::vector<ResponseNode>& nodes, double d) : nodes_(nodes), d_(d) {}
 
+    /// Where a time lies: strictly between two neighbouring nodes, or at nodes of equal times, of which the first is
+    /// the value before a jump and the last the one after it.
+    struct Place {
+        std::size_t first, last;
+        bool between = false;
+        bool rest_before = false, rest_after = false;  ///< 0 takes the place of the node: nothing had begun
+    };
+    /// Nodes within `slack` of t count as being at t.
+    Place find(double t, double slack) {
+        const std::size_t i = first_from(t, slack);
+        if (is_node(i, t, slack)) return near_node(i, t, slack);
+        return {.first = i - 1, .last = i, .between = true};
+    }
+
     struct Limits {
         Signal before, after;
     };
-    /// From the left and from the right at t. Nodes within `slack` of t count as being at t.
-    Limits at(double t, double slack);
+    /// From the left and from the right at t.
+    Limits at(double t, double slack) {
+        const std::size_t i = first_from(t, slack);
+        if (is_node(i, t, slack)) return at_nodes(near_node(i, t, slack));
+        const ResponseNode &a = nodes_[i - 1], &b = nodes_[i];
+        const Cubic u = hermite_taylor(b.t - a.t, {a.u, a.u_slope}, {b.u, b.u_slope});
+        const Signal between{value_at(u, t - a.t) + d_, slope_at(u, t - a.t)};
+        return {between, between};
+    }
 
 private:
-    /// At the node i or, near it, at those of the same time; before the first one or after the last.
-    Limits at_node(std::size_t i, double t, double slack) const;
+    /// The first node at t or later; their number, if there is none.
+    std::size_t first_from(double t, double slack);
+    bool is_node(std::size_t i, double t, double slack) const {
+        return i == 0 || i == nodes_.size() || nodes_[i].t <= t + slack;
+    }
+    Place near_node(std::size_t i, double t, double slack) const;
+    Limits at_nodes(const Place& place) const;
 
     const std::vector<ResponseNode>& nodes_;
     double d_;
     std::size_t cursor_ = 0;  // the node that was found last: times are asked for in nearly ascending order
 };
 
-inline InputHistory::Limits InputHistory::at(double t, double slack) {
-    // The first node at t or later.
+inline std::size_t InputHistory::first_from(double t, double slack) {
     std::size_t i = std::min(cursor_, nodes_.size());
     while (i < nodes_.size() && nodes_[i].t < t - slack) ++i;
     while (i > 0 && nodes_[i - 1].t >= t - slack) --i;
-    cursor_ = i;
-    if (i == 0 || i == nodes_.size() || nodes_[i].t <= t + slack) return at_node(i, t, slack);
-    const ResponseNode &a = nodes_[i - 1], &b = nodes_[i];
-    const Cubic u = hermite_taylor(b.t - a.t, {a.u, a.u_slope}, {b.u, b.u_slope});
-    const Signal between{value_at(u, t - a.t) + d_, slope_at(u, t - a.t)};
-    return {between, between};
+    return cursor_ = i;
 }
 
 /// The number of passages through the loop after which a jump is no longer met with a step's end. Each passage smooths

@@ -1,8 +1,10 @@
 #include "engine/tuning/robust/cost.h"
 
 #include <limits>
+#include <span>
 
 #include "engine/simulation/linear/indices.h"
+#include "engine/simulation/linear/neighbouring_runs.h"
 
 namespace tunewright::robust {
 namespace {
@@ -16,8 +18,10 @@ constexpr std::array<double, 3> kOfIntegratedError = {-1, 1, 0};  // of ln(Ti/Kp
 struct CostRun {
     double IAE = std::numeric_limits<double>::infinity();
     bool keeps_sign = false;  // the error
-    StepSchedule schedule;
+    StepResponse response;
 };
+
+StepInputs inputs_of(bool setpoint) { return {setpoint ? 1.0 : 0.0, setpoint ? 0.0 : 1.0}; }
 
 CostRun run(const DesignProblem& problem, const DesignPoint& x, bool setpoint, double tolerance,
             const StepSchedule* repeat) {
@@ -26,13 +30,13 @@ CostRun run(const DesignProblem& problem, const DesignPoint& x, bool setpoint, d
     options.settled = kSettled;
     options.max_steps = kMaxSteps;
     options.repeat = repeat;
-    const StepInputs inputs{setpoint ? 1.0 : 0.0, setpoint ? 0.0 : 1.0};
-    StepResponse response = simulate_linear(*problem.plant, to_parallel(controller_at(problem, x)), inputs, options);
+    const StepInputs inputs = inputs_of(setpoint);
     CostRun result;
+    result.response = simulate_linear(*problem.plant, to_parallel(controller_at(problem, x)), inputs, options);
+    const StepResponse& response = result.response;
     if (!response.settles || !response.error_integral_final) return result;
     result.IAE = integral_of_absolute_error(response.nodes, inputs.r, response.error_integral_final);
     result.keeps_sign = result.IAE == std::abs(*response.error_integral_final);
-    result.schedule = std::move(response.schedule);
     return result;
 }
 
@@ -79,17 +83,26 @@ PricedDesign::PricedDesign(const DesignProblem& problem, const DesignPoint& x, d
 
 PricedDesign::Part PricedDesign::priced(bool setpoint) const {
     CostRun done = run(*problem_, x_, setpoint, tolerance_, nullptr);
-    return {std::log(done.IAE), done.keeps_sign, std::move(done.schedule)};
+    return {std::log(done.IAE), done.keeps_sign, std::move(done.response)};
 }
 
 std::array<double, 3> PricedDesign::gradient_of(const Part& part, bool setpoint) const {
     if (part.keeps_sign && !setpoint) return kOfIntegratedError;
+    const auto n = static_cast<std::size_t>(problem_->dimension());
+    std::array<DesignPoint, 3> moved;
+    std::array<ParallelPid, 3> controllers;
+    for (std::size_t i = 0; i < n; ++i) {
+        moved[i] = x_;
+        moved[i][i] += kDifference;
+        controllers[i] = to_parallel(controller_at(*problem_, moved[i]));
+    }
+    const auto together =
+        neighbouring_iaes(*problem_->plant, std::span(controllers).first(n), inputs_of(setpoint), part.response);
     std::array<double, 3> gradient{};
-    for (std::size_t i = 0; i < std::size_t(problem_->dimension()); ++i) {
-        DesignPoint moved = x_;
-        moved[i] += kDifference;
-        const CostRun other = run(*problem_, moved, setpoint, tolerance_, &part.schedule);
-        gradient[i] = (std::log(other.IAE) - part.log_iae) / kDifference;
+    for (std::size_t i = 0; i < n; ++i) {
+        const double IAE =
+            together ? (*together)[i] : run(*problem_, moved[i], setpoint, tolerance_, &part.response.schedule).IAE;
+        gradient[i] = (std::log(IAE) - part.log_iae) / kDifference;
     }
     return gradient;
 }

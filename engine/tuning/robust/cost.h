@@ -29,7 +29,7 @@ struct CostWithGradient {
     std::array<double, 3> gradient{};
 };
 
-/// A design whose cost is known, and the instants of the runs that said so.
+/// A design whose cost is known, and the runs that said so.
 class PricedDesign {
 public:
     PricedDesign(const DesignProblem& problem, const DesignPoint& x, double tolerance);
@@ -43,11 +43,11 @@ public:
     CostWithGradient with_gradient() const;
 
 private:
-    /// One response: ln of its IAE, and its instants.
+    /// One response, and ln of its IAE.
     struct Part {
         double log_iae = 0;
         bool keeps_sign = false;  // the error
-        StepSchedule schedule;
+        StepResponse response;
     };
     Part priced(bool setpoint) const;
     std::array<double, 3> gradient() const;  // the cost must be finite

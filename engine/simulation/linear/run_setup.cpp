@@ -1,8 +1,10 @@
-#include "engine/simulation/linear/linear_run.h"
+#include "engine/simulation/linear/run_setup.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "engine/numerics/matrix/eigenvalues.h"
 
 namespace tunewright {
 namespace {
@@ -11,6 +13,10 @@ using Index = std::size_t;
 
 constexpr int kLeastLevelOfL = 3, kMostLevelOfL = 30;  // of steps a dead time, as a power of 2
 constexpr double kOfGrowth = 0.25;                     // of an unstable mode's time: the longest step
+constexpr double kMostMapped = 1000;                   // of the plant's own time
+
+constexpr double kOfFastest = 0.25;    // of the fastest mode's time: the cubic through a step's ends follows it
+constexpr double kOfDeadTime = 0.125;  // a power of 2, as the lengths of the steps double
 
 double longest_step(const LinearPlant& plant) {
     double longest = std::numeric_limits<double>::infinity();
@@ -43,11 +49,33 @@ RunSetup set_up_run(const LinearPlant& plant, const ParallelPid& controller, con
                    .longest = longest_step(plant)};
     if (repeat == nullptr) {
         choose_h0(setup, plant, controller);
-        return setup;
+    } else {
+        setup.h0 = repeat->h0;
+        if (setup.system.delayed)
+            setup.level_of_L = static_cast<int>(std::lround(std::log2(setup.system.s.L / setup.h0)));
     }
-    setup.h0 = repeat->h0;
-    if (setup.system.delayed) setup.level_of_L = static_cast<int>(std::lround(std::log2(setup.system.s.L / setup.h0)));
+    setup.last_mapped = static_cast<int>(std::log2(kMostMapped * own_time(plant) / setup.h0));
     return setup;
+}
+
+double fastest_rate(const ResponseSystem& system, const LinearPlant& plant, const ParallelPid& controller) {
+    double fastest = 0;
+    for (const auto pole : plant.poles()) fastest = std::max(fastest, std::abs(pole));
+    if (controller.setpoint_lag > 0) fastest = std::max(fastest, 1 / controller.setpoint_lag);
+    if (controller.filter.type != FilterType::none) fastest = std::max(fastest, 1 / controller.filter.Tf);
+    if (!system.delayed)
+        for (const auto pole : eigenvalues(system.s.F, system.s.n)) fastest = std::max(fastest, std::abs(pole));
+    return fastest;
+}
+
+double first_step(const ResponseSystem& system, double fastest) {
+    const double by_rate = fastest > 0 ? kOfFastest / fastest : std::numeric_limits<double>::infinity();
+    return system.delayed ? std::min(kOfDeadTime * system.s.L, by_rate) : by_rate;
+}
+
+double own_time(const LinearPlant& plant) {
+    const double time = plant.time_scale();
+    return time > 0 ? time : 1;
 }
 
 }  // namespace tunewright

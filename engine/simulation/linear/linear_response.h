@@ -57,7 +57,7 @@ struct ResponseOptions {
     std::optional<double> tail;     ///< and not before less than this fraction of the integral of t |e| is left
     std::optional<double> horizon;  ///< stops exactly here instead
     int max_steps = 60000;          ///< counts only where the run chooses its steps itself
-    const StepSchedule* repeat = nullptr;  ///< the steps to take; not owned
+    const StepSchedule* repeat = nullptr;  ///< the steps to take, while it has not settled; not owned
 };
 
 struct StepResponse {

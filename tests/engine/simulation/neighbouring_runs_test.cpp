@@ -110,6 +110,34 @@ INSTANTIATE_TEST_SUITE_P(Plants, NeighbouringRuns,
                          testing::Values(PlantKind{false, true}, PlantKind{true, true}, PlantKind{false, false},
                                          PlantKind{true, false}));
 
+TEST(NeighbouringRuns, EndWhereTheRunDid) {
+    // By its own rule the loop with a little more gain would end a wave sooner, and its IAE would lack that wave: the
+    // derivative by Kp came to -1.40 instead of -0.55.
+    const std::complex<double> mode(-0.28306572049552803, 0.63627834119853499);
+    const auto plant = LinearPlant::make(Zpk{.K = 15.347451304062645,
+                                             .zeros = {},
+                                             .poles = {-3.808328648913363, mode, std::conj(mode)},
+                                             .L = 0.92949073905550383});
+    IdealPid pid{.Kp = 0.0650919909118493, .Ti = 1.67993201458303, .Td = 1.83409706643009};
+    pid.filter = {FilterType::measurement_second_order, pid.Td / 10};
+    const StableLoop loop{*plant, pid, {0, 1}};
+    const StepResponse run = repeatable_run(loop, to_parallel(pid), nullptr);
+    const auto controllers = neighbours_of(pid);
+    const auto iaes = neighbouring_iaes(*plant, controllers, loop.in, run);
+    ASSERT_TRUE(iaes);
+    ResponseOptions exact;
+    exact.tolerance = 1e-8;
+    exact.settled = 1e-9;
+    const auto exact_iae = [&](const ParallelPid& c) {
+        return iae_of_run(loop, simulate_linear(*plant, c, loop.in, exact));
+    };
+    for (std::size_t i = 0; i < controllers.size(); ++i) {
+        const double derivative = ((*iaes)[i] / iae_of_run(loop, run) - 1) / kNeighbourMoved;
+        const double expected = (exact_iae(controllers[i]) / exact_iae(to_parallel(pid)) - 1) / kNeighbourMoved;
+        EXPECT_NEAR(derivative, expected, 1e-3) << i;
+    }
+}
+
 TEST(NeighbouringRuns, WhatTheyCannotRepeatIsLeftToRunsOfTheirOwn) {
     const auto plant = LinearPlant::make(Fopdt{.K = 1, .T = 2, .L = 1});
     const std::vector<ParallelPid> pi = {to_parallel(IdealPid{.Kp = 0.5, .Ti = 2})};

@@ -116,21 +116,27 @@ bool stays_within(const ResponseNode& a, const ResponseNode& b, double target, d
            std::abs(a.y + a.y_slope * h / 3 - target) <= band && std::abs(b.y - b.y_slope * h / 3 - target) <= band;
 }
 
-}  // namespace
-
-std::vector<SignChange> changes_of_sign(const std::vector<ResponseNode>& nodes, double target) {
-    std::vector<SignChange> changes;
+/// Calls act(SignChange) for each change of the error's sign: no list of them, as searches ask thousands of times.
+template <class Act>
+void for_each_change_of_sign(const std::vector<ResponseNode>& nodes, double target, const Act& act) {
     for (Index i = 1; i < nodes.size(); ++i) {
         const ResponseNode &a = nodes[i - 1], &b = nodes[i];
         const double h = b.t - a.t;
         if (h <= 0) {
-            if ((target - a.y < 0) != (target - b.y < 0)) changes.push_back({i, 0});
+            if ((target - a.y < 0) != (target - b.y < 0)) act(SignChange{i, 0});
         } else if (may_change_sign(a, b, target, h)) {
             signed_pieces(cubic_of_error(a, b, target), [&](double, double to) {
-                if (to < 1) changes.push_back({i, to});
+                if (to < 1) act(SignChange{i, to});
             });
         }
     }
+}
+
+}  // namespace
+
+std::vector<SignChange> changes_of_sign(const std::vector<ResponseNode>& nodes, double target) {
+    std::vector<SignChange> changes;
+    for_each_change_of_sign(nodes, target, [&](const SignChange& change) { changes.push_back(change); });
     return changes;
 }
 
@@ -152,11 +158,11 @@ double error_integral_at(const ResponseNode& a, const ResponseNode& b, double ta
 double integral_of_absolute_error(const std::vector<ResponseNode>& nodes, double target,
                                   std::optional<double> error_integral_final) {
     double sum = 0, last = 0;  // `last`: the error's integral at the last change of sign
-    for (const auto& change : changes_of_sign(nodes, target)) {
+    for_each_change_of_sign(nodes, target, [&](const SignChange& change) {
         const double here = error_integral_at(nodes[change.node - 1], nodes[change.node], target, change.part);
         sum += std::abs(here - last);
         last = here;
-    }
+    });
     return sum + std::abs(error_integral_final.value_or(nodes.back().error_integral) - last);
 }
 

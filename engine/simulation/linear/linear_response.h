@@ -24,10 +24,8 @@
 #include "engine/plant/linear/linear_plant.h"
 
 namespace tunewright {
-class Propagator;
-}
 
-namespace tunewright {
+class Propagator;
 
 /// One instant. Two nodes of equal t are the values before and after a jump.
 struct ResponseNode {
@@ -47,8 +45,8 @@ struct StepSchedule {
     double h0 = 0;                   ///< > 0
     std::vector<signed char> level;  ///< of each step: its length is h0 2^level, 0 <= level <= 60
     int to_horizon = 0;              ///< after these, as many equal steps up to the horizon
-    std::shared_ptr<Propagator> propagator =
-        {};  ///< of the run: who repeats it may find its steps there. One thread's own
+    /// Of the run: who repeats it may find its steps there. One thread's own.
+    std::shared_ptr<Propagator> propagator = {};
 };
 
 struct ResponseOptions {

@@ -169,4 +169,13 @@ void LongStep::invert() {
     Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(solution_.data()) = m.inverse();
 }
 
+const LongStep& LongSteps::level(int level, Propagator& propagator) {
+    if (steps_.empty()) {
+        const ExactStep& over_L = propagator.level(level_of_L_);
+        steps_.emplace_back(*system_, over_L, over_L);
+    }
+    while (static_cast<int>(steps_.size()) < level - level_of_L_) steps_.emplace_back(propagator, steps_.back());
+    return steps_[Index(level - level_of_L_ - 1)];
+}
+
 }  // namespace tunewright

@@ -11,6 +11,7 @@
 #pragma once
 
 #include <array>
+#include <deque>
 #include <vector>
 
 #include "engine/numerics/propagator.h"
@@ -74,6 +75,21 @@ private:
     double rest_G_ = 0, whole_G_ = 0, slope_G_ = 0, whole_b_ = 0, slope_b_ = 0;
     std::array<Effect, 3> effects_;     // of value, slope and curvature at the end, times 1, h and h^2
     std::array<double, 9> solution_{};  // (1 - effects on the output)^-1, row by row
+};
+
+/// Those of a run, by their level: of length h0 2^level, each made when it is asked for.
+class LongSteps {
+public:
+    /// The dead time is h0 2^level_of_L. `system` must live as long as this.
+    LongSteps(const ResponseSystem& system, int level_of_L) : system_(&system), level_of_L_(level_of_L) {}
+
+    /// `propagator`: the run's.
+    const LongStep& level(int level, Propagator& propagator);
+
+private:
+    const ResponseSystem* system_;
+    int level_of_L_;
+    std::deque<LongStep> steps_;  // of level_of_L + 1, ...
 };
 
 }  // namespace tunewright

@@ -7,7 +7,10 @@ namespace tunewright {
 using Index = std::size_t;
 
 StepMaps::StepMaps(const RunSetup& setup, const std::shared_ptr<Propagator>& known)
-    : system_(&setup.system), level_of_L_(setup.level_of_L), propagator_(known) {
+    : system_(&setup.system),
+      level_of_L_(setup.level_of_L),
+      propagator_(known),
+      long_steps_(setup.system, setup.level_of_L) {
     const ResponseSystem& s = setup.system;
     if (known == nullptr || !known->is_of(s.F, s.G, s.b, setup.h0))
         propagator_ = std::make_shared<Propagator>(s.n, s.F, s.G, s.b, setup.h0);
@@ -18,16 +21,6 @@ const StepMap& StepMaps::level(int level) {
     while (static_cast<int>(maps_.size()) <= level)
         maps_.emplace_back(*system_, propagator_->level(static_cast<int>(maps_.size())));
     return maps_[Index(level)];
-}
-
-const LongStep& StepMaps::long_step(int level) {
-    if (long_steps_.empty()) {
-        const ExactStep& over_L = propagator_->level(level_of_L_);
-        long_steps_.emplace_back(*system_, over_L, over_L);
-    }
-    while (static_cast<int>(long_steps_.size()) < level - level_of_L_)
-        long_steps_.emplace_back(*propagator_, long_steps_.back());
-    return long_steps_[Index(level - level_of_L_ - 1)];
 }
 
 const StepMap& StepMaps::long_map(int level) {

@@ -22,7 +22,7 @@ public:
 
     const StepMap& level(int level);
     /// Longer than the dead time.
-    const LongStep& long_step(int level);
+    const LongStep& long_step(int level) { return long_steps_.level(level, *propagator_); }
     const std::shared_ptr<Propagator>& propagator() const { return propagator_; }
     StepMap of_length(double h) const { return {*system_, propagator_->step(h)}; }
 
@@ -32,9 +32,9 @@ private:
     const ResponseSystem* system_;
     int level_of_L_;
     std::shared_ptr<Propagator> propagator_;
-    std::deque<StepMap> maps_;         // of levels 0, 1, ..., as far as they stand up to the dead time
-    std::deque<LongStep> long_steps_;  // of level_of_L + 1, ...
-    std::deque<StepMap> long_maps_;    // the same
+    std::deque<StepMap> maps_;  // of levels 0, 1, ..., as far as they stand up to the dead time
+    LongSteps long_steps_;
+    std::deque<StepMap> long_maps_;  // of level_of_L + 1, ...
 };
 
 class MappedSteps {

@@ -25,6 +25,7 @@ ScaledSteps::ScaledSteps(const RunSetup& setup, const ErrorScaling& scaling, dou
       beyond_(beyond),
       delayed_(nodes, system_.in.d, system_.s.L, setup.h0),
       propagator_(system_.n, system_.F, input(), system_.b, setup.h0),
+      long_steps_(system_, setup.level_of_L),
       x_(Index(system_.n), 0.0) {}
 
 /// What comes into the steps as a cubic: the delayed signal or, without dead time, what scaling adds to the integral's
@@ -53,7 +54,7 @@ void ScaledSteps::scale(ResponseNode& node) {
 }
 
 bool ScaledSteps::take(int level, double t, double largest_y) {
-    if (system_.delayed && level > level_of_L_) return take_long(long_step(level), t, largest_y);
+    if (system_.delayed && level > level_of_L_) return take_long(long_steps_.level(level, propagator_), t, largest_y);
     const ExactStep& step = propagator_.level(level);
     if (!system_.delayed) return take_closed(step, t + step.h, level == 0, largest_y);
     take_short(step, t, t + step.h);
@@ -141,16 +142,6 @@ Misfit ScaledSteps::fit(double floor) const {
 std::optional<double> ScaledSteps::final_integral(std::optional<double> exact) const {
     if (!exact) return exact;
     return nodes_.back().error_integral + (*exact - error_integral());
-}
-
-const LongStep& ScaledSteps::long_step(int level) {
-    if (long_steps_.empty()) {
-        const ExactStep& over_L = propagator_.level(level_of_L_);
-        long_steps_.emplace_back(system_, over_L, over_L);
-    }
-    while (static_cast<int>(long_steps_.size()) < level - level_of_L_)
-        long_steps_.emplace_back(propagator_, long_steps_.back());
-    return long_steps_[Index(level - level_of_L_ - 1)];
 }
 
 }  // namespace tunewright

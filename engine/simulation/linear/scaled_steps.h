@@ -2,7 +2,6 @@
 // (linear_response.h).
 #pragma once
 
-#include <deque>
 #include <optional>
 #include <vector>
 
@@ -48,7 +47,6 @@ private:
     bool take_closed(const ExactStep& step, double end, bool shortest, double largest_y);
     template <class TryEnd>
     bool settle(double h, bool shortest, double largest_y, const TryEnd& try_end);
-    const LongStep& long_step(int level);
 
     const ResponseSystem& system_;
     ErrorScaling scaling_;
@@ -58,7 +56,7 @@ private:
     double into_u_, into_y_, beyond_;
     DelayedSignal delayed_;
     Propagator propagator_;
-    std::deque<LongStep> long_steps_;  // of level_of_L + 1, ...
+    LongSteps long_steps_;
     LongStep::Start start_;
     std::vector<double> x_, end_x_;
     Signal excess_;                 // phi(e) - e at the last node

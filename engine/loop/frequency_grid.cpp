@@ -80,8 +80,10 @@ struct Candidate {
     double square;  // |S|^2: without roots
 };
 
-bool too_far(const Candidate& a, const Candidate& b, double step) {
-    return !(std::norm(a.point.S - b.point.S) <= step * step * std::max(1.0, std::min(a.square, b.square)));
+bool too_far(const Candidate& a, const Candidate& b, const Refinement& r) {
+    const double apart = std::norm(a.point.S - b.point.S);
+    if (apart <= r.step * r.step * std::max(1.0, std::min(a.square, b.square))) return false;
+    return r.enough_below == 0 || !(std::sqrt(std::max(a.square, b.square)) + std::sqrt(apart) < r.enough_below);
 }
 
 }  // namespace
@@ -129,14 +131,14 @@ LoopGrid make_loop_grid(const Loop& loop, double step, int density) {
 }
 
 LoopGrid refined_grid(const std::function<LoopPoint(double)>& at, const std::vector<double>& base, double resolved_to,
-                      double step) {
+                      const Refinement& refinement) {
     LoopGrid first{base, {}, resolved_to};
     first.point.reserve(base.size());
     for (const double omega : base) first.point.push_back(at(omega));
-    return refined_grid(at, first, step);
+    return refined_grid(at, first, refinement);
 }
 
-LoopGrid refined_grid(const std::function<LoopPoint(double)>& at, const LoopGrid& base, double step) {
+LoopGrid refined_grid(const std::function<LoopPoint(double)>& at, const LoopGrid& base, const Refinement& refinement) {
     LoopGrid grid;
     grid.resolved_to = base.resolved_to;
     grid.omega.reserve(kUsualGrowth * base.omega.size());
@@ -155,7 +157,7 @@ LoopGrid refined_grid(const std::function<LoopPoint(double)>& at, const LoopGrid
             const bool may_refine = right.omega <= grid.resolved_to &&
                                     right.omega > left.omega * (1 + kClosestNeighbours) &&
                                     grid.omega.size() + waiting.size() < kMaxPoints;
-            if (may_refine && too_far(left, right, step)) {
+            if (may_refine && too_far(left, right, refinement)) {
                 waiting.push_back(right);
                 const double middle = std::sqrt(left.omega * right.omega);
                 right = Candidate(middle, at(middle));

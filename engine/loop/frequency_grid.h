@@ -31,11 +31,19 @@ std::vector<double> base_frequencies(const LinearPlant& plant, const ParallelPid
 /// time, more for resonances. With dead time its first 60 turns are followed, which is where `resolved_to` ends.
 LoopGrid make_loop_grid(const Loop& loop, double step = 0.15, int density = 24);
 
+/// Up to where neighbours of a grid may differ.
+struct Refinement {
+    double step;          ///< of S, absolute, or relative where |S| > 1
+    double enough_below;  ///< neighbours that differ by more stay so where neither |S| and their difference reach it
+
+    Refinement(double step, double enough_below = 0) : step(step), enough_below(enough_below) {}
+};
+
 /// The same refinement of any loop's points, from those of a first grid.
-LoopGrid refined_grid(const std::function<LoopPoint(double)>& at, const LoopGrid& base, double step);
+LoopGrid refined_grid(const std::function<LoopPoint(double)>& at, const LoopGrid& base, const Refinement& refinement);
 
 /// From given frequencies (ascending, at least two) up to `resolved_to`.
 LoopGrid refined_grid(const std::function<LoopPoint(double)>& at, const std::vector<double>& base, double resolved_to,
-                      double step);
+                      const Refinement& refinement);
 
 }  // namespace tunewright

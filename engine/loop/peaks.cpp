@@ -21,9 +21,13 @@ double magnitude_C(const LoopPoint& p) { return magnitude(p.CS) * magnitude(1.0 
 
 constexpr double kWorthRefining = 0.8;  // of the largest grid value: neighbours on the grid differ by less than that
 
-constexpr double kLongTurn = 0.3;   // rad of the dead time between neighbours of the grid: more hides a peak
-constexpr double kTurnStep = 0.15;  // rad between two looks there
-constexpr double kBetween = 0.01;   // |L| and |C| may be larger by it between neighbours than at both
+constexpr double kLongTurn = 0.3;  // rad of the dead time between neighbours of the grid: more hides a peak
+// rad between two looks there. Where |L| is small, hills along a turn are as wide as those of a sine.
+constexpr double kTurnStep = 0.15, kSmall = 0.3, kTurnStepOfSmall = 0.5;
+// Where L turns by less, no point of its arc is farther from the nearer end than half the arc's length: of the chord,
+// with room for the turn of the rest of L.
+constexpr double kPlainTurn = 1, kHalfOfArc = 0.55;
+constexpr double kBetween = 0.01;  // |L| and |C| may be larger by it between neighbours than at both
 
 constexpr double kHigher = 1 + 1e-12;  // a limit must exceed a peak by more than rounding to stand for it
 constexpr double kLowRise = 0.3;       // of |S| - 1: below it the usual grid is too coarse for so flat a maximum
@@ -135,8 +139,8 @@ Peaks find_interior_sensitivity_peak(const LoopFunction& at, const LoopGrid& gri
 
 Peak find_sensitivity_peak(const Loop& loop, const LoopGrid& grid) {
     Peaks peaks = find_interior_sensitivity_peak([&](double omega) { return loop.at(omega); }, grid);
-    raise_by_fast_turning(loop, grid, peaks);
     raise_by_limits(loop, peaks);
+    raise_by_fast_turning(loop, grid, peaks);
     return peaks.S;
 }
 
@@ -147,6 +151,7 @@ struct Stretch {
     double left, right;
     double S, T, CS;             // what its peaks can be at most, by |L| and |C| at both ends
     double change_S, change_CS;  // of these bounds from end to end, relative
+    double step;                 // rad between two looks
 };
 
 std::vector<Stretch> stretches_of(const LoopGrid& grid, double time) {
@@ -158,11 +163,20 @@ std::vector<Stretch> stretches_of(const LoopGrid& grid, double time) {
         const double gain_a = magnitude(a.L), gain_b = magnitude(b.L);
         if (!std::isfinite(gain_a) || !std::isfinite(gain_b)) continue;
         const double small = std::min(gain_a, gain_b), large = std::max(gain_a, gain_b);
-        const double nearest = large < 1 ? 1 - large : std::max(0.0, small - 1);
+        double nearest = large < 1 ? 1 - large : std::max(0.0, small - 1);
+        if (time * (right - left) < kPlainTurn)
+            nearest = std::max(
+                nearest, std::min(magnitude(1.0 + a.L), magnitude(1.0 + b.L)) - kHalfOfArc * magnitude(a.L - b.L));
         const double C_a = magnitude_C(a), C_b = magnitude_C(b), C = std::max(C_a, C_b);
         const double change = (large - small) / nearest;
-        stretches.push_back(
-            {left, right, 1 / nearest, large / nearest, C / nearest, change, change + std::abs(C_a - C_b) / C});
+        stretches.push_back({.left = left,
+                             .right = right,
+                             .S = 1 / nearest,
+                             .T = large / nearest,
+                             .CS = C / nearest,
+                             .change_S = change,
+                             .change_CS = change + std::abs(C_a - C_b) / C,
+                             .step = large < kSmall ? kTurnStepOfSmall : kTurnStep});
     }
     return stretches;
 }
@@ -184,10 +198,10 @@ void give_room(std::vector<Stretch>& stretches) {
     }
 }
 
-/// Looks along the stretch, by steps of kTurnStep and at the tops of the hills that may be higher.
+/// Looks along the stretch, step by step and at the tops of the hills that may be higher.
 void look_along(const Stretch& s, double time, const std::function<double(double)>& f, Peak& best) {
     constexpr double kMostLooks = 1e8;
-    const int looks = static_cast<int>(std::min(std::ceil(time * (s.right - s.left) / kTurnStep), kMostLooks));
+    const int looks = static_cast<int>(std::min(std::ceil(time * (s.right - s.left) / s.step), kMostLooks));
     const double step = (s.right - s.left) / looks;
     Maximum before{s.left - step, f(s.left - step)}, here{s.left, f(s.left)};
     for (int k = 0; k <= looks; ++k) {
@@ -208,12 +222,16 @@ void look_along(const Stretch& s, double time, const std::function<double(double
 void raise_by_turns(const LoopFunction& at, double time, const LoopGrid& grid, Peaks& peaks) {
     std::vector<Stretch> stretches = stretches_of(grid, time);
     give_room(stretches);
+    std::vector<const Stretch*> higher;
     const auto raise = [&](Peak& best, double Stretch::*bound, Magnitude value) {
-        std::ranges::sort(stretches, [&](const Stretch& a, const Stretch& b) { return a.*bound > b.*bound; });
+        higher.clear();
+        for (const Stretch& s : stretches)
+            if (s.*bound > best.value) higher.push_back(&s);
+        std::ranges::sort(higher, std::greater(), [&](const Stretch* s) { return s->*bound; });
         const auto f = [&](double omega) { return value(at(omega)); };
-        for (const Stretch& s : stretches) {
-            if (s.*bound <= best.value) return;
-            look_along(s, time, f, best);
+        for (const Stretch* s : higher) {
+            if (s->*bound <= best.value) return;
+            look_along(*s, time, f, best);
         }
     };
     raise(peaks.S, &Stretch::S, magnitude_S);
@@ -224,9 +242,9 @@ void raise_by_turns(const LoopFunction& at, double time, const LoopGrid& grid, P
 Peaks find_peaks(const Loop& loop, const LoopGrid& grid) {
     const LoopFunction at = [&](double omega) { return loop.at(omega); };
     Peaks peaks = find_interior_peaks(at, grid);
+    raise_by_limits(loop, peaks);  // first: the higher a peak already is, the fewer places may exceed it
     raise_by_turns(at, loop.plant().dead_time(), grid, peaks);
     raise_by_fast_turning(loop, grid, peaks);
-    raise_by_limits(loop, peaks);
     return peaks;
 }
 

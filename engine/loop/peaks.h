@@ -30,8 +30,8 @@ Peaks find_interior_peaks(const std::function<LoopPoint(double)>& at, const Loop
 Peaks find_interior_sensitivity_peak(const std::function<LoopPoint(double)>& at, const LoopGrid& grid);
 
 /// Where S moves little between neighbours of the grid, the dead time may still turn L between them, and C S with it:
-/// |1 + L| is at least |1 - |L||. Looks there, up to `resolved_to`, where that lets a peak be higher. `time`: rad of
-/// turning for one rad/time.
+/// |1 + L| is at least |1 - |L||, and near its values at both ends where the turn is short. Looks there, up to
+/// `resolved_to`, where that lets a peak be higher. `time`: rad of turning for one rad/time.
 void raise_by_turns(const std::function<LoopPoint(double)>& at, double time, const LoopGrid& grid, Peaks& peaks);
 
 /// A grid fine enough for `find_peaks` also where all of |S| - 1 is small.

@@ -115,7 +115,7 @@ Complex SampledLoop::open_loop(double omega) const {
     return plant_.at(omega, z) * pulse_response(law_, omega, z);
 }
 
-LoopGrid SampledLoop::grid_from(double step, int density) const {
+LoopGrid SampledLoop::grid_from(const Refinement& refinement, int density) const {
     const double highest = highest_frequency();
     std::vector<double> base = base_frequencies(
         plant_.plant(), law_.gains, [&](double omega) { return open_loop(std::min(omega, highest)); }, density,
@@ -131,19 +131,19 @@ LoopGrid SampledLoop::grid_from(double step, int density) const {
     if (base.size() < 2) base.push_back(kFarBelow * highest);
     std::sort(base.begin(), base.end());
     base.erase(std::unique(base.begin(), base.end()), base.end());
-    return refined_grid([&](double omega) { return at(omega); }, base, highest, step);
+    return refined_grid([&](double omega) { return at(omega); }, base, highest, refinement);
 }
 
 LoopGrid SampledLoop::grid() const { return grid_of(kGridDensity); }
 
-LoopGrid SampledLoop::grid_of(int density) const {
-    LoopGrid grid = grid_from(kGridStep, density);
+LoopGrid SampledLoop::grid_of(int density, double enough_below) const {
+    LoopGrid grid = grid_from({kGridStep, enough_below}, density);
     double largest = 0;
     for (const LoopPoint& point : grid.point) largest = std::max(largest, magnitude(point.S));
     const double rise = largest - 1;
     if (rise >= kLowRise) return grid;
     return refined_grid([&](double omega) { return at(omega); }, grid,
-                        std::clamp(kLowRise * rise, kFinestStep, kGridStep));
+                        {std::clamp(kLowRise * rise, kFinestStep, kGridStep), enough_below});
 }
 
 LoopPoint SampledLoop::at_zero() const {
@@ -156,14 +156,21 @@ Peaks SampledLoop::peaks(const LoopGrid& grid) const {
     return raised(find_interior_peaks([&](double omega) { return at(omega); }, grid), grid);
 }
 
-double SampledLoop::Ms() const {
+Peak SampledLoop::sensitivity_peak() const {
     const LoopGrid grid = grid_of(kSparseDensity);
-    if (!count_unstable_poles(grid).stable()) return std::numeric_limits<double>::infinity();
-    return raised(find_interior_sensitivity_peak([&](double omega) { return at(omega); }, grid), grid).S.value;
+    if (!count_unstable_poles(grid).stable()) return {std::numeric_limits<double>::infinity(), 0};
+    return raised(find_interior_sensitivity_peak([&](double omega) { return at(omega); }, grid), grid).S;
+}
+
+bool SampledLoop::keeps(double limit) const {
+    const LoopGrid grid = grid_of(kSparseDensity, limit);
+    if (std::ranges::any_of(grid.point, [=](const LoopPoint& point) { return magnitude(point.S) > limit; }))
+        return false;
+    const Peaks peaks = raised(find_interior_sensitivity_peak([&](double omega) { return at(omega); }, grid), grid);
+    return peaks.S.value <= limit && count_unstable_poles(grid).stable();
 }
 
 Peaks SampledLoop::raised(Peaks peaks, const LoopGrid& grid) const {
-    raise_by_turns([&](double omega) { return at(omega); }, turn(1), grid, peaks);
     const LoopPoint zero = at_zero();
     const auto raise = [](Peak& peak, double value) {
         if (value >= peak.value) peak = {value, 0};
@@ -171,6 +178,7 @@ Peaks SampledLoop::raised(Peaks peaks, const LoopGrid& grid) const {
     raise(peaks.S, std::abs(zero.S));
     raise(peaks.T, std::abs(zero.T));
     raise(peaks.CS, std::abs(zero.CS));
+    raise_by_turns([&](double omega) { return at(omega); }, turn(1), grid, peaks);
     return peaks;
 }
 
@@ -230,8 +238,11 @@ bool follow(const Characteristic& q, Winding& winding, const Characteristic::Val
         winding.follow(right.q);
         return true;
     }
-    // Where |L| < 1 from end to end, 1 + L stays in the right half-plane however often the dead time turns it.
-    if (left.size < 1 + kBelowOne && right.size < 1 + kBelowOne && Winding::is_short(left.open, right.open)) {
+    // Each factor's turn by itself may be unmistakable. Where |L| < 1 from end to end, 1 + L stays in the right
+    // half-plane however often the dead time turns it.
+    const bool below_one = left.size < 1 + kBelowOne && right.size < 1 + kBelowOne;
+    if ((below_one || (followed && Winding::is_short(left.returned, right.returned))) &&
+        Winding::is_short(left.open, right.open)) {
         const Complex open = quotient(right.open, left.open), returned = quotient(right.returned, left.returned);
         winding.turn(turn_of(product(open, returned), open, returned), right.q);
         return true;

@@ -38,8 +38,11 @@ public:
     StabilityCount count_unstable_poles(const LoopGrid& grid) const;  ///< the same along the loop's own grid
 
     LoopGrid grid() const;
-    Peaks peaks(const LoopGrid& grid) const;      ///< of a stable loop
-    double Ms() const;                            ///< to 1e-9; infinite where the loop is unstable. A third of the cost
+    Peaks peaks(const LoopGrid& grid) const;  ///< of a stable loop
+    /// Of |S| alone, to 1e-9, at a third of the cost; infinite where the loop is unstable.
+    Peak sensitivity_peak() const;
+    /// Whether the loop is stable with Ms <= `limit`, which is above 1; at a tenth of the cost.
+    bool keeps(double limit) const;
     Margins margins(const LoopGrid& grid) const;  ///< of a stable loop; the delay margin is that of L's phase
 
     const HeldPlant& plant() const { return plant_; }
@@ -50,8 +53,8 @@ public:
 
 private:
     bool finite_at_zero() const;
-    LoopGrid grid_from(double step, int density) const;
-    LoopGrid grid_of(int density) const;
+    LoopGrid grid_from(const Refinement& refinement, int density) const;
+    LoopGrid grid_of(int density, double enough_below = 0) const;
     Peaks raised(Peaks interior, const LoopGrid& grid) const;  // by turns of the dead time and the limit at 0
     LoopPoint at_zero() const;                                 // the limit, S = 0 with an integrator
 

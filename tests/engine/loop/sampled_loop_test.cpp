@@ -7,6 +7,8 @@
 #include "engine/loop/peaks.h"
 #include "engine/simulation/linear/indices.h"
 #include "engine/simulation/sampled/sampled_response.h"
+#include "engine/tuning/robust/robust.h"
+#include "tests/engine/tuning/random_plants.h"
 
 namespace tunewright {
 namespace {
@@ -56,6 +58,72 @@ TEST(SampledLoop, TendsToTheContinuousLoopAsTheSampleTimeFalls) {
     ASSERT_TRUE(longest);
     EXPECT_NEAR(sampled(*longest) / Ms, 1.05, 1e-3);
 }
+
+/// A robust design of a random plant, with its loop's peak.
+struct Design {
+    LinearPlant plant;
+    ParallelPid gains;
+    Peak S;
+};
+
+std::optional<Design> random_design(std::uint64_t seed, bool resonant) {
+    const auto random = test::random_plant(seed, resonant);
+    const auto plant = LinearPlant::make(random.plant);
+    RobustOptions options;
+    options.Ms = options.Mt = random.M;
+    const auto tuned = tune_robust({random.plant, *plant, std::nullopt}, options, {});
+    if (!tuned) return std::nullopt;
+    const ParallelPid gains = to_parallel(tuned->controller);
+    const auto loop = Loop::make(*plant, gains);
+    return Design{*plant, gains, find_peaks(*loop, make_peak_grid(*loop)).S};
+}
+
+class OfRandomPlants : public testing::TestWithParam<bool> {};
+
+// The quick look against the whole peaks on the loop's finest grid.
+TEST_P(OfRandomPlants, ALimitIsKeptWhereThePeakIsBelowIt) {
+    int kept = 0, exceeded = 0;
+    for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+        const auto design = random_design(seed, GetParam());
+        if (!design) continue;
+        for (const double share : {0.02, 0.1, 0.3, 0.7, 1.5}) {
+            const SampledLoop loop(design->plant, {.gains = design->gains, .Ts = share / design->S.omega});
+            const LoopGrid grid = loop.grid();
+            const bool stable = loop.count_unstable_poles(grid).stable();
+            const double Ms = stable ? loop.peaks(grid).S.value : INFINITY;
+            for (const double limit : {0.9 * Ms, 0.999 * Ms, 1.001 * Ms, 1.1 * Ms, 1.5 * Ms, 1.5}) {
+                if (!(limit > 1) || !std::isfinite(limit)) continue;
+                EXPECT_EQ(loop.keeps(limit), Ms <= limit) << seed << ' ' << share << " Ms " << Ms << ' ' << limit;
+                ++(Ms <= limit ? kept : exceeded);
+            }
+        }
+    }
+    EXPECT_GT(kept, 300);
+    EXPECT_GT(exceeded, 300);
+}
+
+TEST_P(OfRandomPlants, TheLongestSampleTimeIsWherePeakComesToItsLimit) {
+    int found = 0;
+    for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+        const auto design = random_design(seed, GetParam());
+        if (!design || !(design->S.omega > 0)) continue;
+        const auto Ts = longest_sample_time(design->plant, design->gains, design->S.value, design->S.omega, 1.05);
+        if (!Ts) continue;
+        const auto Ms = [&](double sample_time) {
+            const SampledLoop loop(design->plant, {.gains = design->gains, .Ts = sample_time});
+            return loop.sensitivity_peak().value / design->S.value;
+        };
+        EXPECT_NEAR(Ms(*Ts), 1.05, 1.1e-3) << seed;
+        EXPECT_LE(Ms(0.6 * *Ts), 1.05) << seed;
+        ++found;
+    }
+    EXPECT_GT(found, 30);
+}
+
+INSTANTIATE_TEST_SUITE_P(SampledLoop, OfRandomPlants, testing::Bool(),
+                         [](const testing::TestParamInfo<bool>& resonant) {
+                             return resonant.param ? "Resonant" : "WellDamped";
+                         });
 
 TEST(SampledLoop, LosesStabilityWhereItsGainMarginSays) {
     const LinearPlant plant = fopdt(1, 1, 0.5);

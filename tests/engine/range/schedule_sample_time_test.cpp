@@ -24,7 +24,7 @@ double raised(const RangeModel& model, double at, const IdealPid& pid, double Ts
     const LinearPlant plant = *model.at(at)->nominal;
     const Loop loop = *Loop::make(plant, to_parallel(pid));
     const SampledLoop sampled(plant, {.gains = to_parallel(pid), .Ts = Ts});
-    return sampled.Ms() / find_peaks(loop, make_peak_grid(loop)).S.value;
+    return sampled.sensitivity_peak().value / find_peaks(loop, make_peak_grid(loop)).S.value;
 }
 
 TEST(ScheduleSampleTime, KeepsMsWithinFivePerCentWhereItIsTightest) {

@@ -4,8 +4,6 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
-#include <type_traits>
-#include <utility>
 #include <vector>
 
 #include "engine/numerics/pair.h"
@@ -25,13 +23,6 @@ constexpr Index kWidth = sizeof(Block) / sizeof(double);
 
 template <class Block, Index kBlocks>
 using Column = std::array<Block, kBlocks>;
-
-/// act(0), ..., act(kCount - 1), each with a constant of the program: a loop would keep the blocks in memory.
-template <Index kCount, class Act>
-TUNEWRIGHT_INLINED void for_each_index(const Act& act) {
-    [&]<Index... kIndex>(std::index_sequence<kIndex...>) { (act(std::integral_constant<Index, kIndex>()), ...); }
-    (std::make_index_sequence<kCount>());
-}
 
 /// sum += the columns' combination with these weights, for columns of kBlocks blocks: so many sums stay in registers.
 template <class Block, Index kBlocks>

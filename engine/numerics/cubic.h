@@ -4,13 +4,32 @@
 #include <array>
 #include <optional>
 
+#include "engine/numerics/registers.h"
+
 namespace tunewright {
 
-/// Taylor coefficients at the beginning of the step: c0 + c1 s + c2 s^2/2 + c3 s^3/6.
-using Cubic = std::array<double, 4>;
+/// Taylor coefficients at the beginning of the step: c0 + c1 s + c2 s^2/2 + c3 s^3/6. `Number`: a double, or several
+/// side by side in a register.
+template <class Number>
+using CubicOf = std::array<Number, 4>;
+using Cubic = CubicOf<double>;
 
-inline double value_at(const Cubic& c, double s) { return c[0] + s * (c[1] + s * (c[2] / 2 + s * c[3] * (1.0 / 6))); }
-inline double slope_at(const Cubic& c, double s) { return c[1] + s * (c[2] + s * c[3] / 2); }
+/// Value and slope at s. They come by reference: how a call returns a wide register depends on the processor.
+template <class Number>
+TUNEWRIGHT_INLINED void evaluate(const CubicOf<Number>& c, double s, Number& value, Number& slope) {
+    value = c[0] + s * (c[1] + s * (c[2] / 2 + s * c[3] * (1.0 / 6)));
+    slope = c[1] + s * (c[2] + s * c[3] / 2);
+}
+inline double value_at(const Cubic& c, double s) {
+    double value = 0, slope = 0;
+    evaluate(c, s, value, slope);
+    return value;
+}
+inline double slope_at(const Cubic& c, double s) {
+    double value = 0, slope = 0;
+    evaluate(c, s, value, slope);
+    return slope;
+}
 
 /// A quantity at one instant: its value and its derivative in time.
 struct Signal {
@@ -19,11 +38,17 @@ struct Signal {
 
 /// The cubic through values and slopes at both ends of a step of length h > 0 (Hermite), its value halfway, its
 /// integral over the step.
-inline Cubic hermite_taylor(double h, Signal start, Signal end) {
+template <class Number>
+TUNEWRIGHT_INLINED CubicOf<Number> hermite_taylor(double h, const Number& start, const Number& start_slope,
+                                                  const Number& end, const Number& end_slope) {
     // The one division needs h alone, which is there before the values are.
-    const double inverse = 1 / h, mean_slope = (end.value - start.value) * inverse;
-    return {start.value, start.slope, (6 * mean_slope - (4 * start.slope + 2 * end.slope)) * inverse,
-            (-12 * mean_slope + 6 * (start.slope + end.slope)) * (inverse * inverse)};
+    const double inverse = 1 / h;
+    const Number mean_slope = (end - start) * inverse;
+    return {start, start_slope, (6 * mean_slope - (4 * start_slope + 2 * end_slope)) * inverse,
+            (-12 * mean_slope + 6 * (start_slope + end_slope)) * (inverse * inverse)};
+}
+inline Cubic hermite_taylor(double h, Signal start, Signal end) {
+    return hermite_taylor(h, start.value, start.slope, end.value, end.slope);
 }
 inline double hermite_midpoint(double h, Signal start, Signal end) {
     return 0.5 * (start.value + end.value) + h * (start.slope - end.slope) / 8;

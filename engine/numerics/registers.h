@@ -9,6 +9,10 @@
 //   }
 #pragma once
 
+#include <cstddef>
+#include <type_traits>
+#include <utility>
+
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
 #define TUNEWRIGHT_WIDE 1
 #define TUNEWRIGHT_FOR_AVX2 [[gnu::target("avx2")]]
@@ -21,6 +25,16 @@
 namespace tunewright {
 
 enum class Registers { common, avx2 };
+
+/// act(0), ..., act(kCount - 1), each with a constant of the program: a loop would keep in memory what else stays in
+/// registers.
+template <std::size_t kCount, class Act>
+TUNEWRIGHT_INLINED void for_each_index(const Act& act) {
+    [&]<std::size_t... kIndex>(std::index_sequence<kIndex...>) {
+        (act(std::integral_constant<std::size_t, kIndex>()), ...);
+    }
+    (std::make_index_sequence<kCount>());
+}
 
 /// The widest that this processor has.
 inline Registers widest_registers() {

@@ -5,16 +5,13 @@
 #include <limits>
 
 #include "engine/numerics/matrix/dense.h"
+#include "engine/numerics/matrix/projection.h"
 
 namespace tunewright {
 namespace {
 
 /// The square root of 10: a given y0 is assumed to be an average of many readings, and counts as ten samples.
 constexpr double kRestWeight = 3.1622776601683795;
-/// A column whose part outside the others' span is relatively below this is no independent one.
-constexpr double kDependent = 1e-9;
-/// With that share of its length left a column has lost one digit at most.
-constexpr double kMuchIsLeft = 0.1;
 /// Of a logarithm, for central differences: truncation (1e-8) and rounding (1e-12) both stay small.
 constexpr double kStep = 1e-4;
 
@@ -23,14 +20,6 @@ int anchor_rows(std::span<const FrequencyConstraint> anchors) {
     for (const FrequencyConstraint& anchor : anchors) rows += anchor.omega > 0 ? 2 : 1;
     return rows;
 }
-
-/// Everything known at one shape: the regressors' orthonormal basis and the projected residual.
-struct Projection {
-    Eigen::MatrixXd basis;
-    Eigen::VectorXd residual, linear;
-    bool determined = true;
-    double sse = std::numeric_limits<double>::max();
-};
 
 class OutputError {
 public:
@@ -50,6 +39,7 @@ public:
             y_[row++] = anchor.weight * anchor.value.real();
             if (anchor.omega > 0) y_[row++] = anchor.weight * anchor.value.imag();
         }
+        y_square_ = square_of(y_);
         // The same at every shape.
         columns_.col(form_.offset_index()).head(n_).setOnes();
         if (record_.y_rest) columns_(n_, form_.offset_index()) = kRestWeight;
@@ -76,24 +66,11 @@ public:
         return columns_;
     }
 
-    void project(const ModelShape& shape, Projection& result) {
-        orthogonalise(regressors(shape), result);
-        result.sse = result.residual.squaredNorm();
-    }
+    void project(const ModelShape& shape, Projection& result) { project_on(regressors(shape), y_, y_square_, result); }
 
     /// By normal equations: fast, good to the square root of the precision.
     double rough_sum(const ModelShape& shape) {
-        const Eigen::MatrixXd& A = regressors(shape);
-        const int m = static_cast<int>(A.cols());
-        FewByFew G(m, m);
-        Few b(m);
-        constexpr double kRidge = 1e-12;  // dependent columns share their coefficient
-        for (int k = 0; k < m; ++k) {
-            b[k] = A.col(k).dot(y_);
-            for (int i = 0; i <= k; ++i) G(i, k) = G(k, i) = A.col(i).dot(A.col(k));
-            G(k, k) *= 1 + kRidge;
-        }
-        const double sum = y_.squaredNorm() - b.dot(solve_symmetric(G, b));
+        const double sum = rough_rest(regressors(shape), y_, y_square_);
         return std::isfinite(sum) ? std::max(sum, 0.0) : std::numeric_limits<double>::max();
     }
 
@@ -198,51 +175,12 @@ private:
         }
     }
 
-    /// Gram-Schmidt, with one repetition where little is left of a column (Giraud, Langou, Rozloznik 2005); the gain's
-    /// column comes last, so that its independence of the others is what is judged.
-    void orthogonalise(const Eigen::MatrixXd& columns, Projection& result) const {
-        const int m = static_cast<int>(columns.cols());
-        result.basis.resize(rows_, m);
-        result.linear = Eigen::VectorXd::Zero(m);
-        result.determined = true;
-        Eigen::MatrixXd R = Eigen::MatrixXd::Zero(m, m);
-        Eigen::VectorXd coordinates = Eigen::VectorXd::Zero(m);
-        result.residual = y_;
-        for (int k = 0; k < m; ++k) {
-            auto q = result.basis.col(k);
-            q = columns.col(m - 1 - k);
-            const double length = q.norm();
-            double rest = length;
-            for (int pass = 0; pass < 2 && k > 0; ++pass) {
-                for (int i = 0; i < k; ++i) {
-                    const double part = result.basis.col(i).dot(q);
-                    R(i, k) += part;
-                    q -= part * result.basis.col(i);
-                }
-                rest = q.norm();
-                if (rest > kMuchIsLeft * length) break;
-            }
-            constexpr double kTiny = 1e-150;  // its square is still above 0
-            if (!(rest > kDependent * length) || rest < kTiny) {
-                if (k == m - 1) result.determined = false;
-                R(k, k) = 1;
-                q.setZero();
-                continue;
-            }
-            R(k, k) = rest;
-            q /= rest;
-            coordinates[k] = q.dot(result.residual);
-            result.residual -= coordinates[k] * q;
-        }
-        const Eigen::VectorXd solution = R.triangularView<Eigen::Upper>().solve(coordinates);
-        for (int k = 0; k < m; ++k) result.linear[m - 1 - k] = solution[k];
-    }
-
     const CleanRecord& record_;
     std::span<const FrequencyConstraint> anchors_;
     ModelForm form_;
     int n_, first_anchor_, rows_;
     Eigen::VectorXd y_;
+    double y_square_ = 0;
     Eigen::MatrixXd columns_, D_;
     UnitResponse now_, level_, load_;
 };
@@ -355,9 +293,8 @@ Fit fit_shape(const FitData& data, const ModelForm& form, const ModelShape& star
     for (; iteration < effort.most_iterations && here.determined && lambda < kLargestDamping && !stop.stop_requested();
          ++iteration) {
         Eigen::MatrixXd& D = problem.sensitivities(shape, here.linear);
-        D.noalias() -= here.basis * gram(here.basis, D);
-        const Eigen::VectorXd descent = transpose_times(D, here.residual);
-        const Eigen::MatrixXd normal = gram(D, D);
+        take_out(here.basis, D);
+        const auto [normal, descent] = normal_equations(D, here.residual);
         const std::vector<int> free = free_parameters(shape, places, bounds, descent);
         if (free.empty() || !(normal.diagonal().maxCoeff() > 0)) break;
         bool converged = false, better = false;

@@ -106,7 +106,7 @@ bool may_change_sign(const ResponseNode& a, const ResponseNode& b, double target
     const double ea = target - a.y, eb = target - b.y;
     if ((ea < 0) != (eb < 0)) return true;
     // The cubic's control values bound it: all of one sign, no zero.
-    const double first = ea - a.y_slope * h / 3, second = eb + b.y_slope * h / 3;
+    const double third = h * (1.0 / 3), first = ea - a.y_slope * third, second = eb + b.y_slope * third;
     return (first < 0) != (ea < 0) || (second < 0) != (ea < 0);
 }
 

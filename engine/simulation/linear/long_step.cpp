@@ -127,7 +127,8 @@ StepMap LongStep::map() const {
     from_input(2, {0, 1}, {}, 0);
     from_input(3, {}, {1, 0}, 0);
     from_input(4, {}, {0, 1}, 0);
-    map.add_outputs(*system_, v);
+    map.add_outputs(*system_);
+    for (Index k = 0; k < v.size(); ++k) map.feed_through(*system_, k, v[k]);
     return map;
 }
 

@@ -126,37 +126,43 @@ private:
             if (!place.rest_after) at_node(place.last, after);
             return;
         }
-        // The cubic through both nodes: what each of its four numbers adds is the same in every lane.
         const LaneNode &a = lanes_[place.first], &b = lanes_[place.last];
         const double h = nodes_[place.last].t - nodes_[place.first].t, s = t - nodes_[place.first].t;
-        const Cubic by_a = hermite_taylor(h, {1, 0}, {}), by_slope_a = hermite_taylor(h, {0, 1}, {}),
-                    by_b = hermite_taylor(h, {}, {1, 0}), by_slope_b = hermite_taylor(h, {}, {0, 1});
-        before.value = a.u * value_at(by_a, s) + a.u_slope * value_at(by_slope_a, s) + b.u * value_at(by_b, s) +
-                       b.u_slope * value_at(by_slope_b, s) + in_.d;
-        before.slope = a.u * slope_at(by_a, s) + a.u_slope * slope_at(by_slope_a, s) + b.u * slope_at(by_b, s) +
-                       b.u_slope * slope_at(by_slope_b, s);
+        const CubicOf<Lanes> u = hermite_taylor(h, a.u, a.u_slope, b.u, b.u_slope);
+        evaluate(u, s, before.value, before.slope);
+        before.value += in_.d;
         after = before;
     }
 
-    TUNEWRIGHT_INLINED void take(const LaneMap& map, const std::array<Lanes, kStepInputs>& inputs) {
+    /// `kAtOnce` rows at a time stay in registers, and their sums side by side; the last ones may have been done
+    /// already.
+    template <Index kAtOnce>
+    TUNEWRIGHT_INLINED void take_rows(const LaneMap& map, const std::array<Lanes, kStepInputs>& inputs) {
         const Index rows = n_ + 4, used = delayed_ ? kStepInputs : 1;
-        for (Index i = 0; i < rows; i += 4) {
-            // Four rows at a time stay in registers; the last four may have been done already.
-            const Index row = std::min(i, rows - 4);
-            Lanes a{}, b{}, c{}, d{};
+        for (Index i = 0; i < rows; i += kAtOnce) {
+            const Index row = std::min(i, rows - kAtOnce);
+            std::array<Lanes, kAtOnce> sum{};
             const Lanes* column = map.columns.data() + row;
             const auto add = [&](const Lanes& weight) {
-                a += column[0] * weight;
-                b += column[1] * weight;
-                c += column[2] * weight;
-                d += column[3] * weight;
+                for_each_index<kAtOnce>([&](auto k) { sum[k] += column[k] * weight; });
                 column += rows;
             };
             for (Index k = 0; k < n_; ++k) add(z_[k]);
             for (Index k = 0; k < used; ++k) add(inputs[k]);
-            end_[row] = a, end_[row + 1] = b, end_[row + 2] = c, end_[row + 3] = d;
+            for_each_index<kAtOnce>([&](auto k) { end_[row + k] = sum[k]; });
         }
         z_.swap(end_);
+    }
+
+    TUNEWRIGHT_INLINED void take(const LaneMap& map, const std::array<Lanes, kStepInputs>& inputs) {
+        constexpr Index kMost = 8;
+        const Index rows = n_ + 4, parts = (rows + kMost - 1) / kMost;
+        switch ((rows + parts - 1) / parts) {
+            case 8: return take_rows<8>(map, inputs);
+            case 7: return take_rows<7>(map, inputs);
+            case 6: return take_rows<6>(map, inputs);
+            default: return take_rows<5>(map, inputs);
+        }
     }
 
     Loops& loops_;

@@ -36,7 +36,8 @@ public:
     /// Up to the dead time, whose second signal is the delayed one at the end; or without dead time, where 1 alone
     /// comes in.
     StepMap(const ResponseSystem& system, const ExactStep& step);
-    /// Of columns that are filled in from outside: first the states' part of each, then `add_outputs`.
+    /// Of columns that are filled in from outside: first the states' part of each, then `add_outputs` and what is fed
+    /// through.
     StepMap(const ResponseSystem& system, double h);
 
     double h() const { return h_; }
@@ -49,8 +50,10 @@ public:
     /// The states at the end by state or, from n on, input k.
     double* column(std::size_t k) { return columns_.data() + k * length_; }
     const double* column(std::size_t k) const { return columns_.data() + k * length_; }
-    /// What the columns leave of y, y', u and u'; `v`: the delayed signal at the end, of each column.
-    void add_outputs(const ResponseSystem& system, std::span<const Signal> v);
+    /// What the states' part of each column leaves of y, y', u and u'.
+    void add_outputs(const ResponseSystem& system);
+    /// The same of the delayed signal at the end that belongs to column k, and of r and d to that of 1.
+    void feed_through(const ResponseSystem& system, std::size_t k, Signal v);
 
 private:
     std::size_t n_, length_;

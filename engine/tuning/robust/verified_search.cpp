@@ -190,16 +190,18 @@ Expected<Found> checked_search(SearchKind kind, const Sweep& sweep, DesignProble
 Expected<Found> or_without_derivative(Expected<Found> found, const DesignProblem& problem, double reference,
                                       const RunControl& control, const Found* before) {
     if (!problem.pid || (found && found->stopped)) return found;
-    const bool doubtful = found ? all_dead_time(problem) || std::exp(found->x[2]) * reference <= kShortestTd
-                                : found.error().kind == ErrorKind::numerical_failure;
+    const bool at_end = found && std::exp(found->x[2]) * reference <= kShortestTd;
+    const bool doubtful = found ? at_end || all_dead_time(problem) : found.error().kind == ErrorKind::numerical_failure;
     if (!doubtful) return found;
     DesignProblem without = problem;
     without.pid = false;
     without.optimal_for_part = {};  // of which a PI need not be stable
     const Sweep sweep(without, reference);
-    const Found near = before != nullptr ? Found{.x = {before->x[0], before->x[1], 0}} : Found{};
+    // A PID whose Td is at its end is as good as a PI.
+    const Found* nearest = before != nullptr ? before : at_end && !all_dead_time(problem) ? &*found : nullptr;
+    const Found near = nearest != nullptr ? Found{.x = {nearest->x[0], nearest->x[1], 0}} : Found{};
     auto other = checked_search(SearchKind::fast, sweep, without, true, std::nullopt, nullptr, control,
-                                before != nullptr ? &near : nullptr);
+                                nearest != nullptr ? &near : nullptr);
     if (!other) return found;
     // The two may differ by less than the search's runs are exact to.
     const auto exactly = [](const DesignProblem& one, const Found& design) {

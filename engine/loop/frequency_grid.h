@@ -34,7 +34,7 @@ LoopGrid make_loop_grid(const Loop& loop, double step = 0.15, int density = 24);
 /// Up to where neighbours of a grid may differ.
 struct Refinement {
     double step;          ///< of S, absolute, or relative where |S| > 1
-    double enough_below;  ///< neighbours that differ by more stay so where neither |S| and their difference reach it
+    double enough_below;  ///< neighbours may differ by more where |S| and their difference together stay below it
 
     Refinement(double step, double enough_below = 0) : step(step), enough_below(enough_below) {}
 };

@@ -57,11 +57,13 @@ TEST(SweepLoops, EveryKindOfRegisterGivesTheSameDigits) {
         bool less[2][2];
         for (const auto registers : {Registers::common, Registers::avx2}) {
             auto& v = values[registers == Registers::avx2];
-            v.assign(10, std::vector<double>(n));
+            v.assign(14, std::vector<double>(n));
             peak_levels(grid.view(), gains, {0.5, 0.4, 0.1}, v[0].data(), v[1].data(), v[2].data(), registers);
             circle_levels(grid.view(), gains, b, v[3].data(), registers);
             open_loops(grid.view(), gains, Phase::as_it_is, v[4].data(), v[5].data(), registers);
             forbidden_factors(v[4], v[5], a, b, {v[6], v[7]}, {v[8], v[9]}, registers);
+            turning_levels(grid.view(), gains, {0.5, 0.4, 0.1}, v[10].data(), v[11].data(), v[12].data(), registers);
+            turning_levels(grid.view(), gains, {0.5, 0.4, 0.1}, v[10].data(), v[13].data(), nullptr, registers);
             for (const auto phase : {Phase::as_it_is, Phase::worst})
                 less[registers == Registers::avx2][phase == Phase::worst] =
                     moves_less(grid.view(), gains, other, 1e3, phase, registers);
@@ -86,6 +88,53 @@ TEST(SweepLoops, LevelsAreThoseOfComplexArithmetic) {
         EXPECT_NEAR(CS[i] / (2 * std::norm(C / (1.0 + L))), 1, 1e-10);
         EXPECT_NEAR(circle[i] / (0.81 / std::norm(L + 1.5)), 1, 1e-10);
     }
+}
+
+// At the worst phase L is -|L|; beyond |L| = 1, where every turn encircles -1, far above any limit.
+TEST(SweepLoops, LevelsWhereTheDeadTimeTurnsAreThoseOfTheWorstPhase) {
+    const RandomGrid grid(11, 300);
+    Random random(12);
+    const LoopGains gains{.Kp = 0.2, .Ki = 0.1, .Kd = 0.05, .Tf = 0.3};
+    std::vector<double> S(300), T(300), CS(300), S_alone(300), T_alone(300);
+    turning_levels(grid.view(), gains, {0.25, 0.5, 2}, S.data(), T.data(), CS.data());
+    turning_levels(grid.view(), gains, {0.25, 0.5, 0}, S_alone.data(), T_alone.data(), nullptr);
+    EXPECT_EQ(S, S_alone);
+    EXPECT_EQ(T, T_alone);
+    int below = 0, above = 0;
+    for (std::size_t i = 0; i < 300; ++i) {
+        const double C = std::abs(controller(gains, grid.omega[i])), L = C * std::abs(Complex(grid.re[i], grid.im[i]));
+        if (L > 0.999) {
+            EXPECT_GT(S[i], 1e4);
+            ++above;
+            continue;
+        }
+        EXPECT_NEAR(S[i] / (0.25 / ((1 - L) * (1 - L))), 1, 1e-9);
+        EXPECT_NEAR(T[i] / (0.5 * L * L / ((1 - L) * (1 - L))), 1, 1e-9);
+        EXPECT_NEAR(CS[i] / (2 * C * C / ((1 - L) * (1 - L))), 1, 1e-9);
+        ++below;
+    }
+    EXPECT_GT(below, 50);
+    EXPECT_GT(above, 20);
+}
+
+// Of rounded numbers many are equal, at the ends and across the borders of what is looked at together.
+TEST(SweepLoops, TopsAreNoLowerThanBeforeAndHigherThanAfter) {
+    Random random(13);
+    int found = 0;
+    for (std::size_t n = 0; n < 90; ++n) {
+        std::vector<double> level(n);
+        for (double& x : level) x = std::floor(random.uniform(0, 6));
+        std::vector<std::size_t> plain, common, widest;
+        for (std::size_t i = 0; i < n; ++i)
+            if (level[i] >= 3 && (i == 0 || level[i] >= level[i - 1]) && (i + 1 == n || level[i] > level[i + 1]))
+                plain.push_back(i);
+        tops_of(level, 3, common, Registers::common);
+        tops_of(level, 3, widest);
+        EXPECT_EQ(common, plain) << n;
+        EXPECT_EQ(widest, plain) << n;
+        found += static_cast<int>(plain.size());
+    }
+    EXPECT_GT(found, 500);
 }
 
 TEST(SweepLoops, AFactorIsForbiddenWhereItPutsTheLoopIntoACircle) {

@@ -24,7 +24,6 @@ constexpr double kResonant = 0.3;          // damping below which a root gets po
 constexpr double kLeastWidth = 1e-5;       // of a resonance, over its frequency
 constexpr int kResonancePoints = 12;       // to either side, ever wider apart
 constexpr double kResonanceGrowth = 1.17;  // of their distance beyond, until the grid's own points are as near
-constexpr double kLeastDistance = 1e-6;    // of L from -1 where the dead time takes every phase: far beyond any limit
 constexpr double kPeakRoom = 0.05;         // ln: grid points so far below the threshold may lie beside a peak above it
 constexpr int kMaxParabolas = 6;           // around one peak; three are usual
 constexpr double kParabolaEdge = 0.02;     // of its interval, which a parabola's top stays away from
@@ -82,6 +81,7 @@ std::vector<double> frequencies(const DesignProblem& problem, const LinearPlant&
     };
     for (const auto pole : plant.poles()) add_resonance(pole);
     for (const auto zero : plant.zeros()) add_resonance(zero);
+    if (std::ranges::is_sorted(omega)) return omega;
     std::sort(omega.begin(), omega.end());
     omega.erase(std::unique(omega.begin(), omega.end()), omega.end());
     return omega;
@@ -117,6 +117,7 @@ Sweep::Curve Sweep::curve_of(std::size_t index) const {
     if (plant.dead_time() > 0) curve.resolved_to = kTurnsResolved * 2 * std::numbers::pi / plant.dead_time();
     const std::vector<double> omega = frequencies(problem_, plant, reference_, curve.resolved_to);
     const std::vector<Complex> responses = plant.at(omega);
+    for (auto* kept : {&curve.omega, &curve.P_re, &curve.P_im, &curve.log_omega}) kept->reserve(omega.size());
     for (std::size_t i = 0; i < omega.size(); ++i) {
         const Complex P = responses[i];
         // On an undamped pole P is infinite; its neighbours show the same.
@@ -156,9 +157,11 @@ Complex Sweep::plant_at(const Curve& curve, double omega) const {
 void Sweep::complete(Curve& curve) const {
     const auto first = std::lower_bound(curve.omega.begin(), curve.omega.end(), curve.resolved_to);
     curve.resolved = static_cast<std::size_t>(first - curve.omega.begin());
-    for (auto* scratch : {&curve.S, &curve.T, &curve.CS, &curve.circle, &curve.L_re, &curve.L_im, &curve.lower,
-                          &curve.upper, &curve.other_lower, &curve.other_upper})
+    for (auto* scratch : {&curve.S, &curve.T, &curve.L_re, &curve.L_im, &curve.lower, &curve.upper, &curve.other_lower,
+                          &curve.other_upper})
         scratch->resize(curve.omega.size());
+    if (problem_.limits.Mks) curve.CS.resize(curve.omega.size());
+    if (problem_.limits.m_circle) curve.circle.resize(curve.omega.size());
     for (const double omega : curve.omega) curve.log_omega.push_back(std::log(omega));
     if (curve.plant == nullptr) return;
     curve.phase_at_low = phase_from_rest(*curve.plant, curve.omega.front());
@@ -237,11 +240,9 @@ std::optional<Sweep::Top> Sweep::top_near(const Curve& curve, std::size_t i, con
 void Sweep::add_peaks(const Curve& curve, ConstraintKind kind, const std::vector<double>& level, const LoopGains& c,
                       double threshold, std::vector<ActivePeak>& found) const {
     const std::size_t n = level.size();
-    const double from = std::exp(2 * (threshold - kPeakRoom));
-    for (std::size_t i = 0; i < n; ++i) {
-        if (level[i] < from) continue;
+    tops_of(level, std::exp(2 * (threshold - kPeakRoom)), tops_);
+    for (const std::size_t i : tops_) {
         const bool first = i == 0, last = i + 1 == n;
-        if ((!first && level[i] < level[i - 1]) || (!last && level[i] <= level[i + 1])) continue;
         ActivePeak peak{.kind = kind, .plant = curve.index, .omega = curve.omega[i], .value = 0.5 * std::log(level[i])};
         if (i != curve.resolved && !first && !last) {
             const auto top = top_near(curve, i, level, kind, c, threshold);
@@ -285,15 +286,16 @@ void Sweep::fill_levels(Curve& curve, const LoopGains& c) const {
                                 .T = 1 / (limits.Mt * limits.Mt),
                                 .CS = limits.Mks ? 1 / (*limits.Mks * *limits.Mks) : 0};
     if (limits.m_circle) circle_levels(curve.followed(), c, circle_, curve.circle.data());
-    if (!limits.m_circle || limits.Mks)
-        peak_levels(curve.followed(), c, inverse, curve.S.data(), curve.T.data(), curve.CS.data());
-    for (std::size_t i = curve.resolved; i < curve.omega.size(); ++i) {
+    if (!limits.m_circle || limits.Mks) {
+        const std::size_t turning = curve.resolved;
+        double* CS = limits.Mks ? curve.CS.data() : nullptr;
+        peak_levels(curve.followed(), c, inverse, curve.S.data(), curve.T.data(), CS);
+        turning_levels(curve.turning(), c, inverse, curve.S.data() + turning, curve.T.data() + turning,
+                       CS != nullptr ? CS + turning : nullptr);
+    }
+    for (std::size_t i = curve.resolved; limits.m_circle && i < curve.omega.size(); ++i) {
         const Complex C = controller_response(c, curve.omega[i]);
         const double size = magnitude(C) * magnitude({curve.P_re[i], curve.P_im[i]});
-        const double nearest = size < 1 ? 1 - size : kLeastDistance;
-        curve.S[i] = inverse.S / (nearest * nearest);
-        curve.T[i] = size * size * inverse.T / (nearest * nearest);
-        curve.CS[i] = std::norm(C) * inverse.CS / (nearest * nearest);
         const double to_circle = std::abs(circle_.centre) - size;
         curve.circle[i] =
             circle_.radius * circle_.radius / std::max(to_circle * to_circle, kLeastDistance * kLeastDistance);

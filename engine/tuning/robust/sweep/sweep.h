@@ -121,6 +121,7 @@ private:
     double reference_;
     Circle circle_{};  // the smallest around both
     mutable std::vector<Curve> curves_;
+    mutable std::vector<std::size_t> tops_;
 };
 
 }  // namespace tunewright::robust

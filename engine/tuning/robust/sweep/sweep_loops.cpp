@@ -1,10 +1,17 @@
 #include "engine/tuning/robust/sweep/sweep_loops.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
+
+#include "engine/numerics/pair.h"
 
 namespace tunewright::robust {
 namespace {
+
+using Quad = double __attribute__((vector_size(32)));
 
 struct Response {
     double re, im;
@@ -22,6 +29,7 @@ TUNEWRIGHT_INLINED Response product(Response a, Response b) {
     return {a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
 }
 
+template <bool with_CS>
 TUNEWRIGHT_INLINED void peak_loop(const CurveGrid& grid, const LoopGains& gains, const InverseLimits& limits,
                                   double* __restrict S, double* __restrict T, double* __restrict CS) {
     const LoopGains c = gains;
@@ -33,8 +41,36 @@ TUNEWRIGHT_INLINED void peak_loop(const CurveGrid& grid, const LoopGains& gains,
         const double distance = 1 / squared({1 + L.re, L.im});
         S[i] = distance * limit.S;
         T[i] = squared(L) * distance * limit.T;
-        CS[i] = squared(C) * distance * limit.CS;
+        if constexpr (with_CS) CS[i] = squared(C) * distance * limit.CS;
     }
+}
+
+TUNEWRIGHT_INLINED void peak_loop(const CurveGrid& grid, const LoopGains& gains, const InverseLimits& limits, double* S,
+                                  double* T, double* CS) {
+    if (CS == nullptr) return peak_loop<false>(grid, gains, limits, S, T, CS);
+    peak_loop<true>(grid, gains, limits, S, T, CS);
+}
+
+template <bool with_CS>
+TUNEWRIGHT_INLINED void turning_loop(const CurveGrid& grid, const LoopGains& gains, const InverseLimits& limits,
+                                     double* __restrict S, double* __restrict T, double* __restrict CS) {
+    const LoopGains c = gains;
+    const InverseLimits limit = limits;
+    const double *w = grid.omega.data(), *pr = grid.P_re.data(), *pi = grid.P_im.data();
+    const std::size_t n = grid.size();
+    for (std::size_t i = 0; i < n; ++i) {
+        const double C = squared(response_of(c, w[i])), L = C * squared({pr[i], pi[i]}), apart = 1 - std::sqrt(L);
+        const double nearest = apart > kLeastDistance ? apart : kLeastDistance, distance = 1 / (nearest * nearest);
+        S[i] = distance * limit.S;
+        T[i] = L * distance * limit.T;
+        if constexpr (with_CS) CS[i] = C * distance * limit.CS;
+    }
+}
+
+TUNEWRIGHT_INLINED void turning_loop(const CurveGrid& grid, const LoopGains& gains, const InverseLimits& limits,
+                                     double* S, double* T, double* CS) {
+    if (CS == nullptr) return turning_loop<false>(grid, gains, limits, S, T, CS);
+    turning_loop<true>(grid, gains, limits, S, T, CS);
 }
 
 TUNEWRIGHT_INLINED void circle_loop(const CurveGrid& grid, const LoopGains& gains, const Circle& circle,
@@ -86,46 +122,93 @@ TUNEWRIGHT_INLINED void factor_loop(const double* re, const double* im, std::siz
     }
 }
 
-/// By how much |L_to - L_from|^2 exceeds most^2 |1 + L_from|^2 at the worst frequency. Four running maxima, so that
-/// neighbouring lanes do not wait for each other: the maximum does not depend on the order.
+constexpr std::size_t kPart = 64;
+
+/// By how much |L_to - L_from|^2 exceeds most^2 |1 + L_from|^2, at kPart frequencies at most: a maximum over them would
+/// keep the loop from filling registers.
 template <bool worst>
-TUNEWRIGHT_INLINED double change_loop(const CurveGrid& grid, const LoopGains& from, const LoopGains& to, double most) {
+TUNEWRIGHT_INLINED void change_loop(const CurveGrid& grid, const LoopGains& from, const LoopGains& to, double most,
+                                    double* __restrict excess) {
     const LoopGains a = from, b = to;
     const double *w = grid.omega.data(), *pr = grid.P_re.data(), *pi = grid.P_im.data();
     const std::size_t n = grid.size();
     const double most2 = most * most;
-    constexpr std::size_t kLanes = 4;
-    double largest[kLanes] = {-1, -1, -1, -1};
-    const auto excess = [&](std::size_t i) __attribute__((always_inline)) {
+    for (std::size_t i = 0; i < n; ++i) {
         const Response P{pr[i], pi[i]}, before = response_of(a, w[i]), after = response_of(b, w[i]);
         const Response L = product(P, before);
         const double change = squared(P) * squared({after.re - before.re, after.im - before.im});
-        if constexpr (!worst) return change - most2 * squared({1 + L.re, L.im});
-        const double nearest = 1 - std::sqrt(squared(L));
-        return nearest > 0 ? change - most2 * nearest * nearest : 1.0;
-    };
-    std::size_t i = 0;
-    for (; i + kLanes <= n; i += kLanes)
-        for (std::size_t k = 0; k < kLanes; ++k) {
-            const double here = excess(i + k);
-            largest[k] = here > largest[k] ? here : largest[k];
+        if constexpr (worst) {
+            const double nearest = 1 - std::sqrt(squared(L)), at_worst = change - most2 * nearest * nearest;
+            excess[i] = nearest > 0 ? at_worst : 1.0;
+        } else {
+            excess[i] = change - most2 * squared({1 + L.re, L.im});
         }
-    for (; i < n; ++i) {
-        const double here = excess(i);
-        largest[0] = here > largest[0] ? here : largest[0];
     }
-    return std::max(std::max(largest[0], largest[1]), std::max(largest[2], largest[3]));
 }
 
 TUNEWRIGHT_INLINED bool change_within(const CurveGrid& grid, const LoopGains& from, const LoopGains& to, double most,
                                       Phase phase) {
-    return (phase == Phase::worst ? change_loop<true>(grid, from, to, most)
-                                  : change_loop<false>(grid, from, to, most)) < 0;
+    std::array<double, kPart> excess;
+    for (std::size_t at = 0; at < grid.size(); at += kPart) {
+        const CurveGrid part = grid.part(at, std::min(at + kPart, grid.size()));
+        if (phase == Phase::worst)
+            change_loop<true>(part, from, to, most, excess.data());
+        else
+            change_loop<false>(part, from, to, most, excess.data());
+        if (!std::all_of(excess.begin(), excess.begin() + part.size(), [](double x) { return x < 0; })) return false;
+    }
+    return true;
+}
+
+/// Whether neighbours, of which the array's ends may have one alone, make number i a top.
+TUNEWRIGHT_INLINED bool is_top(std::span<const double> level, double from, std::size_t i) {
+    return level[i] >= from && (i == 0 || level[i] >= level[i - 1]) &&
+           (i + 1 == level.size() || level[i] > level[i + 1]);
+}
+
+/// Sixteen numbers at once say whether there is a top among them: mostly there is none.
+template <class Block>
+TUNEWRIGHT_INLINED void find_tops(std::span<const double> level, double from, std::vector<std::size_t>& found) {
+    constexpr std::size_t kAtOnce = 16, kWidth = sizeof(Block) / sizeof(double);
+    found.clear();
+    const double* at = level.data();
+    std::size_t i = 0;
+    const auto look = [&](std::size_t to) __attribute__((always_inline)) {
+        for (; i < to; ++i)
+            if (is_top(level, from, i)) found.push_back(i);
+    };
+    look(std::min<std::size_t>(1, level.size()));
+    while (i + kAtOnce < level.size()) {
+        decltype(Block{} < Block{}) any{};
+        for (std::size_t k = i; k < i + kAtOnce; k += kWidth) {
+            Block left, here, right;
+            std::memcpy(&left, at + k - 1, sizeof left);
+            std::memcpy(&here, at + k, sizeof here);
+            std::memcpy(&right, at + k + 1, sizeof right);
+            any |= (here >= from) & (here >= left) & (here > right);
+        }
+        std::int64_t one = 0;
+        for (std::size_t lane = 0; lane < kWidth; ++lane) one |= any[lane];
+        if (one != 0)
+            look(i + kAtOnce);
+        else
+            i += kAtOnce;
+    }
+    look(level.size());
+}
+
+TUNEWRIGHT_FOR_AVX2 void find_tops_avx2(std::span<const double> level, double from, std::vector<std::size_t>& found) {
+    find_tops<Quad>(level, from, found);
 }
 
 TUNEWRIGHT_FOR_AVX2 void peak_loop_avx2(const CurveGrid& grid, const LoopGains& gains, const InverseLimits& limits,
                                         double* S, double* T, double* CS) {
     peak_loop(grid, gains, limits, S, T, CS);
+}
+
+TUNEWRIGHT_FOR_AVX2 void turning_loop_avx2(const CurveGrid& grid, const LoopGains& gains, const InverseLimits& limits,
+                                           double* S, double* T, double* CS) {
+    turning_loop(grid, gains, limits, S, T, CS);
 }
 
 TUNEWRIGHT_FOR_AVX2 void circle_loop_avx2(const CurveGrid& grid, const LoopGains& gains, const Circle& circle,
@@ -158,6 +241,17 @@ void peak_levels(const CurveGrid& grid, const LoopGains& gains, const InverseLim
                  double* CS, Registers registers) {
     if (registers == Registers::avx2) return peak_loop_avx2(grid, gains, limits, S, T, CS);
     peak_loop(grid, gains, limits, S, T, CS);
+}
+
+void turning_levels(const CurveGrid& grid, const LoopGains& gains, const InverseLimits& limits, double* S, double* T,
+                    double* CS, Registers registers) {
+    if (registers == Registers::avx2) return turning_loop_avx2(grid, gains, limits, S, T, CS);
+    turning_loop(grid, gains, limits, S, T, CS);
+}
+
+void tops_of(std::span<const double> level, double from, std::vector<std::size_t>& found, Registers registers) {
+    if (registers == Registers::avx2) return find_tops_avx2(level, from, found);
+    find_tops<Pair>(level, from, found);
 }
 
 void circle_levels(const CurveGrid& grid, const LoopGains& gains, const Circle& circle, double* level,

@@ -6,6 +6,7 @@
 #include <complex>
 #include <cstddef>
 #include <span>
+#include <vector>
 
 #include "engine/numerics/registers.h"
 
@@ -41,9 +42,20 @@ struct Circle {
 /// Where the dead time turns faster than the grid, a loop is taken at its worst phase: L = -|L|.
 enum class Phase { as_it_is, worst };
 
-/// |S|^2, |T|^2 and |C S|^2 over their limits' squares.
+/// |S|^2, |T|^2 and, unless `CS` is null, |C S|^2 over their limits' squares.
 void peak_levels(const CurveGrid& grid, const LoopGains& gains, const InverseLimits& limits, double* S, double* T,
                  double* CS, Registers registers = widest_registers());
+
+/// Of L from -1 where the dead time takes every phase and |L| >= 1: far beyond any limit.
+constexpr double kLeastDistance = 1e-6;
+
+/// The same at the worst phase: 1 - |L| takes the place of |1 + L|.
+void turning_levels(const CurveGrid& grid, const LoopGains& gains, const InverseLimits& limits, double* S, double* T,
+                    double* CS, Registers registers = widest_registers());
+
+/// Where the levels reach `from` and are no lower than before and higher than after, in ascending order.
+void tops_of(std::span<const double> level, double from, std::vector<std::size_t>& found,
+             Registers registers = widest_registers());
 
 /// radius^2/|L - centre|^2.
 void circle_levels(const CurveGrid& grid, const LoopGains& gains, const Circle& circle, double* level,

@@ -122,6 +122,8 @@ LoopGrid visible(const LoopGrid& grid) {
     while (first + 2 <= last && magnitude(grid.point[first + 1].S) < kLeastShownS) ++first;
     while (last > first + 2 && magnitude(grid.point[last - 1].T) < kLeastShownT) --last;
     LoopGrid seen;
+    seen.omega.reserve(last - first + 1);
+    seen.point.reserve(last - first + 1);
     for (std::size_t i = first; i <= last; ++i) {
         if (!std::isfinite(magnitude(grid.point[i].L))) continue;
         seen.omega.push_back(grid.omega[i]);
@@ -137,6 +139,7 @@ double seen_at(double gain) { return gain < kUnseen ? 0 : std::min(1.0, std::sqr
 /// measure. `turns`: the phase of L, unwrapped.
 std::vector<double> progress_along(const LoopGrid& grid, const std::vector<double>& turns) {
     std::vector<double> along{0};
+    along.reserve(grid.omega.size());
     for (std::size_t i = 1; i < grid.omega.size(); ++i) {
         const double a = magnitude(grid.point[i - 1].L), b = magnitude(grid.point[i].L);
         const double seen = seen_at(std::max(a, b));

@@ -12,6 +12,9 @@ using Index = std::size_t;
 constexpr double kZeroTolerance = 1e-8;  // of Newton's last way to a zero, in parts of a step: its square is left
 constexpr int kMaxIterations = 50;
 
+// A division takes as long as all else that is done at a node.
+constexpr double kThird = 1.0 / 3, kFifth = 1.0 / 5, kSeventh = 1.0 / 7;
+
 /// c0 + c1 s + c2 s^2 + c3 s^3 over s in [0, 1], through values and slopes at both ends.
 struct UnitCubic {
     double c0, c1, c2, c3;
@@ -22,13 +25,13 @@ struct UnitCubic {
     }
     double at(double s) const { return c0 + s * (c1 + s * (c2 + s * c3)); }
     double slope(double s) const { return c1 + s * (2 * c2 + 3 * s * c3); }
-    double integral(double s) const { return s * (c0 + s * (c1 / 2 + s * (c2 / 3 + s * c3 / 4))); }
+    double integral(double s) const { return s * (c0 + s * (c1 / 2 + s * (c2 * kThird + s * c3 / 4))); }
     /// Of s times it.
-    double moment(double s) const { return s * s * (c0 / 2 + s * (c1 / 3 + s * (c2 / 4 + s * c3 / 5))); }
+    double moment(double s) const { return s * s * (c0 / 2 + s * (c1 * kThird + s * (c2 / 4 + s * c3 * kFifth))); }
     /// Of its square, over [0, 1].
     double square() const {
-        return c0 * (c0 + c1) + (c1 * c1 + 2 * c0 * c2) / 3 + (c0 * c3 + c1 * c2) / 2 + (c2 * c2 + 2 * c1 * c3) / 5 +
-               c2 * c3 / 3 + c3 * c3 / 7;
+        return c0 * (c0 + c1) + (c1 * c1 + 2 * c0 * c2 + c2 * c3) * kThird + (c0 * c3 + c1 * c2) / 2 +
+               (c2 * c2 + 2 * c1 * c3) * kFifth + c3 * c3 * kSeventh;
     }
     /// Rises or falls from end to end: a bound, which holds without roots.
     bool plainly_monotone() const {
@@ -106,14 +109,15 @@ bool may_change_sign(const ResponseNode& a, const ResponseNode& b, double target
     const double ea = target - a.y, eb = target - b.y;
     if ((ea < 0) != (eb < 0)) return true;
     // The cubic's control values bound it: all of one sign, no zero.
-    const double third = h * (1.0 / 3), first = ea - a.y_slope * third, second = eb + b.y_slope * third;
+    const double third = h * kThird, first = ea - a.y_slope * third, second = eb + b.y_slope * third;
     return (first < 0) != (ea < 0) || (second < 0) != (ea < 0);
 }
 
 /// The same bound for a band around the target.
 bool stays_within(const ResponseNode& a, const ResponseNode& b, double target, double band, double h) {
+    const double third = h * kThird;
     return std::abs(a.y - target) <= band && std::abs(b.y - target) <= band &&
-           std::abs(a.y + a.y_slope * h / 3 - target) <= band && std::abs(b.y - b.y_slope * h / 3 - target) <= band;
+           std::abs(a.y + a.y_slope * third - target) <= band && std::abs(b.y - b.y_slope * third - target) <= band;
 }
 
 /// Calls act(SignChange) for each change of the error's sign: no list of them, as searches ask thousands of times.
@@ -280,28 +284,29 @@ std::optional<double> last_outside(const std::vector<ResponseNode>& nodes, doubl
 }
 
 std::vector<std::pair<double, double>> sampled(const std::vector<ResponseNode>& nodes, double horizon, int points) {
-    std::vector<std::pair<double, double>> values;
-    values.reserve(Index(points));
+    std::vector<std::pair<double, double>> values(static_cast<Index>(points));
     Index at = 0, drawn = nodes.size();  // `drawn`: the node before the cubics
     UnitCubic y{}, u{};
-    double h = 0;
+    double inverse = 0;  // of the time between the two nodes
     for (int i = 0; i < points; ++i) {
         const double t = horizon * i / (points - 1);
         while (at + 1 < nodes.size() && nodes[at + 1].t <= t) ++at;
         const ResponseNode& a = nodes[at];
+        auto& value = values[static_cast<Index>(i)];
         if (at + 1 == nodes.size()) {
-            values.emplace_back(a.y, a.u);
+            value = {a.y, a.u};
             continue;
         }
         if (at != drawn) {
             const ResponseNode& b = nodes[at + 1];
-            h = b.t - a.t;
+            const double h = b.t - a.t;
+            inverse = 1 / h;
             y = cubic_of_y(a, b);
             u = UnitCubic::through(h, a.u, a.u_slope, b.u, b.u_slope);
             drawn = at;
         }
-        const double s = (t - a.t) / h;
-        values.emplace_back(y.at(s), u.at(s));
+        const double s = (t - a.t) * inverse;
+        value = {y.at(s), u.at(s)};
     }
     return values;
 }

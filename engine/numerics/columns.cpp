@@ -12,7 +12,6 @@ namespace tunewright {
 namespace {
 
 using Index = std::size_t;
-using Quad = double __attribute__((vector_size(32)));
 
 constexpr double kNegligible = 1e-18;  // of a number: well below rounding
 

@@ -10,7 +10,6 @@ namespace tunewright {
 namespace {
 
 using Index = std::size_t;
-using Quad = double __attribute__((vector_size(32)));
 
 constexpr Index kAtOnce = 16;  // so many sums side by side: an addition need not wait for the one before it
 

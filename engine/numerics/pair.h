@@ -11,6 +11,9 @@ namespace tunewright {
 
 using Pair = double __attribute__((vector_size(16)));
 
+/// Four, in loops that are made for wider registers too (registers.h).
+using Quad = double __attribute__((vector_size(32)));
+
 /// The outcome of comparing two pairs: all bits where it holds, else none.
 using PairMask = decltype(Pair{} < Pair{});
 

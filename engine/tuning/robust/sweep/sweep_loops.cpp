@@ -11,8 +11,6 @@
 namespace tunewright::robust {
 namespace {
 
-using Quad = double __attribute__((vector_size(32)));
-
 struct Response {
     double re, im;
 };

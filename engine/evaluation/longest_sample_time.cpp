@@ -157,6 +157,8 @@ private:
     /// Where the whole loop's Ms comes to the limit: the quick looks have seen it below at `low`, above at `high`.
     double between(double low, double high) const {
         const auto whole = [this](double Ts) { return excess(loop(Ts).sensitivity_peak().value); };
+        // They look less closely than the whole loop's peak is sought: it has the last word.
+        for (; whole(low) > kExact && low > shortest(); low = std::max(low / kNext, shortest())) high = low;
         if (const Peak above = loop(high).sensitivity_peak(); above.omega > 0) {
             TrackedPeak peak(plant_, gains_, above.omega);
             const auto exactly = [&](double Ts) { return excess(peak.exactly(Ts)); };

@@ -14,6 +14,9 @@ constexpr double kTurnsResolved = 60;        // periods of e^(-jwL) that are fol
 constexpr std::size_t kUsualGrowth = 2;      // of a grid by refinement: room for it is taken at once
 constexpr double kClosestNeighbours = 1e-7;  // relative distance below which no point is added
 
+constexpr double kHalfOfArc =
+    0.55;  // of its chord: half of it is 0.52 at a radian of dead time, and the rest turns too
+
 constexpr double kBelowCorners = 1e-3, kAboveCorners = 1e2;  // of the outermost corners: L is its asymptote beyond
 constexpr double kFarBelow = 1e-2, kFarAbove = 1e2;          // of the corners: where the asymptotes are read
 constexpr double kFlat = 0.1;  // slope of |L| in decades a decade: a flatter asymptote gives no reliable crossing
@@ -81,12 +84,15 @@ struct Candidate {
 };
 
 bool too_far(const Candidate& a, const Candidate& b, const Refinement& r) {
-    const double apart = std::norm(a.point.S - b.point.S);
-    if (apart <= r.step * r.step * std::max(1.0, std::min(a.square, b.square))) return false;
-    return r.enough_below == 0 || !(std::sqrt(std::max(a.square, b.square)) + std::sqrt(apart) < r.enough_below);
+    if (std::norm(a.point.S - b.point.S) <= r.step * r.step * std::max(1.0, std::min(a.square, b.square))) return false;
+    return r.enough_below == 0 || !(nearest_between(a.point.L, b.point.L) * r.enough_below > 1);
 }
 
 }  // namespace
+
+double nearest_between(std::complex<double> from, std::complex<double> to) {
+    return std::min(magnitude(1.0 + from), magnitude(1.0 + to)) - kHalfOfArc * magnitude(to - from);
+}
 
 std::vector<double> base_frequencies(const LinearPlant& plant, const ParallelPid& gains, const OpenLoop& open_loop,
                                      int density, double highest) {

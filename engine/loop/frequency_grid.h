@@ -31,10 +31,16 @@ std::vector<double> base_frequencies(const LinearPlant& plant, const ParallelPid
 /// time, more for resonances. With dead time its first 60 turns are followed, which is where `resolved_to` ends.
 LoopGrid make_loop_grid(const Loop& loop, double step = 0.15, int density = 24);
 
+/// The least |1 + L| on the way from one point to another, from below, where L turns by less than a radian; may be
+/// negative, and is NaN where L is infinite. No point of an arc is farther from the nearer end than half the arc's
+/// length, which is that of the chord with room for its bend. A bound on |S| by its own change would not do: S is small
+/// where |L| is large and near 1 where L is small, with whatever lies between them.
+double nearest_between(std::complex<double> from, std::complex<double> to);
+
 /// Up to where neighbours of a grid may differ.
 struct Refinement {
     double step;          ///< of S, absolute, or relative where |S| > 1
-    double enough_below;  ///< neighbours may differ by more where |S| and their difference together stay below it
+    double enough_below;  ///< neighbours may differ by more where |S| stays below it on the way; 0: nowhere
 
     Refinement(double step, double enough_below = 0) : step(step), enough_below(enough_below) {}
 };

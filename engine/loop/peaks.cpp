@@ -24,9 +24,7 @@ constexpr double kWorthRefining = 0.8;  // of the largest grid value: neighbours
 constexpr double kLongTurn = 0.3;  // rad of the dead time between neighbours of the grid: more hides a peak
 // rad between two looks there. Where |L| is small, hills along a turn are as wide as those of a sine.
 constexpr double kTurnStep = 0.15, kSmall = 0.3, kTurnStepOfSmall = 0.5;
-// Where L turns by less, no point of its arc is farther from the nearer end than half the arc's length: of the chord,
-// with room for the turn of the rest of L.
-constexpr double kPlainTurn = 1, kHalfOfArc = 0.55;
+constexpr double kPlainTurn = 1;   // rad: up to it both ends say how near L comes to -1 between them
 constexpr double kBetween = 0.01;  // |L| and |C| may be larger by it between neighbours than at both
 
 constexpr double kHigher = 1 + 1e-12;  // a limit must exceed a peak by more than rounding to stand for it
@@ -164,9 +162,7 @@ std::vector<Stretch> stretches_of(const LoopGrid& grid, double time) {
         if (!std::isfinite(gain_a) || !std::isfinite(gain_b)) continue;
         const double small = std::min(gain_a, gain_b), large = std::max(gain_a, gain_b);
         double nearest = large < 1 ? 1 - large : std::max(0.0, small - 1);
-        if (time * (right - left) < kPlainTurn)
-            nearest = std::max(
-                nearest, std::min(magnitude(1.0 + a.L), magnitude(1.0 + b.L)) - kHalfOfArc * magnitude(a.L - b.L));
+        if (time * (right - left) < kPlainTurn) nearest = std::max(nearest, nearest_between(a.L, b.L));
         const double C_a = magnitude_C(a), C_b = magnitude_C(b), C = std::max(C_a, C_b);
         const double change = (large - small) / nearest;
         stretches.push_back({.left = left,

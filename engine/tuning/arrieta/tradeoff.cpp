@@ -206,8 +206,9 @@ IdealPid controller_at(const LogSettings& x) {
 
 double log_iae(const LinearPlant& plant, const LogSettings& x, bool load) {
     const ParallelPid gains = to_parallel(controller_at(x));
-    if (!Loop::make(plant, gains)) return kNoController;
-    ResponseOptions options;  // an unstable loop does not settle
+    const auto loop = Loop::make(plant, gains);
+    if (!loop || !count_unstable_poles(*loop).stable()) return kNoController;
+    ResponseOptions options;
     options.tolerance = options.settled = kRoughTolerance;
     options.max_steps = kMaxSteps;
     const StepInputs inputs = load ? StepInputs{.d = 1} : StepInputs{.r = 1};

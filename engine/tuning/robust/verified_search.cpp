@@ -197,8 +197,10 @@ Expected<Found> or_without_derivative(Expected<Found> found, const DesignProblem
     without.pid = false;
     without.optimal_for_part = {};  // of which a PI need not be stable
     const Sweep sweep(without, reference);
-    // A PID whose Td is at its end is as good as a PI.
-    const Found* nearest = before != nullptr ? before : at_end && !all_dead_time(problem) ? &*found : nullptr;
+    // A PID whose Td is at its end is as good as a PI; set-point steps, and a limit on |C S|, may want another valley.
+    const bool as_good =
+        at_end && !all_dead_time(problem) && problem.objective == Objective::load_iae && !problem.limits.Mks;
+    const Found* nearest = before != nullptr ? before : as_good ? &*found : nullptr;
     const Found near = nearest != nullptr ? Found{.x = {nearest->x[0], nearest->x[1], 0}} : Found{};
     auto other = checked_search(SearchKind::fast, sweep, without, true, std::nullopt, nullptr, control,
                                 nearest != nullptr ? &near : nullptr);

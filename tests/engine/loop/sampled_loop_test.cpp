@@ -102,6 +102,43 @@ TEST_P(OfRandomPlants, ALimitIsKeptWhereThePeakIsBelowIt) {
     EXPECT_GT(exceeded, 300);
 }
 
+/// |S| at 400,000 frequencies up to pi/Ts, without a grid of the loop's own choice.
+double densely_scanned_Ms(const SampledLoop& loop) {
+    constexpr int kPoints = 400'000;
+    double largest = 0;
+    for (int i = 0; i <= kPoints; ++i) {
+        const double omega = loop.highest_frequency() * std::pow(1e-5, static_cast<double>(i) / kPoints);
+        largest = std::max(largest, std::abs(loop.at(omega).S));
+    }
+    return largest;
+}
+
+// On the flank of an antiresonance L passes near -1 between two frequencies of which neither shows it: |S| is small
+// where |L| is large, and near 1 where L is small.
+TEST(SampledLoop, AHumpBesideAnAntiresonanceBreaksALimit) {
+    const double zero = 7.74e-4, pole = 4.98e-4, w = 1.466;
+    Zpk zpk;
+    zpk.K = 297 * 0.1307 * 0.06288 * 19.21;
+    test::add_pair(zpk.zeros, 1, zero);
+    test::add_pair(zpk.poles, w, pole);
+    for (const double lag : {0.1307, 0.06288, 19.21}) zpk.poles.emplace_back(-lag);
+    const LinearPlant plant = *LinearPlant::make(zpk);
+    const ParallelPid gains{
+        .Kp = 2.777, .Ki = 0.216, .Kd = 0.519, .filter = {.type = FilterType::derivative, .Tf = 0.00489}};
+    int stable = 0;
+    for (const double Ts : {0.003, 0.006, 0.01, 0.02, 0.03, 0.04}) {
+        const SampledLoop loop(plant, {.gains = gains, .Ts = Ts});
+        if (!loop.count_unstable_poles().stable()) continue;
+        ++stable;
+        const double Ms = densely_scanned_Ms(loop);
+        EXPECT_NEAR(loop.sensitivity_peak().value / Ms, 1, 1e-4) << Ts;
+        for (const double share : {0.4, 0.5, 0.6, 0.65, 0.7, 0.75, 0.8, 0.9, 0.99})
+            EXPECT_FALSE(loop.keeps(std::max(share * Ms, 1.01))) << Ts << " Ms " << Ms << ' ' << share;
+        EXPECT_TRUE(loop.keeps(1.01 * Ms)) << Ts;
+    }
+    EXPECT_GT(stable, 3);
+}
+
 TEST_P(OfRandomPlants, TheLongestSampleTimeIsWherePeakComesToItsLimit) {
     int found = 0;
     for (std::uint64_t seed = 1; seed <= 60; ++seed) {

@@ -81,7 +81,7 @@ std::vector<double> frequencies(const DesignProblem& problem, const LinearPlant&
     };
     for (const auto pole : plant.poles()) add_resonance(pole);
     for (const auto zero : plant.zeros()) add_resonance(zero);
-    if (std::ranges::is_sorted(omega)) return omega;
+    if (std::ranges::adjacent_find(omega, std::greater_equal()) == omega.end()) return omega;
     std::sort(omega.begin(), omega.end());
     omega.erase(std::unique(omega.begin(), omega.end()), omega.end());
     return omega;

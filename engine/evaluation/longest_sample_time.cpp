@@ -157,20 +157,25 @@ private:
     /// Where the whole loop's Ms comes to the limit: the quick looks have seen it below at `low`, above at `high`.
     double between(double low, double high) const {
         const auto whole = [this](double Ts) { return excess(loop(Ts).sensitivity_peak().value); };
+        double f_low = whole(low);
         // They look less closely than the whole loop's peak is sought: it has the last word.
-        for (; whole(low) > kExact && low > shortest(); low = std::max(low / kNext, shortest())) high = low;
-        if (const Peak above = loop(high).sensitivity_peak(); above.omega > 0) {
+        for (; f_low > kExact && low > shortest(); f_low = whole(low)) {
+            high = low;
+            low = std::max(low / kNext, shortest());
+        }
+        const Peak above = loop(high).sensitivity_peak();
+        if (above.omega > 0) {
             TrackedPeak peak(plant_, gains_, above.omega);
             const auto exactly = [&](double Ts) { return excess(peak.exactly(Ts)); };
-            const double f_high = exactly(high), f_low = exactly(low);
-            if (f_low < 0 && f_high > 0) {
-                const double Ts = root_between(exactly, low, high, f_low, f_high, kExact * high);
+            const double at_high = exactly(high), at_low = exactly(low);
+            if (at_low < 0 && at_high > 0) {
+                const double Ts = root_between(exactly, low, high, at_low, at_high, kExact * high);
                 if (std::abs(whole(Ts)) <= kExact) return Ts;
             }
         }
         // They agree with Ms but for its last digits.
-        const double f_low = std::min(whole(low), 0.0), f_high = std::clamp(whole(high), 0.0, 1.0);
-        return root_between(whole, low, high, f_low, f_high, kExact * high);
+        const double f_high = std::clamp(excess(above.value), 0.0, 1.0);
+        return root_between(whole, low, high, std::min(f_low, 0.0), f_high, kExact * high);
     }
 
     const LinearPlant& plant_;

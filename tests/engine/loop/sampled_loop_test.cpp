@@ -139,7 +139,7 @@ TEST(SampledLoop, AHumpBesideAnAntiresonanceBreaksALimit) {
     EXPECT_GT(stable, 3);
 }
 
-TEST_P(OfRandomPlants, TheLongestSampleTimeIsWherePeakComesToItsLimit) {
+TEST_P(OfRandomPlants, TheLongestSampleTimeIsWhereThePeakComesToItsLimit) {
     int found = 0;
     for (std::uint64_t seed = 1; seed <= 60; ++seed) {
         const auto design = random_design(seed, GetParam());

@@ -11,6 +11,7 @@ namespace tunewright {
 class Captured {
 public:
     Captured() = default;
+    // NOLINTBEGIN(modernize-use-equals-default,bugprone-unhandled-self-assignment): what is never inlined has a body
     [[gnu::noinline]] Captured(const void* state, void (*destroy)(const void*)) : state_(state, destroy) {}
     [[gnu::noinline]] Captured(const Captured& other) noexcept : state_(other.state_) {}
     [[gnu::noinline]] Captured(Captured&& other) noexcept : state_(std::move(other.state_)) {}
@@ -23,6 +24,7 @@ public:
         return *this;
     }
     [[gnu::noinline]] ~Captured() {}
+    // NOLINTEND(modernize-use-equals-default,bugprone-unhandled-self-assignment)
 
     const void* get() const { return state_.get(); }
 

@@ -8,6 +8,7 @@
 #include "engine/loop/peaks.h"
 #include "engine/loop/stability.h"
 #include "engine/number_text.h"
+#include "engine/range/one_setting_problem.h"
 #include "engine/range/schedule/look.h"
 #include "engine/tuning/robust/sqp.h"
 #include "engine/tuning/robust/verified_search.h"
@@ -22,7 +23,6 @@ constexpr double kCompareTolerance = 1e-3;  // of simulations that only compare 
 constexpr double kPriceTolerance = 1e-5;    // of those that are reported
 constexpr double kAllowedOnGrid = 2e-5;     // of a limit, relative, on the independent grid
 constexpr double kSameDesign = 0.03;        // of each logarithm: another start that leads nowhere else
-constexpr double kFirstStep = 0.4;          // of a logarithm
 constexpr int kRounds = 4;                  // of searches under tighter limits
 constexpr int kRegionRounds = 10;           // of adding the worst plants inside regions
 
@@ -59,40 +59,6 @@ double log_price_of(const std::vector<Place*>& points, const DesignPoint& x, Aim
     }
     return aim == Aim::worst ? worst : std::log(sum / double(points.size()));
 }
-
-}  // namespace
-
-JointProblem one_setting_problem(const std::vector<Place*>& points, const RangeOptions& options, bool PI) {
-    JointProblem joint;
-    joint.places.assign(points.begin(), points.end());
-    joint.aim = options.aim;
-    const Eigen::Index n = PI ? 2 : points.front()->problem().dimension();
-    joint.settings = [n, PI](const Eigen::VectorXd& v, double, SettingsSlope* slope) {
-        if (slope != nullptr) slope->setIdentity(3, n);
-        return DesignPoint{v[0], v[1], n > 2 ? v[2] : PI ? -kNowhere : 0};
-    };
-    double fastest = 0, slowest = kNowhere;
-    for (const Place* place : points) {
-        fastest = std::max(fastest, place->sweep().reference());
-        slowest = std::min(slowest, place->sweep().reference());
-    }
-    joint.low = Eigen::VectorXd::Constant(n, -700);
-    joint.high = Eigen::VectorXd::Constant(n, 700);
-    joint.step = Eigen::VectorXd::Constant(n, kFirstStep);
-    joint.low[1] = std::log(robust::kMinTi / fastest);
-    if (n > 2) joint.low[2] = std::log(robust::kMinTd / fastest);
-    if (n > 2) joint.high[2] = std::log(robust::kMaxTd / slowest);
-    return joint;
-}
-
-Eigen::VectorXd unknowns_of(const JointProblem& joint, const DesignPoint& x) {
-    Eigen::VectorXd v(joint.low.size());
-    for (Eigen::Index i = 0; i < v.size(); ++i) v[i] = x[std::size_t(i)];
-    if (v.size() > 2) v[2] = std::max(v[2], joint.low[2]);
-    return v;
-}
-
-namespace {
 
 /// Where searches begin: the least integrated error, which needs no simulation, and the cheapest own optimum that can
 /// be moved within the limits of all points. Cheapest first.

@@ -1,14 +1,12 @@
 // One robust setting for a whole range, and what it costs at each point.
 #pragma once
 
-#include <functional>
 #include <vector>
 
 #include "engine/controller/pid.h"
 #include "engine/expected.h"
 #include "engine/figure.h"
 #include "engine/range/problem.h"
-#include "engine/range/search/joint_search.h"
 #include "engine/range/search/places.h"
 
 namespace tunewright::range {
@@ -41,14 +39,6 @@ Expected<OneSetting> design_one_setting(Places& places, const std::vector<double
 
 /// The ideal controller at x with the options' set-point weight.
 IdealPid setting_at(const DesignRules& rules, const robust::DesignPoint& x, double b);
-
-/// The search for one setting of these places (at least one, with their optima): unknowns ln Kp, ln Ti, and ln Td of
-/// PID. `PI`: Td is 0 although a PID was asked for. A filter tied to Td shrinks with it, so that no small Td comes near
-/// a PI on a plant whose gain does not fall with frequency.
-JointProblem one_setting_problem(const std::vector<Place*>& points, const RangeOptions& options, bool PI = false);
-
-/// x as the unknowns of such a problem.
-Eigen::VectorXd unknowns_of(const JointProblem& joint, const robust::DesignPoint& x);
 
 /// A setting at a place: simulated finely, peaks refined on every plant of the place.
 PlacePrice price_at(const Place& place, const IdealPid& controller);

@@ -1,11 +1,10 @@
 #include "engine/identification/relay_test/relay_fourier.h"
 
 #include <algorithm>
-#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
-#include <cstdint>
-#include <functional>
 #include <numbers>
+
+#include "engine/numerics/sign_change.h"
 
 namespace tunewright {
 namespace {
@@ -65,14 +64,6 @@ double excess(const Polar& point, double omega, Structure structure, double T, d
     return std::log(std::abs(m.K) / (std::abs(denominator(structure, T, s)) * magnitude)) - sigma * m.L;
 }
 
-/// ln T between two points at which Eq. 13 has opposite signs (TOMS 748: Alefeld, Potra and Shi 1995).
-double solve(const std::function<double(double)>& f, double low, double high, double at_low, double at_high) {
-    std::uintmax_t most = 100;
-    const auto [left, right] = boost::math::tools::toms748_solve(f, low, high, at_low, at_high,
-                                                                 boost::math::tools::eps_tolerance<double>(), most);
-    return 0.5 * (left + right);
-}
-
 }  // namespace
 
 double harmonic_misfit(const RecordedCycle& cycle, const ModelShape& shape, double K) {
@@ -105,6 +96,7 @@ std::vector<RelayModel> unbiased_models(const RecordedCycle& cycle, Complex shif
     constexpr int kIntervals = 400;                     // two roots of one structure lie farther apart
     constexpr double kShortest = 1e-4, kLongest = 1e4;  // T omega: beyond, the lag is none, or an integrator
     constexpr double kRounding = 1e-9;                  // a dead time of 0, of the record's length
+    constexpr double kSameRoot = 1e-14;                 // of ln T
     const double low = std::log(kShortest / omega), high = std::log(kLongest / omega);
     std::vector<RelayModel> models;
     double before = f(low);
@@ -112,7 +104,8 @@ std::vector<RelayModel> unbiased_models(const RecordedCycle& cycle, Complex shif
         const double a = low + (high - low) * (i - 1) / kIntervals, b = low + (high - low) * i / kIntervals;
         const double after = f(b);
         if ((before > 0) != (after > 0)) {
-            RelayModel model = model_at(cycle, point, structure, std::exp(solve(f, a, b, before, after)));
+            RelayModel model =
+                model_at(cycle, point, structure, std::exp(root_between(f, a, b, before, after, kSameRoot)));
             if (model.shape.L() >= -kRounding) {
                 model.shape.p[0] = std::max(0.0, model.shape.p[0]);
                 models.push_back(model);

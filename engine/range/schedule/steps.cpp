@@ -3,6 +3,7 @@
 #include <limits>
 #include <optional>
 
+#include "engine/range/one_setting_problem.h"
 #include "engine/range/schedule/design_schedule.h"
 #include "engine/range/schedule/look.h"
 

@@ -101,6 +101,99 @@ TEST(OptionSet, GivesBackWhatDiffers) {
     EXPECT_EQ(set.given_for({}, without).number("limit"), 1.6);
 }
 
+struct Shared {
+    double ratio = 0.1;
+    Colour colour = Colour::red;
+};
+
+struct Whole {
+    int first = 1;
+    Shared shared = {};
+    std::optional<NumberRange> span = {};
+    std::map<std::string, double> start = {};
+    double asked = 3;               // required: its value here is no default
+    std::optional<double> Tf = {};  // empty: 0.5
+    std::optional<std::variant<double, NumberRange>> either = {};
+};
+
+OptionSet<Whole> whole_set() {
+    OptionSet<Shared> shared;
+    shared.number(&Shared::ratio, "ratio", "Ratio.")
+        .choice(&Shared::colour, "colour", "Colour.", Words<Colour>{{"red", Colour::red}, {"green", Colour::green}});
+    OptionSet<Whole> set;
+    set.number(&Whole::first, "first", "First.")
+        .embed(&Whole::shared, shared)
+        .range(&Whole::span, "span", "Span.", {.unit = "time", .minimum = 0})
+        .numbers_by_name(&Whole::start, "start", "Start.")
+        .number(&Whole::asked, "asked", "Asked.", {.required = true})
+        .number(&Whole::Tf, "Tf", "Filter.", {.otherwise = 0.5})
+        .number_or_range(&Whole::either, "either", "Either.");
+    return set;
+}
+
+TEST(OptionSet, DescribesInTheOrderOfTheCalls) {
+    const auto set = whole_set();
+    std::vector<std::string> names;
+    for (const OptionDescription& option : set.descriptions()) names.push_back(option.name);
+    EXPECT_EQ(names, (std::vector<std::string>{"first", "ratio", "colour", "span", "start", "asked", "Tf", "either"}));
+    const auto& options = set.descriptions();
+    EXPECT_TRUE(named(options, "asked")->required);
+    EXPECT_FALSE(named(options, "asked")->default_value);
+    EXPECT_EQ(named(options, "Tf")->default_value, OptionValue(0.5));
+    EXPECT_EQ(named(options, "colour")->choices, (std::vector<std::string>{"red", "green"}));
+    EXPECT_EQ(named(options, "span")->unit, "time");
+    EXPECT_EQ(named(options, "span")->minimum, 0);
+}
+
+TEST(OptionSet, ReadsSharedOptionsRangesAndNumbersByName) {
+    MethodOptions given;
+    given.set("ratio", 0.7);
+    given.set("colour", std::string("green"));
+    given.set("span/0", 1.0);
+    given.set("span/1", 4.0);
+    given.set("start/T", 350.0);
+    given.set("start/C", 0.2);
+    given.set("either/0", 5.0);
+    given.set("either/1", 6.0);
+    const Whole whole = whole_set().read(given);
+    EXPECT_EQ(whole.shared.ratio, 0.7);
+    EXPECT_EQ(whole.shared.colour, Colour::green);
+    ASSERT_TRUE(whole.span);
+    EXPECT_EQ(whole.span->low, 1);
+    EXPECT_EQ(whole.span->high, 4);
+    EXPECT_EQ(whole.start, (std::map<std::string, double>{{"C", 0.2}, {"T", 350}}));
+    EXPECT_EQ(whole.asked, 3);
+    EXPECT_FALSE(whole.Tf);
+    ASSERT_TRUE(whole.either);
+    EXPECT_EQ(std::get<NumberRange>(*whole.either).high, 6);
+}
+
+TEST(OptionSet, GivesBackSharedOptionsUnderTheirOwnNames) {
+    Whole whole;
+    whole.shared = {.ratio = 0.7, .colour = Colour::green};
+    const MethodOptions given = whole_set().given_for(whole);
+    EXPECT_EQ(given.values().size(), 2u);
+    EXPECT_EQ(given.number("ratio"), 0.7);
+    EXPECT_EQ(given.text("colour"), "green");
+    EXPECT_EQ(whole_set().read(given).shared.ratio, 0.7);
+}
+
+/// Options of the same set below another one's name: paths are joined at every depth.
+TEST(OptionSet, ReadsBelowAName) {
+    struct Outermost {
+        Whole whole = {};
+    };
+    OptionSet<Outermost> set;
+    set.object(&Outermost::whole, "whole", "Whole.", whole_set());
+    MethodOptions given;
+    given.set("whole/ratio", 0.2);
+    given.set("whole/start/T", 1.0);
+    const Outermost read = set.read(given);
+    EXPECT_EQ(read.whole.shared.ratio, 0.2);
+    EXPECT_EQ(read.whole.start.at("T"), 1);
+    EXPECT_EQ(set.given_for(read).number("whole/ratio"), 0.2);
+}
+
 TEST(OptionSet, FillsInDefaultsAroundWhatIsGiven) {
     MethodOptions given;
     given.set("size", 9.0);

@@ -14,8 +14,8 @@ constexpr double kTurnsResolved = 60;        // periods of e^(-jwL) that are fol
 constexpr std::size_t kUsualGrowth = 2;      // of a grid by refinement: room for it is taken at once
 constexpr double kClosestNeighbours = 1e-7;  // relative distance below which no point is added
 
-constexpr double kHalfOfArc =
-    0.55;  // of its chord: half of it is 0.52 at a radian of dead time, and the rest turns too
+// Of its chord: half of it is 0.52 at a radian of dead time, and the rest of L turns too.
+constexpr double kHalfOfArc = 0.55;
 
 constexpr double kBelowCorners = 1e-3, kAboveCorners = 1e2;  // of the outermost corners: L is its asymptote beyond
 constexpr double kFarBelow = 1e-2, kFarAbove = 1e2;          // of the corners: where the asymptotes are read

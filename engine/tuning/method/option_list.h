@@ -227,7 +227,8 @@ private:
     template <class E, class Take>
     void bind_list(std::size_t offset, std::string_view name, Take take) {
         add({std::string(name), offset, [take](const MethodOptions& given, const std::string& path, void* member) {
-                 for (std::size_t i = 0; i < given.size(path); ++i)
+                 const std::size_t size = given.size(path);
+                 for (std::size_t i = 0; i < size; ++i)
                      static_cast<std::vector<E>*>(member)->push_back(take(given, path + "/" + std::to_string(i)));
              }});
     }

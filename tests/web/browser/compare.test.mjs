@@ -1,6 +1,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import test from "node:test";
+import { inflateSync } from "node:zlib";
 import { accessibilityViolations, browserTests, overflow, tracesShown, WINDOWS, openMore } from "../harness.mjs";
 
 const tests = browserTests();
@@ -261,6 +262,30 @@ test("on paper every column has its heading, and the table is no wider than its 
     await page.emulateMedia({ media: "print" });
     assert.equal(await page.locator(".legend input:visible").count(), 0);
     assert.match(await page.locator(".legend").innerText(), /robust[^]*today/i);
+  });
+});
+
+/** How many pieces of text each page of a PDF of the browser writes. */
+function textPieces(pdf) {
+  const text = pdf.toString("latin1");
+  const object = (number) => text.slice(text.search(new RegExp(`(^|\\n)${number} 0 obj`)));
+  return [...text.matchAll(/\/Type\s*\/Page\b[^]*?endobj/g)].map(([page]) => {
+    const contents = object(Number(/\/Contents (\d+) 0 R/.exec(page)[1]));
+    const begin = contents.indexOf("stream\n") + "stream\n".length;
+    const stream = Buffer.from(contents.slice(begin, contents.indexOf("\nendstream")), "latin1");
+    return (inflateSync(stream).toString("latin1").match(/ T[jJ]\b/g) ?? []).length;
+  });
+}
+
+test("the table begins on the first page and is printed whole", async () => {
+  await withPage(PLANT, {}, async (page) => {
+    await compareAll(page);
+    await page.locator(".league-table tbody tr").first().waitFor();
+    const rows = await page.locator(".league-table tbody tr").count();
+    const pieces = textPieces(await page.pdf({ format: "A4", landscape: true }));
+    assert.ok(pieces.length > 1, `${pieces.length} pages of ${rows} rows`);
+    assert.ok(pieces[0] > 100, `the first page holds ${pieces[0]} pieces of text, the pages ${pieces.join(", ")}`);
+    assert.ok(pieces.reduce((sum, count) => sum + count, 0) > 10 * rows);
   });
 });
 

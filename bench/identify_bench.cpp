@@ -1,6 +1,7 @@
 // Identification of recorded tests: a step and a relay test of usual lengths, and a million samples.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 

@@ -1,6 +1,7 @@
 #include "api/formula/notation.h"
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <span>
 

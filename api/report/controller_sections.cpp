@@ -1,4 +1,5 @@
 // What is to be entered, what it does, and how it was found.
+#include <algorithm>
 #include <array>
 
 #include "api/report/figures.h"

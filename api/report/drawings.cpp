@@ -1,6 +1,7 @@
 // Responses before and after, the Nyquist curve and the sensitivities, as drawings.
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "api/report/figures.h"
 #include "api/report/plot.h"

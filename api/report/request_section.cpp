@@ -1,4 +1,6 @@
 // The whole request, so that it can be run again.
+#include <algorithm>
+
 #include "api/json/digest.h"
 #include "api/json/json.h"
 #include "api/report/figures.h"

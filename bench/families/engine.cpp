@@ -5,6 +5,7 @@
 //
 // A line of the answer: name, ms (the shorter of two runs), then Kp, Ti, Td, Tf, or the sentence that says why not.
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <complex>

@@ -1,4 +1,5 @@
 // Scenarios of requests that are sent one after the other on each of several connections.
+#include <algorithm>
 #include <stdexcept>
 
 #include "bench/load/scenario.h"

@@ -1,6 +1,7 @@
 // The revised IMC controller before it is reduced to a PID: with the model's dead time inside.
 #pragma once
 
+#include <cmath>
 #include <complex>
 
 namespace tunewright {

@@ -1,5 +1,6 @@
 #include "engine/request/as_built.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/evaluation/evaluate.h"

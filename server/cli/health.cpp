@@ -1,6 +1,7 @@
 // `tunewright health`, for health checks where there is no curl.
 #include <httplib.h>
 
+#include <algorithm>
 #include <iostream>
 #include <stdexcept>
 #include <string>

@@ -1,7 +1,9 @@
 // Every kind of bad input gets its status, the place and a sentence that helps.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <random>
+#include <variant>
 
 #include "support.h"
 
@@ -19,11 +21,9 @@ struct BadRequest {
 };
 
 void PrintTo(const BadRequest& bad, std::ostream* out) { *out << bad.name; }
-
+std::string case_name(const testing::TestParamInfo<BadRequest>& bad) { return bad.param.name; }
 std::string with_plant(const std::string& plant) { return R"({"plant": )" + plant + "}"; }
 std::string with_record(const std::string& record) { return R"({"record": )" + record + "}"; }
-
-std::string case_name(const testing::TestParamInfo<BadRequest>& bad) { return bad.param.name; }
 
 class Refuses : public testing::TestWithParam<BadRequest> {};
 

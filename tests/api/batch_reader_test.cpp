@@ -1,4 +1,6 @@
 // Batches as they arrive: every cut of the body gives the same requests, and what is wrong is said.
+#include <algorithm>
+
 #include <gmock/gmock.h>
 
 #include "api/batch/reader.h"

@@ -1,6 +1,7 @@
 // Numbers as text, strict parsing, canonical spelling, digest.
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <random>
 
 #include "api/json/digest.h"

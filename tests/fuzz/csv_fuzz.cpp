@@ -1,6 +1,7 @@
 // libFuzzer on what people export and send in bulk: CSV records, and batches as JSON, NDJSON and CSV of loops. Whatever
 // bytes come, either sentences that can be shown to anybody, or numbers that are finite and requests that are JSON; and
 // a batch is the same however its bytes are cut. First byte: which reader; second: the seed of the cuts.
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

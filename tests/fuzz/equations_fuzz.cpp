@@ -1,6 +1,7 @@
 // libFuzzer on a plant's texts: whatever bytes come, either an error that can be shown to anybody, or a plant whose
 // numbers are finite. Lines: output, dx/dt, dz/dt, a parameter. The same bytes are read as a typed plant too, whose
 // text must be read back.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>

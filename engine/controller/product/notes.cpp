@@ -1,5 +1,6 @@
 #include "engine/controller/product/notes.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/controller/product/needs.h"

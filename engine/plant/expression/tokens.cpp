@@ -1,5 +1,6 @@
 #include "engine/plant/expression/tokens.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cstdio>
 

@@ -1,5 +1,6 @@
 #include "engine/plant/typed/parsers.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>

@@ -1,5 +1,6 @@
 #include "engine/simulation/relay/relay_refusal.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/number_text.h"

@@ -2,6 +2,7 @@
 // start instead of by rounding an ideal design.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <optional>
 #include <vector>

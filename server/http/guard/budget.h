@@ -1,6 +1,7 @@
 // One sum of bytes for all who hold some, and a wait for room in it.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <mutex>

@@ -1,6 +1,7 @@
 #include "server/store/postgres/writer.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "server/log.h"

@@ -2,6 +2,7 @@
 // or refused.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 

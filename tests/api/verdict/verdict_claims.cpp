@@ -1,5 +1,6 @@
 #include "tests/api/verdict/verdict_claims.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>

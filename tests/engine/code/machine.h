@@ -1,6 +1,7 @@
 // Executes a controller's program as it stands, before any language has been chosen.
 #pragma once
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <map>

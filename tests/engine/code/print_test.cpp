@@ -1,3 +1,8 @@
+#include <algorithm>
+#include <cstdlib>
+#include <sstream>
+#include <stdexcept>
+
 #include "engine/code/print.h"
 
 #include <gmock/gmock.h>

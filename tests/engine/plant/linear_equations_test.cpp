@@ -1,4 +1,6 @@
 // A linear plant written as equations is the same plant.
+#include <cmath>
+
 #include "engine/plant/nonlinear/linearisation.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,7 @@
 // The relay simulator against closed forms, Tsypkin's locus and superposed step responses.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>

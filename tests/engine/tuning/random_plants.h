@@ -1,6 +1,7 @@
 // Random plants for the comparison of searches: each is its index's alone, the same on every machine.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <cstdint>

@@ -1,6 +1,7 @@
 // The 94 plants of the AMIGO batch with their reference values (tests/data/robust).
 #pragma once
 
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>

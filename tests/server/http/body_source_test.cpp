@@ -1,6 +1,7 @@
 // Bodies that are read as they arrive, or gathered.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 

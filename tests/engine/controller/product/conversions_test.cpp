@@ -1,5 +1,6 @@
 // What the conversions promise beyond single settings: round trips, units of time, resolution, clocks, sampled laws.
 #include <random>
+#include <stdexcept>
 
 #include <gmock/gmock.h>
 

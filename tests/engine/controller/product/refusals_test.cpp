@@ -1,4 +1,6 @@
 // What a block cannot be is refused with a sentence; what it does differently is said in notes.
+#include <stdexcept>
+
 #include <gmock/gmock.h>
 
 #include "tests/engine/controller/product/support.h"

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <limits>
+#include <stdexcept>
 
 #include "engine/controller/product/notes.h"
 #include "engine/controller/schedule/schedule.h"

@@ -70,20 +70,21 @@ public:
             return reader.fault_at(tag_, tag_ + " is missing; it must be " + listed(words_) + ".");
         }
         const Json word = at == value.end() ? Json(otherwise_) : *at;
-        if (word.is_string()) {
+        const auto* const text = word.get_ptr<const std::string*>();
+        if (text != nullptr) {
             for (const Alternative& alternative : alternatives_) {
-                if (word == alternative.word && (!alternative.matches || alternative.matches(value)))
+                if (*text == alternative.word && (!alternative.matches || alternative.matches(value)))
                     return alternative.read(value, target, reader);
             }
             for (const Included& inner : included_) {
-                if (std::find(inner.words.begin(), inner.words.end(), word) != inner.words.end())
+                if (std::find(inner.words.begin(), inner.words.end(), *text) != inner.words.end())
                     return inner.read(value, target, reader);
             }
             for (const auto& [name, sentence] : refused_) {
-                if (word == name) return reader.fault_at(tag_, sentence);
+                if (*text == name) return reader.fault_at(tag_, sentence);
             }
         }
-        const std::string meant = word.is_string() ? nearest(word.get_ref<const std::string&>(), words_) : "";
+        const std::string meant = text != nullptr ? nearest(*text, words_) : "";
         reader.fault_at(tag_, tag_ + " is " + shown(word) + "; it must be " + listed(words_) + "." +
                                   (meant.empty() ? "" : " Did you mean " + meant + "?"));
     }

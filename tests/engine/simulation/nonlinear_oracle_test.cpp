@@ -7,6 +7,7 @@
 #include <sunmatrix/sunmatrix_dense.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <stdexcept>
@@ -16,12 +17,16 @@
 #include "engine/simulation/nonlinear/nonlinear_response.h"
 #include "tests/engine/plant/nonlinear_plants.h"
 
+#ifndef SUN_COMM_NULL  // SUNDIALS before version 7
+#define SUN_COMM_NULL nullptr
+#endif
+
 namespace tunewright {
 namespace {
 
 using CvodeRates = std::function<void(double t, const double* x, double* dx)>;
 
-int call(realtype t, N_Vector x, N_Vector dx, void* rates) {
+int call(sunrealtype t, N_Vector x, N_Vector dx, void* rates) {
     (*static_cast<const CvodeRates*>(rates))(t, N_VGetArrayPointer(x), N_VGetArrayPointer(dx));
     return 0;
 }
@@ -39,7 +44,7 @@ std::vector<std::vector<double>> cvode_states(const CvodeRates& rates, std::vect
     std::vector<double> absolute;
     for (const double size : sizes) absolute.push_back(relative_tolerance * size);
     SUNContext context = nullptr;
-    check(SUNContext_Create(nullptr, &context));
+    check(SUNContext_Create(SUN_COMM_NULL, &context));
     N_Vector state = N_VMake_Serial(n, x.data(), context), tolerances = N_VMake_Serial(n, absolute.data(), context);
     SUNMatrix matrix = SUNDenseMatrix(n, n, context);
     SUNLinearSolver solver = SUNLinSol_Dense(state, matrix, context);

@@ -190,7 +190,7 @@ std::vector<bool> finish_jobs(Session& session, const std::vector<const JobEnd*>
     for (const TextArray* array :
          {&seq, &single, &status, &attempts, &cancel, &started, &finished, &version, &outline, &error, &first, &length})
         values.plain(array->literal());
-    session.run(kEnd, values, results);
+    session.run(kEnd, values, &results);
     counts.write(session);
     return answers;
 }

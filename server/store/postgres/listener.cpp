@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <pqxx/notification>
 
 #include "server/store/postgres/notices.h"
 #include "server/store/postgres/session.h"
@@ -16,16 +15,6 @@ namespace {
 
 constexpr int kFirstPauseMs = 100;
 constexpr int kMaxPauseMs = 2000;
-
-class Receiver : public pqxx::notification_receiver {
-public:
-    Receiver(pqxx::connection_base& connection, std::function<void(const std::string&)> listener)
-        : pqxx::notification_receiver(connection, kChannel), listener_(std::move(listener)) {}
-    void operator()(const std::string& payload, int) override { listener_(payload); }
-
-private:
-    std::function<void(const std::string&)> listener_;
-};
 
 }  // namespace
 
@@ -83,7 +72,7 @@ void Listener::work() {
 void Listener::listen() {
     const std::unique_ptr<Link> link = connect(address_);
     pqxx::connection& connection = link->connection;
-    const Receiver receiver(connection, [this](const std::string& payload) {
+    const Subscription subscription(connection, kChannel, [this](const std::string& payload) {
         read_payload(payload, own_tag_, [this](const StoreNotice& notice) { pass_on(notice); });
     });
     tried();

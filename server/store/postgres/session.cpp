@@ -4,10 +4,8 @@
 #include <charconv>
 #include <map>
 #include <memory>
-#include <pqxx/binarystring>
 #include <pqxx/except>
 #include <pqxx/nontransaction>
-#include <pqxx/prepared_statement>
 
 #include "server/store/postgres/text.h"
 #include "server/store/store.h"
@@ -188,19 +186,10 @@ pqxx::result Session::sent(Work work) {
     }
 }
 
-pqxx::result Session::run(const std::string& sql, const Values& values) {
-    const auto given = pqxx::prepare::make_dynamic_params(values.list);
-    if (pooled_) return sent([&](pqxx::nontransaction& on) { return on.exec_params(sql, given); });
+pqxx::result Session::run(const std::string& sql, const Values& values, const std::string* bytes) {
+    if (pooled_) return sent([&](pqxx::nontransaction& on) { return execute(on, {sql, values.list, bytes}); });
     const std::string& name = prepared(sql);
-    return sent([&](pqxx::nontransaction& on) { return on.exec_prepared(name, given); });
-}
-
-pqxx::result Session::run(const std::string& sql, const Values& values, const std::string& bytes) {
-    const auto given = pqxx::prepare::make_dynamic_params(values.list);
-    const pqxx::binarystring last(bytes);
-    if (pooled_) return sent([&](pqxx::nontransaction& on) { return on.exec_params(sql, given, last); });
-    const std::string& name = prepared(sql);
-    return sent([&](pqxx::nontransaction& on) { return on.exec_prepared(name, given, last); });
+    return sent([&](pqxx::nontransaction& on) { return execute_prepared(on, {name, values.list, bytes}); });
 }
 
 pqxx::result Session::run_plain(const std::string& sql) {

@@ -6,12 +6,12 @@
 #include <map>
 #include <memory>
 #include <pqxx/connection>
-#include <pqxx/errorhandler>
 #include <pqxx/result>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "server/store/postgres/library.h"
 #include "server/store/postgres/watch.h"
 #include "server/store/store.h"
 
@@ -71,7 +71,7 @@ public:
 struct Link {
     explicit Link(const Address& address) : connection(address.settings()), quiet(connection) {}
     pqxx::connection connection;
-    pqxx::quiet_errorhandler quiet;
+    Quiet quiet;
 };
 
 /// Opens a connection with the settings that every part of the store uses; behind a pooler each transaction makes them.
@@ -88,10 +88,8 @@ public:
     Session& operator=(const Session&) = delete;
 
     /// One statement, prepared at its first use; behind a pooler it is sent as it is, in a transaction of its own where
-    /// none is open. Throws Failure.
-    pqxx::result run(const std::string& sql, const Values& values = {});
-    /// The same; after the values come bytes, as they are.
-    pqxx::result run(const std::string& sql, const Values& values, const std::string& bytes);
+    /// none is open. After the values come `bytes`, as they are, where there are any. Throws Failure.
+    pqxx::result run(const std::string& sql, const Values& values = {}, const std::string* bytes = nullptr);
     /// Statements without values, sent in one piece; the result of the last.
     pqxx::result run_plain(const std::string& sql);
 

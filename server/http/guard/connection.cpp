@@ -2,6 +2,7 @@
 
 #include <poll.h>
 #include <sys/socket.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -38,7 +39,10 @@ Connection::Connection(int fd, std::string client, std::string of_network, const
       since(Clock::now()),
       moved(Clock::now()),
       fd_(fd),
-      limits_(limits) {}
+      limits_(limits) {
+    const timeval look{.tv_sec = kLook.count(), .tv_usec = 0};
+    ::setsockopt(fd_, SOL_SOCKET, SO_RCVTIMEO, &look, sizeof look);
+}
 
 Connection::~Connection() { ::close(fd_); }
 

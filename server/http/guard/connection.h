@@ -70,7 +70,7 @@ public:
     std::atomic<Clock::time_point> moved;  ///< when the client took something of an answer
 
     /// What its socket waits for by itself (SO_RCVTIMEO).
-    static constexpr std::chrono::milliseconds kLook{1000};
+    static constexpr std::chrono::seconds kLook{1};
 
 private:
     void rest();

@@ -14,6 +14,7 @@
 #include <thread>
 
 #include "server/http/guard/exchange.h"
+#include "server/http/guard/library.h"
 
 namespace tunewright::server::http {
 namespace {
@@ -53,32 +54,18 @@ bool is_loopback(const std::string& address) {
 
 }  // namespace
 
-/// Where the library puts the connections that it accepts.
-class Server::Guard::Queue : public httplib::TaskQueue {
-public:
-    explicit Queue(Guard& guard) : guard_(guard) {}
-    void enqueue(std::function<void()> task) override { guard_.expect_one(std::move(task)); }
-    void shutdown() override {}
-
-private:
-    Guard& guard_;
-};
-
 Server::Guard::Guard(const Limits& limits, Application application)
     : limits_(limits),
       application_(std::move(application)),
       bodies_(limits.bodies),
       answers_(limits.unsent),
       crew_(limits.connections) {
-    new_task_queue = [this] { return new Queue(*this); };
     set_tcp_nodelay(true);
     // SO_REUSEADDR alone: a port that another process listens on is an error, never shared.
     set_socket_options([](socket_t fd) {
         const int on = 1;
         ::setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
     });
-    // Each socket that the library accepts gets it.
-    set_read_timeout(Connection::kLook);
     set_payload_max_length(limits_.max_batch_body);
     set_pre_routing_handler([](const httplib::Request&, httplib::Response& out) { return Exchange::before_body(out); });
     const auto with_body = [](const httplib::Request&, httplib::Response& out, const httplib::ContentReader& body) {
@@ -105,21 +92,22 @@ int Server::Guard::open(const std::string& host, int port) {
     }
     // The library listens with a backlog of 5, which drops connections of any burst.
     ::listen(svr_sock_, kBacklog);
+    listener_ = svr_sock_;
     sockaddr_storage address{};
     socklen_t size = sizeof address;
-    ::getsockname(svr_sock_, reinterpret_cast<sockaddr*>(&address), &size);
-    listener_ = ::dup(svr_sock_);
+    ::getsockname(listener_, reinterpret_cast<sockaddr*>(&address), &size);
     return ntohs(address.ss_family == AF_INET6 ? reinterpret_cast<sockaddr_in6&>(address).sin6_port
                                                : reinterpret_cast<sockaddr_in&>(address).sin_port);
 }
 
+/// In place of the library's own loop, which ends at errors that pass, such as too many open files of the whole system.
 void Server::Guard::serve() {
     while (!closed_) {
-        listen_after_bind();
-        // The library's loop gives up on errors that pass, such as too many open files of the whole system.
-        if (closed_) break;
-        std::this_thread::sleep_for(kStoppingInterval);
-        svr_sock_ = ::dup(listener_);
+        const int socket = ::accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
+        if (socket >= 0)
+            expect_one(socket);
+        else if (errno != EINTR && errno != ECONNABORTED && !closed_)
+            std::this_thread::sleep_for(kStoppingInterval);
     }
     finish_under_way();
 }
@@ -130,7 +118,7 @@ void Server::Guard::close() {
     const auto end = std::chrono::steady_clock::now() + limits_.farewell;
     for (pollfd port{listener_, POLLIN, 0}; ::poll(&port, 1, 0) > 0 && std::chrono::steady_clock::now() < end;)
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    // Ends the library's accept(), and whatever it is asked to accept later. Its own stop() would cut off streams.
+    // Ends accept(). The library's own stop() would cut off streams.
     closed_ = true;
     ::shutdown(listener_, SHUT_RDWR);
 }
@@ -159,12 +147,12 @@ void Server::Guard::finish_under_way() {
 // ---- connections come and go ----
 
 /// Another connection is to be served. Where there are as many as there may be, one of whoever has the most gives way.
-void Server::Guard::expect_one(std::function<void()> task) {
+void Server::Guard::expect_one(int socket) {
     {
         const std::lock_guard lock(mutex_);
         connections_++;
     }
-    const bool has_thread = crew_.post(std::move(task));
+    const bool has_thread = crew_.post([this, socket] { attend(socket); });
     const std::lock_guard lock(mutex_);
     starved_ = !has_thread;
     thin_out();
@@ -220,14 +208,14 @@ Occupancy Server::Guard::occupancy() const {
     return {.connections = connections_, .body_bytes = bodies_.taken(), .unsent_bytes = answers_.bytes()};
 }
 
-bool Server::Guard::process_and_close_socket(socket_t socket) {
+/// On a thread of the crew: all requests of a connection.
+void Server::Guard::attend(int socket) {
     const sockaddr_storage peer = peer_of(socket);
     Connection connection(socket, text_of(peer), network_of(peer), limits_);
     const bool allowed = enter(connection);
     const std::shared_ptr<void> leaving(nullptr, [&](void*) { leave(connection); });
     while (allowed && converse(connection)) {
     }
-    return true;
 }
 
 /// One request and its answer; false where it was the last.
@@ -235,10 +223,8 @@ bool Server::Guard::converse(Connection& connection) {
     const std::optional<Head> head = connection.next_head();
     if (!head) return false;
     Exchange exchange(connection, *head, application_, limits_, bodies_, answers_, stopping_);
-    const bool goes_on = exchange.run([this](httplib::Stream& stream) {
-        bool closed = false;
-        return process_request(stream, false, closed, Exchange::on_head);
-    });
+    const bool goes_on = exchange.run(
+        [this](httplib::Stream& stream) { return process(*this, &Guard::process_request, stream, Exchange::on_head); });
     if (!goes_on) connection.linger();
     return goes_on;
 }

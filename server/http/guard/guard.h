@@ -29,13 +29,10 @@ public:
     bool idle_within(std::chrono::milliseconds patience) { return crew_.stop_within(patience); }
 
 private:
-    class Queue;
     using Neighbours = std::set<Connection*>;
 
-    /// Called by the library for each socket that it accepts; on a thread of the crew.
-    bool process_and_close_socket(socket_t socket) override;
-
-    void expect_one(std::function<void()> task);
+    void expect_one(int socket);
+    void attend(int socket);
     void thin_out();
     bool enter(Connection& connection);
     void leave(Connection& connection);
@@ -49,10 +46,10 @@ private:
     const Application application_;
     Budget bodies_;
     Answers answers_;
-    std::atomic<bool> stopping_ = false;  ///< answers say that they are the last
-    std::atomic<bool> closed_ = false;    ///< nobody is accepted any more
-    int listener_ = -1;                   ///< the port, open for longer than the library holds it
-    mutable std::mutex mutex_;            ///< of what follows
+    std::atomic<bool> stopping_ = false;                         ///< answers say that they are the last
+    std::atomic<bool> closed_ = false;                           ///< nobody is accepted any more
+    int listener_ = -1;                                          ///< the port
+    mutable std::mutex mutex_;                                   ///< of what follows
     std::map<std::string, Neighbours, std::less<>> neighbours_;  ///< by network; none is empty
     bool over_ = false;                                          ///< who comes now is not served
     std::size_t connections_ = 0;                                ///< accepted, whether they have a thread yet or not

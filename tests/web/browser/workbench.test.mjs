@@ -344,7 +344,7 @@ test("on a phone the responses stand first, and the sliders directly under them"
       await top(page.locator(".front")),
       await top(page.locator(".settings")),
     ];
-    assert.deepEqual(order, order.toSorted((a, b) => a - b));
+    assert.deepEqual(order, [...order].sort((a, b) => a - b));
     assert.ok(order[0] < 500, `the first plot begins at ${order[0]}`);
 
     const scrolled = () => page.evaluate(() => window.scrollY);

@@ -75,7 +75,7 @@ class WordsTest(unittest.TestCase):
 
 
 CTEST = """add_test(passes "true")
-add_test(skips "sh" "-c" "exit 77")
+add_test(skips "sh" "-c" "echo 'disk_test.cpp:3: Skipped'; echo 'no disk here'; exit 77")
 set_tests_properties(skips PROPERTIES SKIP_RETURN_CODE 77)
 """
 NODE = """import test from "node:test";
@@ -135,7 +135,7 @@ class CountsTest(unittest.TestCase):
         self.assertEqual((code, lines[-1]), (0, "4 passed, 0 failed, 4 skipped"), "\n".join(lines))
         named = [line for line in lines[-5:-1] if line.startswith("skipped: ")]
         self.assertEqual(len(named), 4, "\n".join(lines))
-        for word in ("skips", "has no browser", "test_proxy", "no proxy here"):
+        for word in ("skips: no disk here", "has no browser", "test_proxy", "no proxy here"):
             self.assertTrue(any(word in line for line in named), word)
 
     def test_a_failure_is_counted_and_ends_with_it(self):

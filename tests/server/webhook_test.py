@@ -325,7 +325,7 @@ class RefusedTest(WebhookTest):
         self.assertEqual(subprocess.run([BINARY, "secret", "a b"], capture_output=True).returncode, 2)
 
 
-@unittest.skipUnless(shutil.which("openssl"), "openssl makes the certificate")
+@unittest.skipUnless(shutil.which("openssl"), "openssl is not installed: run script/bootstrap test")
 class TlsTest(WebhookTest):
     def test_only_a_receiver_with_a_trusted_certificate_is_told(self):
         key, certificate = self.folder + "/key.pem", self.folder + "/certificate.pem"

@@ -97,7 +97,7 @@ TEST_P(NeighbouringRuns, AreWhatEachIsByItself) {
 }
 
 TEST_P(NeighbouringRuns, EveryKindOfRegisterGivesTheSameDigits) {
-    if (widest_registers() == Registers::common) GTEST_SKIP() << "This processor has no AVX2.";
+    if (widest_registers() == Registers::common) GTEST_SKIP() << "this processor has no AVX2: run it on one that has";
     for (const auto& c : stable_loops(GetParam().resonant, GetParam().with_dead_time, 20)) {
         const StepResponse run = repeatable_run(c, to_parallel(c.pid), nullptr);
         const auto controllers = neighbours_of(c.pid);

@@ -47,7 +47,7 @@ Complex controller(const LoopGains& c, double w) {
 }
 
 TEST(SweepLoops, EveryKindOfRegisterGivesTheSameDigits) {
-    if (widest_registers() == Registers::common) GTEST_SKIP() << "This processor has no AVX2.";
+    if (widest_registers() == Registers::common) GTEST_SKIP() << "this processor has no AVX2: run it on one that has";
     for (const std::size_t n : {0, 1, 3, 4, 7, 64, 1001}) {
         const RandomGrid grid(n + 1, n);
         Random random(n + 77);

@@ -236,7 +236,7 @@ class NginxConfiguration:
         return text
 
 
-@unittest.skipUnless(NGINX and shutil.which("openssl"), "nginx and openssl are not installed")
+@unittest.skipUnless(NGINX and shutil.which("openssl"), "nginx or openssl is not installed: run script/bootstrap test")
 class NginxTest(unittest.TestCase):
     """TLS in front of three replicas on one PostgreSQL."""
 

@@ -85,7 +85,7 @@ class MetricsTest(unittest.TestCase):
         document = (ROOT / "docs" / "operations.md").read_text()
         self.assertEqual(alerts, set(re.findall(r"^\| `(Tunewright\w+)` \|", document, re.M)))
 
-    @unittest.skipUnless(shutil.which("promtool"), "needs promtool")
+    @unittest.skipUnless(shutil.which("promtool"), "promtool is not installed: run script/bootstrap test")
     def test_promtool_takes_the_rules_and_the_figures(self):
         checked = subprocess.run(["promtool", "check", "rules", str(RULES)], capture_output=True, text=True)
         self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)

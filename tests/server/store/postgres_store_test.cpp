@@ -32,7 +32,7 @@ class PostgresStore : public testing::Test {
 protected:
     void SetUp() override {
         database_ = PostgresDatabase::make();
-        if (!database_) GTEST_SKIP() << "TUNEWRIGHT_TEST_POSTGRES names no cluster";
+        if (!database_) GTEST_SKIP() << "there is no PostgreSQL: tests/server/postgres.py run -- PROGRAM starts one";
     }
     std::unique_ptr<JobStore> open() { return open_postgres_store(database_->url(), SchemaSteps::take); }
     static NewJob job(const std::string& id) {

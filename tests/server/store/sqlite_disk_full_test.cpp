@@ -10,6 +10,9 @@
 namespace tunewright::server {
 namespace {
 
+constexpr const char* kNoMount =
+    "a small file system needs the right to mount one: run script/test as root, in a container with CAP_SYS_ADMIN";
+
 /// A file system in memory of so many kilobytes, where this process may mount one.
 class SmallDisk {
 public:
@@ -32,7 +35,7 @@ private:
 TEST(SqliteDiskFull, AcceptsFailAsFullReadsGoOnAndNothingIsLostWhenThereIsRoomAgain) {
     const TemporaryFolder folder;
     const SmallDisk disk(folder.path());
-    if (!disk.mounted()) GTEST_SKIP() << "this user may not mount a file system";
+    if (!disk.mounted()) GTEST_SKIP() << kNoMount;
     std::vector<std::string> accepted;
     {
         const auto store = open_sqlite_store(folder.file(), SchemaSteps::take);
@@ -71,7 +74,7 @@ TEST(SqliteDiskFull, AcceptsFailAsFullReadsGoOnAndNothingIsLostWhenThereIsRoomAg
 TEST(SqliteDiskFull, IsNotHealthyForAsLongAsOnlySmallChangesFit) {
     const TemporaryFolder folder;
     const SmallDisk disk(folder.path());
-    if (!disk.mounted()) GTEST_SKIP() << "this user may not mount a file system";
+    if (!disk.mounted()) GTEST_SKIP() << kNoMount;
     const auto store = open_sqlite_store(folder.file(), SchemaSteps::take);
     const auto accept = [&](const std::string& id, std::size_t bytes) {
         NewJob job;
@@ -97,7 +100,7 @@ TEST(SqliteDiskFull, IsNotHealthyForAsLongAsOnlySmallChangesFit) {
 TEST(SqliteDiskFull, AnEndThatFoundNoRoomIsTakenWhenItIsOfferedAgain) {
     const TemporaryFolder folder;
     const SmallDisk disk(folder.path());
-    if (!disk.mounted()) GTEST_SKIP() << "this user may not mount a file system";
+    if (!disk.mounted()) GTEST_SKIP() << kNoMount;
     const auto store = open_sqlite_store(folder.file(), SchemaSteps::take);
     NewJob job;
     job.id = "a";

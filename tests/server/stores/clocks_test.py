@@ -15,7 +15,7 @@ def days_away(days):
     return {"LD_PRELOAD": LIBRARY[0], "FAKETIME": "%+dd" % days, "FAKETIME_DONT_FAKE_MONOTONIC": "1"}
 
 
-@unittest.skipUnless(LIBRARY, "faketime is not installed: script/bootstrap test")
+@unittest.skipUnless(LIBRARY, "faketime is not installed: run script/bootstrap test")
 class ClocksTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):

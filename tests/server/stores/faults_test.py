@@ -167,7 +167,7 @@ class DrainTest(unittest.TestCase):
         self.hold(OwnPostgres())
 
 
-@unittest.skipUnless(may_mount(), "a small file system can only be mounted by root")
+@unittest.skipUnless(may_mount(), "a small file system needs the right to mount one: run script/test as root, in a container with CAP_SYS_ADMIN")
 class DiskTest(unittest.TestCase):
     """The disk of the store fills up, and is emptied again."""
 

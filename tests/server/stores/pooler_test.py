@@ -61,7 +61,7 @@ logfile = %s/log
         shutil.rmtree(self.folder, ignore_errors=True)
 
 
-@unittest.skipUnless(os.path.exists(PGBOUNCER), "PgBouncer is not installed: script/bootstrap test")
+@unittest.skipUnless(os.path.exists(PGBOUNCER), "PgBouncer is not installed: run script/bootstrap test")
 class PoolerTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):

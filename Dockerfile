@@ -1,20 +1,21 @@
 # Three stages: the binary, the page, and what runs. Everything comes from Debian; npm's packages are pinned by the
 # lock file. What the first two install is in script/bootstrap alone, and is installed before the sources come, so that
-# a change of theirs leaves it as it is.
-FROM debian:bookworm-slim AS binary
+# a change of theirs leaves it as it is. The last installs the libraries that the binary names.
+ARG DEBIAN=trixie
+FROM debian:$DEBIAN-slim AS binary
 WORKDIR /src
 COPY script/bootstrap script/bootstrap
 RUN script/bootstrap build
-COPY deploy/container/sbom deploy/container/sbom
+COPY deploy/container deploy/container
 RUN deploy/container/sbom '*-dev' >build-packages.txt
 COPY CMakeLists.txt CMakePresets.json ./
 COPY engine engine
 COPY api api
 COPY server server
 RUN cmake --preset release -DTUNEWRIGHT_TESTS=OFF && cmake --build --preset release --target tunewright \
-    && strip build/release/tunewright
+    && strip build/release/tunewright && deploy/container/libraries build/release/tunewright >libraries.txt
 
-FROM debian:bookworm-slim AS page
+FROM debian:$DEBIAN-slim AS page
 WORKDIR /src
 COPY script/bootstrap script/bootstrap
 COPY web/package.json web/package-lock.json web/.npmrc web/
@@ -22,10 +23,9 @@ RUN script/bootstrap page
 COPY web web
 RUN cd web && npm run build && npm ls --omit=dev >../page-packages.txt
 
-FROM debian:bookworm-slim
-RUN apt-get update && apt-get install -y --no-install-recommends \
-        libcpp-httplib0.11 libnlopt0 libsqlite3-0 libpqxx-6.4 libspdlog1.10 libfmt9 libprometheus-cpp-core1.0 \
-        ca-certificates \
+FROM debian:$DEBIAN-slim
+COPY --from=binary /src/libraries.txt /tmp/
+RUN apt-get update && apt-get install -y --no-install-recommends ca-certificates $(cat /tmp/libraries.txt) \
     && rm -rf /var/lib/apt/lists/* /var/cache/apt/* /var/log/* \
     && useradd --uid 10001 --no-create-home --shell /usr/sbin/nologin tunewright \
     && install -d -o tunewright -g tunewright /var/lib/tunewright

@@ -20,6 +20,7 @@ WRONG = {
     "check": (["tydi"], ["format", "tidy", "asan", "tsan", "fuzz", "api-fuzz", "--changed"]),
     "format": (["--chek"], ["--check"]),
     "bench": (["robust"], ["robust_batch", "comparison_bench", "load", "endurance", "records", "peers", "families"]),
+    "newcomer": (["bokworm"], ["bookworm", "trixie"]),
     "pictures": (["--only", "desing"], ["design", "identify"]),
 }
 

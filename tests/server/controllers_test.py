@@ -66,6 +66,18 @@ class ControllersTest(unittest.TestCase):
         self.assertEqual(answer.status, 200)
         self.assertEqual(answer.json["notes"][0]["code"], "nearest")
 
+    def test_weights_come_with_the_structure_that_they_need(self):
+        structures = {}
+        for b in (0, 0.6, 1):
+            answer = self.settings("emerson_deltav_standard", controller=DESIGN | {"b": b, "c": 0})
+            self.assertEqual(answer.status, 200, answer.body)
+            typed = answer.json["as_typed"]
+            structures[b] = typed["STRUCTURE"]
+            self.assertEqual("BETA" in typed, b == 0.6)
+            self.assertEqual(answer.json["realised"]["b"], b)
+        self.assertEqual(structures, {0: "I action on error, PD action on PV", 0.6: "Two degrees of freedom controller",
+                                      1: "PI action on error, D action on PV"})
+
     def test_what_is_missing_is_named(self):
         for product, missing in (("emerson_deltav_series", "y_span"), ("klipper", "u_span"),
                                  ("esphome_pid", "sample_time")):

@@ -146,8 +146,12 @@ const Description<Row>& parameter_contract() {
             .number(
                 "off", [](const Row& row) { return row.parameter->off; }, "The value that means: no such part.")
             .flag(
-                "written", [](const Row& row) { return row.parameter->always && !row.parameter->elsewhere; },
-                "false: settings hold it only where it differs from its default, or it is decided elsewhere.")
+                "written",
+                [](const Row& row) {
+                    return (!row.parameter->elsewhere || !row.parameter->options.empty()) &&
+                           !product::depends_on_choice(*row.product, *row.parameter);
+                },
+                "false: settings hold it only with the choice with which it has an effect, or it is decided elsewhere.")
             .maybe_text(
                 "remark", [](const Row& row) { return row.parameter->remark; }, "What else there is to it.");
         a.description

@@ -93,6 +93,9 @@ std::string options_text(const Parameter& parameter) {
         text += (text.empty() ? "" : "; ") + text_of(option.value) + ":";
         if (option.b) text += " b = " + tunewright::text(*option.b);
         if (option.c) text += std::string(option.b ? "," : "") + " c = " + tunewright::text(*option.c);
+        if (option.free_weights) text += " b and c are set";
+        if (option.integral) text += *option.integral ? " integral action" : " no integral action";
+        if (option.derivative) text += *option.derivative ? " derivative action" : " no derivative action";
         if (option.filter == FilterType::derivative) text += " filter of the derivative";
         if (option.filter == FilterType::measurement_second_order) text += " second-order filter of the measurement";
     }

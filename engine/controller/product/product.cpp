@@ -5,6 +5,25 @@
 #include "engine/number_text.h"
 
 namespace tunewright::product {
+namespace {
+
+constexpr int kDecimalDigits = 15;  // as many as a decimal keeps through arithmetic: 253, not 252.99999999999997
+
+}  // namespace
+
+bool depends_on_choice(const Product& product, const Parameter& parameter) {
+    const auto decides = [&](const Option& option) {
+        switch (parameter.role) {
+            case Role::weight_b:
+            case Role::weight_c: return option.free_weights;
+            case Role::integral: return option.integral.has_value();
+            case Role::derivative: return option.derivative.has_value();
+            default: return false;
+        }
+    };
+    return std::ranges::any_of(product.parameters,
+                               [&](const Parameter& one) { return std::ranges::any_of(one.options, decides); });
+}
 
 const Parameter* parameter_named(const Product& product, std::string_view name) {
     const auto& all = product.parameters;
@@ -55,7 +74,7 @@ std::string_view to_string(EvidenceLevel level) {
 }
 
 std::string text_of(const Value& value) {
-    if (const double* number = std::get_if<double>(&value)) return exact_text(*number);
+    if (const double* number = std::get_if<double>(&value)) return tunewright::text(*number, kDecimalDigits);
     if (const bool* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
     return std::get<std::string>(value);
 }

@@ -78,6 +78,9 @@ struct Option {
     Value value;
     std::optional<double> b = {}, c = {};
     std::optional<FilterType> filter = {};
+    /// b and c are those of the parameters weight_b and weight_c, which count with such an option alone.
+    bool free_weights = false;
+    std::optional<bool> integral = {}, derivative = {};  ///< false: that action is switched off
 };
 
 struct Range {
@@ -101,9 +104,10 @@ struct Parameter {
     std::optional<double> off = {};     ///< means: no such part
     std::string_view zero_remark = "";  ///< what 0 does where it does not mean: no such part
     std::vector<Option> options = {};   ///< the first is the maker's default
-    bool always = true;                 ///< false: written only where it differs from its default
     bool compiled_in = false;           ///< changed by building the firmware anew alone: a design keeps `standard`
-    bool elsewhere = false;             ///< read, but decided elsewhere than by a design (mode, variant of the block)
+    /// Decided elsewhere than by a design (mode, variant of the block): of choices a design takes the first, others it
+    /// leaves out.
+    bool elsewhere = false;
     std::string_view remark = "";
 };
 
@@ -195,6 +199,9 @@ struct Product {
     Example example = {};
     std::optional<GainScheduling> scheduling = {};  ///< none: none is known
 };
+
+/// Whether a choice of the product decides if this parameter has an effect.
+bool depends_on_choice(const Product& product, const Parameter& parameter);
 
 /// The parameter of that name; null if there is none.
 const Parameter* parameter_named(const Product& product, std::string_view name);

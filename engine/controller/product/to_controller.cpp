@@ -35,10 +35,14 @@ public:
         return value;
     }
     const Option& option(const Parameter& parameter) {
-        const Option& chosen = option_of(parameter, settings_);
-        note_if_default(parameter, chosen.value);
+        const Option& chosen = option_of(product_, parameter, settings_);
+        if (&chosen == &parameter.options.front())
+            note_if_default(parameter, chosen.value);
+        else if (!setting_named(settings_, parameter.name))
+            inferred_ += (inferred_.empty() ? "" : ", ") + std::string(parameter.name) + " = " + text_of(chosen.value);
         return chosen;
     }
+    bool counts(const Parameter& parameter) const { return product::counts(product_, parameter, settings_); }
     double alpha(const Parameter& parameter) {
         const Value* given = setting_named(settings_, parameter.name);
         const Value& code = given ? *given : *parameter.standard;
@@ -48,7 +52,12 @@ public:
     const std::optional<Error>& missing() const { return missing_; }
 
     void note_defaults(std::vector<Note>& notes) const {
-        if (!defaults_.empty()) notes.push_back({"default", "Not given, so the maker's default: " + defaults_ + "."});
+        std::string words;
+        if (!defaults_.empty()) words = "Not given, so the maker's default: " + defaults_ + ".";
+        if (!inferred_.empty())
+            words += (words.empty() ? "" : " ") +
+                     ("Not given, and assumed because the other settings need it: " + inferred_ + ".");
+        if (!words.empty()) notes.push_back({"default", std::move(words)});
     }
 
 private:
@@ -60,7 +69,7 @@ private:
     const Product& product_;
     const Settings& settings_;
     const Context& context_;
-    std::string defaults_ = {};
+    std::string defaults_ = {}, inferred_ = {};
     std::optional<Error> missing_ = {};
 };
 
@@ -68,7 +77,7 @@ private:
 std::optional<double> solve(const Product& product, Role role, double Quantities::*unknown, double Term::*exponent,
                             const Quantities& own, double absent, Reading& reading) {
     const Parameter* parameter = parameter_of(product, role);
-    if (!parameter) return absent;
+    if (!parameter || !reading.counts(*parameter)) return absent;
     const auto value = reading.number(*parameter);
     if (!value) return absent;
     if (parameter->off && *value == *parameter->off) return absent;
@@ -144,7 +153,7 @@ Filter read_filter(const Product& product, const Settings& settings, const Clock
         case FilterKind::chosen:
             for (const Parameter& parameter : product.parameters) {
                 if (parameter.role != Role::choice) continue;
-                if (const auto chosen = option_of(parameter, settings).filter) filter.type = *chosen;
+                if (const auto chosen = option_of(product, parameter, settings).filter) filter.type = *chosen;
             }
             filter.Tf = filter_by_parameter(product, clocks, reading, own);
             break;
@@ -167,6 +176,8 @@ void read_weights(const Product& product, Reading& reading, Law& law) {
             const Option& option = reading.option(parameter);
             law.b = option.b.value_or(law.b);
             law.c = option.c.value_or(law.c);
+        } else if (!reading.counts(parameter)) {
+            continue;
         } else if (parameter.shape == Shape::alpha_code) {
             law.b = 1 - reading.alpha(parameter);
         } else if (parameter.shape == Shape::weight) {
@@ -183,6 +194,9 @@ void read_weights(const Product& product, Reading& reading, Law& law) {
 void note_outsiders(const Product& product, const Settings& settings, std::vector<Note>& notes) {
     for (const Parameter& parameter : product.parameters) {
         const Value* given = setting_named(settings, parameter.name);
+        if (given && !counts(product, parameter, settings))
+            notes.push_back({"outside-the-twin", std::string(parameter.name) + " is " + text_of(*given) +
+                                                     "; it has no effect with what is chosen beside it."});
         if (parameter.role != Role::fixed || !given || !parameter.standard || *given == *parameter.standard) continue;
         notes.push_back({"outside-the-twin", std::string(parameter.name) + " is " + text_of(*given) +
                                                  "; the twin is that of " + text_of(*parameter.standard) +
@@ -197,7 +211,7 @@ void note_zeros(const Product& product, const Settings& settings, std::vector<No
             notes.push_back({"integral-off", std::string(parameter.zero_remark)});
     }
     const Parameter* integral = parameter_of(product, Role::integral);
-    if (integral && !number_of(*integral, settings))
+    if (integral && !number_of(*integral, settings) && counts(product, *integral, settings))
         notes.push_back({"integral-off", std::string(integral->name) +
                                              " is not given and no default of it is known: the twin has no integral "
                                              "action."});

@@ -16,6 +16,7 @@ struct Work {
     const IdealPid& pid;  ///< in the caller's unit of time
     const Context& context;
     Quantities own = {};
+    Settings choices = {};  ///< what is chosen, before the other parameters are looked at
     Settings settings = {};
     std::vector<Note> notes = {};
     std::vector<std::string> refusals = {};
@@ -75,8 +76,10 @@ void set_own_form(Work& work) {
     if (alpha > 0) own.Tf = alpha * series.td;
 }
 
-// Where one option sets both weights, c decides among those of the same b only.
-constexpr double kLessThanB = 1e-6;
+// Where one option sets both weights, c decides among those of the same b only. Free weights cost less than any
+// difference that counts, so that they are taken where no fixed ones are the design's.
+constexpr double kLessThanB = 1e-6, kFreeWeights = 1e-12;
+constexpr double kAction = 10;  ///< of an action too much or too little: more than weights can differ
 
 bool law_role(Role role) {
     return role == Role::gain || role == Role::multiplier || role == Role::integral || role == Role::derivative ||
@@ -149,7 +152,9 @@ std::optional<double> number_for(const Parameter& parameter, Work& work) {
 
 const Option& nearest_option(const Parameter& parameter, const IdealPid& pid) {
     const auto distance = [&](const Option& option) {
-        double sum = 0;
+        double sum = option.free_weights ? kFreeWeights : 0;
+        if (option.integral.value_or(true) != pid.has_integral()) sum += kAction;
+        if (option.derivative.value_or(true) != (pid.Td != 0)) sum += kAction;
         if (option.b) sum += std::abs(*option.b - pid.b);
         if (option.c && pid.Td != 0) sum += kLessThanB * std::abs(*option.c - pid.c);
         const bool measured = pid.filter.type == FilterType::measurement_first_order ||
@@ -167,18 +172,13 @@ const Option& nearest_option(const Parameter& parameter, const IdealPid& pid) {
 }
 
 void add(const Parameter& parameter, Value value, Work& work) {
-    if (!parameter.always && parameter.standard && value == *parameter.standard) return;
     work.settings.push_back({std::string(parameter.name), std::move(value)});
 }
 
 void add_setting(const Parameter& parameter, Work& work) {
     const IdealPid& pid = work.pid;
     switch (parameter.shape) {
-        case Shape::option: {
-            const Option& option = nearest_option(parameter, pid);
-            if (parameter.always || &option != &parameter.options.front()) add(parameter, option.value, work);
-            return;
-        }
+        case Shape::option: return add(parameter, *setting_named(work.choices, parameter.name), work);
         case Shape::constant: return add(parameter, parameter.standard.value_or(0.0), work);
         case Shape::alpha_code: return add(parameter, encoded_alpha(1 - pid.b), work);
         case Shape::one_minus_b: return add(parameter, within_range(parameter, 1 - pid.b, work), work);
@@ -199,9 +199,19 @@ void add_setting(const Parameter& parameter, Work& work) {
     if (value) add(parameter, *value, work);
 }
 
-std::optional<Error> add_settings(Work& work) {
+void choose(Work& work) {
     for (const Parameter& parameter : work.product.parameters) {
-        if (parameter.elsewhere) continue;
+        if (parameter.shape != Shape::option) continue;
+        const Option& option = parameter.elsewhere ? parameter.options.front() : nearest_option(parameter, work.pid);
+        work.choices.push_back({std::string(parameter.name), option.value});
+    }
+}
+
+std::optional<Error> add_settings(Work& work) {
+    choose(work);
+    for (const Parameter& parameter : work.product.parameters) {
+        if (parameter.elsewhere && parameter.shape != Shape::option) continue;
+        if (!counts(work.product, parameter, work.choices)) continue;
         if (auto missing = missing_for(work.product, parameter, work.context)) {
             if (parameter.role != Role::limit) return missing;
             work.notes.push_back({"limit", std::string(parameter.name) + " is left out: it is " +

@@ -126,12 +126,47 @@ std::optional<double> number_of(const Parameter& parameter, const Settings& sett
     return number ? std::optional(*number) : std::nullopt;
 }
 
-const Option& option_of(const Parameter& parameter, const Settings& settings) {
+namespace {
+
+/// Whether a parameter has an effect with one option of a choice.
+bool counts_with(const Parameter& parameter, const Parameter& choice, const Option& option) {
+    switch (parameter.role) {
+        case Role::weight_b:
+        case Role::weight_c: return option.free_weights || std::ranges::none_of(choice.options, &Option::free_weights);
+        case Role::integral: return option.integral.value_or(true);
+        case Role::derivative: return option.derivative.value_or(true);
+        default: return true;
+    }
+}
+
+/// Whether it is given, and not as that which means: none.
+bool asks_for_effect(const Parameter& parameter, const Settings& settings) {
+    const Value* given = setting_named(settings, parameter.name);
+    if (!given) return false;
+    if (parameter.role == Role::integral) return !parameter.off || *given != Value(*parameter.off);
+    return parameter.role != Role::derivative || *given != Value(0.0);
+}
+
+}  // namespace
+
+const Option& option_of(const Product& product, const Parameter& parameter, const Settings& settings) {
     if (const Value* given = setting_named(settings, parameter.name)) {
         for (const Option& option : parameter.options)
             if (option.value == *given) return option;
     }
+    for (const Option& option : parameter.options) {
+        if (std::ranges::all_of(product.parameters, [&](const Parameter& one) {
+                return !asks_for_effect(one, settings) || counts_with(one, parameter, option);
+            }))
+            return option;
+    }
     return parameter.options.front();
+}
+
+bool counts(const Product& product, const Parameter& parameter, const Settings& settings) {
+    return std::ranges::all_of(product.parameters, [&](const Parameter& choice) {
+        return choice.options.empty() || counts_with(parameter, choice, option_of(product, choice, settings));
+    });
 }
 
 std::optional<double> decoded_alpha(const Value& code) {
@@ -151,7 +186,12 @@ std::string encoded_alpha(double alpha) {
 
 double rounded(const Parameter& parameter, double value) {
     if (parameter.off && value == *parameter.off) return value;
-    if (parameter.resolution > 0) value = std::round(value / parameter.resolution) * parameter.resolution;
+    // By the steps in one where they are whole: 0.001 times a number is not the decimal that is typed.
+    const double steps = 1 / parameter.resolution, whole = std::round(steps);
+    if (parameter.resolution > 0 && std::abs(steps - whole) <= 1e-9 * whole)
+        value = std::round(value * whole) / whole;
+    else if (parameter.resolution > 0)
+        value = std::round(value / parameter.resolution) * parameter.resolution;
     return std::clamp(value, parameter.range.low, parameter.range.high);
 }
 

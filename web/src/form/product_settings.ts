@@ -1,6 +1,7 @@
 // Settings of a product as its parameters' fields have them: which fields there are, what is typed as values, and back.
 import type { Product, ProductParameter, SettingValue } from "../api/products.ts";
 import type { FieldError } from "../api/types.ts";
+import { exactText } from "../words/numbers.ts";
 import { parseNumber } from "./number.ts";
 
 export interface SettingField {
@@ -36,7 +37,8 @@ function fieldOf(parameter: ProductParameter): SettingField {
     name,
     label: label || name,
     unit,
-    choices: (choices ?? []).map((choice) => choice.value),
+    // A switch that this entry has in one position only is a choice of one.
+    choices: choices?.map((choice) => choice.value) ?? (typeof standard === "boolean" ? [standard] : []),
     standard: standard === undefined ? "" : String(standard),
     main: written && !ASIDE.includes(role),
     hint: remark ?? "",
@@ -75,4 +77,4 @@ export function readSettings(product: Product, typed: Record<string, string>): S
 
 /** Values as they would be typed. */
 export const typedSettings = (settings: Record<string, SettingValue>): Record<string, string> =>
-  Object.fromEntries(Object.entries(settings).map(([name, value]) => [name, String(value)]));
+  Object.fromEntries(Object.entries(settings).map(([name, value]) => [name, typeof value === "number" ? exactText(value) : String(value)]));

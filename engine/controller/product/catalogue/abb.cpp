@@ -43,8 +43,7 @@ Product fc19() {
                  .role = Role::choice,
                  .shape = Shape::option,
                  .options = {{.value = std::string("normal"), .b = 1, .c = 1},
-                             {.value = std::string("integral only"), .b = 0, .c = 0}},
-                 .always = false},
+                             {.value = std::string("integral only"), .b = 0, .c = 0}}},
             },
         .filter = {FilterKind::none, 0,
                    "None is listed. Function code 156 has KA, a lag of the derivative: KA = 60 KD/Tf (assumed)."},
@@ -66,7 +65,7 @@ Product fc19() {
                      .unverified = {"the maker's equation", "discrete algorithm"},
                      .sources = {"dbdoc.ca, function code 19", "gmcl.com, function code 156",
                                  "control.com thread 1287 (forum)"}},
-        .example = of_design_a({{"K", 1.0}, {"KP", 1.5}, {"KI", 0.75}, {"KD", 0.5}}),
+        .example = of_design_a({{"K", 1.0}, {"KP", 1.5}, {"KI", 0.75}, {"KD", 0.5}, {"S11", std::string("normal")}}),
     };
 }
 

@@ -43,8 +43,8 @@ Product pid_v1() {
                         .label = "POn",
                         .role = Role::choice,
                         .shape = Shape::option,
-                        .options = {{.value = std::string("P_ON_E"), .b = 1}, {.value = std::string("P_ON_M"), .b = 0}},
-                        .always = false}},
+                        .options = {{.value = std::string("P_ON_E"), .b = 1},
+                                    {.value = std::string("P_ON_M"), .b = 0}}}},
         .filter = {FilterKind::none},
         .weights = {1, 0, "POn makes b 1 or 0; D acts on the measurement."},
         .action = direction(),
@@ -60,7 +60,7 @@ Product pid_v1() {
                      .read = {"the whole file at revision 01cdd643"},
                      .unverified = {"which release that revision equals"},
                      .sources = {"br3ttb/Arduino-PID-Library PID_v1.cpp"}},
-        .example = of_design_a({{"Kp", 3.825}, {"Ki", 0.031875}, {"Kd", 76.5}}),
+        .example = of_design_a({{"Kp", 3.825}, {"Ki", 0.031875}, {"Kd", 76.5}, {"POn", std::string("P_ON_E")}}),
     };
 }
 
@@ -87,8 +87,7 @@ Product quickpid() {
                         .role = Role::choice,
                         .shape = Shape::option,
                         .options = {{.value = std::string("dOnMeas"), .c = 0},
-                                    {.value = std::string("dOnError"), .c = 1}},
-                        .always = false}},
+                                    {.value = std::string("dOnError"), .c = 1}}}},
         .filter = {FilterKind::none},
         .weights = {1, 0, "pMode makes b 1, 0.5 or 0, and dMode c 0 or 1."},
         .action = direction(),
@@ -102,7 +101,11 @@ Product quickpid() {
                      .read = {"the whole file (a copy of 3.1.5)"},
                      .unverified = {"newer versions"},
                      .sources = {"x-radio/QuickPID src/QuickPID.cpp (copy of 3.1.5)"}},
-        .example = of_design_a({{"Kp", 3.825}, {"Ki", 0.031875}, {"Kd", 76.5}, {"pMode", std::string("pOnErrorMeas")}}),
+        .example = of_design_a({{"Kp", 3.825},
+                                {"Ki", 0.031875},
+                                {"Kd", 76.5},
+                                {"pMode", std::string("pOnErrorMeas")},
+                                {"dMode", std::string("dOnMeas")}}),
     };
 }
 

@@ -30,6 +30,22 @@ Parameter deltav_alpha() {
             .remark = "The fieldbus block has 0.1, fixed."};
 }
 
+constexpr const char* kOwnStructure = "PI action on error, D action on PV";  // the default
+
+Parameter deltav_structure() {
+    return {.name = "STRUCTURE",
+            .label = "STRUCTURE",
+            .role = Role::choice,
+            .shape = Shape::option,
+            .options = {{.value = std::string(kOwnStructure), .b = 1, .c = 0},
+                        {.value = std::string("PID action on error"), .b = 1, .c = 1},
+                        {.value = std::string("I action on error, PD action on PV"), .b = 0, .c = 0},
+                        {.value = std::string("P action on error, D action on PV"), .b = 1, .c = 0, .integral = false},
+                        {.value = std::string("PD action on error"), .b = 1, .c = 1, .integral = false},
+                        {.value = std::string("Two degrees of freedom controller"), .free_weights = true}},
+            .remark = "BETA and GAMMA count with two degrees of freedom alone."};
+}
+
 const GainScheduling kDeltaVScheduling{
     .sets = 3,
     .between = Interpolation::steps,
@@ -76,21 +92,23 @@ Product deltav_standard() {
                  .term = kTd,
                  .range = {0, kUnbounded}},
                 deltav_alpha(),
+                fixed_choice("FORM", "FORM", std::string("Standard")),
+                deltav_structure(),
                 {.name = "BETA",
                  .label = "BETA",
                  .role = Role::weight_b,
                  .shape = Shape::weight,
                  .range = kShare,
-                 .remark = "in the structure of two degrees of freedom"},
+                 .remark = "counts with STRUCTURE two degrees of freedom alone"},
                 {.name = "GAMMA",
                  .label = "GAMMA",
                  .role = Role::weight_c,
                  .shape = Shape::weight,
                  .range = kShare,
-                 .remark = "in the structure of two degrees of freedom"},
+                 .remark = "counts with STRUCTURE two degrees of freedom alone"},
             },
         .filter = {FilterKind::parameter, 0, "First order, ALPHA RATE, ALPHA from 0.05 to 1."},
-        .weights = {1, 0, "BETA and GAMMA count in the structure of two degrees of freedom."},
+        .weights = {1, 0, "STRUCTURE sets both; with two degrees of freedom they are BETA and GAMMA."},
         .action = kDeltaVAction,
         .algorithm = deltav_algorithm(),
         .traps = {"Provox settings (series, repeats per minute, minutes) that had their units changed alone made loops "
@@ -99,8 +117,14 @@ Product deltav_standard() {
         .evidence = deltav_evidence({"both forms, Standard as the default", "units", "range and default of ALPHA",
                                      "rule of the windup limits", "formulas from series to standard"},
                                     {"printed transfer functions", "exact place of ALPHA in the Standard form"}),
-        .example = of_design_a(
-            {{"GAIN", 3.0}, {"RESET", 120.0}, {"RATE", 20.0}, {"ALPHA", 0.1}, {"BETA", 0.6}, {"GAMMA", 0.0}}),
+        .example = of_design_a({{"GAIN", 3.0},
+                                {"RESET", 120.0},
+                                {"RATE", 20.0},
+                                {"ALPHA", 0.1},
+                                {"FORM", std::string("Standard")},
+                                {"STRUCTURE", std::string("Two degrees of freedom controller")},
+                                {"BETA", 0.6},
+                                {"GAMMA", 0.0}}),
         .scheduling = kDeltaVScheduling,
     };
 }
@@ -134,6 +158,9 @@ Product deltav_series() {
                  .term = kTd,
                  .range = {0, kUnbounded}},
                 deltav_alpha(),
+                fixed_choice("FORM", "FORM", std::string("Series")),
+                fixed_choice("STRUCTURE", "STRUCTURE", std::string(kOwnStructure),
+                             "the default; how the others act in this form was not read"),
             },
         .series_alpha = kDeltaVAlpha,
         .filter = {FilterKind::parameter, 0, "Over the whole lead, ALPHA RATE; settings are computed for ALPHA 0.125."},
@@ -144,8 +171,13 @@ Product deltav_series() {
                   "The maker's own conversion formulas leave ALPHA out."},
         .evidence =
             deltav_evidence({"formulas from series to standard, ALPHA left out", "units", "range and default of ALPHA"},
-                            {"printed equation"}),
-        .example = of_design_a({{"GAIN", 2.32793}, {"RESET", 93.1174}, {"RATE", 30.723}, {"ALPHA", 0.125}}),
+                            {"printed equation", "structures other than the default"}),
+        .example = of_design_a({{"GAIN", 2.32793},
+                                {"RESET", 93.1174},
+                                {"RATE", 30.723},
+                                {"ALPHA", 0.125},
+                                {"FORM", std::string("Series")},
+                                {"STRUCTURE", std::string(kOwnStructure)}}),
         .scheduling = kDeltaVScheduling,
     };
 }
@@ -156,7 +188,7 @@ const Action kHoneywellAction{.kind = Action::Kind::switched,
                               .reverse = std::string("REVERSE"),
                               .text = "CTLACTN sets the direction."};
 
-std::vector<Parameter> honeywell_parameters() {
+std::vector<Parameter> honeywell_parameters(Parameter equation) {
     return {{.name = "K", .label = "K", .unit = "%/%", .role = Role::gain, .term = kKn, .range = {0, kUnbounded}},
             {.name = "T1",
              .label = "T1",
@@ -169,7 +201,8 @@ std::vector<Parameter> honeywell_parameters() {
              .unit = "min",
              .role = Role::derivative,
              .term = times(kMinutes, kTd),
-             .range = {0, kUnbounded}}};
+             .range = {0, kUnbounded}},
+            std::move(equation)};
 }
 
 Product honeywell_interactive() {
@@ -181,7 +214,8 @@ Product honeywell_interactive() {
         .form = Form::series,
         .law = "CV = K (1 + 1/(T1 s)) (SP - ((T2 s + 1)/(0.1 T2 s + 1)) PV)",
         .gain_basis = "percent of span",
-        .parameters = honeywell_parameters(),
+        .parameters = honeywell_parameters(
+            fixed_choice("equation", "CTLEQN", std::string("B"), "C would take the set point out of P as well.")),
         .filter = {FilterKind::ratio, kLeadRatio, "The lead's ratio is 0.1 and cannot be set: Tf = 0.1 T2."},
         .weights = {1, 0,
                     "Equation B has its derivative on the measurement, which makes b = T1/Ti; equation C has "
@@ -199,7 +233,7 @@ Product honeywell_interactive() {
                      .unverified = {"equations A, C, D and E", "Experion's own text", "discrete algorithm"},
                      .sources = {"control.com thread 4738, Honeywell PID equation (forum)",
                                  "Honeywell UDC 3300 manual p. 105"}},
-        .example = of_design_a({{"K", 2.33739}, {"T1", 1.55826}, {"T2", 0.490825}}),
+        .example = of_design_a({{"K", 2.33739}, {"T1", 1.55826}, {"T2", 0.490825}, {"equation", std::string("B")}}),
     };
 }
 
@@ -211,10 +245,7 @@ Product honeywell_ideal() {
                        .options = {{.value = std::string("B"), .b = 1, .c = 0},
                                    {.value = std::string("A"), .b = 1, .c = 1},
                                    {.value = std::string("C"), .b = 0, .c = 0}},
-                       .always = false,
                        .remark = "A: all on the error. B: D on the measurement. C: P and D on the measurement."};
-    std::vector<Parameter> parameters = honeywell_parameters();
-    parameters.push_back(std::move(equation));
     return {
         .id = "honeywell_ideal",
         .maker = "Honeywell",
@@ -222,7 +253,7 @@ Product honeywell_ideal() {
         .form = Form::ideal,
         .law = "CV = K [ (b SP - PV) + (1/(T1 s)) (SP - PV) + T2 s (c SP - PV) ]",
         .gain_basis = "percent of span",
-        .parameters = std::move(parameters),
+        .parameters = honeywell_parameters(std::move(equation)),
         .filter = {FilterKind::unknown, 0, "The block filters its derivative by a fixed ratio that could not be read."},
         .weights = {1, 0, "The equation sets both: A 1 and 1, B 1 and 0, C 0 and 0."},
         .action = kHoneywellAction,
@@ -231,7 +262,7 @@ Product honeywell_ideal() {
                       .text = "incremental algorithm (believed)",
                       .sample_time_text = "not read"},
         .evidence = {.level = EvidenceLevel::unverified, .unverified = {"everything: no text was reached"}},
-        .example = of_design_a({{"K", 3.0}, {"T1", 2.0}, {"T2", 0.333333}}),
+        .example = of_design_a({{"K", 3.0}, {"T1", 2.0}, {"T2", 0.333333}, {"equation", std::string("B")}}),
     };
 }
 

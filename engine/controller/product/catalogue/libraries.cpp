@@ -21,14 +21,12 @@ Product simple_pid() {
                  .label = "proportional_on_measurement",
                  .role = Role::choice,
                  .shape = Shape::option,
-                 .options = {{.value = false, .b = 1}, {.value = true, .b = 0}},
-                 .always = false},
+                 .options = {{.value = false, .b = 1}, {.value = true, .b = 0}}},
                 {.name = "differential_on_measurement",
                  .label = "differential_on_measurement",
                  .role = Role::choice,
                  .shape = Shape::option,
-                 .options = {{.value = true, .c = 0}, {.value = false, .c = 1}},
-                 .always = false},
+                 .options = {{.value = true, .c = 0}, {.value = false, .c = 1}}},
             },
         .filter = {FilterKind::none},
         .weights = {1, 0, "Each is 0 or 1, by a switch."},
@@ -43,7 +41,11 @@ Product simple_pid() {
         .evidence = {.level = EvidenceLevel::read,
                      .read = {"the whole file"},
                      .sources = {"m-lundberg/simple-pid simple_pid/pid.py"}},
-        .example = of_design_a({{"Kp", 1.5}, {"Ki", 0.0125}, {"Kd", 30.0}}),
+        .example = of_design_a({{"Kp", 1.5},
+                                {"Ki", 0.0125},
+                                {"Kd", 30.0},
+                                {"proportional_on_measurement", false},
+                                {"differential_on_measurement", true}}),
     };
 }
 
@@ -246,7 +248,8 @@ Product ros() {
                               "equations of the anti-windup"},
                      .sources = {"ros-controls/control_toolbox src/pid.cpp, control_toolbox/src/pid.cpp",
                                  "control.ros.org and docs.ros.org, class Pid"}},
-        .example = of_design_a({{"p", 1.5}, {"i", 0.0125}, {"d", 30.0}, {"i_clamp", 100.0}}),
+        .example = of_design_a(
+            {{"p", 1.5}, {"i", 0.0125}, {"d", 30.0}, {"i_clamp", 100.0}, {"error_dot", std::string("of the error")}}),
     };
 }
 

@@ -127,6 +127,13 @@ Product block_parallel() {
              plain("I", "1/s", Role::integral, kKi),
              plain("D", "s", Role::derivative, kKd),
              pole(),
+             fixed_choice("Form", "Form", std::string("Parallel")),
+             {.name = "block",
+              .label = "block",
+              .role = Role::choice,
+              .shape = Shape::option,
+              .options = {{.value = std::string("PID Controller"), .b = 1, .c = 1},
+                          {.value = std::string("PID Controller (2DOF)"), .free_weights = true}}},
              {.name = "b", .label = "b (2DOF block)", .role = Role::weight_b, .shape = Shape::weight, .standard = 1.0},
              {.name = "c", .label = "c (2DOF block)", .role = Role::weight_c, .shape = Shape::weight, .standard = 1.0}},
         .filter = {FilterKind::parameter, 0, kPoleFilter},
@@ -135,7 +142,14 @@ Product block_parallel() {
         .algorithm = block_algorithm(),
         .traps = {"N is a pole in rad/s here, a ratio in pidstd, and a time in the autotuner block's parallel form."},
         .evidence = block_evidence(),
-        .example = of_design_a({{"P", 1.5}, {"I", 0.0125}, {"D", 30.0}, {"N", 0.5}, {"b", 0.6}, {"c", 0.0}}),
+        .example = of_design_a({{"P", 1.5},
+                                {"I", 0.0125},
+                                {"D", 30.0},
+                                {"N", 0.5},
+                                {"Form", std::string("Parallel")},
+                                {"block", std::string("PID Controller (2DOF)")},
+                                {"b", 0.6},
+                                {"c", 0.0}}),
         .scheduling = block_scheduling(
             {},
             "The PID Gain Scheduler block looks P, I and D up over the scheduling variable, linear between the "
@@ -161,6 +175,7 @@ Product block_ideal() {
                         .remark = "1/Ti, not Ti"},
                        time_of("D", Role::derivative, kTd),
                        pole(),
+                       fixed_choice("Form", "Form", std::string("Ideal")),
                        weight_elsewhere("b", Role::weight_b, "in the 2DOF block alone"),
                        weight_elsewhere("c", Role::weight_c, "in the 2DOF block alone")},
         .filter = {FilterKind::parameter, 0, kPoleFilter},
@@ -169,7 +184,8 @@ Product block_ideal() {
         .algorithm = block_algorithm(),
         .traps = {"I is 1/Ti, not Ti."},
         .evidence = block_evidence(),
-        .example = of_design_a({{"P", 1.5}, {"I", 0.00833333}, {"D", 20.0}, {"N", 0.5}}),
+        .example =
+            of_design_a({{"P", 1.5}, {"I", 0.00833333}, {"D", 20.0}, {"N", 0.5}, {"Form", std::string("Ideal")}}),
         .scheduling = block_scheduling(
             Interpolation::linear_in_gains,
             "The PID Gain Scheduler block looks P, I and D up over the scheduling variable, linear between the "
@@ -193,7 +209,8 @@ Product autotuner() {
                         .role = Role::filter,
                         .term = kFilterGain,
                         .range = {0, kUnbounded},
-                        .remark = "a ratio; in its parallel form the filter's time"}},
+                        .remark = "a ratio; in its parallel form the filter's time"},
+                       fixed_choice("Form", "Form", std::string("Ideal"))},
         .filter = {FilterKind::parameter, 0, "First order, D/N."},
         .weights = {1, 1, "It sees the error."},
         .action = kSigned,
@@ -202,7 +219,7 @@ Product autotuner() {
         .evidence = {.level = EvidenceLevel::read,
                      .read = {"both formulas"},
                      .sources = {"Simulink Control Design reference pp. 2560, 2718"}},
-        .example = of_design_a({{"P", 1.5}, {"I", 120.0}, {"D", 20.0}, {"N", 10.0}}),
+        .example = of_design_a({{"P", 1.5}, {"I", 120.0}, {"D", 20.0}, {"N", 10.0}, {"Form", std::string("Ideal")}}),
     };
 }
 

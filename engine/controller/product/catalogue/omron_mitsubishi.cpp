@@ -38,6 +38,7 @@ Product omron() {
                  .term = times(10, kTd),
                  .range = {0, 8191},
                  .resolution = kWholeNumber},
+                fixed_choice("time_unit", "unit of Tik and Tdk", 9.0, "9: counts of 0.1 s; 1: sampling periods"),
                 {.name = "alpha_code",
                  .label = "alpha",
                  .role = Role::weight_b,
@@ -67,8 +68,11 @@ Product omron() {
                      .unverified = {"value of lambda", "discrete algorithm"},
                      .sources = {"Omron W474 pp. 680-681", "CJ1G manual pp. 703, 711, 712",
                                  "C200HG manual p. 280, C200HS manual p. 255"}},
-        .example =
-            of_design_a({{"P", 333.0}, {"Tik_0_1s", 1200.0}, {"Tdk_0_1s", 200.0}, {"alpha_code", std::string("140")}}),
+        .example = of_design_a({{"P", 333.0},
+                                {"Tik_0_1s", 1200.0},
+                                {"Tdk_0_1s", 200.0},
+                                {"time_unit", 9.0},
+                                {"alpha_code", std::string("140")}}),
     };
 }
 

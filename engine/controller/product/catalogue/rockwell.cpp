@@ -46,7 +46,6 @@ Parameter derivative_of_error() {
             .role = Role::choice,
             .shape = Shape::option,
             .options = {{.value = 0.0, .c = 0}, {.value = 1.0, .c = 1}},
-            .always = false,
             .remark = "0: of the measurement; 1: of the error."};
 }
 
@@ -57,9 +56,10 @@ Product pid_independent() {
     product.form = Form::parallel;
     product.law = "CV = KP e + (KI/s) e + KD s (c SP - PV) + bias, e = SP - PV";
     product.parameters = {gain("KP", ".KP", ""), action_of("KI", ".KI", "1/s", Role::integral, of_spans(kKi)),
-                          action_of("KD", ".KD", "s", Role::derivative, of_spans(kKd)), derivative_of_error()};
+                          action_of("KD", ".KD", "s", Role::derivative, of_spans(kKd)),
+                          fixed_choice("PE", ".PE", 0.0, "0: independent gains"), derivative_of_error()};
     product.traps = {".KI holds 1/s here and minutes per repeat in dependent mode."};
-    product.example = of_design_a({{"KP", 3.0}, {"KI", 0.025}, {"KD", 60.0}});
+    product.example = of_design_a({{"KP", 3.0}, {"KI", 0.025}, {"KD", 60.0}, {"PE", 0.0}, {"DOE", 0.0}});
     return product;
 }
 
@@ -70,10 +70,11 @@ Product pid_dependent() {
     product.form = Form::ideal;
     product.law = "CV = KP [ e + (1/(KI s)) e + KD s (c SP - PV) ] + bias, e = SP - PV";
     product.parameters = {gain("KP", ".KP", ""), action_of("KI", ".KI", "min", Role::integral, times(kMinutes, kTi)),
-                          action_of("KD", ".KD", "min", Role::derivative, times(kMinutes, kTd)), derivative_of_error()};
+                          action_of("KD", ".KD", "min", Role::derivative, times(kMinutes, kTd)),
+                          fixed_choice("PE", ".PE", 1.0, "1: dependent gains"), derivative_of_error()};
     product.traps = {"Seconds typed for minutes are wrong by a factor of 60.",
                      "A larger .KI is slower here and faster with independent gains."};
-    product.example = of_design_a({{"KP", 3.0}, {"KI", 2.0}, {"KD", 0.333333}});
+    product.example = of_design_a({{"KP", 3.0}, {"KI", 2.0}, {"KD", 0.333333}, {"PE", 1.0}, {"DOE", 0.0}});
     return product;
 }
 
@@ -113,6 +114,7 @@ Product slc() {
                  .term = times(kTenths / 60, kTd),
                  .range = {0, kMostOfWord},
                  .resolution = kWholeNumber},
+                fixed_choice("RG", "RG", 1.0, "the range of KC and TI: 1 for steps of 0.01"),
             },
         .filter = {FilterKind::unknown, 0, "Whether the derivative is filtered could not be read."},
         .weights = {1, 0, "P sees the error, D the measurement."},
@@ -132,7 +134,7 @@ Product slc() {
                      .unverified = {"text of the equation", "filter", "discrete algorithm",
                                     "name of the direction's bit"},
                      .sources = {"1747-RM001G p. 178", "1762-RM001C p. 251"}},
-        .example = of_design_a({{"KC_RG1", 300.0}, {"TI_RG1", 200.0}, {"TD", 33.0}}),
+        .example = of_design_a({{"KC_RG1", 300.0}, {"TI_RG1", 200.0}, {"TD", 33.0}, {"RG", 1.0}}),
     };
 }
 
@@ -168,20 +170,20 @@ std::vector<Parameter> pide_switches() {
              .label = "PVEProportional",
              .role = Role::choice,
              .shape = Shape::option,
-             .options = {{.value = false, .b = 1}, {.value = true, .b = 0}},
-             .always = false},
+             .options = {{.value = false, .b = 1}, {.value = true, .b = 0}}},
             {.name = "PVEDerivative",
              .label = "PVEDerivative",
              .role = Role::choice,
              .shape = Shape::option,
-             .options = {{.value = true, .c = 0}, {.value = false, .c = 1}},
-             .always = false}};
+             .options = {{.value = true, .c = 0}, {.value = false, .c = 1}}}};
 }
 
 Product pide_of(Form form, std::vector<Parameter> parameters) {
     Product product = pide();
     product.form = form;
     product.parameters = std::move(parameters);
+    product.parameters.push_back(
+        fixed_choice("DependIndepend", "DependIndepend", form == Form::ideal, "true: dependent gains"));
     for (Parameter& choice : pide_switches()) product.parameters.push_back(std::move(choice));
     return product;
 }
@@ -196,7 +198,12 @@ Product pide_independent() {
     product.law = "CV = PGain (b SP - PV) + (IGain/(60 s)) (SP - PV) + 60 DGain s (c SP - PV)";
     product.traps = {"PID counts in 1/s and s, PIDE in 1/min and min.",
                      "A third party says that the gain is per engineering unit; the maker says percent of span."};
-    product.example = of_design_a({{"PGain", 3.0}, {"IGain", 1.5}, {"DGain", 1.0}});
+    product.example = of_design_a({{"PGain", 3.0},
+                                   {"IGain", 1.5},
+                                   {"DGain", 1.0},
+                                   {"DependIndepend", false},
+                                   {"PVEProportional", false},
+                                   {"PVEDerivative", true}});
     return product;
 }
 
@@ -209,7 +216,12 @@ Product pide_dependent() {
     product.name = "Logix PIDE, dependent gains";
     product.law = "CV = PGain [ (b SP - PV) + (1/(60 IGain s)) (SP - PV) + 60 DGain s (c SP - PV) ]";
     product.traps = {"IGain changes its meaning and its direction with the form."};
-    product.example = of_design_a({{"PGain", 3.0}, {"IGain", 2.0}, {"DGain", 0.333333}});
+    product.example = of_design_a({{"PGain", 3.0},
+                                   {"IGain", 2.0},
+                                   {"DGain", 0.333333},
+                                   {"DependIndepend", true},
+                                   {"PVEProportional", false},
+                                   {"PVEDerivative", true}});
     return product;
 }
 

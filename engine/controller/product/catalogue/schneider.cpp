@@ -43,13 +43,12 @@ Parameter attenuation() {
             .standard = 0.0,
             .remark = "1 less the weight of the set point, not the weight"};
 }
-Parameter derivative_of(bool always) {
+Parameter derivative_of() {
     return {.name = "pv_dev",
             .label = "pv_dev",
             .role = Role::choice,
             .shape = Shape::option,
             .options = {{.value = std::string("PV"), .c = 0}, {.value = std::string("deviation"), .c = 1}},
-            .always = always,
             .remark = "0: of the measurement; 1: of the deviation"};
 }
 
@@ -88,11 +87,17 @@ Product mixed() {
                           time_of("ti_s", "ti", Role::integral, kTi),
                           time_of("td_s", "td", Role::derivative, kTd),
                           filter_gain(kFilterGain),
+                          fixed_choice("mix_par", "mix_par", 0.0, "0: the mixed structure"),
                           attenuation(),
-                          derivative_of(true)};
+                          derivative_of()};
     product.traps = {"ovs_att is 1 - b, not b."};
-    product.example = of_design_a(
-        {{"kp", 1.5}, {"ti_s", 120.0}, {"td_s", 20.0}, {"kd", 10.0}, {"ovs_att", 0.4}, {"pv_dev", std::string("PV")}});
+    product.example = of_design_a({{"kp", 1.5},
+                                   {"ti_s", 120.0},
+                                   {"td_s", 20.0},
+                                   {"kd", 10.0},
+                                   {"mix_par", 0.0},
+                                   {"ovs_att", 0.4},
+                                   {"pv_dev", std::string("PV")}});
     return product;
 }
 
@@ -109,10 +114,17 @@ Product parallel() {
                           time_of("ti_s", "ti", Role::integral, {.Kp = -1, .Ti = 1, .Sy = -1, .Su = 1}),
                           time_of("td_s", "td", Role::derivative, of_spans(kKd)),
                           filter_gain(of_spans({.Kp = 1, .Td = 1, .Tf = -1})),
+                          fixed_choice("mix_par", "mix_par", 1.0, "1: the parallel structure"),
                           attenuation(),
-                          derivative_of(false)};
+                          derivative_of()};
     product.traps = {"A change of kp leaves I and D as they are."};
-    product.example = of_design_a({{"kp", 1.5}, {"ti_s", 40.0}, {"td_s", 60.0}, {"kd", 30.0}, {"ovs_att", 0.4}});
+    product.example = of_design_a({{"kp", 1.5},
+                                   {"ti_s", 40.0},
+                                   {"td_s", 60.0},
+                                   {"kd", 30.0},
+                                   {"mix_par", 1.0},
+                                   {"ovs_att", 0.4},
+                                   {"pv_dev", std::string("PV")}});
     return product;
 }
 

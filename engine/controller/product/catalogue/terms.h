@@ -1,6 +1,8 @@
 // What the tables of the catalogue have in common: terms that many parameters are, and the design of most examples.
 #pragma once
 
+#include <utility>
+
 #include "engine/controller/product/catalogue.h"
 
 namespace tunewright::product {
@@ -45,6 +47,17 @@ inline Example of_design_a(Settings settings) { return {.design = kDesignA, .set
 /// Of flight controllers: per rad/s and normalised output.
 inline constexpr IdealPid kRateDesign{
     .Kp = 0.135, .Ti = 1, .Td = 0.0267, .b = 1, .c = 0, .filter = {FilterType::derivative, 0.00795775}};
+
+/// What is chosen once for this entry: another value is another entry, or none.
+inline Parameter fixed_choice(std::string_view name, std::string_view label, Value value,
+                              std::string_view remark = "") {
+    return {.name = name,
+            .label = label,
+            .role = Role::fixed,
+            .shape = Shape::constant,
+            .standard = std::move(value),
+            .remark = remark};
+}
 
 inline const Action kSigned{.kind = Action::Kind::signed_gain, .text = "A negative gain acts directly."};
 

@@ -57,7 +57,7 @@ Product fieldbus() {
         .evidence = {.level = EvidenceLevel::read,
                      .read = {"both equations", "ranges", "scaling and sign"},
                      .sources = {"IM 21B04C01-01E p. 83 (YVP110)", "IM 01E21A02 p. 284 (ADMAG TI AXG)"}},
-        .example = of_design_a({{"GAIN", 3.0}, {"RESET", 120.0}, {"RATE", 20.0}}),
+        .example = of_design_a({{"GAIN", 3.0}, {"RESET", 120.0}, {"RATE", 20.0}, {"MODE", std::string("Auto")}}),
     };
 }
 
@@ -81,7 +81,6 @@ Product centum() {
                  .options = {{.value = std::string("PI-D"), .b = 1, .c = 0},
                              {.value = std::string("PID"), .b = 1, .c = 1},
                              {.value = std::string("I-PD"), .b = 0, .c = 0}},
-                 .always = false,
                  .remark = "A further type chooses by the mode."},
             },
         .filter = {FilterKind::unknown, 0, "Whether the derivative is filtered could not be read."},
@@ -103,7 +102,7 @@ Product centum() {
                      .unverified = {"equation of the CENTUM manual", "filter", "default of the algorithm's type"},
                      .sources = {"CENTUM VP engineering course (scribd 648188231)", "a third party's summary page",
                                  "Yokogawa PID tutorial (scribd 284379932)"}},
-        .example = of_design_a({{"PB", 33.3333}, {"TI", 120.0}, {"TD", 20.0}}),
+        .example = of_design_a({{"PB", 33.3333}, {"TI", 120.0}, {"TD", 20.0}, {"type", std::string("PI-D")}}),
     };
 }
 

@@ -14,41 +14,41 @@ const std::map<std::string, Row>& industrial_rows() {
           }}},
         {"siemens_fb41_cont_c",
          {{{"GAIN", Kn}, {"TI_s", Ti}, {"TD_s", Td}, {"TM_LAG_s", Tf}},
-          {},
+          {{"P_SEL", "true"}, {"I_SEL", "true"}, {"D_SEL", "true"}},
           [](const Typed& t, Complex s) {
               return ideal(t["GAIN"] * Su / Sy, t["TI_s"], t["TD_s"], t["TM_LAG_s"], 1, 1, s);
           }}},
         {"rockwell_pid_independent",
          {{{"KP", Kn}, {"KI", Kn / Ti}, {"KD", Kn * Td}},
-          {},
+          {{"PE", "0"}, {"DOE", "0"}},
           [](const Typed& t, Complex s) {
               return parallel(t["KP"] * Su / Sy, t["KI"] * Su / Sy, t["KD"] * Su / Sy, 0, 1, 0, s);
           }}},
         {"rockwell_pid_dependent",
          {{{"KP", Kn}, {"KI", Ti / 60}, {"KD", Td / 60}},
-          {},
+          {{"PE", "1"}, {"DOE", "0"}},
           [](const Typed& t, Complex s) { return ideal(t["KP"] * Su / Sy, 60 * t["KI"], 60 * t["KD"], 0, 1, 0, s); }}},
         {"rockwell_slc_pid",
          {{{"KC_RG1", 100 * Kn}, {"TI_RG1", 100 * Ti / 60}, {"TD", 100 * Td / 60}},
-          {},
+          {{"RG", "1"}},
           [](const Typed& t, Complex s) {
               return ideal(t["KC_RG1"] / 100 * Su / Sy, 0.6 * t["TI_RG1"], 0.6 * t["TD"], 0, 1, 0, s);
           }}},
         {"rockwell_pide_independent",
          {{{"PGain", Kn}, {"IGain", 60 * Kn / Ti}, {"DGain", Kn * Td / 60}},
-          {{"PVEProportional", "true"}},
+          {{"DependIndepend", "false"}, {"PVEProportional", "true"}, {"PVEDerivative", "true"}},
           [](const Typed& t, Complex s) {
               return parallel(t["PGain"] * Su / Sy, t["IGain"] / 60 * Su / Sy, t["DGain"] * 60 * Su / Sy, 0, 0, 0, s);
           }}},
         {"rockwell_pide_dependent",
          {{{"PGain", Kn}, {"IGain", Ti / 60}, {"DGain", Td / 60}},
-          {{"PVEProportional", "true"}},
+          {{"DependIndepend", "true"}, {"PVEProportional", "true"}, {"PVEDerivative", "true"}},
           [](const Typed& t, Complex s) {
               return ideal(t["PGain"] * Su / Sy, 60 * t["IGain"], 60 * t["DGain"], 0, 0, 0, s);
           }}},
         {"schneider_pidff_mixed",
          {{{"kp", Kp}, {"ti_s", Ti}, {"td_s", Td}, {"kd", Td / Tf}, {"ovs_att", 1 - b}},
-          {{"pv_dev", "PV"}},
+          {{"mix_par", "0"}, {"pv_dev", "PV"}},
           [](const Typed& t, Complex s) {
               return ideal(t["kp"], t["ti_s"], t["td_s"], t["td_s"] / t["kd"], 1 - t["ovs_att"], 0, s);
           }}},
@@ -58,7 +58,7 @@ const std::map<std::string, Row>& industrial_rows() {
            {"td_s", Kp * Td / (Su / Sy)},
            {"kd", Kp * Td / (Su / Sy) / Tf},
            {"ovs_att", 1 - b}},
-          {},
+          {{"mix_par", "1"}, {"pv_dev", "PV"}},
           [](const Typed& t, Complex s) {
               const double q = Su / Sy;
               return parallel(t["kp"], q / t["ti_s"], q * t["td_s"], t["td_s"] / t["kd"], 1 - t["ovs_att"], 0, s);
@@ -88,18 +88,18 @@ const std::map<std::string, Row>& industrial_rows() {
           [](const Typed& t, Complex s) { return ideal(t["Gain"], t["Ti"], t["Td"], t["Tf"], 1, 0, s); }}},
         {"emerson_deltav_standard",
          {{{"GAIN", Kn}, {"RESET", Ti}, {"RATE", Td}, {"ALPHA", Tf / Td}, {"BETA", b}, {"GAMMA", 0}},
-          {},
+          {{"FORM", "Standard"}, {"STRUCTURE", "Two degrees of freedom controller"}},
           [](const Typed& t, Complex s) {
               return ideal(t["GAIN"] * Su / Sy, t["RESET"], t["RATE"], t["ALPHA"] * t["RATE"], t["BETA"], t["GAMMA"],
                            s);
           }}},
         {"emerson_deltav_series",
          {{{"GAIN", Kn * kDeltaV.gain()}, {"RESET", kDeltaV.ti}, {"RATE", kDeltaV.td}, {"ALPHA", 0.125}},
-          {},
+          {{"FORM", "Series"}, {"STRUCTURE", "PI action on error, D action on PV"}},
           [](const Typed& t, Complex s) { return series(t["GAIN"] * Su / Sy, t["RESET"], t["RATE"], t["ALPHA"], s); }}},
         {"honeywell_interactive_b",
          {{{"K", Kn * kHoneywell.gain()}, {"T1", kHoneywell.ti / 60}, {"T2", kHoneywell.td / 60}},
-          {},
+          {{"equation", "B"}},
           [](const Typed& t, Complex s) { return series(t["K"] * Su / Sy, 60 * t["T1"], 60 * t["T2"], 0.1, s); }}},
         {"honeywell_ideal",
          {{{"K", Kn}, {"T1", Ti / 60}, {"T2", Td / 60}},
@@ -107,7 +107,7 @@ const std::map<std::string, Row>& industrial_rows() {
           [](const Typed& t, Complex s) { return ideal(t["K"] * Su / Sy, 60 * t["T1"], 60 * t["T2"], 0, 0, 0, s); }}},
         {"yokogawa_ff_pid",
          {{{"GAIN", Kn}, {"RESET", Ti}, {"RATE", Td}},
-          {},
+          {{"MODE", "Auto"}},
           [](const Typed& t, Complex s) { return ideal(t["GAIN"] * Su / Sy, t["RESET"], t["RATE"], 0, 0, 0, s); }}},
         {"yokogawa_centum_pid",
          {{{"PB", 100 / Kn}, {"TI", Ti}, {"TD", Td}},
@@ -128,7 +128,7 @@ const std::map<std::string, Row>& industrial_rows() {
           }}},
         {"omron_pid190",
          {{{"P", 1000 / Kn}, {"Tik_0_1s", 10 * Ti}, {"Tdk_0_1s", 10 * Td}},
-          {{"alpha_code", "165"}},
+          {{"time_unit", "9"}, {"alpha_code", "165"}},
           [](const Typed& t, Complex s) {
               const double ti = t["Tik_0_1s"] / 10, alpha = 0.65;
               // The set-point filter stands before P and I; D acts on the measurement.

@@ -43,7 +43,7 @@ struct Typed {
 
 struct Row {
     std::map<std::string, double> numbers;     ///< what has to be typed
-    std::map<std::string, std::string> words;  ///< choices; all others are at their defaults and not written
+    std::map<std::string, std::string> words;  ///< choices
     std::function<Law(const Typed&, Complex)> block;
 };
 

@@ -44,7 +44,7 @@ std::map<std::string, Row> heaters() {
     arduino.words = {{"POn", "P_ON_M"}};
     arduino.block = heating(255, "Kp", "Ki", "Kd", 0, none);
     Row& quick = rows["quickpid"] = heater(255, "Kp", "Ki", "Kd");
-    quick.words = {{"pMode", "pOnErrorMeas"}};
+    quick.words = {{"pMode", "pOnErrorMeas"}, {"dMode", "dOnMeas"}};
     quick.block = heating(255, "Kp", "Ki", "Kd", 0.5, none);
     return rows;
 }
@@ -69,7 +69,7 @@ const std::map<std::string, Row>& software_rows() {
           [](const Typed& t, Complex s) { return ideal(t["KP"], t["TN"], t["TV"], 0, 1, 1, s); }}},
         {"labview_pid",
          {{{"Kc", Kp}, {"Ti_min", Ti / 60}, {"Td_min", Td / 60}, {"beta", b}, {"gamma", 0}},
-          {},
+          {{"VI", "PID Advanced.vi"}},
           [](const Typed& t, Complex s) {
               return ideal(t["Kc"], 60 * t["Ti_min"], 60 * t["Td_min"], 0, t["beta"], t["gamma"], s);
           }}},
@@ -83,25 +83,25 @@ const std::map<std::string, Row>& software_rows() {
           [](const Typed& t, Complex s) { return parallel(t["Kp"], t["Ki"], t["Kd"], t["Tf"], 1, 1, s); }}},
         {"simulink_pid_parallel",
          {{{"P", Kp}, {"I", Kp / Ti}, {"D", Kp * Td}, {"N", 1 / Tf}, {"b", b}, {"c", 0}},
-          {},
+          {{"Form", "Parallel"}, {"block", "PID Controller (2DOF)"}},
           [](const Typed& t, Complex s) {
               const Complex D = t["D"] * t["N"] / (1.0 + t["N"] / s);
               return Law{t["b"] * t["P"] + t["I"] / s + t["c"] * D, t["P"] + t["I"] / s + D};
           }}},
         {"simulink_pid_ideal",
          {{{"P", Kp}, {"I", 1 / Ti}, {"D", Td}, {"N", 1 / Tf}},
-          {},
+          {{"Form", "Ideal"}},
           [](const Typed& t, Complex s) {
               const Complex C = t["P"] * (1.0 + t["I"] / s + t["D"] * t["N"] / (1.0 + t["N"] / s));
               return Law{C, C};
           }}},
         {"simulink_pid_autotuner_block",
          {{{"P", Kp}, {"I", Ti}, {"D", Td}, {"N", Td / Tf}},
-          {},
+          {{"Form", "Ideal"}},
           [](const Typed& t, Complex s) { return ideal(t["P"], t["I"], t["D"], t["D"] / t["N"], 1, 1, s); }}},
         {"simple_pid",
          {{{"Kp", Kp}, {"Ki", Kp / Ti}, {"Kd", Kp * Td}},
-          {{"proportional_on_measurement", "true"}},
+          {{"proportional_on_measurement", "true"}, {"differential_on_measurement", "true"}},
           [](const Typed& t, Complex s) { return parallel(t["Kp"], t["Ki"], t["Kd"], 0, 0, 0, s); }}},
         {"controlsystems_jl_pid",
          {{{"param_p", Kp}, {"param_i", Ti}, {"param_d", Td}, {"Tf", Tf}, {"filter_order", 1}},
@@ -129,7 +129,7 @@ const std::map<std::string, Row>& software_rows() {
           }}},
         {"ros_control_toolbox",
          {{{"p", Kp}, {"i", Kp / Ti}, {"d", Kp * Td}, {"i_clamp", Su}},
-          {},
+          {{"error_dot", "of the error"}},
           [](const Typed& t, Complex s) { return parallel(t["p"], t["i"], t["d"], 0, 1, 1, s); }}},
         {"ardupilot_ac_pid",
          {{{"P", Kp}, {"I", Kp / Ti}, {"D", Kp * Td}, {"FLTD", 1 / (2 * kPi * Tf)}, {"FLTE", 0}, {"FLTT", 0}},

@@ -101,7 +101,7 @@ TEST(ProductTraps, WhatAScheduleDoesNotSwitchIsTold) {
     const auto notes = [&] {
         return to_settings(product_of("emerson_deltav_standard"), schedule, kContext, false)->notes;
     };
-    EXPECT_THAT(note(notes(), "held-between-rows"), HasSubstr("The rows differ in ALPHA, BETA, which"));
+    EXPECT_THAT(note(notes(), "held-between-rows"), HasSubstr("The rows differ in ALPHA, STRUCTURE, which"));
     schedule.rows[1].Tf = 1;  // the same ratio
     schedule.rows[1].b = 1;
     EXPECT_FALSE(has_note(notes(), "held-between-rows"));

@@ -1,4 +1,4 @@
-// What is to be entered, what it does, and how it was found.
+// What the settings do, and how they were found.
 #include <algorithm>
 #include <array>
 
@@ -6,88 +6,6 @@
 
 namespace tunewright::api {
 namespace {
-
-/// Members of a controller in the order in which they are read.
-constexpr std::array kSettings = {"Kp", "Ki", "Kd", "Ti", "Td", "b", "c", "delta_r"};
-
-std::string setting_unit(const std::string& name, const ReportSubject& s) {
-    const std::string gain = unit_quotient(s.u, s.y);
-    if (name == "Kp") return gain;
-    if (name == "Ki") return gain.empty() ? "" : gain + "/" + s.time;
-    if (name == "Kd") return gain.empty() ? "" : gain + " " + s.time;
-    if (name == "Ti" || name == "Td") return s.time;
-    return name == "delta_r" ? s.y : "";
-}
-
-/// In full: a setting is typed as it stands here.
-constexpr int kFull = 6;
-
-Row setting_row(const std::string& name, const std::string& unit, const std::vector<Place>& controllers) {
-    Row row = {with_unit(name, unit)};
-    for (const Place& place : controllers) {
-        const Json& value = place.at(name).value();
-        if (value.is_null() && !place.at("why_null").at(name).exists())
-            row.push_back(name == "Ti" && place.value().is_object() && place.value().contains("Ti") ? Html("∞")
-                                                                                                    : Html(""));
-        else
-            row.push_back(figure(place.at(name), kFull));
-    }
-    return row;
-}
-
-bool any_has(const std::vector<Place>& controllers, const std::string& name) {
-    for (const Place& controller : controllers)
-        if (controller.value().is_object() && controller.value().contains(name)) return true;
-    return false;
-}
-
-Html settings_table(const char* caption, const std::vector<std::string>& heads, const std::vector<Place>& controllers,
-                    const ReportSubject& s) {
-    Row top = {""};
-    for (const std::string& head : heads) top.push_back(head);
-    std::vector<Row> rows;
-    for (const char* name : kSettings)
-        if (any_has(controllers, name)) rows.push_back(setting_row(name, setting_unit(name, s), controllers));
-    std::vector<Place> filters, leads;
-    for (const Place& controller : controllers) {
-        filters.push_back(controller.at("filter"));
-        leads.push_back(controller.at("setpoint_filter"));
-    }
-    Row types = {"Filter"};
-    bool filtered = false;
-    for (const Place& filter : filters) {
-        const std::string type = text_at(filter.at("type"));
-        filtered = filtered || !type.empty();
-        std::string words = type;
-        for (char& c : words) c = c == '_' ? ' ' : c;
-        types.push_back(words);
-    }
-    if (filtered) rows.push_back(types);
-    for (const char* name : {"Tf", "N"})
-        if (any_has(filters, name)) rows.push_back(setting_row(name, *name == 'T' ? s.time : "", filters));
-    if (any_has(leads, "T")) {
-        Row row = {with_unit("Set-point filter T", s.time)};
-        for (const Place& lead : leads) row.push_back(lead.exists() ? figure(lead.at("T"), kFull) : Html(""));
-        rows.push_back(row);
-    }
-    return table(caption, top, rows);
-}
-
-Html entered(const Place& entry, const char* caption) {
-    const Place as = entry.at("as_entered");
-    if (!as.at("as_typed").value().is_object()) return {};
-    std::vector<Row> rows;
-    for (const auto& [name, text] : as.at("as_typed").value().items()) {
-        Row row = {with_unit(name, text_at(as.at("units").at(name)))};
-        row.push_back(element("span", text.is_string() ? text.get<std::string>() : text.dump(),
-                              {{"data-typed", as.at("as_typed").at(name).pointer}}));
-        rows.push_back(row);
-    }
-    std::vector<Html> notes;
-    for (std::size_t i = 0; i < as.at("notes").value().size(); ++i)
-        notes.push_back(text_at(as.at("notes").at(i).at("detail")));
-    return element("div", table(caption, {"Setting", "Type in"}, rows) + list(notes));
-}
 
 struct FigureRow {
     const char *label, *place, *unit;
@@ -123,6 +41,15 @@ std::string unit_of(const FigureRow& row, const ReportSubject& s) {
     return unit;
 }
 
+/// The limit that the request set to this figure, if it did.
+Place asked_for(const FigureRow& row, const ReportSubject& s) {
+    const Place options = s.entry.at("options");
+    if (std::string_view(row.place) == "overshoot_percent") return options.at("setpoint").at("overshoot");
+    const bool limited =
+        std::ranges::any_of(std::array{"Ms", "Mt", "Mks"}, [&](std::string_view one) { return one == row.place; });
+    return limited && options.at(row.place).value().is_number() ? options.at(row.place) : options.at("");
+}
+
 template <std::size_t n>
 Html figure_table(const char* caption, const FigureRow (&rows)[n], const std::string& below, const ReportSubject& s) {
     const auto places = [&](const Place& owner) { return Place{owner.root, owner.pointer + "/" + below}; };
@@ -144,7 +71,9 @@ Html figure_table(const char* caption, const FigureRow (&rows)[n], const std::st
     std::vector<Row> out;
     for (const FigureRow& row : rows) {
         if (!any_has(columns, row.place)) continue;
+        const Place asked = asked_for(row, s);
         Row line = {with_unit(row.label, unit_of(row, s))};
+        if (asked.exists()) line[0] += ", asked: " + figure(asked);
         for (const Place& column : columns) line.push_back(figure(column.at(row.place)));
         out.push_back(std::move(line));
     }
@@ -185,30 +114,6 @@ Html verdict_section(const ReportSubject& s) {
     const Json &own = s.entry.at("verdict").value(), &all = s.result.at("verdict").value();
     const Html lines = verdict_lines(own, {}) + verdict_lines(all, own);
     return section("Verdict", lines.empty() ? lines : element("ul", lines, {{"class", "verdict"}}));
-}
-
-Html settings_section(const ReportSubject& s) {
-    std::vector<std::string> heads = {"Ideal"};
-    const std::string form = text_at(s.entry.at("controller").at("form"));
-    if (form == "npid") heads = {"Nonlinear (NPID)"};
-    if (form == "parallel") heads = {"Parallel, as given"};
-    std::vector<Place> forms = {s.entry.at("controller")};
-    for (const auto& [name, head] : {std::pair{"parallel", "Parallel"}, {"series", "Series"}}) {
-        const Place place = s.entry.at("equivalents").at(name);
-        if (!place.exists()) continue;
-        heads.emplace_back(head);
-        forms.push_back(place);
-    }
-    Html tables = settings_table("To enter, by the form of the controller", heads, forms, s);
-    tables += entered(s.entry, "On your controller");
-    if (s.today) {
-        tables += settings_table("Today", {"Settings"}, {s.today->at("controller")}, s);
-        tables += entered(*s.today, "Today, on your controller");
-    }
-    Html why;
-    const std::string series = text_at(s.entry.at("equivalents").at("why_null").at("series"));
-    if (!series.empty()) why = element("p", "No series form: " + series);
-    return section("Settings", element("div", tables, {{"class", "tables"}}) + why);
 }
 
 Html figures_section(const ReportSubject& s) {

@@ -42,11 +42,23 @@ void add_responses(Plot& plot, const ReportSubject& s, const char* step, const c
                                .y = numbers_at(linear.at(signal))});
 }
 
+/// What the step asks for, from before it to the end of the longest response.
+void add_setpoint(Plot& plot, const ReportSubject& s) {
+    double end = 0;
+    for (const Trace& trace : plot.traces)
+        if (!trace.x.empty()) end = std::max(end, trace.x.back());
+    if (!(end > 0)) return;
+    const Json& given = s.request.at("evaluate").at("setpoint_step").value();
+    const double step = given.is_number() ? given.get<double>() : 1;
+    plot.traces.push_back({.name = "Set point", .line = Line::setpoint, .x = {0, 0, end}, .y = {0, step, step}});
+}
+
 /// To the longest horizon; the request's limits of u where it has them.
 Plot response(const ReportSubject& s, const char* title, const char* step, const char* signal,
               const std::string& unit) {
     Plot plot{.title = title, .x_label = with_unit("t", s.time), .y_label = with_unit(signal, unit), .traces = {}};
     add_responses(plot, s, step, signal);
+    if (*signal == 'y' && std::string_view(step) == "setpoint") add_setpoint(plot, s);
     const Place actuator = s.request.at("evaluate").at("actuator");
     if (*signal == 'u' && actuator.exists())
         for (const char* end : {"min", "max"})

@@ -1,5 +1,6 @@
 #include "api/report/figures.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -29,6 +30,27 @@ Html figure(const Place& place, int digits) {
     const Place owner{place.root, place.pointer.substr(0, slash) + "/why_null" + place.pointer.substr(slash)};
     const std::string why = text_at(owner);
     return element("span", "–", {{"title", why}});
+}
+
+bool negligible(double standard_error, double value) {
+    constexpr double kShare = 1e-6;
+    return !(standard_error > kShare * std::abs(value));
+}
+
+std::string uncertain_text(double value, double standard_error) {
+    const std::string alone = tunewright::text(value);
+    return negligible(standard_error, value) ? alone : alone + " +- " + figure_text(standard_error, 2);
+}
+
+std::string grade_words(std::string_view grade) {
+    if (grade == "good") return "A good model.";
+    if (grade == "usable") return "A model to use with care: see its warnings.";
+    return grade == "doubtful" ? "A doubtful model." : "";
+}
+
+bool any_has(const std::vector<Place>& places, const std::string& name) {
+    return std::ranges::any_of(places,
+                               [&](const Place& one) { return one.value().is_object() && one.value().contains(name); });
 }
 
 Html table(const char* caption, const Row& heads, const std::vector<Row>& rows) {

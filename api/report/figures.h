@@ -11,6 +11,7 @@
 #include "api/report/html.h"
 #include "api/report/plot.h"
 #include "api/report/subject.h"
+#include "engine/controller/product/product.h"
 
 namespace tunewright::api {
 
@@ -24,6 +25,17 @@ Html figure(const Place& place, int digits = 4);
 
 using Row = std::vector<Html>;
 
+/// Whether any of these objects has a member of that name.
+bool any_has(const std::vector<Place>& places, const std::string& name);
+
+/// "40 +- 0.30", the error with two digits; the value alone where the error is below a millionth of it.
+std::string uncertain_text(double value, double standard_error);
+/// Whether a standard error says nothing beside its value.
+bool negligible(double standard_error, double value);
+
+/// A model's grade as a sentence; "" for none that is known.
+std::string grade_words(std::string_view grade);
+
 /// The first cell of each row names it.
 Html table(const char* caption, const Row& heads, const std::vector<Row>& rows);
 Html list(const std::vector<Html>& items);
@@ -35,7 +47,14 @@ std::string unit_quotient(const std::string& above, const std::string& below);
 std::string with_unit(const std::string& name, const std::string& unit);
 
 Html verdict_section(const ReportSubject& subject);
+/// "Emerson DeltaV PID, FORM Series"; a maker after whom the product is named is not said twice.
+std::string product_title(const product::Product& product);
+/// The same of the user's own controller, as the request names it; "" where it does not.
+std::string controller_words(const ReportSubject& subject);
+/// From today's settings to the new ones, with the ranges that they rest on.
 Html settings_section(const ReportSubject& subject);
+/// New and today's settings in the ideal, parallel and series forms.
+Html forms_section(const ReportSubject& subject);
 Html figures_section(const ReportSubject& subject);
 /// Set-point and load step, y and u of each.
 std::vector<Plot> response_plots(const ReportSubject& subject);

@@ -13,16 +13,25 @@ const std::string& stylesheet() {
     return text;
 }
 
-std::string method_of(const ReportSubject& subject) {
-    const std::string title = text_at(subject.entry.at("title"));
-    return "Controller settings by: " + (title.empty() ? text_at(subject.entry.at("method")) : title);
+std::string about_of(const ReportSubject& subject) {
+    const std::string title = text_at(subject.entry.at("title")), controller = controller_words(subject);
+    return (controller.empty() ? "Controller settings" : "Settings of " + controller) +
+           ", by: " + (title.empty() ? text_at(subject.entry.at("method")) : title);
+}
+
+/// "2024-05-01 12:00 UTC" of "2024-05-01T12:00:00Z"; another text as it is.
+std::string date_words(const std::string& date) {
+    constexpr std::size_t kDay = 10, kMinutes = 16;
+    if (date.size() <= kMinutes || date[kDay] != 'T' || date.back() != 'Z') return date;
+    return date.substr(0, kDay) + " " + date.substr(kDay + 1, kMinutes - kDay - 1) + " UTC";
 }
 
 Html head_of(const ReportSubject& subject, const ReportWords& words, const std::string& title,
              const std::string& about) {
     std::string origin;
-    for (const auto& [name, value] :
-         {std::pair{"Date ", words.date}, {"job ", words.job}, {"Tunewright ", text_at(subject.result.at("version"))}})
+    for (const auto& [name, value] : {std::pair{"", date_words(words.date)},
+                                      {"job ", words.job},
+                                      {"Tunewright ", text_at(subject.result.at("version"))}})
         if (!value.empty()) origin += (origin.empty() ? "" : " · ") + std::string(name) + value;
     Html out = element("h1", title) + element("p", about) + element("p", origin);
     const std::string hash = text_at(subject.result.at("request_hash"));
@@ -93,10 +102,10 @@ std::variant<std::string, Problem> report_html(const ResultSource& source, std::
     const Json document = document_of(found);
     const ReportSubject subject = subject_of(document, number);
     const std::string title = title_of(subject, said);
-    return page(title, head_of(subject, said, title, method_of(subject)) + verdict_section(subject) +
+    return page(title, head_of(subject, said, title, about_of(subject)) + verdict_section(subject) +
                            settings_section(subject) + figures_section(subject) + responses_section(subject) +
                            robustness_section(subject) + plant_section(subject) + method_section(subject) +
-                           assumptions_section(subject) + signatures() +
+                           assumptions_section(subject) + signatures() + forms_section(subject) +
                            request_section(document.at("request"), said.origin));
 } catch (const Json::exception&) {  // a file that only looks like a result: its members are of other kinds
     return not_a_result();

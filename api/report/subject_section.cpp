@@ -1,4 +1,7 @@
 // What is controlled: the plant, or the record with the model that was found in it.
+#include <algorithm>
+#include <cmath>
+
 #include "api/contract/plant/plant.h"
 #include "api/report/figures.h"
 #include "api/report/plot.h"
@@ -79,20 +82,63 @@ Html parameters_of(const Place& model, const ReportSubject& s) {
         if (!value.is_number()) continue;
         const bool time = name[0] == 'T' || name == "L";
         const Place error = model.at("standard_errors").at(name);
+        const bool told = error.exists() && !negligible(error.value().get<double>(), value.get<double>());
         rows.push_back({with_unit(name, time          ? s.time
                                         : name == "K" ? unit_quotient(s.y, s.u)
                                                       : ""),
-                        figure(model.at("plant").at(name)), error.exists() ? "± " + figure(error, 2) : Html("")});
+                        figure(model.at("plant").at(name)),
+                        told             ? "± " + figure(error, 2)
+                        : error.exists() ? Html("negligible")
+                                         : Html("")});
     }
     if (rows.empty()) return {};
     return table("Identified parameters", {"", "Value", "Standard error"}, rows);
 }
 
+/// What was moved: "one step of the set point, in automatic".
+std::string test_words(const Place& quality) {
+    const auto steps = [](const Json& count, const std::string& signal) {
+        const int n = count.is_number() ? count.get<int>() : 0;
+        return n == 1 ? "one step of " + signal : std::to_string(n) + " steps of " + signal;
+    };
+    const Place loop = quality.at("closed_loop");
+    const std::string kind = text_at(quality.at("kind"));
+    if (loop.at("set_point_moves").exists() && text_at(loop.at("used")) == "set_point")
+        return steps(loop.at("set_point_moves").value(), "the set point") + ", in automatic";
+    if (loop.exists()) return "a record in automatic";
+    if (kind == "relay") return "a relay test";
+    if (kind == "general") return "any moves of u";
+    return steps(quality.at("steps").value(), "u");
+}
+
+/// Figures of the record in words, in their order; others by their names.
+constexpr std::pair<const char*, const char*> kQuality[] = {{"samples", "Samples"},
+                                                            {"samples_dropped", "Rows left out"},
+                                                            {"sample_time", "Time between samples"},
+                                                            {"irregular", "Irregular times"},
+                                                            {"noise_std", "Noise of y"},
+                                                            {"quantisation", "Smallest step of y"},
+                                                            {"steps", "Moves of u"},
+                                                            {"cycles", "Periods of the relay"},
+                                                            {"settled", "y came to rest"},
+                                                            {"u0", "u at the start"},
+                                                            {"y0", "y at the start"},
+                                                            {"repeated_times", "Repeated times"},
+                                                            {"backward_times", "Times out of order"}};
+
+std::string quality_label(const std::string& name) {
+    for (const auto& [member, label] : kQuality)
+        if (name == member) return label;
+    std::string label = name;
+    std::ranges::replace(label, '_', ' ');
+    return label;
+}
+
 Html quality_of(const Place& quality) {
-    std::vector<Row> rows;
+    std::vector<Row> rows = {{"Test", test_words(quality)}};
     for (const auto& [name, value] : quality.value().items()) {
-        std::string label = name;
-        for (char& c : label) c = c == '_' ? ' ' : c;
+        if (name == "kind") continue;
+        const std::string label = quality_label(name);
         if (value.is_number()) rows.push_back({label, figure(quality.at(name))});
         if (value.is_boolean()) rows.push_back({label, value.get<bool>() ? "yes" : "no"});
         if (value.is_string()) rows.push_back({label, value.get<std::string>()});
@@ -119,8 +165,8 @@ Html identified(const ReportSubject& s) {
     const Place model = s.result.at("model");
     if (!model.at("plant").exists()) return {};
     Html out = element("p", "Identified from a recorded test:") + formula(model.at("plant").value());
-    out += element("p", Html("Fit of the free run ") + figure(model.at("fit_percent")) + " %. " +
-                            text_at(model.at("choice_reason")));
+    out += element("p", element("strong", grade_words(text_at(model.at("grade")))) + " Fit of the free run " +
+                            figure(model.at("fit_percent")) + " %. " + text_at(model.at("choice_reason")));
     out += fit_of(model.at("fit"), s);
     out += element("div", parameters_of(model, s) + element("div", quality_of(model.at("data_quality"))),
                    {{"class", "tables"}});

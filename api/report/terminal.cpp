@@ -6,6 +6,7 @@
 
 #include "api/json/json.h"
 #include "api/report/columns.h"
+#include "api/report/figures.h"
 #include "engine/number_text.h"
 
 namespace tunewright::api {
@@ -51,10 +52,12 @@ std::string parameters(const Json& model) {
     std::string out;
     for (const auto& [name, value] : plant.items()) {
         if (!value.is_number() && !value.is_array()) continue;
-        out += (out.empty() ? "" : ", ") + name + " " +
-               (value.is_array() ? "[" + coefficients(value) + "]" : number(value));
-        if (errors.is_object() && errors.contains(name) && errors[name].is_number())
-            out += " +- " + figure_text(errors[name].get<double>(), 2);
+        const bool uncertain = errors.is_object() && errors.contains(name) && errors[name].is_number();
+        out += (out.empty() ? "" : ", ") + name + " ";
+        if (value.is_array())
+            out += "[" + coefficients(value) + "]";
+        else
+            out += uncertain ? uncertain_text(value.get<double>(), errors[name].get<double>()) : number(value);
     }
     return out;
 }
@@ -64,7 +67,9 @@ std::string model_lines(const Json& model) {
         "Model " + words(at(model, "/plant/type")) + ", fit " + number(model.value("fit_percent", Json())) + " %";
     const std::string values = parameters(model);
     if (!values.empty()) out += ": " + values;
-    return out + "\n" + sentences(model.value("warnings", Json::array()), "message");
+    const std::string grade = grade_words(words(model.value("grade", Json())));
+    return out + "\n" + (grade.empty() ? "" : "  " + grade + "\n") +
+           sentences(model.value("warnings", Json::array()), "message");
 }
 
 std::vector<std::size_t> order_of(const Json& result) {

@@ -78,6 +78,8 @@ struct ClosedLoop {
     std::string evidence;  ///< one sentence
     LoopExcitation used = LoopExcitation::none;
     double share = 0;  ///< of u's variance that it explains, 0 to 1
+    /// Moves of the recorded set point (column r), a ramp counted once; empty: not recorded, or it does not move.
+    std::optional<int> set_point_moves;
 };
 
 /// What was found in the record and what was done about it. Named figures, sentences beside them. In the record's

@@ -42,7 +42,7 @@ void say_choice(Evaluation& held, const Evaluation& nominal) {
                          {"held-on-region",
                           "The limits hold on every plant that the record leaves possible (95 %). With the design for "
                           "the model alone, the next entry, " +
-                              there + " on them. uncertainty \"none\" gives that one alone."});
+                              there + " on them."});
 }
 
 void warn_of_band(Evaluation& evaluation, const std::optional<ExcitedBand>& band) {

@@ -119,6 +119,61 @@ class ReportTest(unittest.TestCase):
         answer = json.loads(done.stdout)
         self.assertEqual((answer["name"], answer["status"]), ("it's TIC-101", "succeeded"))
 
+    def test_the_product_its_ranges_and_the_way_from_old_to_new_are_at_its_head(self):
+        implement = {"product": "emerson_deltav_standard", "y_span": [0, 200], "u_span": [0, 100], "sample_time": 0.5}
+        job = self.job({"name": "TIC-101", "units": {"time": "s", "u": "%", "y": "degC"}, "plant": FOPDT,
+                        "implement": implement, "evaluate": {"actuator": {"min": -40, "max": 60}},
+                        "baseline": {"product": "emerson_deltav_standard", "settings": {"GAIN": 1.1, "RESET": 14}}})
+        tree, text, figures = self.checked(job)
+        head = "".join(tree.find(".//" + XHTML + "header").itertext())
+        self.assertIn("Settings of Emerson DeltaV PID, FORM Standard", head)
+        self.assertRegex(head, r"\d{4}-\d\d-\d\d \d\d:\d\d UTC")
+        tables = {table.find(XHTML + "caption").text: ["".join(cell.itertext()) for cell in table.iter() if
+                                                       cell.tag in (XHTML + "th", XHTML + "td")]
+                  for table in tree.iter(XHTML + "table")}
+        change = tables["On your controller, Emerson DeltaV PID, FORM Standard"]
+        self.assertEqual(change[:3], ["", "Today", "New"])
+        gain = change.index("GAIN (%/%)")
+        self.assertEqual(change[gain + 1], "1.10")
+        self.assertIn("STRUCTURE", change)
+        for place in ("/request/implement/y_span/1", "/request/implement/u_span/0", "/request/implement/sample_time",
+                      "/request/evaluate/actuator/max"):
+            self.assertIn(place, figures)
+        # The product's own settings come first, generic forms after the lines to sign.
+        captions = list(tables)
+        self.assertEqual(captions[0], "On your controller, Emerson DeltaV PID, FORM Standard")
+        self.assertLess(text.index("Prepared by"), text.index("New settings, by the form of the controller"))
+        self.assertNotIn("uncertainty &quot;", text)
+
+    def test_the_set_point_is_drawn_and_what_was_asked_stands_beside_what_was_reached(self):
+        job = self.job(BASE | {"tune": [{"method": "robust", "setpoint": {"overshoot": 5}}]})
+        _, text, figures = self.checked(job)
+        self.assertEqual(text.count("Set point</span>"), 1)
+        self.assertTrue(any(at.endswith("options/setpoint/overshoot") for at in figures))
+        self.assertIn(", asked: ", text)
+
+    def test_one_step_of_the_set_point_is_called_one_step(self):
+        # A PI loop on 2/(20 s + 1) after 3 s, with a controller that moves u in every row.
+        y, x, u, integral, rows, delayed = 0.0, 0.0, 0.0, 0.0, [], [0.0] * 6
+        noise = [((i * 7919) % 101 - 50) / 5000 for i in range(1200)]
+        for i in range(1200):
+            r = 10.0 if i < 300 else 12.0
+            measured = 10 + y + noise[i]
+            integral += 0.5 * (r - measured) * 0.6 / 20
+            u = 0.6 * (r - measured) + integral
+            rows.append("%g,%.3f,%.4f,%.5f" % (i * 0.5, r, measured, 30 + u))
+            delayed.append(u)
+            x += 0.5 * (2 * delayed.pop(0) - x) / 20
+            y = x
+        job = self.job({"record": {"csv": "t,r,y,u\n" + "\n".join(rows)}})
+        quality = job["result"]["model"]["data_quality"]
+        self.assertEqual(quality["closed_loop"]["set_point_moves"], 1)
+        self.assertIn(job["result"]["model"]["grade"], ("good", "usable", "doubtful"))
+        _, text, _ = self.checked(job)
+        self.assertIn("one step of the set point, in automatic", text)
+        self.assertNotIn("several_steps", text)
+        self.assertNotIn("several steps", text)
+
     def test_each_controller_has_a_report(self):
         job = self.job(BASE)
         for index, told in enumerate(("Robust", "SIMC")):
@@ -189,7 +244,7 @@ class ReportTest(unittest.TestCase):
                 ({"plant": FOPDT, "evaluate": {"actuator": {"min": -1, "max": 1}, "horizon": 50}}, "max of u"),
                 ({"plant": FOPDT, "tune": [{"method": "npid_iae"}]}, "npid"),
                 ({"plant": FOPDT, "implement": {"product": "siemens_pid_compact", "y_span": [0, 200], "u_span": [0, 100],
-                                                "sample_time": 0.1}}, "On your controller")):
+                                                "sample_time": 0.1}}, "On your controller, Siemens PID_Compact")):
             self.assertIn(told, self.checked(self.job(request))[1], request)
         for name in ("14-spherical-tank", "08-oscillatory-mass", "06-unstable-first-order"):
             example = json.loads((EXAMPLES / (name + ".json")).read_text())

@@ -3,6 +3,7 @@
 #include "api/contract/plant/plant.h"
 #include "api/contract/relay.h"
 #include "api/contract/result/evaluation.h"
+#include "engine/identification/model_grade.h"
 
 namespace tunewright::api {
 namespace {
@@ -80,7 +81,9 @@ const Description<ClosedLoop>& closed_loop_contract() {
                                                       {"outside_moves", LoopExcitation::outside_moves},
                                                       {"none", LoopExcitation::none}})),
                 "What the model rests on: moves of the set point (r), moves of u that y does not explain, or neither.")
-            .field("share", &ClosedLoop::share, size(), "Of u's variance that these moves explain, 0 to 1.");
+            .field("share", &ClosedLoop::share, size(), "Of u's variance that these moves explain, 0 to 1.")
+            .field("set_point_moves", &ClosedLoop::set_point_moves, maybe(count()),
+                   "Moves of the recorded set point, a ramp counted once.");
         return d;
     }();
     return description;
@@ -207,6 +210,14 @@ const Description<IdentifiedModel>& model_contract() {
         d.field("plant", &M::plant, only_answered(one_of(plant_contract())), "The model.")
             .field("fit_percent", &M::fit_percent, only_answered(number()),
                    "100 (1 - |y - yhat|/|y - mean(y)|), free run, offset estimated.")
+            .field(
+                "grade", {}, [](const M& model, Writer& out) { out.text(name_of(grade_of(model))); },
+                [](SchemaBook&) {
+                    return Json{{"type", "string"}, {"enum", {"good", "usable", "doubtful"}}};
+                },
+                "How far it may be relied on. good; usable: with care, there are warnings; doubtful: it explains less "
+                "than 70 % of the record's movement, less than 90 % where what it misses is no noise, or a warning "
+                "says that it may be another plant.")
             .field("standard_errors", &M::standard_errors, standard_errors(), "By parameter.")
             .field("covariance", &M::covariance,
                    unless<ParameterCovariance>(answer(covariance_contract()),

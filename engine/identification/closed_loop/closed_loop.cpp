@@ -56,6 +56,21 @@ std::vector<double> set_point_at_samples(const CleanRecord& clean, const Record&
     return tracks(r, clean.y) ? std::vector<double>{} : r;
 }
 
+/// Steps of a set point at the samples: changes below 2 % of its range are none, and a ramp is one.
+int moves_of(const std::vector<double>& r) {
+    constexpr double kJitter = 0.02;
+    const auto [low, high] = std::ranges::minmax(r);
+    int moves = 0;
+    double last = 0;
+    for (std::size_t i = 1; i < r.size(); ++i) {
+        const double change = r[i] - r[i - 1];
+        const bool moved = std::abs(change) > kJitter * (high - low);
+        if (moved && change * last <= 0) ++moves;
+        last = moved ? change : 0;
+    }
+    return moves;
+}
+
 /// Feedback shows from row to row: of a long record the beginning is looked at, and means over blocks are fitted.
 CleanRecord beginning(const CleanRecord& record) {
     return record.samples() <= kMaxSeen ? record : first_part(record, record.t[static_cast<std::size_t>(kMaxSeen - 1)]);
@@ -225,6 +240,7 @@ Expected<std::optional<LoopRecord>> find_loop(const CleanRecord& full, const Rec
     std::vector<double> moves = r;
     if (!r.empty()) {
         loop.found.used = LoopExcitation::set_point;
+        loop.found.set_point_moves = moves_of(r);
     } else if (feedback && !feedback->outside.empty()) {
         moves = steps_at_samples(feedback->outside, seen.scale.t_scale / full.scale.t_scale, record);
         loop.found.used = LoopExcitation::outside_moves;

@@ -1,7 +1,8 @@
-#include "engine/request/verdict/findings.h"
-
 #include <algorithm>
 #include <cmath>
+
+#include "engine/identification/model_grade.h"
+#include "engine/request/verdict/findings.h"
 
 namespace tunewright::verdict {
 namespace {
@@ -9,9 +10,7 @@ namespace {
 using Found = std::optional<Finding>;
 
 constexpr double kRounding = 1e-6;
-constexpr double kOscillatoryMt = 2;    // the set-point response rings: as a second-order loop with zeta 0.26
-constexpr double kPoorFitPercent = 70;  // below it a model does not explain its record
-constexpr double kMissesPercent = 90;   // nor below this one where what it misses is no noise
+constexpr double kOscillatoryMt = 2;  // the set-point response rings: as a second-order loop with zeta 0.26
 
 Found unstable(const Case& c) {
     if (c.evaluation.robustness.stable) return {};
@@ -97,14 +96,11 @@ Found oscillatory(const Case& c) {
         .say(Mt->where + ".");
 }
 
-bool misses_more_than_noise(const IdentifiedModel& model) {
-    return std::ranges::any_of(model.warnings, [](const Warning& w) { return w.code == "structured-residuals"; });
-}
-
 Found doubtful_model(const Case& c) {
-    if (c.context.model == nullptr) return {};
-    const double fit = c.context.model->fit_percent;
-    if (fit >= kPoorFitPercent && (fit >= kMissesPercent || !misses_more_than_noise(*c.context.model))) return {};
+    if (c.context.model == nullptr || grade_of(*c.context.model) != ModelGrade::doubtful) return {};
+    if (explains_its_record(*c.context.model))
+        return Draft("doubtful-model", Level::warning)
+            .say("A doubtful model to tune on: the warnings about it say why.");
     return Draft("doubtful-model", Level::warning)
         .say("A doubtful model to tune on: it explains ")
         .number("fit_percent", c.context.model->fit_percent, "%")

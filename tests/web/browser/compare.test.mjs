@@ -1,7 +1,6 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import test from "node:test";
-import { inflateSync } from "node:zlib";
 import { accessibilityViolations, browserTests, overflow, tracesShown, WINDOWS, openMore } from "../harness.mjs";
 
 const tests = browserTests();
@@ -239,53 +238,6 @@ test("the table is saved as CSV with all digits", async () => {
     assert.equal(rows.length, result.controllers.length);
     const best = result.controllers[result.ranking[0]];
     assert.ok(rows[0].includes(String(best.controller.Kp)), rows[0]);
-  });
-});
-
-test("on paper every column has its heading, and the table is no wider than its card", async () => {
-  // What A4 leaves between usual margins.
-  await withPage(PLANT, { width: 720, height: 1000 }, async (page) => {
-    await compareAll(page);
-    await page.locator(".league-table tbody tr").first().waitFor();
-    const headings = await page.locator(".league-table thead th").allInnerTexts();
-    await page.emulateMedia({ media: "print" });
-    const printed = page.locator(".league-table thead th:visible");
-    assert.deepEqual(
-      (await printed.allInnerTexts()).map((text) => text.replace(/\s+/g, " ").trim()),
-      headings.map((text) => text.replace(/\s+/g, " ").trim()).filter((text) => !text.startsWith("y, ")),
-    );
-    const edge = (selector) => page.locator(selector).first().evaluate((box) => box.getBoundingClientRect().right);
-    assert.ok((await edge(".league-table")) <= (await edge(".card.league")));
-    await page.emulateMedia({ media: "screen" });
-    await page.getByRole("link", { name: "Settings and verdict" }).click();
-    await page.getByRole("heading", { name: /^Settings to enter/ }).waitFor();
-    await page.emulateMedia({ media: "print" });
-    assert.equal(await page.locator(".legend input:visible").count(), 0);
-    assert.match(await page.locator(".legend").innerText(), /robust[^]*today/i);
-  });
-});
-
-/** How many pieces of text each page of a PDF of the browser writes. */
-function textPieces(pdf) {
-  const text = pdf.toString("latin1");
-  const object = (number) => text.slice(text.search(new RegExp(`(^|\\n)${number} 0 obj`)));
-  return [...text.matchAll(/\/Type\s*\/Page\b[^]*?endobj/g)].map(([page]) => {
-    const contents = object(Number(/\/Contents (\d+) 0 R/.exec(page)[1]));
-    const begin = contents.indexOf("stream\n") + "stream\n".length;
-    const stream = Buffer.from(contents.slice(begin, contents.indexOf("\nendstream")), "latin1");
-    return (inflateSync(stream).toString("latin1").match(/ T[jJ]\b/g) ?? []).length;
-  });
-}
-
-test("the table begins on the first page and is printed whole", async () => {
-  await withPage(PLANT, {}, async (page) => {
-    await compareAll(page);
-    await page.locator(".league-table tbody tr").first().waitFor();
-    const rows = await page.locator(".league-table tbody tr").count();
-    const pieces = textPieces(await page.pdf({ format: "A4", landscape: true }));
-    assert.ok(pieces.length > 1, `${pieces.length} pages of ${rows} rows`);
-    assert.ok(pieces[0] > 100, `the first page holds ${pieces[0]} pieces of text, the pages ${pieces.join(", ")}`);
-    assert.ok(pieces.reduce((sum, count) => sum + count, 0) > 10 * rows);
   });
 });
 

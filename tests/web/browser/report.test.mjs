@@ -1,6 +1,5 @@
 // The report as its reader meets it: led to from a result, without scripts, printed on A4 and Letter.
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
 import test from "node:test";
 import { accessibilityViolations, browserTests, openPage, overflow } from "../harness.mjs";
 
@@ -47,30 +46,6 @@ test("the link itself has the entry, chosen or not: a middle click or a copy lea
       await link.waitFor();
       assert.equal(await link.getAttribute("href"), `v1/jobs/${job.id}/report.html?controller=${index}`);
     });
-});
-
-/** Pages of a PDF as the browser writes it. */
-const pageCount = (pdf) => (pdf.toString("latin1").match(/\/Type\s*\/Page[^s]/g) ?? []).length;
-
-test("the report prints on A4 and Letter, its style alone applies, and nothing is wrong with it", async () => {
-  const csv = readFileSync(new URL("../../../api/examples/tclab-step.csv", import.meta.url), "utf8");
-  const record = { record: { csv }, identify: { traces: true }, tune: [{ method: "robust" }] };
-  for (const [request, most] of [
-    [REQUEST, 5],
-    [record, 6],
-  ]) {
-    const job = await tuned(request);
-    const opened = await openPage(tests.browser, {});
-    await opened.page.goto(`${tests.service.base}/v1/jobs/${job.id}/report.html`);
-    assert.equal(await opened.page.evaluate(() => getComputedStyle(document.querySelector("table")).borderCollapse), "collapse");
-    assert.equal(await opened.page.locator("figure svg path").count().then((count) => count > 20), true);
-    for (const format of ["A4", "Letter"]) {
-      const pages = pageCount(await opened.page.pdf({ format, preferCSSPageSize: false }));
-      assert.ok(pages >= 2 && pages <= most, `${pages} pages of ${format}`);
-    }
-    assert.deepEqual(await opened.faults(), []);
-    await opened.close();
-  }
 });
 
 test("on a phone the report is as wide as the window; wide tables scroll by themselves", async () => {

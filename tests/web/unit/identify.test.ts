@@ -105,6 +105,8 @@ test("parameters carry their errors with as many digits as these allow", () => {
   assert.equal(formatUncertain(-39.96, 0.31), "−39.96 ± 0.31");
   assert.equal(formatUncertain(1234, 45), "1234 ± 45");
   assert.equal(formatUncertain(1.25, null), "1.25");
+  assert.equal(formatUncertain(40, 1.9e-9), "40");
+  assert.equal(formatUncertain(0, 1.9e-9), "0 ± 1.9e−9");
   assert.deepEqual(parameterTexts(fopdt, units), ["K 1.250 ± 0.012 °C/%", "T 40.00 ± 0.31 s", "L 8.00 ± 0.22 s"]);
   assert.deepEqual(parameterTexts(ipdt, units), ["K 0.03 °C/%/s", "L 7 s"]);
 });
@@ -114,14 +116,31 @@ test("a time whose error is longer than the record is said to be unknown", () =>
   assert.deepEqual(parameterTexts(loose, units, 800)[2], "L 8 ± unknown s");
 });
 
-test("a good test is said to be good; warnings and a poor fit change that, with their figures", () => {
+test("what the service concludes of a model is shown, whatever its figures are", () => {
   assert.equal(qualityOf(model, units).head, "Good enough.");
-  const warned = qualityOf({ ...model, warnings: [{ code: "drift", detail: "y drifts." }] }, units);
+  const warnings = [{ code: "drift", detail: "y drifts." }];
+  const warned = qualityOf({ ...model, grade: "usable", warnings }, units);
   assert.deepEqual([warned.level, warned.head], ["warn", "Usable with care: 1 warning."]);
   const noted = { ...model, data_quality: { ...model.data_quality, notes: ["a", "b"] } };
   assert.equal(qualityOf(noted, units).head, "Good enough, with 2 remarks.");
-  const poor = qualityOf({ ...model, fit_percent: 46 }, units);
-  assert.deepEqual([poor.level, poor.head], ["bad", "Doubtful: the model explains 46.0 % of the record's movement."]);
+  const poor = qualityOf({ ...model, grade: "doubtful", fit_percent: 84 }, units);
+  assert.deepEqual([poor.level, poor.head], ["bad", "A doubtful model: it explains 84.0 % of the record's movement."]);
+  const biased = qualityOf({ ...model, grade: "doubtful", fit_percent: 84, warnings }, units);
+  assert.match(biased.head, /^A doubtful model: .*; 1 warning\.$/);
+  assert.equal(qualityOf({ ...model, grade: "good", fit_percent: 46 }, units).level, "good");
+});
+
+test("a record in automatic is named by what was stepped in it", () => {
+  const data_quality = {
+    ...model.data_quality,
+    kind: "several_steps",
+    steps: 19,
+    closed_loop: { evidence: "", used: "set_point", share: 0.9, set_point_moves: 1 },
+  };
+  const words = qualityOf({ ...model, data_quality }, units);
+  assert.equal(Object.fromEntries(words.rows)["Test"], "one step of the set point, in automatic");
+  assert.match(words.input, /^One step of the set point, in automatic: the controller moved u from 0 to 5 %\.$/);
+  assert.doesNotMatch(JSON.stringify(words.rows), /several.steps/);
 });
 
 test("the record is described by its figures, and by those that this page does not know by their names", () => {

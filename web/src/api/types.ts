@@ -120,6 +120,9 @@ export interface Controller {
   Kp: number;
   Ti: number | null;
   Td: number | null;
+  /** Of the parallel form. */
+  Ki?: number | null;
+  Kd?: number | null;
   b?: number;
   c?: number;
   /** Of the nonlinear form: errors far beyond it do not feed the integral. */
@@ -284,6 +287,8 @@ export interface Region {
 export interface Model {
   plant: Plant;
   fit_percent: number | null;
+  /** How far the service relies on it. */
+  grade?: "good" | "usable" | "doubtful";
   candidates?: Candidate[];
   choice_reason?: string;
   limit_cycle?: LimitCycle;

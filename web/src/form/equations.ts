@@ -1,6 +1,7 @@
 // A plant given by equations: from the texts of its rows to the plant, back, and to what an address keeps. No DOM.
 import type { FieldError, Plant } from "../api/types.ts";
 import { parseNumber } from "./number.ts";
+import { exactText } from "../words/numbers.ts";
 
 export interface StateTexts {
   name: string;
@@ -129,7 +130,7 @@ const written = (value: unknown): string =>
 /** Every digit, but no rows of zeros: 4.71e8. */
 function shortest(value: number): string {
   const size = Math.abs(value);
-  return size >= 1e6 || (size < 1e-3 && size > 0) ? value.toExponential().replace("e+", "e") : String(value);
+  return size >= 1e6 || (size < 1e-3 && size > 0) ? value.toExponential().replace("e+", "e") : exactText(value);
 }
 
 /** The texts that show a plant; null where it is of another kind or has parts without a field. */

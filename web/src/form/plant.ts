@@ -2,6 +2,7 @@
 import type { Plant } from "../api/types.ts";
 import { parseMatrix, parseNumber, parseNumbers, parseRanges, parseRoots, writeRoots } from "./number.ts";
 import type { Parsed } from "./number.ts";
+import { exactText } from "../words/numbers.ts";
 
 export interface PlantField {
   /** Name in the contract. */
@@ -23,7 +24,7 @@ export interface PlantForm {
   fields: PlantField[];
 }
 
-const writeNumber = (value: unknown): string => (typeof value === "number" ? String(value) : "");
+const writeNumber = (value: unknown): string => (typeof value === "number" ? exactText(value) : "");
 const writeList = (value: unknown): string => (Array.isArray(value) ? value.map(String).join(" ") : writeNumber(value));
 const writeMatrix = (value: unknown): string =>
   Array.isArray(value)

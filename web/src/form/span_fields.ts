@@ -6,6 +6,7 @@ import { textField } from "./controls.ts";
 import type { FormErrors } from "./errors.ts";
 import { parseNumber } from "./number.ts";
 import type { Parsed } from "./number.ts";
+import { exactText } from "../words/numbers.ts";
 
 export interface SpanReading {
   /** Null: an end is still empty, or cannot be read. */
@@ -44,7 +45,7 @@ export function spanFields(
       return readSpan(typed, options.label, options.pointer);
     },
     set(span) {
-      ends.forEach((end, index) => (end.input.value = span ? String(span[index]) : ""));
+      ends.forEach((end, index) => (end.input.value = span ? exactText(span[index]!) : ""));
     },
     setUnit(text) {
       unit.textContent = text ? ` (${text})` : "";

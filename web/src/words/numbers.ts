@@ -36,9 +36,16 @@ export function formatParameter(value: number): string {
   return short !== 0 && (size < 1e-3 || size >= 1e5) ? formatNumber(short, 4) : String(short).replaceAll("-", MINUS);
 }
 
+/** A number for a field or an address, as it would be typed: without what arithmetic leaves in the 16th digit. */
+export const exactText = (value: number): string => String(Number(value.toPrecision(15)));
+
+/** An error below this share of the value says nothing. */
+const NEGLIGIBLE = 1e-6;
+
 /** "2.00003 ± 0.00048": the error with two digits, the value with as many decimals. */
 export function formatUncertain(value: number, error: number | null | undefined): string {
-  if (typeof error !== "number" || !(error > 0) || !Number.isFinite(error)) return formatParameter(value);
+  if (typeof error !== "number" || !Number.isFinite(error) || !(error > NEGLIGIBLE * Math.abs(value)))
+    return formatParameter(value);
   const decimals = 1 - Math.floor(Math.log10(error));
   const size = Math.max(Math.abs(value), error);
   if (decimals < 0 || decimals > 7 || size < 1e-3 || size >= 1e5)

@@ -15,29 +15,27 @@ export interface QualityWords {
   warnings: Notice[];
 }
 
-/** Below this fit a model does not explain its record. */
-const POOR_FIT_PERCENT = 70;
+const LEVELS: Record<NonNullable<Model["grade"]>, Level> = { good: "good", usable: "warn", doubtful: "bad" };
 
 export function qualityOf(model: Model, units: UnitNames): QualityWords {
   const warnings = model.warnings ?? [];
   const notes = listOf(model.data_quality?.["notes"]);
-  const fit = model.fit_percent;
-  const poor = typeof fit === "number" && fit < POOR_FIT_PERCENT;
-  const level: Level = poor ? "bad" : warnings.length > 0 ? "warn" : "good";
+  const level = LEVELS[model.grade ?? "good"];
   return {
     level,
-    head: poor
-      ? `Doubtful: the model explains ${formatNumber(fit)} % of the record's movement.`
-      : warnings.length > 0
-        ? `Usable with care: ${counted(warnings.length, "warning")}.`
-        : notes.length > 0
-          ? `Good enough, with ${counted(notes.length, "remark")}.`
-          : "Good enough.",
+    head: headOf(model, level, warnings.length, notes.length),
     input: inputWords(model, units),
     rows: rowsOf(model, units),
     notes,
     warnings,
   };
+}
+
+function headOf(model: Model, level: Level, warnings: number, notes: number): string {
+  if (level === "bad")
+    return `A doubtful model: it explains ${formatNumber(model.fit_percent)} % of the record's movement${warnings > 0 ? `; ${counted(warnings, "warning")}` : ""}.`;
+  if (level === "warn") return `Usable with care: ${counted(warnings, "warning")}.`;
+  return notes > 0 ? `Good enough, with ${counted(notes, "remark")}.` : "Good enough.";
 }
 
 const counted = (count: number, name: string): string => `${count} ${name}${count === 1 ? "" : "s"}`;
@@ -65,7 +63,9 @@ function rowsOf(model: Model, units: UnitNames): [string, string][] {
   if (grid !== null)
     rows.push([withUnit("Smallest step of y", units.y), grid === 0 ? "none found" : formatNumber(grid)]);
   const steps = number("steps");
-  if (steps !== null) rows.push(["Changes of u", String(steps)]);
+  const test = testWords(model);
+  if (test !== "") rows.unshift(["Test", test]);
+  if (steps !== null) rows.push(["Moves of u", String(steps)]);
   if (typeof quality["settled"] === "boolean") rows.push(["y came to rest", quality["settled"] ? "yes" : "no"]);
   const known = new Set([
     "samples",
@@ -74,6 +74,7 @@ function rowsOf(model: Model, units: UnitNames): [string, string][] {
     "irregular",
     "noise_std",
     "quantisation",
+    "kind",
     "steps",
     "settled",
     "notes",
@@ -108,6 +109,19 @@ function otherRows(name: string, value: unknown): [string, string][] {
   return [];
 }
 
+/** What was moved: "one step of the set point, in automatic". */
+function testWords(model: Model): string {
+  const quality = model.data_quality ?? {};
+  const loop = quality["closed_loop"] as { used?: string; set_point_moves?: number } | undefined;
+  const steps = (count: unknown, signal: string): string =>
+    typeof count !== "number" ? "" : count === 1 ? `one step of ${signal}` : `${count} steps of ${signal}`;
+  if (loop?.used === "set_point" && loop.set_point_moves !== undefined)
+    return `${steps(loop.set_point_moves, "the set point")}, in automatic`;
+  if (loop) return "a record in automatic";
+  if (quality["kind"] === "relay") return "a relay test";
+  return quality["kind"] === "general" ? "any moves of u" : steps(quality["steps"], "u");
+}
+
 /** "u steps once, at 120 s, from 30 to 35 %." */
 function inputWords(model: Model, units: UnitNames): string {
   const { t = [], u = [] } = model.fit ?? {};
@@ -120,6 +134,8 @@ function inputWords(model: Model, units: UnitNames): string {
   const unit = units.u ? ` ${units.u}` : "";
   const range = `from ${formatParameter(minimum(values))} to ${formatParameter(maximum(values))}${unit}`;
   if (changes.length === 0) return `u stands at ${formatParameter(values[0]!)}${unit} from the first sample on.`;
+  const test = testWords(model);
+  if (model.data_quality?.["closed_loop"]) return `${test.charAt(0).toUpperCase()}${test.slice(1)}: the controller moved u ${range}.`;
   if (changes.length > 1) return `u changes ${changes.length} times, ${range}.`;
   const at = changes[0]!;
   return `u steps once, at ${formatParameter(t[at]!)} ${units.time}, from ${formatParameter(u[at - 1]!)} to ${formatParameter(u[at]!)}${unit}.`;

@@ -10,6 +10,7 @@ import { parseNumber } from "../../form/number.ts";
 import { productFields } from "../../form/product_fields.ts";
 import { mineOfRequest, typedBaseline } from "../../my_controller.ts";
 import type { MyController } from "../../my_controller.ts";
+import { exactText } from "../../words/numbers.ts";
 
 export interface TodayCard {
   element: HTMLElement;
@@ -190,7 +191,7 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
       const known = baseline && FORMS.some(([id]) => id === baseline.form);
       form.input.value = known ? baseline.form : "ideal";
       label();
-      const text = (value: unknown): string => (typeof value === "number" ? String(value) : "");
+      const text = (value: unknown): string => (typeof value === "number" ? exactText(value) : "");
       names().forEach((key, index) => {
         slots[index]!.input.value = text(baseline?.[key]);
       });

@@ -1,0 +1,182 @@
+// What is to be entered: from today's settings to the new ones, by the names of the user's own controller where it is
+// known, and the generic forms.
+#include <algorithm>
+#include <array>
+#include <tuple>
+
+#include "api/report/figures.h"
+#include "engine/controller/product/catalogue.h"
+
+namespace tunewright::api {
+namespace {
+
+/// Members of a controller in the order in which they are read.
+constexpr std::array kSettings = {"Kp", "Ki", "Kd", "Ti", "Td", "b", "c", "delta_r"};
+
+std::string setting_unit(const std::string& name, const ReportSubject& s) {
+    const std::string gain = unit_quotient(s.u, s.y);
+    if (name == "Kp") return gain;
+    if (name == "Ki") return gain.empty() ? "" : gain + "/" + s.time;
+    if (name == "Kd") return gain.empty() ? "" : gain + " " + s.time;
+    if (name == "Ti" || name == "Td") return s.time;
+    return name == "delta_r" ? s.y : "";
+}
+
+/// In full: a setting is typed as it stands here.
+constexpr int kFull = 6;
+
+Row setting_row(const std::string& name, const std::string& unit, const std::vector<Place>& controllers) {
+    Row row = {with_unit(name, unit)};
+    for (const Place& place : controllers) {
+        const Json& value = place.at(name).value();
+        if (value.is_null() && !place.at("why_null").at(name).exists())
+            row.push_back(name == "Ti" && place.value().is_object() && place.value().contains("Ti") ? Html("∞")
+                                                                                                    : Html(""));
+        else
+            row.push_back(figure(place.at(name), kFull));
+    }
+    return row;
+}
+
+/// A form of the controller in a column of its own, under its head.
+struct Column {
+    std::string head;
+    Place controller;
+};
+
+Html forms_table(const char* caption, const std::vector<Column>& columns, const ReportSubject& s) {
+    Row top = {""};
+    std::vector<Place> controllers, filters, leads;
+    for (const auto& [head, controller] : columns) {
+        top.push_back(head);
+        controllers.push_back(controller);
+        filters.push_back(controller.at("filter"));
+        leads.push_back(controller.at("setpoint_filter"));
+    }
+    std::vector<Row> rows;
+    for (const char* name : kSettings)
+        if (any_has(controllers, name)) rows.push_back(setting_row(name, setting_unit(name, s), controllers));
+    Row types = {"Filter"};
+    bool filtered = false;
+    for (const Place& filter : filters) {
+        std::string words = text_at(filter.at("type"));
+        filtered = filtered || !words.empty();
+        std::ranges::replace(words, '_', ' ');
+        types.push_back(words);
+    }
+    if (filtered) rows.push_back(types);
+    for (const char* name : {"Tf", "N"})
+        if (any_has(filters, name)) rows.push_back(setting_row(name, *name == 'T' ? s.time : "", filters));
+    if (any_has(leads, "T")) {
+        Row row = {with_unit("Set-point filter T", s.time)};
+        for (const Place& lead : leads) row.push_back(lead.exists() ? figure(lead.at("T"), kFull) : Html(""));
+        rows.push_back(row);
+    }
+    return table(caption, top, rows);
+}
+
+const product::Product* product_of(const ReportSubject& s) {
+    return product::find(text_at(s.request.at("implement").at("product")));
+}
+
+Html typed(const Place& texts, const std::string& name) {
+    const Place value = texts.at(name);
+    return value.exists() ? element("span", text_at(value), {{"data-typed", value.pointer}}) : Html("–");
+}
+
+/// What stands in the controller today beside what is to stand there, by the names of its own list.
+Html change_table(const product::Product& product, const ReportSubject& s) {
+    const Place entered = s.entry.at("as_entered"), texts = entered.at("as_typed");
+    if (!texts.value().is_object()) return {};
+    std::optional<Place> before;
+    if (s.today && s.today->at("as_entered").at("as_typed").exists()) before.emplace(s.today->at("as_entered"));
+    std::vector<std::string> names;
+    for (const auto& [name, value] : texts.value().items()) names.push_back(name);
+    if (before)
+        for (const auto& [name, value] : before->at("as_typed").value().items())
+            if (!texts.at(name).exists()) names.push_back(name);
+    std::vector<Row> rows;
+    for (const std::string& name : names) {
+        const product::Parameter* parameter = product::parameter_named(product, name);
+        std::string unit = text_at(entered.at("units").at(name));
+        if (unit.empty() && before) unit = text_at(before->at("units").at(name));
+        Row row = {with_unit(parameter == nullptr ? name : std::string(parameter->label), unit)};
+        if (before) row.push_back(typed(before->at("as_typed"), name));
+        row.push_back(typed(texts, name));
+        rows.push_back(std::move(row));
+    }
+    const std::string caption = "On your controller, " + product_title(product);
+    return before ? table(caption.c_str(), {"", "Today", "New"}, rows) : table(caption.c_str(), {"", "Type in"}, rows);
+}
+
+Html from_to(const Place& low, const Place& high) { return figure(low, kFull) + " to " + figure(high, kFull); }
+
+/// Spans and sample time, on which the typed values rest, and the limits of u that were counted with.
+Html ranges_table(const ReportSubject& s) {
+    const Place implement = s.request.at("implement"), actuator = s.request.at("evaluate").at("actuator");
+    std::vector<Row> rows;
+    for (const auto& [label, name, unit] :
+         {std::tuple{"Range of the measurement", "y_span", s.y}, std::tuple{"Range of the output", "u_span", s.u}}) {
+        const Place span = implement.at(name);
+        if (span.value().is_array() && span.value().size() == 2)
+            rows.push_back({with_unit(label, unit), from_to(span.at(std::size_t{0}), span.at(std::size_t{1}))});
+    }
+    if (implement.at("sample_time").exists())
+        rows.push_back({with_unit("Sample time", s.time), figure(implement.at("sample_time"), kFull)});
+    if (actuator.at("min").exists() && actuator.at("max").exists())
+        rows.push_back(
+            {with_unit("Limits of u, from the operating point", s.u), from_to(actuator.at("min"), actuator.at("max"))});
+    return rows.empty() ? Html() : table("Ranges and limits", {"", ""}, rows);
+}
+
+Html notes_of(const Place& entry) {
+    const Place notes = entry.at("as_entered").at("notes");
+    std::vector<Html> sentences;
+    for (std::size_t i = 0; i < notes.value().size(); ++i) sentences.push_back(text_at(notes.at(i).at("detail")));
+    return list(sentences);
+}
+
+const char* own_form(const ReportSubject& s) {
+    const std::string form = text_at(s.entry.at("controller").at("form"));
+    return form == "npid" ? "Nonlinear (NPID)" : form == "parallel" ? "Parallel, as given" : "Ideal";
+}
+
+}  // namespace
+
+std::string product_title(const product::Product& product) {
+    const std::string maker(product.maker), name(product.name);
+    return name.starts_with(maker) ? name : maker + " " + name;
+}
+
+std::string controller_words(const ReportSubject& s) {
+    const product::Product* product = product_of(s);
+    return product == nullptr ? "" : product_title(*product);
+}
+
+Html settings_section(const ReportSubject& s) {
+    const product::Product* product = product_of(s);
+    Html change = product == nullptr ? Html() : change_table(*product, s);
+    if (change.empty()) {
+        std::vector<Column> columns;
+        if (s.today) columns.push_back({"Today", s.today->at("controller")});
+        columns.push_back({s.today ? "New" : own_form(s), s.entry.at("controller")});
+        const bool nonlinear = text_at(s.entry.at("controller").at("form")) == "npid";
+        change = forms_table(nonlinear ? "To enter" : "To enter, in the ideal form", columns, s);
+    }
+    return section("Settings", element("div", change + ranges_table(s), {{"class", "tables"}}) + notes_of(s.entry));
+}
+
+Html forms_section(const ReportSubject& s) {
+    std::vector<Column> columns = {{own_form(s), s.entry.at("controller")}};
+    for (const auto& [name, head] : {std::pair{"parallel", "Parallel"}, {"series", "Series"}}) {
+        const Place place = s.entry.at("equivalents").at(name);
+        if (place.exists()) columns.push_back({head, place});
+    }
+    Html tables = forms_table("New settings, by the form of the controller", columns, s);
+    if (s.today) tables += forms_table("Today's settings", {{"Settings", s.today->at("controller")}}, s);
+    const std::string series = text_at(s.entry.at("equivalents").at("why_null").at("series"));
+    const Html why = series.empty() ? Html() : element("p", "No series form: " + series);
+    return section("The settings in other forms", element("div", tables, {{"class", "tables"}}) + why);
+}
+
+}  // namespace tunewright::api

@@ -1,0 +1,30 @@
+// How far a model may be relied on: the one conclusion that verdicts, reports and lists show.
+#pragma once
+
+#include "engine/identification/identify.h"
+
+namespace tunewright {
+
+/// Verdict, page, report and terminal show this conclusion and draw none of their own.
+enum class ModelGrade {
+    good,      ///< nothing speaks against it
+    usable,    ///< with care: there are warnings about the record or the model
+    doubtful,  ///< it does not explain its record, or a warning says that it may be another plant
+};
+
+/// Below this fit, in percent, a model does not explain its record: what is left has 0.3 of y's standard deviation.
+inline constexpr double kMinFitPercent = 70;
+/// The same where what is left is no noise (warning structured-residuals), so that no average takes it away.
+inline constexpr double kMinFitPercentBiased = 90;
+
+/// `doubtful`: the model explains less than 70 % of the record's movement; or less than 90 % where what it misses is no
+/// noise (warning structured-residuals); or one of its warnings has the level `bad`. `usable`: it has other warnings.
+ModelGrade grade_of(const IdentifiedModel& model);
+
+/// Whether the fit alone makes it doubtful.
+bool explains_its_record(const IdentifiedModel& model);
+
+/// "good", "usable", "doubtful".
+const char* name_of(ModelGrade grade);
+
+}  // namespace tunewright

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "api/contract/controller.h"
 #include "api/contract/plant/plant.h"
 #include "api/json/json.h"
 #include "api/json/writer.h"
@@ -44,9 +45,27 @@ void write_figures(const Evaluation& evaluation, Writer& out) {
     write_figure("load_IAE", evaluation.performance.load.IAE, out);
 }
 
+/// What to enter: the controller, and the texts to type where it is for a product.
+void write_settings(const TuningEntry& best, Writer& out) {
+    out.key("controller");
+    controller_contract().write(best.evaluation->controller, out);
+    if (!best.as_built || best.as_built->fitted.typed.empty()) return;
+    const built::Fitted& fitted = best.as_built->fitted;
+    out.key("to_type");
+    out.begin_object();
+    for (const product::Setting& setting : fitted.typed) {
+        const product::Parameter* parameter = product::parameter_named(*fitted.product, setting.name);
+        const std::string unit(parameter == nullptr ? "" : parameter->unit);
+        out.key(setting.name);
+        out.text(product::typed_text(*fitted.product, setting) + (unit.empty() ? "" : " " + unit));
+    }
+    out.end_object();
+}
+
 void write_best(const TuningEntry& best, Writer& out) {
     out.key("method");
     out.text(best.method);
+    write_settings(best, out);
     write_figures(*best.evaluation, out);
     if (best.evaluation->region) write_figure("worst_Ms", best.evaluation->region->worst_Ms, out);
     if (best.optimum_at_Ms) write_figure("excess_percent", best.optimum_at_Ms->excess_percent, out);

@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::size_t kLookedLines = 200, kLookedBytes = 64 * 1024;
 constexpr std::size_t kMissing = static_cast<std::size_t>(-1);
+constexpr std::string_view kImplement = "implement/";  ///< of parameters of the call
 constexpr std::array<const char*, 4> kTitles = {"name", "K", "T", "L"};
 
 /// Headings in lower case, without their unit.
@@ -85,6 +86,8 @@ Loops::Loops(const LoopOptions& options) {
             names_given_twice_.push_back(name);
         } else if (name == "timeout_s") {
             timeout_ = value_of(value);
+        } else if (name.starts_with(kImplement)) {
+            place(implement_, std::string_view(name).substr(kImplement.size()), value_of(value));
         } else {
             place(tune_, name, name == "method" ? Json(value) : value_of(value));
         }
@@ -96,6 +99,10 @@ Loops::Loops(const LoopOptions& options) {
         tail.key("tune");
         tail.raw(Json::array({tune_}).dump());
     }
+    if (!implement_.empty()) {
+        tail.key("implement");
+        tail.raw(implement_.dump());
+    }
     if (!timeout_.is_null()) {
         tail.key("timeout_s");
         tail.raw(timeout_.dump());
@@ -105,7 +112,7 @@ Loops::Loops(const LoopOptions& options) {
 }
 
 std::optional<Problem> Loops::check_options() const {
-    constexpr const char* kTitle = "The parameters of the call are not valid";
+    constexpr const char* kTitle = "What is asked for all loops is not valid";
     if (!names_given_twice_.empty()) {
         return not_valid(kTitle,
                          {{"/" + pointer_segment(names_given_twice_.front()),
@@ -113,7 +120,7 @@ std::optional<Problem> Loops::check_options() const {
                                " is given twice, or nests too deep. A CSV of loops asks for one method; batches "
                                "of JSON may ask for several."}});
     }
-    const auto tried = prepare_entry(request("", {1, 1, 1}));
+    const auto tried = prepare_entry(request("", {1, 1, 1}, nullptr));
     const auto* problem = std::get_if<Problem>(&tried);
     if (problem == nullptr) return std::nullopt;
     Problem named = *problem;
@@ -125,7 +132,7 @@ std::optional<Problem> Loops::check_options() const {
     return named;
 }
 
-std::string Loops::request(std::string_view name, const std::array<double, 3>& plant) const {
+std::string Loops::request(std::string_view name, const std::array<double, 3>& plant, const Json& today) const {
     Writer out;
     out.begin_object();
     if (!name.empty()) {
@@ -148,6 +155,10 @@ std::string Loops::request(std::string_view name, const std::array<double, 3>& p
         out.number(plant[i]);
     }
     out.end_object();
+    if (!today.is_null()) {
+        out.key("baseline");
+        out.raw(today.dump());
+    }
     std::string text = out.take();
     if (tail_.size() > 1) text += ',';
     return text += tail_;
@@ -235,7 +246,8 @@ std::optional<Problem> Loops::read_headings(long number, std::string_view line) 
         split(line);
         const auto known =
             static_cast<std::size_t>(std::count_if(cells_.begin(), cells_.end(), [](std::string_view heading) {
-                return column_named(split_heading(heading).name);
+                const Heading parts = split_heading(heading);
+                return column_named(parts.name) || todays_column(parts);
             }));
         if (known <= most) continue;
         most = known;
@@ -249,6 +261,7 @@ std::optional<Problem> Loops::read_headings(long number, std::string_view line) 
 std::optional<Problem> Loops::find_columns(long number, const std::vector<std::string_view>& headings) {
     const std::string where = "Line " + std::to_string(number) + " must name the columns, such as name,K,T,L: ";
     at_.fill(kMissing);
+    todays_.clear();
     const auto known = [](std::string_view heading) { return column_named(split_heading(heading).name).has_value(); };
     if (std::ranges::none_of(headings, known))
         return refused("Line " + std::to_string(number) +
@@ -259,10 +272,19 @@ std::optional<Problem> Loops::find_columns(long number, const std::vector<std::s
     for (std::size_t i = 0; i < width_; ++i) {
         const Heading heading = split_heading(headings[i]);
         const auto column = column_named(heading.name);
+        if (auto today = column ? std::nullopt : todays_column(heading)) {
+            if (std::ranges::find(todays_, today->name, &TodaysColumn::name) != todays_.end())
+                return refused(where + "two columns say " + in_quotes(today->name) + ". Remove one.");
+            today->cell = i;
+            todays_.push_back(*std::move(today));
+            continue;
+        }
         if (!column)
-            return refused(where + in_quotes(headings[i]) +
-                           " is none of name, K, T and L. Remove that column; options of the method are "
-                           "parameters of the call, such as ?method=robust&Ms=1.6.");
+            return refused(
+                where + in_quotes(headings[i]) +
+                " is no column of loops. They are name, K, T and L; of today's settings Kp, Ti, Td, Tf, b, c "
+                "and form, or product and its own settings as \"today GAIN\". Remove that column: "
+                "method and limits are chosen once for all loops.");
         if (at_[*column] != kMissing) return refused(where + "two columns say " + kTitles[*column] + ". Remove one.");
         at_[*column] = i;
         units[*column] = heading.unit;
@@ -275,13 +297,34 @@ std::optional<Problem> Loops::find_columns(long number, const std::vector<std::s
         return refused(
             where + listed(missing, "and") + (missing.size() == 1 ? " is" : " are") +
             " missing. Each loop is K e^(-L s)/(T s + 1): K the gain, T the time constant, L the dead time.");
-    if (!units[kLag].empty() && !units[kDelay].empty() && units[kLag] != units[kDelay])
-        return refused(where + "T is in " + in_quotes(units[kLag]) + " and L in " + in_quotes(units[kDelay]) +
-                       "; both must be in the same unit.");
-    time_unit_ = units[kLag].empty() ? units[kDelay] : units[kLag];
+    if (auto problem = find_unit(where, units)) return problem;
+    const bool own = std::ranges::any_of(todays_, [](const TodaysColumn& one) { return one.member.empty(); });
+    if (own) todays_product_ = implement_.value("product", "");
+    const bool named = std::ranges::any_of(todays_, [](const TodaysColumn& one) { return one.member == "product"; });
+    if (own && !named && todays_product_.empty())
+        return refused(where +
+                       "columns of a product's own settings need to know the product. Add a column product, "
+                       "with an id such as emerson_deltav_standard.");
+    headed_ = true;
+    return std::nullopt;
+}
+
+/// T, L and today's times have one unit; a product's settings have its own.
+std::optional<Problem> Loops::find_unit(const std::string& where, const std::array<std::string, kColumns>& units) {
+    std::vector<std::pair<std::string, std::string>> times = {{"T", units[kLag]}, {"L", units[kDelay]}};
+    const bool product = std::ranges::any_of(todays_, [](const TodaysColumn& one) { return one.member == "product"; });
+    for (const TodaysColumn& one : todays_)
+        if (one.is_time() && !product) times.emplace_back(one.name, one.unit);
+    std::string first;
+    for (const auto& [name, unit] : times) {
+        if (unit.empty()) continue;
+        if (time_unit_.empty()) time_unit_ = unit, first = name;
+        if (unit != time_unit_)
+            return refused(where + first + " is in " + in_quotes(time_unit_) + " and " + name + " in " +
+                           in_quotes(unit) + "; all times must be in the same unit.");
+    }
     constexpr std::size_t kMaxUnitLength = 40;
     if (time_unit_.size() > kMaxUnitLength) return refused(where + "the unit of T is longer than 40 characters.");
-    headed_ = true;
     return std::nullopt;
 }
 
@@ -290,6 +333,8 @@ void Loops::find_sign() {
     for (const Held& held : held_) {
         split(held.text);
         for (const Column column : {kGain, kLag, kDelay}) finder.look_at(cell(column), column);
+        for (const TodaysColumn& one : todays_)
+            if (one.cell < cells_.size()) finder.look_at(cells_[one.cell], kColumns + one.cell);
     }
     sign_ = finder.found();
     sign_known_ = true;
@@ -337,8 +382,9 @@ void Loops::read_row(const Held& row, std::vector<RawEntry>& entries) {
         std::array<double, 3> plant{};
         for (const Column column : {kGain, kLag, kDelay})
             plant[column - kGain] = read_number(cell(column), kTitles[column], faults);
+        const Json today = todays_settings(todays_, cells_, sign_, todays_product_, faults);
         if (faults.empty())
-            entry.text = request(name, plant);
+            entry.text = request(name, plant, today);
         else
             entry.fault = not_valid(kTitle, std::move(faults));
     }

@@ -1,4 +1,5 @@
-// A CSV of loops, one first-order plant with dead time a line, as tuning requests: columns name, K, T and L.
+// A CSV of loops, one first-order plant with dead time a line, as tuning requests: columns name, K, T and L, and those
+// of today's settings (todays_columns.h).
 #pragma once
 
 #include <array>
@@ -9,13 +10,15 @@
 #include <vector>
 
 #include "api/batch/pieces.h"
+#include "api/batch/todays_columns.h"
 #include "api/csv/cell.h"
 #include "api/json/json.h"
 
 namespace tunewright::api {
 
 /// What is asked for every loop: parameters of the call by name. `method` is the method, `timeout_s` the request's own,
-/// everything else an option of the method ("Ms" 1.6; "filter/Tf_over_Td" 0.1 goes into the object filter).
+/// "implement/product" and its kin the user's controller, everything else an option of the method ("Ms" 1.6;
+/// "filter/Tf_over_Td" 0.1 goes into the object filter).
 using LoopOptions = std::vector<std::pair<std::string, std::string>>;
 
 class Loops {
@@ -49,11 +52,14 @@ private:
     void find_sign();
     void read_row(const Held& row, std::vector<RawEntry>& entries);
     double read_number(std::string_view cell, const char* name, std::vector<FieldError>& faults) const;
-    std::string request(std::string_view name, const std::array<double, 3>& plant) const;
+    /// `today`: the baseline; null for none.
+    std::string request(std::string_view name, const std::array<double, 3>& plant, const Json& today) const;
+    std::optional<Problem> find_unit(const std::string& where, const std::array<std::string, kColumns>& units);
     std::string_view cell(Column column) const;
     void split(std::string_view line);
 
     Json tune_ = Json::object();
+    Json implement_ = Json::object();
     Json timeout_;
     std::string tail_;  ///< members of every request after the plant, as JSON text
     std::vector<std::string> names_given_twice_;
@@ -62,6 +68,8 @@ private:
     bool separator_given_ = false;  ///< by a line such as sep=;
     bool headed_ = false;
     std::array<std::size_t, kColumns> at_{};
+    std::vector<TodaysColumn> todays_;
+    std::string todays_product_;  ///< of rows that name none; "" for controllers by their form
     std::size_t width_ = 0;
     std::string time_unit_;
 

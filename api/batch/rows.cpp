@@ -43,8 +43,49 @@ void add_text(const Json& value, const char* pointer, CsvWriter& out) {
     found != nullptr && found->is_string() ? out.text(found->get_ref<const std::string&>()) : out.empty();
 }
 
+/// Columns that came later stand at the end, where no position of an earlier one moves.
+constexpr std::array kLater = {"time_unit",        "filter",         "setpoint_filter_T",
+                               "settings_to_type", "today_load_IAE", "gain_over_today_percent"};
+
+/// "GAIN 2.328 %/%; RESET 93.12 s": what is to be typed into the user's own controller.
+std::string to_type(const Json& entry) {
+    const Json* texts = at(entry, "/as_entered/as_typed");
+    const Json* units = at(entry, "/as_entered/units");
+    std::string out;
+    if (texts == nullptr) return out;
+    for (const auto& [name, text] : texts->items()) {
+        out += (out.empty() ? "" : "; ") + name + " " + text.get<std::string>();
+        if (units != nullptr && units->contains(name)) out += " " + units->at(name).get<std::string>();
+    }
+    return out;
+}
+
+/// The load IAE of today's settings; null where the result has none.
+const Json* todays_load(const Json& result) {
+    const Json* entries = at(result, "/controllers");
+    if (entries == nullptr) return nullptr;
+    for (const Json& entry : *entries)
+        if (entry.value("method", "") == "baseline") return at(entry, "/performance/load/IAE");
+    return nullptr;
+}
+
+void add_later(const Json& result, const Json& entry, CsvWriter& out) {
+    add_text(result, "/units/time", out);
+    add_text(entry, "/controller/filter/type", out);
+    const Json* lag = at(entry, "/controller/setpoint_filter/T");
+    lag != nullptr && lag->is_number() ? out.number(lag->get<double>()) : out.empty();
+    const std::string typed = to_type(entry);
+    typed.empty() ? out.empty() : out.text(typed);
+    const Json *today = todays_load(result), *load = at(entry, "/performance/load/IAE");
+    const bool known = today != nullptr && today->is_number();
+    known ? out.number(today->get<double>()) : out.empty();
+    const bool compared = known && load != nullptr && load->is_number() && today->get<double>() > 0 &&
+                          entry.value("method", "") != "baseline";
+    compared ? out.number(100 * (1 - load->get<double>() / today->get<double>())) : out.empty();
+}
+
 /// `entry` of a result; an empty object where there is none.
-void add_line(const ResultRow& row, const Json& entry, const Json& error, CsvWriter& out) {
+void add_line(const ResultRow& row, const Json& result, const Json& entry, const Json& error, CsvWriter& out) {
     out.integer(row.index).text(row.id).text(row.name).text(row.status);
     add_text(entry, "/method", out);
     add_text(entry, "/controller/form", out);
@@ -55,6 +96,7 @@ void add_line(const ResultRow& row, const Json& entry, const Json& error, CsvWri
     const Json* warnings = at(entry, "/warnings");
     warnings != nullptr ? out.integer(static_cast<long long>(warnings->size())) : out.empty();
     add_text(error, "/detail", out);
+    add_later(result, entry, out);
     out.end_line();
 }
 
@@ -89,6 +131,7 @@ std::string csv_headings() {
     for (const char* heading : {"index", "id", "name", "status", "method", "form"}) out.text(heading);
     for (const Column& column : kFigures) out.text(column.heading);
     out.text("warnings").text("error");
+    for (const char* heading : kLater) out.text(heading);
     out.end_line();
     return out.take();
 }
@@ -99,10 +142,10 @@ void append_csv(const ResultRow& row, std::string& out) {
     CsvWriter lines;
     const Json* entries = at(result, "/controllers");
     if (entries == nullptr || entries->empty()) {
-        add_line(row, Json::object(), error, lines);
+        add_line(row, result, Json::object(), error, lines);
     } else {
         for (const Json& entry : *entries)
-            add_line(row, entry, entry.contains("error") ? entry["error"] : error, lines);
+            add_line(row, result, entry, entry.contains("error") ? entry["error"] : error, lines);
     }
     out += lines.take();
 }

@@ -247,6 +247,71 @@ TEST(BatchReader, ReadsLoopsAsProgramsWriteThem) {
     }
 }
 
+TEST(BatchReader, TodaysSettingsStandInColumnsOfTheirOwn) {
+    const Outcome out = read(loops({{"method", "simc"}}),
+                             "name;K;T [min];L [min];Kp [%/degC];Ti [min];today's Td;Tf\n"
+                             "a;2;10;3;0,5;12;1;0,1\nb;2;10;3;;;;\nc;2;10;3;0,7;-;;\n");
+    ASSERT_FALSE(out.problem) << out.problem->detail;
+    ASSERT_EQ(out.entries.size(), 3u);
+    EXPECT_EQ(request_of(out.entries[0])["baseline"],
+              Json::parse(R"({"Kp": 0.5, "Ti": 12, "Td": 1, "filter": {"type": "derivative", "Tf": 0.1},
+                              "form": "ideal"})"));
+    EXPECT_FALSE(request_of(out.entries[1]).contains("baseline"));
+    EXPECT_EQ(request_of(out.entries[2])["baseline"], Json::parse(R"({"Kp": 0.7, "form": "ideal"})"));
+    const Outcome gains = read(loops(), "K,T,L,Kp,Ki,Kd,form\n2,10,3,0.5,0.05,1,\n2,10,3,0.5,0.05,1,parallel\n");
+    ASSERT_EQ(gains.entries.size(), 2u);
+    for (const BatchEntry& entry : gains.entries) EXPECT_EQ(request_of(entry)["baseline"]["form"], "parallel");
+}
+
+TEST(BatchReader, TodaysSettingsMayBeAProductsOwn) {
+    const std::string body =
+        "name,K,T,L,product,today GAIN,today RESET,today STRUCTURE,y low,y high,u low,u high\n"
+        "a,2,100,30,emerson_deltav_standard,1.2,90,PI action on error; D action on PV,0,200,0,100\n";
+    std::string named = body;
+    named.replace(named.find("error;"), 6, "error,");
+    named.replace(named.find("PI action"), 35, "\"PI action on error, D action on PV\"");
+    const Outcome out = read(loops(), named);
+    ASSERT_FALSE(out.problem) << out.problem->detail;
+    EXPECT_EQ(request_of(out.entries[0])["baseline"],
+              Json::parse(R"({"settings": {"GAIN": 1.2, "RESET": 90, "STRUCTURE": "PI action on error, D action on PV"},
+                              "y_span": [0, 200], "u_span": [0, 100], "product": "emerson_deltav_standard"})"));
+    // Names that look like a unit are the product's own.
+    const Outcome minutes = read(loops(), "K,T,L,product,Kc,Ti_min\n2,100,30,labview_pid,1.2,1.5\n");
+    EXPECT_TRUE(minutes.problem);  // Kc is no member of a controller: it needs "today" in front
+    const Outcome labview = read(loops(), "K,T,L,product,today Kc,Ti_min\n2,100,30,labview_pid,1.2,1.5\n");
+    ASSERT_FALSE(labview.problem) << labview.problem->detail;
+    EXPECT_EQ(request_of(labview.entries[0])["baseline"]["settings"], Json::parse(R"({"Kc": 1.2, "Ti_min": 1.5})"));
+}
+
+TEST(BatchReader, TheUsersControllerIsSaidOnceForAllLoops) {
+    const Outcome out = read(loops({{"implement/product", "emerson_deltav_standard"},
+                                    {"implement/y_span", "[0, 200]"},
+                                    {"implement/u_span", "[0,100]"}}),
+                             "K,T,L,today GAIN\n2,100,30,1.2\n");
+    ASSERT_FALSE(out.problem) << out.problem->detail;
+    const Json request = request_of(out.entries[0]);
+    EXPECT_EQ(request["implement"],
+              Json::parse(R"({"product": "emerson_deltav_standard", "y_span": [0, 200], "u_span": [0, 100]})"));
+    EXPECT_EQ(request["baseline"]["product"], "emerson_deltav_standard");
+    const auto wrong = read(loops({{"implement/product", "emerson_deltav"}}), "K,T,L\n2,100,30\n").problem;
+    ASSERT_TRUE(wrong);
+    EXPECT_EQ(wrong->title, "What is asked for all loops is not valid");
+}
+
+TEST(BatchReader, AFaultInTodaysSettingsSpeaksOfTheColumn) {
+    const Outcome out = read(loops(), "name,K,T,L,Kp,Ti\na,2,10,3,half,12\nb,2,10,3,0.5,-12\n");
+    ASSERT_EQ(out.entries.size(), 2u);
+    EXPECT_THAT(problem_of(out.entries[0]).detail, HasSubstr("line 2: Kp is \"half\"; it must be a number, or empty."));
+    EXPECT_THAT(problem_of(out.entries[1]).detail, HasSubstr("Ti is -12"));
+    for (const std::string& refused :
+         {refusal(loops(), "K,T,L,Ms\n1,2,3,4\n"), refusal(loops(), "K,T,L,today GAIN\n1,2,3,4\n"),
+          refusal(loops(), "K,T [min],L,Ti [s]\n1,2,3,4\n"), refusal(loops(), "K,T,L,Kp,Kp\n1,2,3,4,5\n")})
+        EXPECT_THAT(refused, testing::Not(HasSubstr("parameters of the call")));
+    EXPECT_THAT(refusal(loops(), "K,T [min],L,Ti [s]\n1,2,3,4\n"), HasSubstr("T is in \"min\" and Ti in \"s\""));
+    EXPECT_THAT(refusal(loops(), "K,T,L,today GAIN\n1,2,3,4\n"), HasSubstr("Add a column product"));
+    EXPECT_THAT(refusal(loops(), "K,T,L,Kp,Kp\n1,2,3,4,5\n"), HasSubstr("two columns say \"Kp\""));
+}
+
 TEST(BatchReader, ABadLoopFailsAloneWithItsLine) {
     const Outcome out = read(loops(), "name,K,T,L\na,1,2,3\nb,x,,3\nc,1,5,2,3,4\nd,0,2,3\ne,1,2,-3\nf,1,2,3\n");
     ASSERT_FALSE(out.problem) << out.problem->detail;
@@ -284,7 +349,7 @@ TEST(BatchReader, SaysWhichColumnsAreMissing) {
                 HasSubstr("422 Line 1 must name the columns, such as name,K,T,L: T is missing."));
     EXPECT_THAT(refusal(loops(), "K\n1\n"), HasSubstr("T and L are missing"));
     EXPECT_THAT(refusal(loops(), "1,2,3\n"), HasSubstr("Line 1 has no heading of a loop's columns. Put name,K,T,L"));
-    EXPECT_THAT(refusal(loops(), "K,T,L,Ms\n1,2,3,4\n"), HasSubstr("\"Ms\" is none of"));
+    EXPECT_THAT(refusal(loops(), "K,T,L,Ms\n1,2,3,4\n"), HasSubstr("\"Ms\" is no column of loops"));
     EXPECT_THAT(refusal(loops(), "K,T,tau,L\n1,2,3,4\n"), HasSubstr("two columns say T"));
     EXPECT_THAT(refusal(loops(), "K,T [min],L [s]\n1,2,3\n"), HasSubstr("must be in the same unit"));
     EXPECT_THAT(refusal(loops(), "K,T,L\n" + std::string(70000, '1')), HasSubstr("Line 2 has more than 65536 bytes"));

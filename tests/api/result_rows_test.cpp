@@ -10,6 +10,7 @@
 namespace tunewright::api {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -101,6 +102,27 @@ TEST(ResultRows, AsCsvHaveOneLineForEachController) {
     EXPECT_EQ(under("form", lines.back()), "parallel");
     EXPECT_EQ(under("Ti", lines.back()), "");
     EXPECT_EQ(under("Kd", lines.back()), "0.5");
+}
+
+TEST(ResultRows, AsCsvHoldUnitsAndWhatIsToBeTyped) {
+    const std::string result = result_of(
+        R"("units": {"time": "min"}, "tune": [{"method": "simc"}], "evaluate": {"points": 0},
+           "baseline": {"form": "ideal", "Kp": 0.5, "Ti": 12},
+           "implement": {"product": "emerson_deltav_standard", "y_span": [0, 200], "u_span": [0, 100]})");
+    const Json value = Json::parse(result);
+    std::string out;
+    append_csv({0, "id", "TIC-101", "succeeded", result, ""}, out);
+    const std::vector<std::string> lines = split_lines(out);
+    ASSERT_EQ(lines.size(), 2u);
+    EXPECT_EQ(under("time_unit", lines[0]), "min");
+    const Json& typed = value["controllers"][0]["as_entered"]["as_typed"];
+    EXPECT_THAT(under("settings_to_type", lines[0]),
+                AllOf(HasSubstr("GAIN " + typed["GAIN"].get<std::string>() + " %/%"), HasSubstr("; STRUCTURE ")));
+    const double before = value["controllers"][1]["performance"]["load"]["IAE"],
+                 after = value["controllers"][0]["performance"]["load"]["IAE"];
+    EXPECT_EQ(std::stod(under("today_load_IAE", lines[0])), before);
+    EXPECT_NEAR(std::stod(under("gain_over_today_percent", lines[0])), 100 * (1 - after / before), 1e-9);
+    EXPECT_EQ(under("gain_over_today_percent", lines[1]), "") << "today's own line";
 }
 
 TEST(ResultRows, AsCsvLeaveCellsEmptyWhereThereIsNoNumber) {

@@ -45,6 +45,11 @@ test("a CSV of loops becomes a batch with a table, an order and a CSV", async ()
     await page.getByText("5 loops: 5 tuned", { exact: true }).waitFor();
     await page.getByRole("link", { name: "PIC-12" }).waitFor();
     await page.getByRole("columnheader", { name: "Load IAE" }).getByRole("button").click();
+    const heads = await page.getByRole("columnheader").allInnerTexts();
+    for (const head of ["Kp", "Ti (s)"]) assert.ok(heads.includes(head), `${head} among ${heads.join(", ")}`);
+    const cells = await page.locator(".job-list tbody tr").evaluateAll((rows) => rows.map((row) => [...row.cells].map((cell) => cell.innerText)));
+    for (let column = 0; column < heads.length; column += 1)
+      assert.ok(cells.some((row) => row[column] !== "–"), `${heads[column]} holds dashes alone`);
     const names = await page.getByRole("rowheader").allInnerTexts();
     assert.deepEqual(names, ["AIC-30", "TIC-101", "TIC-102", "PIC-12", "FIC-7"]);
     assert.match(page.url(), /sort=-iae$/);
@@ -57,8 +62,60 @@ test("a CSV of loops becomes a batch with a table, an order and a CSV", async ()
       .split("\n");
     assert.equal(lines.length, 6);
     assert.match(lines[0], /^index,id,name,status,method/);
+    assert.match(lines[0], /time_unit/);
     assert.deepEqual(await accessibilityViolations(page), []);
   });
+});
+
+test("a file's own settings of today make the batch's table sort by the gain over them", async () => {
+  const csv = "name,K,T [min],L [min],Kp,Ti\nslow,2,10,3,0.2,20\nnear,1.4,25,4,2,20\nnone,0.4,1.2,0.5,,\n";
+  await withPage("#/jobs", {}, async (page) => {
+    await page
+      .getByLabel(/Drop a CSV of loops here/)
+      .setInputFiles({ name: "today.csv", mimeType: "text/csv", buffer: Buffer.from(csv) });
+    await page.getByText("3 loops: 3 tuned", { exact: true }).waitFor();
+    await page.getByRole("columnheader", { name: "Ti (min)" }).waitFor();
+    await page.getByRole("button", { name: "Greatest gain over today" }).click();
+    assert.deepEqual(await page.getByRole("rowheader").allInnerTexts(), ["slow", "near", "none"]);
+  });
+});
+
+test("for a chosen product the batch's table holds what to type into it", async () => {
+  const mine = {
+    product: "emerson_deltav_standard",
+    name: "Emerson DeltaV PID, FORM Standard",
+    needs: ["y_span", "u_span"],
+    y_span: [0, 200],
+    u_span: [0, 100],
+  };
+  await withPage("#/jobs", {}, async (page) => {
+    await page.evaluate((kept) => localStorage.setItem("tunewright-controller", JSON.stringify(kept)), mine);
+    await page.reload();
+    await page.getByLabel("Design for my controller, Emerson DeltaV PID, FORM Standard").waitFor();
+    await page
+      .getByLabel(/Drop a CSV of loops here/)
+      .setInputFiles({ name: "loops.csv", mimeType: "text/csv", buffer: Buffer.from("name,K,T,L\na,2,100,30\n") });
+    await page.getByText("1 loop: 1 tuned", { exact: true }).waitFor();
+    await page.getByRole("columnheader", { name: "STRUCTURE" }).waitFor();
+    assert.match(await page.getByRole("row", { name: /^1 a/ }).innerText(), /%\/%/);
+  });
+});
+
+test("a column that is none of loops is refused in the words of the file", async () => {
+  await withPage(
+    "#/jobs",
+    {},
+    async (page) => {
+      await page
+        .getByLabel(/Drop a CSV of loops here/)
+        .setInputFiles({ name: "log.csv", mimeType: "text/csv", buffer: Buffer.from("name,K,T,L,Ms\na,1,2,3,1.4\n") });
+      const refusal = page.getByRole("alert").filter({ hasText: "Ms" });
+      await refusal.waitFor();
+      assert.match(await refusal.innerText(), /"Ms" is no column of loops/);
+      assert.doesNotMatch(await refusal.innerText(), /parameters of the call/);
+    },
+    ["422"],
+  );
 });
 
 test("loops that failed say why; gain and risk order the table", async () => {

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 import type { ListedJob } from "../../../web/src/api/job_lists.ts";
 import { curlOf } from "../../../web/src/views/request_menu.ts";
-import { age, BATCH_COLUMNS, gain, risk, shortPlant, sorted } from "../../../web/src/words/job_list.ts";
+import { age, batchColumns, gain, risk, shortPlant, sorted } from "../../../web/src/words/job_list.ts";
 
 const job = (id: string, outline: ListedJob["outline"]): ListedJob => ({
   id,
@@ -42,7 +42,7 @@ test("gain is what falls of today's load IAE; risk is the worst Ms, none of it t
   const failed: ListedJob = { ...job("failed", { error: "No." }), status: "failed" };
   assert.equal(gain(better), 75);
   assert.equal(gain(worst), null);
-  const column = BATCH_COLUMNS.find(({ id }) => id === "risk")!;
+  const column = batchColumns([better, lost]).find(({ id }) => id === "risk")!;
   assert.equal(risk(failed), null);
   assert.equal(column.text(lost), "no margin");
   const order = sorted([better, failed, worst, lost], column, true).map(({ id }) => id);
@@ -51,6 +51,44 @@ test("gain is what falls of today's load IAE; risk is the worst Ms, none of it t
     sorted([failed, better], column, false).map(({ id }) => id),
     ["better", "failed"],
   );
+});
+
+const pid = (Kp: number, Ti: number) => ({ form: "ideal", Kp, Ti, Td: 0, b: 0.5 });
+
+test("a batch's columns are the settings with their units, and none of dashes alone", () => {
+  const units = { time: "min", u: "%", y: "degC" };
+  const loops = [
+    job("a", { method: "simc", controller: pid(2, 10), units, load_IAE: 5, Ms: 1.5 }),
+    job("b", { method: "simc", controller: pid(0.123456, 20), units, load_IAE: 8, Ms: 1.6 }),
+  ];
+  const columns = batchColumns(loops);
+  const labels = columns.map(({ label }) => label);
+  for (const label of ["Kp (%/°C)", "Ti (min)", "b"]) assert.ok(labels.includes(label), label);
+  // No derivative, no filter, no today's settings, no optimum: no columns for them.
+  for (const label of ["Td (min)", "Tf (min)", "Gain over today", "Above optimum", "Set-point filter (min)"])
+    assert.ok(!labels.includes(label), label);
+  const Kp = columns.find(({ id }) => id === "Kp")!;
+  assert.deepEqual(loops.map(Kp.text), ["2", "0.12346"]);
+  for (const column of columns) assert.ok(loops.some((loop) => column.text(loop) !== "–"), column.label);
+});
+
+test("units that differ from loop to loop stand in the cells", () => {
+  const loops = ["s", "min"].map((time) => job(time, { method: "simc", controller: pid(1, 10), units: { time } }));
+  const Ti = batchColumns(loops).find(({ id }) => id === "Ti")!;
+  assert.equal(Ti.label, "Ti");
+  assert.deepEqual(loops.map(Ti.text), ["10 s", "10 min"]);
+});
+
+test("for a product the columns are what is to be typed into it", () => {
+  const to_type = { GAIN: "2.328 %/%", RESET: "93.12 s", STRUCTURE: "PID action on error" };
+  const loops = [job("a", { method: "robust", controller: pid(2, 10), to_type }), job("failed", { error: "No." })];
+  const columns = batchColumns(loops);
+  const labels = columns.map(({ label }) => label);
+  assert.deepEqual(labels.slice(labels.indexOf("GAIN"), labels.indexOf("GAIN") + 3), ["GAIN", "RESET", "STRUCTURE"]);
+  assert.ok(!labels.includes("Kp"));
+  const gainColumn = columns.find(({ label }) => label === "GAIN")!;
+  assert.deepEqual([gainColumn.text(loops[0]!), gainColumn.value(loops[0]!)], ["2.328 %/%", 2.328]);
+  assert.equal(gainColumn.text(loops[1]!), "–");
 });
 
 test("a call that a shell takes apart as it was put together", () => {

@@ -2,7 +2,7 @@
 import { call, getText } from "./client.ts";
 import type { TextFile } from "./client.ts";
 import { getJob } from "./jobs.ts";
-import type { JobStatus, Plant, TuningRequest, Units } from "./types.ts";
+import type { Controller, JobStatus, Plant, TuningRequest, Units } from "./types.ts";
 import { isFinal } from "./types.ts";
 
 interface JobFigures {
@@ -18,8 +18,11 @@ export interface Outline extends JobFigures {
   units?: Units;
   /** How many controllers. */
   entries?: number;
-  /** Of the best one, which the figures belong to. */
+  /** Of the best one, which the figures and settings belong to. */
   method?: string;
+  controller?: Controller;
+  /** What to type into the user's own controller, each text with its unit. */
+  to_type?: Record<string, string>;
   worst_Ms?: number | null;
   excess_percent?: number | null;
   today?: JobFigures;

@@ -4,7 +4,7 @@ import type { Batch, ListedJob } from "../api/job_lists.ts";
 import { h } from "../dom.ts";
 import { download } from "../plot/export.ts";
 import { formatRoute } from "../routes.ts";
-import { BATCH_COLUMNS, sorted } from "../words/job_list.ts";
+import { batchColumns, sorted } from "../words/job_list.ts";
 import type { BatchColumn } from "../words/job_list.ts";
 import { orderOf, sortText } from "../words/league.ts";
 import { jobTable, reader, troubleLine } from "./job_actions.ts";
@@ -37,16 +37,15 @@ export function batchView(id: string, sort: string, announce: (sentence: string)
   const again = h("button", { type: "button", onclick: () => void work(tryAgain) }, "Try the failed again");
   const csv = h("button", { type: "button", onclick: () => void work(saveCsv) }, "Download CSV");
   const note = h("p", { class: "hint", hidden: true });
-  const heads = BATCH_COLUMNS.map((column) => {
-    const button = h("button", { type: "button", class: "quiet", onclick: () => sortBy(column) }, column.label);
-    return { column, element: h("th", { scope: "col" }, button) };
-  });
+  let columns: BatchColumn[] = [];
+  let heads: { column: BatchColumn; element: HTMLElement }[] = [];
   const rows = h("tbody");
-  const table = jobTable(
-    "Loops of the batch",
-    heads.map((head) => head.element),
-    rows,
-  );
+  const table = jobTable("Loops of the batch", [], rows);
+  const shortcuts = [
+    shortcut("gain", "Greatest gain over today"),
+    shortcut("risk", "Greatest risk"),
+    shortcut("excess", "Farthest above the optimum"),
+  ];
   const element = h(
     "main",
     { class: "jobs", id: "main" },
@@ -73,17 +72,32 @@ export function batchView(id: string, sort: string, announce: (sentence: string)
         "p",
         { class: "actions" },
         "First:",
-        shortcut("gain", "Greatest gain over today"),
-        shortcut("risk", "Greatest risk"),
-        shortcut("excess", "Farthest above the optimum"),
+        shortcuts.map(({ element: button }) => button),
       ),
       note,
       table,
     ),
   );
 
-  function shortcut(column: string, label: string): HTMLButtonElement {
-    return h("button", { type: "button", class: "quiet", onclick: () => put({ column, falling: true }) }, label);
+  function shortcut(column: string, label: string): { column: string; element: HTMLButtonElement } {
+    const act = (): void => put({ column, falling: true });
+    return { column, element: h("button", { type: "button", class: "quiet", onclick: act }, label) };
+  }
+
+  /** Heads are made anew where the loops have other columns, such as settings once the first is tuned. */
+  function showHeads(): void {
+    const next = batchColumns(jobs);
+    const same = next.length === columns.length && next.every(({ id, label }, at) => columns[at]!.id === id && columns[at]!.label === label);
+    columns = next;
+    if (!same) {
+      heads = columns.map((column) => {
+        const button = h("button", { type: "button", class: "quiet", onclick: () => sortBy(column) }, column.label);
+        return { column, element: h("th", { scope: "col" }, button) };
+      });
+      table.querySelector("thead tr")!.replaceChildren(...heads.map((head) => head.element));
+    }
+    for (const { column, element: button } of shortcuts)
+      button.hidden = jobs.length > 0 && !columns.some(({ id }) => id === column);
   }
 
   async function work(act: () => Promise<void>): Promise<void> {
@@ -116,7 +130,7 @@ export function batchView(id: string, sort: string, announce: (sentence: string)
     order = next;
     events.onSort(sortText(order));
     showRows();
-    const label = BATCH_COLUMNS.find((column) => column.id === order.column)?.label ?? "Loop";
+    const label = columns.find((column) => column.id === order.column)?.label ?? "Loop";
     announce(`Sorted by ${label}, ${order.falling ? "falling" : "rising"}.`);
   }
 
@@ -134,17 +148,18 @@ export function batchView(id: string, sort: string, announce: (sentence: string)
   }
 
   function showRows(): void {
+    showHeads();
     for (const { column, element: head } of heads) {
       if (column.id === order.column) head.setAttribute("aria-sort", order.falling ? "descending" : "ascending");
       else head.removeAttribute("aria-sort");
     }
-    const column = BATCH_COLUMNS.find((candidate) => candidate.id === order.column) ?? BATCH_COLUMNS[0]!;
+    const column = columns.find((candidate) => candidate.id === order.column) ?? columns[0]!;
     rows.replaceChildren(
       ...sorted(jobs, column, order.falling).map((job) =>
         h(
           "tr",
           {},
-          BATCH_COLUMNS.map((one) => cell(job, one)),
+          columns.map((one) => cell(job, one)),
         ),
       ),
     );

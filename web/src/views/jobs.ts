@@ -7,6 +7,7 @@ import { isFinal } from "../api/types.ts";
 import type { Job } from "../api/types.ts";
 import { h } from "../dom.ts";
 import { parseNumber } from "../form/number.ts";
+import { implementOf } from "../my_controller.ts";
 import { formatRoute } from "../routes.ts";
 import type { Store } from "../store.ts";
 import { age, methodWords, shortPlant } from "../words/job_list.ts";
@@ -291,6 +292,9 @@ function loopsCard(
     id: "loops-file",
   });
   const fault = h("div", { class: "error", role: "alert" });
+  const own = h("input", { type: "checkbox", id: "loops-own", checked: true });
+  const ownName = h("span", {});
+  const ownField = h("label", { class: "check", for: "loops-own", hidden: true }, own, ownName);
   const drop = h(
     "label",
     { class: "drop", for: "loops-file" },
@@ -298,7 +302,7 @@ function loopsCard(
     h(
       "span",
       { class: "hint" },
-      "One loop a line: name, K, T, L. Every line is tuned; the answer is a table of settings.",
+      "One loop a line: name, K, T, L, and today's Kp, Ti, Td if you have them. Every line is tuned; the answer is a table of settings.",
     ),
   );
 
@@ -323,6 +327,9 @@ function loopsCard(
       if (Ms.value <= 1) return refuse(`Largest Ms is ${limit.value.trim()}; it must be above 1.`);
       Object.assign(options, { Ms: String(Ms.value), Mt: String(Ms.value) });
     }
+    const implement = ownField.hidden || !own.checked ? null : implementOf(store.get().mine);
+    for (const [name, value] of Object.entries(implement ?? {}))
+      options[`implement/${name}`] = typeof value === "string" ? value : JSON.stringify(value);
     announce(`Sending ${chosen.name}.`);
     try {
       onBatch(await postLoops(chosen, options));
@@ -341,8 +348,15 @@ function loopsCard(
     );
   };
   listMethods();
+  const showOwn = (): void => {
+    const { mine } = store.get();
+    ownField.hidden = implementOf(mine) === null;
+    ownName.textContent = mine ? `Design for my controller, ${mine.name}` : "";
+  };
+  showOwn();
   const dispose = store.subscribe((workspace, previous) => {
     if (workspace.methods !== previous.methods) listMethods();
+    if (workspace.mine !== previous.mine) showOwn();
   });
   method.addEventListener("change", () => {
     limitField.hidden = method.value !== "robust";
@@ -357,6 +371,7 @@ function loopsCard(
       { class: "loops-fields" },
       h("div", { class: "field" }, h("label", { for: "loops-method" }, "Method"), method),
       limitField,
+      ownField,
     ),
     file,
     drop,

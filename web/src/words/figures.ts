@@ -38,6 +38,24 @@ function numeric(part: Part, name: string, absent: string): FigureValue {
 
 const NOT_GIVEN = "The service gave no figure.";
 
+/** "12.5 (asked 5)" where the design has more than was asked of it. */
+function overshoot(entry: Entry): FigureValue {
+  const reached = numeric(entry.performance?.["setpoint"], "overshoot_percent", NOT_GIVEN);
+  const asked = askedOvershoot(entry);
+  const value = entry.performance?.["setpoint"]?.["overshoot_percent"];
+  const missed = asked !== null && typeof value === "number" && value > asked + SAME_PERCENT;
+  return missed ? { ...reached, text: `${reached.text} (asked ${formatNumber(asked)})` } : reached;
+}
+
+/** Rounding and grids explain so much. */
+const SAME_PERCENT = 0.05;
+
+/** The overshoot that the design was to keep, in percent; null: none was asked for. */
+export function askedOvershoot(entry: Entry): number | null {
+  const asked = (entry.options?.["setpoint"] as { overshoot?: unknown } | undefined)?.overshoot;
+  return typeof asked === "number" ? asked : null;
+}
+
 export function filterWords(type: string | undefined): string {
   switch (type) {
     case undefined:
@@ -123,7 +141,7 @@ export function figureGroups(units: UnitNames, region = false, nonlinear = false
       main: true,
       rows: [
         performance("setpoint", withUnit("IAE", error), "IAE", "integrated absolute error"),
-        performance("setpoint", "Overshoot (%)", "overshoot_percent", "of the step"),
+        { label: "Overshoot (%)", meaning: "of the step; in brackets what was asked for", value: overshoot },
         performance("setpoint", withUnit("Settling", units.time), "settling_time", "last time outside 2 % of the step"),
         performance("setpoint", withUnit("TV of u", units.u), "TV", "total movement of the controller's output"),
       ],

@@ -1,8 +1,9 @@
 // Jobs in lists: their cells in words, and the orders that a batch can stand in.
 import type { ListedJob, Outline } from "../api/job_lists.ts";
-import { DASH, formatNumber, formatParameter, unitNames } from "./numbers.ts";
+import { DASH, formatNumber, formatParameter, formatSetting, quotient, unitNames, withUnit } from "./numbers.ts";
+import type { UnitNames } from "./numbers.ts";
 import { plantTitle, plantWords } from "./plant.ts";
-import type { Plant } from "../api/types.ts";
+import type { Controller, Plant } from "../api/types.ts";
 
 const MINUTE = 60;
 const HOUR = 60 * MINUTE;
@@ -93,7 +94,7 @@ const numbered = (
   value: (job) => read(job) ?? null,
 });
 
-export const BATCH_COLUMNS: BatchColumn[] = [
+const FIRST_COLUMNS: BatchColumn[] = [
   { id: "index", label: "Loop", text: (job) => String((job.index ?? 0) + 1), value: (job) => job.index ?? 0 },
   { id: "name", label: "Name", text: (job) => job.name ?? `Loop ${(job.index ?? 0) + 1}`, value: (job) => job.name },
   { id: "plant", label: "Plant", text: (job) => shortPlant(job.outline), value: (job) => shortPlant(job.outline) },
@@ -103,6 +104,9 @@ export const BATCH_COLUMNS: BatchColumn[] = [
     text: (job) => methodWords(job.outline),
     value: (job) => job.outline?.method ?? null,
   },
+];
+
+const LAST_COLUMNS: BatchColumn[] = [
   numbered("iae", "Load IAE", (job) => job.outline?.load_IAE, true),
   {
     id: "gain",
@@ -128,6 +132,65 @@ export const BATCH_COLUMNS: BatchColumn[] = [
   numbered("risk", "Worst Ms", risk, true),
   { id: "status", label: "Status", text: (job) => job.status, value: (job) => job.status },
 ];
+
+/** Settings of the controller to enter; times and gains have the units of the loops, where these have them in common. */
+const SETTINGS: { id: string; unit(units: UnitNames): string; read(controller: Controller): number | null | undefined }[] = [
+  { id: "Kp", unit: (units) => quotient(units.u, units.y), read: ({ Kp }) => Kp },
+  { id: "Ki", unit: () => "", read: ({ Ki }) => Ki },
+  { id: "Kd", unit: () => "", read: ({ Kd }) => Kd },
+  { id: "Ti", unit: (units) => units.time, read: ({ Ti }) => Ti },
+  { id: "Td", unit: (units) => units.time, read: ({ Td }) => Td || null },
+  { id: "Tf", unit: (units) => units.time, read: ({ filter }) => filter?.Tf },
+  { id: "b", unit: () => "", read: ({ b }) => b },
+  { id: "Set-point filter", unit: (units) => units.time, read: ({ setpoint_filter }) => setpoint_filter?.T },
+];
+
+function settingColumns(jobs: readonly ListedJob[]): BatchColumn[] {
+  const tuned = jobs.filter((job) => job.outline?.controller);
+  const all = tuned.map((job) => unitNames(job.outline?.units));
+  const shared = all.every((units) => JSON.stringify(units) === JSON.stringify(all[0])) ? all[0] : undefined;
+  return SETTINGS.map(({ id, unit, read }) => {
+    const value = (job: ListedJob): number | null => {
+      const controller = job.outline?.controller;
+      return (controller && read(controller)) ?? null;
+    };
+    return {
+      id,
+      label: shared ? withUnit(id, unit(shared)) : id,
+      text: (job) => {
+        const own = value(job) === null || shared ? "" : unit(unitNames(job.outline?.units));
+        return `${formatSetting(value(job))}${own ? ` ${own}` : ""}`;
+      },
+      value,
+    };
+  });
+}
+
+/** What to type into the product, a column for each of its settings. */
+function typedColumns(jobs: readonly ListedJob[]): BatchColumn[] {
+  const names = [...new Set(jobs.flatMap((job) => Object.keys(job.outline?.to_type ?? {})))];
+  return names.map((name) => ({
+    id: `type.${name}`,
+    label: name,
+    text: (job) => job.outline?.to_type?.[name] ?? DASH,
+    value: (job) => {
+      const text = job.outline?.to_type?.[name];
+      const number = Number.parseFloat(text ?? "");
+      return text === undefined ? null : Number.isNaN(number) ? text : number;
+    },
+  }));
+}
+
+const ALWAYS = ["index", "name", "status"];
+
+/** The columns of these loops: what they are, the settings to enter, what they do; none that would hold dashes alone. */
+export function batchColumns(jobs: readonly ListedJob[]): BatchColumn[] {
+  const typed = typedColumns(jobs);
+  const settings = typed.length > 0 ? typed : settingColumns(jobs);
+  return [...FIRST_COLUMNS, ...settings, ...LAST_COLUMNS].filter(
+    (column) => ALWAYS.includes(column.id) || jobs.length === 0 || jobs.some((job) => column.text(job) !== DASH),
+  );
+}
 
 /** In the order of a column; equal ones and those without a value keep the order of the batch. */
 export function sorted(jobs: ListedJob[], column: BatchColumn, falling: boolean): ListedJob[] {

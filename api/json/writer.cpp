@@ -7,8 +7,6 @@
 #include <cmath>
 #include <cstdint>
 
-#include "engine/number_text.h"
-
 namespace tunewright::api {
 namespace {
 
@@ -202,8 +200,8 @@ std::string six_digits(double value) {
 
 std::string full_digits(double value) {
     if (!std::isfinite(value)) return "not finite";
-    constexpr int kDecimalDigits = 15;  // as many as a decimal keeps through arithmetic: 253, not 252.99999999999997
-    return tunewright::text(value, kDecimalDigits);
+    char buffer[kBuffer];
+    return {buffer, write_full(buffer, buffer + kBuffer, value)};
 }
 
 }  // namespace tunewright::api

@@ -264,23 +264,21 @@ TEST(BatchReader, TodaysSettingsStandInColumnsOfTheirOwn) {
 }
 
 TEST(BatchReader, TodaysSettingsMayBeAProductsOwn) {
-    const std::string body =
-        "name,K,T,L,product,today GAIN,today RESET,today STRUCTURE,y low,y high,u low,u high\n"
-        "a,2,100,30,emerson_deltav_standard,1.2,90,PI action on error; D action on PV,0,200,0,100\n";
-    std::string named = body;
-    named.replace(named.find("error;"), 6, "error,");
-    named.replace(named.find("PI action"), 35, "\"PI action on error, D action on PV\"");
-    const Outcome out = read(loops(), named);
+    const Outcome out =
+        read(loops(),
+             "name,K,T,L,product,today GAIN,today RESET,today STRUCTURE,y low,y high,u low,u high\n"
+             "a,2,100,30,emerson_deltav_standard,1.2,90,\"PI action on error, D action on PV\",0,200,0,100\n");
     ASSERT_FALSE(out.problem) << out.problem->detail;
     EXPECT_EQ(request_of(out.entries[0])["baseline"],
               Json::parse(R"({"settings": {"GAIN": 1.2, "RESET": 90, "STRUCTURE": "PI action on error, D action on PV"},
                               "y_span": [0, 200], "u_span": [0, 100], "product": "emerson_deltav_standard"})"));
-    // Names that look like a unit are the product's own.
-    const Outcome minutes = read(loops(), "K,T,L,product,Kc,Ti_min\n2,100,30,labview_pid,1.2,1.5\n");
-    EXPECT_TRUE(minutes.problem);  // Kc is no member of a controller: it needs "today" in front
-    const Outcome labview = read(loops(), "K,T,L,product,today Kc,Ti_min\n2,100,30,labview_pid,1.2,1.5\n");
-    ASSERT_FALSE(labview.problem) << labview.problem->detail;
-    EXPECT_EQ(request_of(labview.entries[0])["baseline"]["settings"], Json::parse(R"({"Kc": 1.2, "Ti_min": 1.5})"));
+    // A name that ends like a unit is the product's own; one without "today" in front is no column.
+    const Outcome named =
+        read(loops(), "K,T,L,product,today fKp,today tTn_ms\n2,100,30,beckhoff_fb_ctrl_pid,1.2,90000\n");
+    ASSERT_FALSE(named.problem) << named.problem->detail;
+    EXPECT_EQ(request_of(named.entries[0])["baseline"]["settings"], Json::parse(R"({"fKp": 1.2, "tTn_ms": 90000})"));
+    EXPECT_THAT(refusal(loops(), "K,T,L,product,fKp\n2,100,30,beckhoff_fb_ctrl_pid,1.2\n"),
+                HasSubstr("\"fKp\" is no column of loops"));
 }
 
 TEST(BatchReader, TheUsersControllerIsSaidOnceForAllLoops) {

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <string>
 
+#include "engine/identification/record/false_readings.h"
 #include "engine/identification/record/record_rows.h"
 #include "engine/number_text.h"
 #include "engine/numerics/statistics.h"
@@ -143,9 +144,7 @@ Expected<CleanRecord> clean_record(const Record& record) {
     if (auto error = check_columns(record)) return *error;
     CleanRecord clean;
     RecordRows rows = collect_rows(record, clean.cleaning);
-    if (!record.u0) drop_unread_rows(rows, clean.cleaning);
-    drop_silent_rows(rows, clean.cleaning);
-    drop_false_readings(rows, clean.cleaning);
+    drop_false_readings(rows, record.u0.has_value(), clean.cleaning);
     drop_late_moves(rows, clean.cleaning);
     if (auto error = check_rows(record, rows, clean.cleaning)) return *error;
     const Cleaning& done = clean.cleaning;

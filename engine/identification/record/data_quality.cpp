@@ -327,6 +327,30 @@ std::vector<Saturation> flat_tops(const CleanRecord& r, double noise, double gri
     return found;
 }
 
+namespace {
+
+/// Whether the limits hide more than a quarter of the moves from one level on which u stands still to the next: a test
+/// stepped it there.
+bool hides_steps(const Record& record, const InputLimits& limits) {
+    constexpr std::size_t kStands = 3;  // rows
+    int moves = 0, hidden = 0;
+    std::optional<double> before;
+    for (std::size_t i = 0, end = 0; i < record.u.size(); i = end) {
+        end = i + 1;
+        while (end < record.u.size() && record.u[end] == record.u[i]) ++end;
+        if (end - i < kStands) continue;
+        if (before && *before != record.u[i]) {
+            ++moves;
+            hidden +=
+                std::clamp(*before, limits[0], limits[1]) == std::clamp(record.u[i], limits[0], limits[1]) ? 1 : 0;
+        }
+        before = record.u[i];
+    }
+    return 4 * hidden > moves;
+}
+
+}  // namespace
+
 std::vector<InputLimits> plain_limits(const Record& record) {
     static constexpr InputLimits kUsual[] = {{0, 1},   {-1, 1},     {0, 100},  {-100, 100},
                                              {0, 255}, {-255, 255}, {0, 1023}, {0, 4095}};
@@ -334,6 +358,7 @@ std::vector<InputLimits> plain_limits(const Record& record) {
     std::vector<InputLimits> found;
     for (const InputLimits& limits : kUsual) {
         const auto [low, high] = limits;
+        if (record.u_full_scale && high < *record.u_full_scale) continue;
         const double margin = kBeyond * (high - low);
         int inside = 0, outside = 0, all = 0;
         for (const double u : record.u) {
@@ -342,7 +367,8 @@ std::vector<InputLimits> plain_limits(const Record& record) {
             inside += u > low && u < high ? 1 : 0;
             outside += u < low - margin || u > high + margin ? 1 : 0;
         }
-        if (inside > kMinInside * all && outside > kMinOutside * all) found.push_back(limits);
+        if (inside > kMinInside * all && outside > kMinOutside * all && !hides_steps(record, limits))
+            found.push_back(limits);
     }
     return found;
 }

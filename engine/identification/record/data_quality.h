@@ -36,7 +36,8 @@ using InputLimits = std::array<double, 2>;
 
 /// The usual ends (0 to 1, -1 to 1, 0 to 100, -100 to 100, 0 to 255, -255 to 255, 0 to 1023, 0 to 4095) that a record's
 /// u runs beyond by a twentieth of their span and more, in 2 % of the rows and more, while a tenth of the rows lies
-/// inside. What reaches the plant is then what lies inside.
+/// inside. What reaches the plant is then what lies inside. Not among them are ends below record.u_full_scale, and ends
+/// that would hide more than a quarter of the moves between levels on which u stands still: a test made those.
 std::vector<InputLimits> plain_limits(const Record& record);
 
 }  // namespace tunewright

@@ -25,7 +25,10 @@ struct Record {
     /// low < high: the actuator goes no further, whatever u says.
     std::optional<std::array<double, 2>> u_limits = {};
 
-    std::vector<int> line;  ///< of each sample in the file that it comes from, for sentences; empty: no file
+    std::vector<int> line = {};  ///< of each sample in the file that it comes from, for sentences; empty: no file
+
+    /// The upper end of u's scale by its name or unit, such as 100 of percent: usual ends below it are never tried.
+    std::optional<double> u_full_scale = {};
 };
 
 }  // namespace tunewright

@@ -1,8 +1,6 @@
-// The rows of a record in time order, still in the user's units, and the readings of y that no process makes.
+// The rows of a record in time order, still in the user's units.
 #pragma once
 
-#include <cstddef>
-#include <span>
 #include <vector>
 
 #include "engine/identification/record/clean_record.h"
@@ -32,17 +30,5 @@ void drop_silent_rows(RecordRows& rows, Cleaning& cleaning);
 /// Takes changes of u out that come with the last sample or after it: nothing of the record shows what they do. A lone
 /// change stays, and so do all changes of an input that moves more than twice, as that of a relay or a loop does.
 void drop_late_moves(RecordRows& rows, Cleaning& cleaning);
-
-/// Indices, ascending, of
-/// - a number that stands apart: the least or greatest value, if the next one is five times the range of all the
-///   others away, and it makes up less than half of the samples (-9999, 1e9, 0 of a sensor that reads 20 to 21);
-/// - spikes of one or two samples that lie a quarter of the range away from the median of five, and ten times farther
-///   than nine tenths of all samples do, while the samples on either side agree; none if they are more than 1 % (or
-///   3) of all, and none in the last or first two samples. A process faster than the sampling answers a pulse of one
-///   sample in the same way, which is why a warning names what was left out.
-std::vector<std::size_t> false_readings(std::span<const double> y);
-
-/// Takes the false readings out of the rows and notes them in `cleaning`.
-void drop_false_readings(RecordRows& rows, Cleaning& cleaning);
 
 }  // namespace tunewright

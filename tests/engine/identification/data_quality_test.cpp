@@ -5,9 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
-#include "engine/identification/record/record_rows.h"
+#include "engine/identification/record/false_readings.h"
 #include "tests/engine/identification/simulated_record.h"
 
 namespace tunewright {
@@ -30,6 +31,11 @@ CleanRecord cleaned(const Record& record) {
     const auto clean = clean_record(record);
     EXPECT_TRUE(clean) << (clean ? "" : clean.error().message);
     return clean ? *clean : CleanRecord{};
+}
+
+RecordRows rows_of(const Record& record) {
+    Cleaning cleaning;
+    return collect_rows(record, cleaning);
 }
 
 std::vector<std::string> codes(const Record& record) {
@@ -122,14 +128,62 @@ TEST(DataQuality, AFastProcessIsNoSaturation) {
 TEST(FalseReadings, ResponsesHaveNone) {
     for (const auto& response : {first_order(2, 0.3, 1), first_order(2, 20, 1), oscillation(1, 1.5, 0.1, 0)}) {
         const Record record = simulate(even_times(300, 0.5), 0, 0, {{20, 1}, {60, -1}, {100, 0}}, response);
-        EXPECT_TRUE(false_readings(record.y).empty());
+        EXPECT_TRUE(false_readings(rows_of(record)).empty());
     }
+}
+
+/// y with `value` in the rows [from, to).
+Record with_run(double value, std::size_t from, std::size_t to) {
+    Record record = good_step();
+    std::fill(record.y.begin() + static_cast<std::ptrdiff_t>(from), record.y.begin() + static_cast<std::ptrdiff_t>(to),
+              value);
+    return record;
+}
+
+TEST(FalseReadings, WhatSensorsReportInAFaultIsFoundOnceAndInRuns) {
+    for (const double value : {85.0, -127.0, 850.0, 1820.0, 0.0, 4095.0, 32767.0}) {
+        for (const std::size_t length : {1, 2, 7, 20})
+            EXPECT_EQ(false_readings(rows_of(with_run(value, 150, 150 + length))).size(), length) << value;
+    }
+    EXPECT_EQ(false_readings(rows_of(with_run(-127, 390, 400))).size(), 10u);
+}
+
+TEST(FalseReadings, AProcessThatGoesToSuchAValueKeepsIt) {
+    // Steps of u by which a process as fast as its rows jumps to 85 and back, and one that passes 85 slowly.
+    Record fast =
+        simulate(even_times(300, 0.5), 60, 60, {{20, 85}, {40, 60}, {60, 85}, {100, 60}}, first_order(1, 0.05, 0));
+    for (double& y : fast.y) y = std::round(y);
+    EXPECT_TRUE(false_readings(rows_of(fast)).empty());
+    Record slow = simulate(even_times(400, 0.5), 40, 60, {{20, 80}}, first_order(1, 15, 2));
+    for (double& y : slow.y) y = std::round(y);
+    EXPECT_TRUE(false_readings(rows_of(slow)).empty());
+}
+
+TEST(FalseReadings, TheStartIsJudgedWithoutTheSpikesBehindIt) {
+    for (const std::size_t first : {1, 2, 3}) {
+        Record record = with_run(-127, 200, 201);
+        std::fill(record.y.begin(), record.y.begin() + static_cast<std::ptrdiff_t>(first), 85.0);
+        const CleanRecord clean = cleaned(record);
+        EXPECT_EQ(clean.cleaning.silent, static_cast<int>(first));
+        EXPECT_EQ(clean.cleaning.spikes.size(), 1u);
+        EXPECT_NEAR(clean.scale.y_origin + clean.scale.y_scale * clean.y.front(), 20, 0.1);
+    }
+}
+
+TEST(PlainLimits, AreNoneThatHideTheMovesOfATestOrContradictItsScale) {
+    Record record =
+        simulate(even_times(400, 0.5), 0, 20, {{20, 100}, {60, 40}, {100, 100}, {140, 65}}, first_order(0.8, 15, 2));
+    EXPECT_TRUE(plain_limits(record).empty());
+    record = simulate(even_times(400, 0.5), 0.5, 20, {{20, 3}, {100, 0.7}}, first_order(0.8, 15, 2));
+    EXPECT_FALSE(plain_limits(record).empty());
+    record.u_full_scale = 100;
+    EXPECT_TRUE(plain_limits(record).empty());
 }
 
 TEST(FalseReadings, ANumberThatStandsForNoneIsFoundHoweverOften) {
     Record record = good_step();
     for (std::size_t i = 0; i < 100; ++i) record.y[4 * i] = -9999;
-    EXPECT_EQ(false_readings(record.y).size(), 100u);
+    EXPECT_EQ(false_readings(rows_of(record)).size(), 100u);
 }
 
 }  // namespace

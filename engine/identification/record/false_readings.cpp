@@ -1,0 +1,252 @@
+#include "engine/identification/record/false_readings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace tunewright {
+namespace {
+
+constexpr std::size_t kMinRows = 12;  // fewer samples show no usual move
+
+/// What sensors and their amplifiers report in place of a reading, which a process may also pass through: DS18B20 not
+/// yet read and not there (in C and in F), an open or shorted thermocouple, no signal.
+constexpr double kSensorFaults[] = {85, 185, -127, -196.6, 850, 1820, -999, 999, -999.9, 999.9, 0};
+
+double median_of_five(std::span<const double> y, std::size_t middle) {
+    double v[5] = {y[middle - 2], y[middle - 1], y[middle], y[middle + 1], y[middle + 2]};
+    std::nth_element(v, v + 2, v + 5);
+    return v[2];
+}
+
+/// The value that stands apart; NaN if none does.
+double number_apart(std::span<const double> y) {
+    constexpr double kApart = 5;
+    double low = y[0], high = y[0];
+    for (const double value : y) low = std::min(low, value), high = std::max(high, value);
+    double next_low = high, next_high = low;
+    std::size_t lows = 0, highs = 0;
+    for (const double value : y) {
+        if (value > low) next_low = std::min(next_low, value);
+        if (value < high) next_high = std::max(next_high, value);
+        lows += value == low ? 1 : 0;
+        highs += value == high ? 1 : 0;
+    }
+    const double others_low = high - next_low, others_high = next_high - low;
+    if (others_low > 0 && next_low - low > kApart * others_low && 2 * lows < y.size()) return low;
+    if (others_high > 0 && high - next_high > kApart * others_high && 2 * highs < y.size()) return high;
+    return std::numeric_limits<double>::quiet_NaN();
+}
+
+std::vector<std::size_t> spikes(std::span<const double> y) {
+    const std::size_t n = y.size();
+    if (n < kMinRows) return {};
+    std::vector<double> away(n, 0);
+    double low = y[2], high = y[2];
+    for (std::size_t i = 2; i + 2 < n; ++i) {
+        const double smooth = median_of_five(y, i);
+        low = std::min(low, smooth);
+        high = std::max(high, smooth);
+        away[i] = std::abs(y[i] - smooth);
+    }
+    constexpr double kUsual = 0.9, kTimesUsual = 10, kOfRange = 0.25, kAgree = 0.3;
+    std::vector<double> sorted = away;
+    const auto usual = sorted.begin() + static_cast<std::ptrdiff_t>(kUsual * static_cast<double>(n - 1));
+    std::nth_element(sorted.begin(), usual, sorted.end());
+    const double limit = std::max(kTimesUsual * *usual, kOfRange * (high - low));
+    if (high <= low) return {};
+    std::vector<std::size_t> found;
+    for (std::size_t i = 2; i + 2 < n; ++i) {
+        if (away[i] <= limit) continue;
+        const std::size_t last = away[i + 1] > limit ? i + 1 : i;
+        if (last + 2 >= n || away[last + 1] > limit) {
+            while (i + 1 < n && away[i + 1] > limit) ++i;
+            continue;
+        }
+        if (std::abs(y[i - 1] - y[last + 1]) < kAgree * away[i]) {
+            for (std::size_t k = i; k <= last; ++k) found.push_back(k);
+        }
+        i = last;
+    }
+    const std::size_t most = std::max<std::size_t>(3, n / 100);
+    return found.size() <= most ? found : std::vector<std::size_t>{};
+}
+
+/// Indices of the numbers that stand apart, one value after the other.
+std::vector<bool> apart(std::span<const double> y) {
+    constexpr int kMostValues = 3;
+    std::vector<bool> found(y.size(), false);
+    for (int pass = 0; pass < kMostValues; ++pass) {
+        std::vector<double> rest;
+        for (std::size_t i = 0; i < y.size(); ++i)
+            if (!found[i]) rest.push_back(y[i]);
+        const double value = rest.size() < kMinRows ? std::nan("") : number_apart(rest);
+        if (std::isnan(value)) break;
+        // After the first, a number that many samples hold is a level of y.
+        const auto count = static_cast<std::size_t>(std::count(rest.begin(), rest.end(), value));
+        if (pass > 0 && count > std::max<std::size_t>(3, rest.size() / 100)) break;
+        for (std::size_t i = 0; i < y.size(); ++i) found[i] = found[i] || y[i] == value;
+    }
+    return found;
+}
+
+/// A number that y holds to the digit for some rows, [first, end), between others.
+struct HeldRun {
+    std::size_t first = 0, end = 0;
+    double value = 0;
+};
+
+/// Finds runs that are a sensor's and not the process's.
+class FaultRuns {
+public:
+    FaultRuns(const RecordRows& rows, const std::vector<bool>& known) : rows_(rows), y_(rows.y), known_(known) {
+        std::vector<double> moves;
+        double last = std::nan("");
+        for (std::size_t i = 0; i < y_.size(); ++i) {
+            if (known_[i]) continue;
+            if (!std::isnan(last) && y_[i] != last) moves.push_back(std::abs(y_[i] - last));
+            last = y_[i];
+        }
+        if (moves.empty()) return;
+        constexpr double kUsual = 0.75;  // of the moves: rounding makes many of none
+        const auto usual = moves.begin() + static_cast<std::ptrdiff_t>(kUsual * static_cast<double>(moves.size() - 1));
+        std::nth_element(moves.begin(), usual, moves.end());
+        usual_move_ = *usual;
+    }
+
+    std::vector<HeldRun> find() const {
+        constexpr std::size_t kShare = 4;  // of the samples: a quarter
+        std::vector<HeldRun> found;
+        std::size_t count = 0;
+        for (std::size_t i = 1; i < y_.size();) {
+            const HeldRun run = run_at(i);
+            i = run.end;
+            if (known_[run.first] || !jumps(run)) continue;
+            found.push_back(run);
+            count += run.end - run.first;
+        }
+        std::erase_if(found, [&](const HeldRun& run) { return !is_fault(run, found); });
+        return kShare * count > y_.size() ? std::vector<HeldRun>{} : found;
+    }
+
+private:
+    HeldRun run_at(std::size_t i) const {
+        std::size_t end = i + 1;
+        while (end < y_.size() && y_[end] == y_[i]) ++end;
+        return {i, end, y_[i]};
+    }
+
+    bool jumps(const HeldRun& run) const {
+        constexpr double kTimesUsual = 10;
+        const double limit = kTimesUsual * usual_move_;
+        const double entry = std::abs(run.value - y_[run.first - 1]);
+        if (entry == 0 || entry <= limit || known_[run.first - 1]) return false;
+        if (run.end == y_.size()) return !u_moves_before(run.first);
+        const double leaving = std::abs(run.value - y_[run.end]);
+        constexpr double kAgree = 0.3;
+        if (leaving <= limit || std::abs(y_[run.end] - y_[run.first - 1]) > kAgree * entry) return false;
+        return !(u_moves_before(run.first) && u_moves_before(run.end));
+    }
+
+    /// Whether the row may answer a move of u: a process faster than its rows jumps so.
+    bool u_moves_before(std::size_t row) const {
+        constexpr std::size_t kRows = 3, kRestless = 5;
+        if (kRestless * rows_.change_time.size() > y_.size()) return false;
+        const double from = rows_.t[row > kRows ? row - kRows : 0];
+        const auto move = std::lower_bound(rows_.change_time.begin(), rows_.change_time.end(), from);
+        return move != rows_.change_time.end() && *move <= rows_.t[row];
+    }
+
+    bool is_fault(const HeldRun& run, const std::vector<HeldRun>& all) const {
+        double low = std::numeric_limits<double>::infinity(), high = -low;
+        std::size_t next = 0;
+        for (std::size_t i = 0; i < y_.size(); ++i) {
+            while (next < all.size() && all[next].end <= i) ++next;
+            if (known_[i] || (next < all.size() && i >= all[next].first)) continue;
+            low = std::min(low, y_[i]);
+            high = std::max(high, y_[i]);
+        }
+        constexpr double kOfRange = 0.1, kBeyond = 1, kLongest = 0.1;
+        const double range = high - low, entry = std::abs(run.value - y_[run.first - 1]);
+        if (!(range > 0)) return false;
+        const bool listed = std::ranges::find(kSensorFaults, run.value) != std::end(kSensorFaults);
+        const bool outside = run.value < low - kOfRange * range || run.value > high + kOfRange * range;
+        if (run.end == y_.size() && !outside) return false;
+        if (listed && entry > kOfRange * range && (outside || run.value != 0)) return true;
+        const auto length = static_cast<double>(run.end - run.first);
+        return (run.value < low - kBeyond * range || run.value > high + kBeyond * range) && run.end < y_.size() &&
+               length <= kLongest * static_cast<double>(y_.size());
+    }
+
+    const RecordRows& rows_;
+    const std::vector<double>& y_;
+    const std::vector<bool>& known_;
+    double usual_move_ = 0;
+};
+
+/// Marks the spikes among the samples that are not marked yet.
+void mark_spikes(std::span<const double> y, std::vector<bool>& found) {
+    std::vector<double> rest;
+    std::vector<std::size_t> place;
+    for (std::size_t i = 0; i < y.size(); ++i) {
+        if (found[i]) continue;
+        rest.push_back(y[i]);
+        place.push_back(i);
+    }
+    for (const std::size_t i : spikes(rest)) found[place[i]] = true;
+}
+
+std::vector<bool> marked(const RecordRows& rows) {
+    if (rows.y.size() < kMinRows) return std::vector<bool>(rows.y.size(), false);
+    std::vector<bool> found = apart(rows.y);
+    for (const HeldRun& run : FaultRuns(rows, found).find())
+        std::fill(found.begin() + static_cast<std::ptrdiff_t>(run.first),
+                  found.begin() + static_cast<std::ptrdiff_t>(run.end), true);
+    mark_spikes(rows.y, found);
+    return found;
+}
+
+/// Takes the marked samples from index `from` on out of the rows, and out of the marks.
+void take_out(RecordRows& rows, std::vector<bool>& found, std::size_t from, Cleaning& cleaning) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < rows.y.size(); ++i) {
+        if (found[i] && i >= from) {
+            cleaning.spikes.push_back(rows.number[i]);
+            cleaning.spike_times.push_back(rows.t[i]);
+            continue;
+        }
+        rows.t[kept] = rows.t[i];
+        rows.y[kept] = rows.y[i];
+        rows.number[kept] = rows.number[i];
+        found[kept] = found[i];
+        ++kept;
+    }
+    rows.t.resize(kept);
+    rows.y.resize(kept);
+    rows.number.resize(kept);
+    found.resize(kept);
+}
+
+}  // namespace
+
+std::vector<std::size_t> false_readings(const RecordRows& rows) {
+    const std::vector<bool> found = marked(rows);
+    std::vector<std::size_t> indices;
+    for (std::size_t i = 0; i < found.size(); ++i)
+        if (found[i]) indices.push_back(i);
+    return indices;
+}
+
+void drop_false_readings(RecordRows& rows, bool u0_given, Cleaning& cleaning) {
+    constexpr std::size_t kFirst = 4;  // rows that the start may be made of
+    std::vector<bool> found = marked(rows);
+    take_out(rows, found, kFirst, cleaning);
+    const std::size_t before = rows.y.size();
+    if (!u0_given) drop_unread_rows(rows, cleaning);
+    drop_silent_rows(rows, cleaning);
+    found.erase(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(before - rows.y.size()));
+    take_out(rows, found, 0, cleaning);
+}
+
+}  // namespace tunewright

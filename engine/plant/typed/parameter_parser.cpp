@@ -239,8 +239,28 @@ private:
 
 }  // namespace
 
+namespace {
+
+/// Whether a formula stands behind "K =" at the cursor, as in K = 3/(10s+1): a bracket, or a number with one behind it.
+bool names_a_formula(const Cursor& cursor) {
+    constexpr std::size_t kLongestSymbol = 2;  // "poles = (-1+2i)" is a list
+    if (cursor.now().text.size() > kLongestSymbol || !is_assigned(cursor.peek(1))) return false;
+    std::size_t at = Cursor::is(cursor.peek(2), "-") ? 3 : 2;
+    if (cursor.peek(at).kind == Word::Kind::number) {
+        ++at;
+        if (Cursor::is(cursor.peek(at), "/") || Cursor::is(cursor.peek(at), "*")) ++at;
+        const std::string& word = cursor.peek(at).text;
+        if ((word == "e" || word == "exp") &&
+            (Cursor::is(cursor.peek(at + 1), "^") || Cursor::is(cursor.peek(at + 1), "(")))
+            return true;
+    }
+    return Cursor::is(cursor.peek(at), "(");
+}
+
+}  // namespace
+
 bool is_parameter_text(const Cursor& cursor) {
-    if (!cursor.at_name()) return false;
+    if (!cursor.at_name() || names_a_formula(cursor)) return false;
     if (kind_of(cursor.now())) return true;
     bool both = false;
     const std::string name = meaning(cursor.now(), cursor.peek(1), both);

@@ -63,6 +63,10 @@ TEST(TypedPlant, SpellingsOfOnePlantAreThatPlant) {
                              "\\frac{2}{10s+1} e^{-3s}",
                              "tf([0 2],[10 1],\"InputDelay\",3)",
                              "2**1*exp(-3*s)/(10*s+1)**1",
+                             "K=(2)/(10s+1)*e^(-3s)",
+                             "K = 2 e^(-3s)/(10s+1)",
+                             "K = 2/(10s+1)*e^(-3s)",
+                             "G=(2 e^(-3s))/(10s+1)",
                              "\t2 e^(-3s) / (10s+1)\n"}) {
         EXPECT_EQ(read_as(text), first) << text;
     }

@@ -41,6 +41,7 @@ struct TuningEntry {
     std::optional<Standing> standing;          ///< of what was tuned, and of the baseline
     /// The longest sample time of a program with backward rules that keeps Ms within 5 %; of designs.
     std::optional<Figure> longest_sample_time;
+    std::optional<Controller> unjudged;    ///< in place of an evaluation, where there is no plant to judge it on
     std::optional<Evaluation> evaluation;  ///< warnings of the method come first in its list
     std::optional<Error> error;
     std::vector<verdict::Finding> verdict;  ///< the most important first

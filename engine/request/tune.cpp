@@ -10,6 +10,7 @@
 #include "engine/request/plan.h"
 #include "engine/request/ranking.h"
 #include "engine/request/rows.h"
+#include "engine/request/ultimate_alone.h"
 #include "engine/request/verdict/verdict.h"
 
 namespace tunewright {
@@ -248,6 +249,7 @@ Expected<TuningResult> TuningRun::result() {
 }  // namespace
 
 Expected<TuningResult> tune(const TuningRequest& request, const RunControl& control) {
+    if (request.ultimate && !request.subject && !request.record) return tune_on_ultimate(request);
     return TuningRun(request, control).result();
 }
 

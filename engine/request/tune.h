@@ -22,9 +22,17 @@ enum class IdentifiedRegion {
     held,
 };
 
+/// What an experiment with a proportional controller shows of a plant, where nothing else is known.
+struct UltimateTest {
+    double Ku = 1;            ///< gain at which the loop oscillates, u/y, != 0
+    double Pu = 1;            ///< period of that oscillation, > 0
+    std::optional<double> K;  ///< static gain, y/u, != 0
+};
+
 struct TuningRequest {
-    std::optional<Subject> subject;  ///< exactly one of subject and record
+    std::optional<Subject> subject;  ///< exactly one of subject, record and ultimate
     std::optional<Record> record;
+    std::optional<UltimateTest> ultimate;
     IdentifyOptions identify;
     std::vector<MethodRequest> tune = {MethodRequest{}};
     std::optional<Controller> baseline;

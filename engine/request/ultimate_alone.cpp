@@ -1,0 +1,117 @@
+#include "engine/request/ultimate_alone.h"
+
+#include <algorithm>
+#include <variant>
+
+#include "engine/number_text.h"
+#include "engine/request/plan.h"
+
+namespace tunewright {
+namespace {
+
+constexpr const char* kGain = "Ku";
+constexpr const char* kPeriod = "Pu";
+
+bool takes_ultimate(const TuningMethod& method) {
+    return std::ranges::any_of(method.options, [](const OptionDescription& option) { return option.name == kGain; });
+}
+
+/// A plant of that static gain, of which the rules on Ku and Pu look at nothing else.
+Expected<TuningProblem> stand_in(double K) {
+    const Plant plant = Fopdt{.K = K, .T = 1, .L = 1};
+    auto linear = LinearPlant::make(plant);
+    if (!linear) return linear.error();
+    return TuningProblem{plant, std::move(*linear), {}, {}};
+}
+
+Expected<TunedController> tuned_on(const UltimateTest& test, double K, const PlannedRow& row) {
+    const auto problem = stand_in(K);
+    if (!problem) return problem.error();
+    MethodOptions options = row.options;
+    options.set(kGain, test.Ku);
+    options.set(kPeriod, test.Pu);
+    return row.method->tune(*problem, options, {});
+}
+
+/// Without the static gain, a rule's settings and none of its remarks, which speak of K Ku.
+Expected<TunedController> tuned_without_gain(const UltimateTest& test, const PlannedRow& row) {
+    const double one = 2 / test.Ku, other = 7 / test.Ku;
+    auto tuned = tuned_on(test, one, row);
+    const auto again = tuned_on(test, other, row);
+    if (!tuned || !again) return tuned ? again : tuned;
+    if (!(tuned->controller == again->controller))
+        return Error{ErrorKind::unsupported, "ultimate/K",
+                     row.method->id + " also needs the static gain: give K beside Ku and Pu."};
+    tuned->warnings.clear();
+    return tuned;
+}
+
+Expected<TunedController> tuned(const UltimateTest& test, const PlannedRow& row) {
+    if (row.refusal) return *row.refusal;
+    if (!takes_ultimate(*row.method))
+        return Error{ErrorKind::unsupported, "",
+                     "The method " + row.method->id +
+                         " needs a model of the plant or a record; Ku and Pu alone serve the rules on the ultimate "
+                         "point, such as ziegler_nichols_ultimate."};
+    return test.K ? tuned_on(test, *test.K, row) : tuned_without_gain(test, row);
+}
+
+verdict::Finding robustness_unknown(const Controller& controller, const UltimateTest& test) {
+    verdict::Finding finding{"robustness-unknown",
+                             verdict::Level::warning,
+                             "How robust this loop is cannot be known from Ku and Pu alone: Ms, margins and responses "
+                             "need a model of the plant or a recorded test.",
+                             {}};
+    if (const auto* pid = std::get_if<IdealPid>(&controller)) {
+        const double share = pid->Kp / test.Ku;
+        finding.text += " Kp is " + text(share) + " of Ku, the gain at which the loop oscillates.";
+        finding.figures["Kp_over_Ku"] = share;
+    }
+    return finding;
+}
+
+TuningEntry entry_of(const UltimateTest& test, const PlannedRow& row) {
+    TuningEntry entry;
+    entry.method = row.method->id;
+    entry.title = row.title;
+    entry.source = row.method->source;
+    entry.options = with_defaults(row.method->options, row.options);
+    auto found = tuned(test, row);
+    if (!found) {
+        entry.error = found.error();
+        if (!entry.error->where.starts_with("ultimate") && !entry.error->where.empty())
+            entry.error->where = row.where + "/" + entry.error->where;
+        entry.verdict = {{"no-controller", verdict::Level::bad, entry.error->message, {}}};
+        return entry;
+    }
+    entry.unjudged = controller_of(*found);
+    entry.verdict = {robustness_unknown(*entry.unjudged, test)};
+    for (const Warning& warning : found->warnings)
+        entry.verdict.push_back({"reason", verdict::Level::note, warning.detail, {}});
+    return entry;
+}
+
+}  // namespace
+
+Expected<TuningResult> tune_on_ultimate(const TuningRequest& request) {
+    auto planned = plan_rows(request.tune);
+    if (!planned) return planned.error();
+    std::erase_if(*planned, [](const PlannedRow& row) { return row.of_all && !takes_ultimate(*row.method); });
+    TuningResult result;
+    for (const PlannedRow& row : *planned) {
+        TuningEntry entry = entry_of(*request.ultimate, row);
+        if (entry.unjudged) result.ranking.push_back(static_cast<int>(result.controllers.size()));
+        result.controllers.push_back(std::move(entry));
+    }
+    if (result.ranking.empty()) return all_failed(result.controllers);
+    result.ranking_by = "the order of the methods; without a plant nothing ranks them";
+    result.verdict = {
+        {"robustness-unknown",
+         verdict::Level::warning,
+         "Ku and Pu alone give settings and no figure of the loop. Record the test, or give a model of the "
+         "plant, to know which of them is robust.",
+         {}}};
+    return result;
+}
+
+}  // namespace tunewright

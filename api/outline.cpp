@@ -80,6 +80,8 @@ Outline::Outline(const JobRequest& request) {
         units_ = out.take();
     }
     if (request.plant) plant_ = short_plant(plant_model_contract(), *request.plant);
+    if (request.ultimate)
+        plant_ = Json{{"type", "ultimate"}, {"Ku", request.ultimate->Ku}, {"Pu", request.ultimate->Pu}}.dump();
 }
 
 std::string Outline::of(const TuningResult& result) const {

@@ -356,8 +356,8 @@ Answer identify_csv(std::string csv, const CsvRequest& question, const RunContro
     }
     {
         const Reader::At at(reader, "units");
-        units_contract().read(question.time_unit.empty() ? Json::object() : Json{{"time", question.time_unit}}, units,
-                              reader);
+        units_contract().read(question.answer_unit.empty() ? Json::object() : Json{{"time", question.answer_unit}},
+                              units, reader);
     }
     {
         const Reader::At at(reader, "identify");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "api/csv/shape/shapes.h"
 #include "api/csv/text.h"
 
 namespace tunewright::api {
@@ -38,6 +39,10 @@ std::optional<Problem> without_csv(const CsvRequest& question) {
                                                   {"--r", !question.r.empty()},
                                                   {"--dt", !question.dt.empty()},
                                                   {"--kind", !question.kind.empty()},
+                                                  {"--u0", !question.u0.empty()},
+                                                  {"--y0", !question.y0.empty()},
+                                                  {"--run", !question.run.empty()},
+                                                  {"--u-step", !question.u_step.empty()},
                                                   {"--u-limits", !question.u_limits.empty()}};
     for (const auto& [name, is] : given)
         if (is)
@@ -47,11 +52,22 @@ std::optional<Problem> without_csv(const CsvRequest& question) {
     return std::nullopt;
 }
 
+bool of_ultimate(const TuneWords& words) { return !words.Ku.empty() || !words.Pu.empty() || !words.K.empty(); }
+
 std::variant<Json, Problem> subject(const TuneWords& words, const std::optional<std::string>& file) {
     if (!words.plant.empty() && file)
         return unclear("Both a plant and a file are given; the file says which plant. Leave one of them out.");
     const auto request = file ? request_text(*file) : std::nullopt;
-    if (auto problem = without_csv(words.record); problem && (!words.plant.empty() || request)) return *problem;
+    if (auto problem = without_csv(words.record); problem && (!words.plant.empty() || of_ultimate(words) || request))
+        return *problem;
+    if (of_ultimate(words)) {
+        if (file || !words.plant.empty())
+            return unclear("--Ku and --Pu stand in place of a plant and of a file; leave one of them out.");
+        Json ultimate = Json::object();
+        for (const auto& [name, word] : {std::pair{"Ku", &words.Ku}, {"Pu", &words.Pu}, {"K", &words.K}})
+            if (!word->empty()) ultimate[name] = number_or_word(*word);
+        return Json{{"ultimate", std::move(ultimate)}};
+    }
     if (!words.plant.empty()) return Json{{"plant", words.plant}};
     if (!file) return unclear("There is nothing to tune: name a file, or give --plant \"2 e^(-3s)/(10s+1)\".");
     if (file->find_first_not_of(kBlank) == file->npos)
@@ -95,7 +111,11 @@ Json record_of(const CsvRequest& question, std::string csv) {
     if (!columns.empty()) record["columns"] = std::move(columns);
     if (!question.kind.empty()) record["kind"] = question.kind;
     if (!question.dt.empty()) record["dt"] = number_or_word(question.dt);
+    if (!question.time_unit.empty()) record["time_unit"] = question.time_unit;
+    for (const auto& [name, word] : {std::pair{"u0", &question.u0}, {"y0", &question.y0}, {"run", &question.run}})
+        if (!word->empty()) record[name] = number_or_word(*word);
     for (const std::string& limit : question.u_limits) record["u_limits"].push_back(number_or_word(limit));
+    for (const std::string& level : question.u_step) record["u_step"].push_back(number_or_word(level));
     return record;
 }
 
@@ -104,6 +124,9 @@ std::optional<std::string> request_text(const std::string& file) {
     const std::string_view text = utf8_text(file, storage);
     const std::size_t first = text.find_first_not_of(kBlank);
     if (first == text.npos || text[first] != '{') return std::nullopt;
+    // A record may be one JSON object, too: of samples, or of columns.
+    const bool may_be_record = text.find("\"record\"") == text.npos && text.find("\"plant\"") == text.npos;
+    if (may_be_record && json_rows(text)) return std::nullopt;
     const std::size_t end = text.find('\n', first);
     if (end == text.npos) return std::string(text);
     const std::size_t last = text.find_last_not_of(kBlank, end), next = text.find_first_not_of(kBlank, end);
@@ -112,6 +135,7 @@ std::optional<std::string> request_text(const std::string& file) {
 }
 
 std::variant<std::string, Problem> tuning_request(const TuneWords& words, std::optional<std::string> file) {
+    const bool as_csv = words.plant.empty() && file && !request_text(*file);
     auto found = subject(words, file);
     if (auto* problem = std::get_if<Problem>(&found)) return std::move(*problem);
     Json& request = std::get<Json>(found);
@@ -121,8 +145,11 @@ std::variant<std::string, Problem> tuning_request(const TuneWords& words, std::o
             return unclear("--model chooses the model of a recorded test, and there is none. Leave it out.");
         if (request.value("identify", Json::object()).is_object()) request["identify"]["model"] = words.record.model;
     }
-    if (!words.record.time_unit.empty() && request.value("units", Json::object()).is_object())
-        request["units"]["time"] = words.record.time_unit;
+    // Of a record's text --time-unit is the file's; else it is that of the whole request.
+    const std::string& unit = !words.record.answer_unit.empty() ? words.record.answer_unit
+                              : as_csv                          ? std::string()
+                                                                : words.record.time_unit;
+    if (!unit.empty() && request.value("units", Json::object()).is_object()) request["units"]["time"] = unit;
     if (!words.baseline.empty()) {
         Json& today = request["baseline"] = {{"form", "ideal"}};
         const std::vector<std::string> values = words_of(words.baseline);

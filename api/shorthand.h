@@ -17,6 +17,9 @@ struct CsvRequest {
     std::string t, u, y, r;  ///< headings, or numbers from 1
     std::string dt, time_unit, kind, model;
     std::vector<std::string> u_limits;  ///< low and high; empty: not given
+    std::vector<std::string> u_step;    ///< from and to; empty: not given
+    std::string u0, y0, run;
+    std::string answer_unit;  ///< of the times of the answer
     bool traces = false;
 };
 
@@ -24,8 +27,9 @@ struct TuneWords {
     std::string plant;                 ///< as `tunewright plant` reads it; "": the file has it
     std::vector<std::string> methods;  ///< empty: those of the file, or the default
     std::string Ms;  ///< limit of Ms and Mt for robust and all; where neither is asked for, Ms of each; "": not given
-    std::string baseline;  ///< today's settings, "Kp Ti Td"; "": those of the file, or none
-    CsvRequest record;     ///< where the file is a recorded test; its time_unit counts for a plant too
+    std::string baseline;   ///< today's settings, "Kp Ti Td"; "": those of the file, or none
+    std::string Ku, Pu, K;  ///< in place of a plant and a file: the ultimate point, perhaps the static gain
+    CsvRequest record;      ///< where the file is a recorded test; for a plant, its time_unit is that of all times
 };
 
 /// The member `record` of a request, with that text.

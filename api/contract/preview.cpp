@@ -47,6 +47,20 @@ const Description<PreviewColumn>& preview_column_contract() {
     return description;
 }
 
+const Description<CsvRun>& preview_run_contract() {
+    static const auto description = [] {
+        Description<CsvRun> d("PreviewRun", "One of several runs in a file: its times begin again with each.");
+        d.field("first_line", &CsvRun::first_line, count(), "Its first line in the file, from 1.")
+            .field("last_line", &CsvRun::last_line, count(), "Its last line.")
+            .field("rows", &CsvRun::rows, count(), "Its rows.")
+            .field("from", &CsvRun::from, value(), "Least time, as the file counts.", {.unit = "time"})
+            .field("to", &CsvRun::to, value(), "Largest time.", {.unit = "time"})
+            .field("tests", &CsvRun::tests, only_answered(boolean()), "u moves in it and y answers.");
+        return d;
+    }();
+    return description;
+}
+
 const Description<PreviewTime>& preview_time_contract() {
     static const auto description = [] {
         using T = PreviewTime;
@@ -78,6 +92,8 @@ const Description<PreviewRequest>& preview_request_contract() {
             .field("dt", &R::dt, maybe(number({.exclusive_minimum = 0})), "Sampling time, where there are no times.")
             .field("time_unit", &R::time_unit, maybe(file_time_unit()),
                    "Unit of the file's times, where it does not say or says it wrongly.")
+            .field("u_step", &R::u_step, maybe(u_step()), "Of a file without u: u steps so at the first row.")
+            .field("run", &R::run, maybe(run_number()), "Of a file with several runs, the one that is read, from 1.")
             .check(check_preview)
             .example({{"csv", "t,u,y\n0,0,20\n1,5,20\n2,5,21\n"}});
         return d;
@@ -91,12 +107,17 @@ const Description<CsvPreview>& preview_answer_contract() {
         Description<P> d("PreviewAnswer", "What the file is read as.");
         d.field("columns", &P::columns, list_of(answer(preview_column_contract())), "In the order of the file.")
             .field("rows", &P::rows, count(), "Lines of data.")
-            .field("separator", &P::separator, words(),
-                   "The sign itself, tab, blanks, or pairs: lines name each value.")
+            .field(
+                "separator", &P::separator, words(),
+                "The sign itself, tab, blanks; pairs: lines name each value; values: each value has its own line, or "
+                "the file is JSON.")
             .field("decimal", &P::decimal, words(), "Decimal sign of the numbers.")
             .field("encoding", &P::encoding, words(),
                    "utf-8, utf-16le, utf-16be, windows-1252 or iso-8859-1; of JSON always utf-8.")
             .field("time", &P::time, maybe(answer(preview_time_contract())), "Missing where the record cannot be read.")
+            .field("runs", &P::runs, list_of(answer(preview_run_contract())),
+                   "Where the times begin again, the runs; none: one run.")
+            .field("run", &P::run, maybe(count()), "Of several runs, the one that is read, from 1.")
             .field("skipped", &P::skipped, list_of(answer(skip_contract())), "Lines that are no rows, the first 100.")
             .field("skipped_lines", &P::skipped_lines, count(), "Lines of data that do not count.")
             .field("notes", &P::notes, list_of(words()), "What was found by itself, a sentence each.")
@@ -112,6 +133,8 @@ CsvOptions csv_options(const PreviewRequest& request) {
     options.columns = request.columns.value_or(ColumnChoices{});
     options.file_time_unit = request.time_unit.value_or("");
     options.dt = request.dt;
+    options.u_step = request.u_step;
+    options.run = request.run;
     options.most_samples = kMaxSamples;
     return options;
 }

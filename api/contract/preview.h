@@ -11,10 +11,12 @@
 namespace tunewright::api {
 
 struct PreviewRequest {
-    std::optional<std::string> csv;        ///< set in every request that was read without a fault
-    std::optional<ColumnChoices> columns;  ///< where they are chosen
-    std::optional<double> dt;              ///< sampling time in seconds, of a file without times
-    std::optional<std::string> time_unit;  ///< of the file's times
+    std::optional<std::string> csv;               ///< set in every request that was read without a fault
+    std::optional<ColumnChoices> columns;         ///< where they are chosen
+    std::optional<double> dt;                     ///< sampling time in seconds, of a file without times
+    std::optional<std::string> time_unit;         ///< of the file's times
+    std::optional<std::array<double, 2>> u_step;  ///< of a file without u
+    std::optional<int> run;                       ///< of several, from 1
 };
 
 /// Reading takes any text: what keeps it from being a record is part of the answer.

@@ -10,6 +10,7 @@ namespace tunewright::api {
 namespace {
 
 constexpr int kMaxColumns = 1000;
+constexpr int kMaxRuns = 1'000'000;
 constexpr std::size_t kMaxHeadingLength = 200;
 
 Codec<ColumnChoice> column_choice() {
@@ -34,12 +35,11 @@ Codec<ColumnChoice> column_choice() {
         }};
 }
 
-// [low, high], the lower one first.
-Codec<std::array<double, 2>> limits() {
-    return {[](const Json& value, std::array<double, 2>& target, Reader& reader) {
+// Two numbers; `example` shows them, `check` says what is wrong with them, or nothing.
+Codec<std::array<double, 2>> two_numbers(std::string example, const char* (*check)(const std::array<double, 2>&)) {
+    return {[example, check](const Json& value, std::array<double, 2>& target, Reader& reader) {
                 if (!value.is_array() || value.size() != 2)
-                    return reader.fault(reader.name() + " is " + shown(value) +
-                                        "; it must be [low, high], such as [0, 100].");
+                    return reader.fault(reader.name() + " is " + shown(value) + "; it must be " + example + ".");
                 std::array<double, 2> read{};
                 for (std::size_t i = 0; i < read.size(); ++i) {
                     const Reader::At at(reader, i);
@@ -47,9 +47,8 @@ Codec<std::array<double, 2>> limits() {
                     if (!number) return;
                     read[i] = *number;
                 }
-                if (!(read[0] < read[1]))
-                    return reader.fault(reader.name() + " is " + shown(value) +
-                                        "; the first number is the lower limit and must be below the second.");
+                if (const char* wrong = check(read))
+                    return reader.fault(reader.name() + " is " + shown(value) + "; " + wrong);
                 target = read;
             },
             [](const std::array<double, 2>& value, Writer& out) {
@@ -60,6 +59,12 @@ Codec<std::array<double, 2>> limits() {
             [](SchemaBook&) {
                 return Json{{"type", "array"}, {"items", number_schema({})}, {"minItems", 2}, {"maxItems", 2}};
             }};
+}
+
+Codec<std::array<double, 2>> limits() {
+    return two_numbers("[low, high], such as [0, 100]", [](const std::array<double, 2>& read) {
+        return read[0] < read[1] ? nullptr : "the first number is the lower limit and must be below the second.";
+    });
 }
 
 }  // namespace
@@ -78,6 +83,14 @@ const Description<ColumnChoices>& columns_contract() {
     return description;
 }
 
+Codec<std::array<double, 2>> u_step() {
+    return two_numbers("[from, to], such as [0, 50]", [](const std::array<double, 2>& read) {
+        return read[0] != read[1] ? nullptr : "u must step from one value to another.";
+    });
+}
+
+Codec<int> run_number() { return integer(1, kMaxRuns); }
+
 Codec<std::string> file_time_unit() {
     Codec<std::string> codec = text(20);
     codec.read = [](const Json& value, std::string& target, Reader& reader) {
@@ -93,6 +106,8 @@ Codec<std::string> file_time_unit() {
 namespace {
 
 void check_record(const Json&, GivenRecord& record, Reader& reader) {
+    if (record.u_step && record.u0)
+        reader.fault_at("u0", "u0 and u_step are both given; u_step says where u comes from. Remove u0.");
     if (record.from && record.to && *record.to <= *record.from)
         reader.fault_at("to", "to is " + tunewright::text(*record.to) + " and from " + tunewright::text(*record.from) +
                                   "; the part that is used must end after it starts.");
@@ -105,10 +120,13 @@ void check_record(const Json&, GivenRecord& record, Reader& reader) {
         }
         return;
     }
+    if (record.run) reader.fault_at("run", "run belongs to csv, which is missing.");
     if (record.columns) reader.fault_at("columns", "columns belongs to csv, which is missing.");
     if (record.time_unit) reader.fault_at("time_unit", "time_unit belongs to csv, which is missing.");
-    if (!record.u || !record.y) {
-        for (const auto& [name, given] : {std::pair{"u", record.u.has_value()}, {"y", record.y.has_value()}}) {
+    if (record.u && record.u_step) reader.fault_at("u_step", "u_step is for a record without u; remove one of them.");
+    const bool has_input = record.u || record.u_step;
+    if (!has_input || !record.y) {
+        for (const auto& [name, given] : {std::pair{"u", has_input}, {"y", record.y.has_value()}}) {
             if (!given)
                 reader.fault_at(
                     name, std::string(name) + " is missing; a record is t (or dt), u and y as arrays, or csv text.");
@@ -124,7 +142,7 @@ void check_record(const Json&, GivenRecord& record, Reader& reader) {
                                       std::to_string(record.y->size()) + "; they must be equally many.");
         }
     };
-    length("u", *record.u);
+    if (record.u) length("u", *record.u);
     if (record.t) length("t", *record.t);
     if (record.r) length("r", *record.r);
 }
@@ -224,6 +242,12 @@ const Description<GivenRecord>& record_contract() {
             .field("y0", &GivenRecord::y0, maybe(number()), "Measurement before the first sample.", {.unit = "y"})
             .field("u_limits", &GivenRecord::u_limits, maybe(limits()),
                    "The ends of the actuator, [low, high]: u beyond them did not reach the plant.", {.unit = "u"})
+            .field("u_step", &GivenRecord::u_step, maybe(u_step()),
+                   "Of a record without u: u stepped at the first sample, [from, to], and stays.", {.unit = "u"})
+            .field(
+                "run", &GivenRecord::run, maybe(run_number()),
+                "Of a csv whose times begin again: which of its runs, from 1. Default: the longest in which y answers "
+                "a move of u.")
             .field("from", &GivenRecord::from, maybe(number()), "Only samples from this time on are used.",
                    {.unit = "time"})
             .field("to", &GivenRecord::to, maybe(number()), "Only samples up to this time are used.", {.unit = "time"})
@@ -266,7 +290,10 @@ ReadRecord resolve(GivenRecord given, const Units& units, Reader& reader) {
     out.record.u0 = given.u0;
     out.record.y0 = given.y0;
     out.record.u_limits = given.u_limits;
+    if (given.u_step) out.record.u0 = given.u_step->front();
     if (!given.csv) {
+        if (!given.u) given.u.emplace(given.y->size(), given.u_step->back());
+        if (units.u == "%") out.record.u_full_scale = 100;
         out.record.t = given.t ? std::move(*given.t) : times(*given.dt, given.y->size());
         out.record.u = std::move(*given.u);
         out.record.y = std::move(*given.y);
@@ -280,6 +307,8 @@ ReadRecord resolve(GivenRecord given, const Units& units, Reader& reader) {
     options.file_time_unit = given.time_unit.value_or("");
     options.time_unit_given = units.time.has_value();
     options.dt = given.dt;
+    options.u_step = given.u_step;
+    options.run = given.run;
     options.unit_u = units.u.value_or("");
     options.unit_y = units.y.value_or("");
     options.most_samples = kMaxSamples;
@@ -301,6 +330,7 @@ ReadRecord resolve(GivenRecord given, const Units& units, Reader& reader) {
     out.record.y = std::move(record.y);
     out.record.r = std::move(record.r);
     out.record.line = std::move(record.lines);
+    out.record.u_full_scale = record.u_full_scale;
     out.dropped = record.dropped;
     out.unread = std::move(record.unread);
     out.time_unit_known = record.time_unit_known;

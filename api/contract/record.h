@@ -33,7 +33,9 @@ struct GivenRecord {
     RecordKind kind = RecordKind::automatic;
     std::optional<double> u0, y0;
     std::optional<std::array<double, 2>> u_limits;
-    std::optional<double> from, to;  ///< the part that counts
+    std::optional<std::array<double, 2>> u_step;  ///< in place of u
+    std::optional<int> run;                       ///< of a csv with several, from 1
+    std::optional<double> from, to;               ///< the part that counts
 };
 
 /// How a record becomes a model, and how much of that is answered.
@@ -51,7 +53,9 @@ struct ReadRecord {
 };
 
 const Description<ColumnChoices>& columns_contract();
-Codec<std::string> file_time_unit();  ///< one that times can be converted from
+Codec<std::array<double, 2>> u_step();  ///< [from, to], two values
+Codec<int> run_number();                ///< from 1
+Codec<std::string> file_time_unit();    ///< one that times can be converted from
 const Description<Units>& units_contract();
 const Description<GivenRecord>& record_contract();
 const Description<IdentifyQuestion>& identify_contract();

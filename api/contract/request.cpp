@@ -91,14 +91,42 @@ void resolve_record(const Json&, Request& request, Reader& reader) {
     request.read = resolve(std::move(*request.record), request.units.value_or(Units{}), reader);
 }
 
-void check_source(const Json& value, JobRequest&, Reader& reader) {
+const Description<UltimateTest>& ultimate_contract() {
+    static const auto description = [] {
+        using U = UltimateTest;
+        Description<U> d("UltimateTest", "What an experiment with a proportional controller shows, and nothing else.");
+        d.field("Ku", &U::Ku, number({.not_zero = true}),
+                "Gain at which the loop oscillates; negative for a plant of negative gain.",
+                {.required = true, .unit = "u/y"})
+            .field("Pu", &U::Pu, number({.exclusive_minimum = 0}), "Period of that oscillation.",
+                   {.required = true, .unit = "time"})
+            .field("K", &U::K, maybe(number({.not_zero = true})), "Static gain, where it is known.", {.unit = "y/u"});
+        return d;
+    }();
+    return description;
+}
+
+// Ku and Pu alone: no loop is judged, so nothing that belongs to one may be asked for.
+void check_ultimate(const Json& value, JobRequest& request, Reader& reader) {
+    for (const char* other : {"plant", "record"})
+        if (value.contains(other))
+            reader.fault_at("ultimate", std::string("ultimate and ") + other +
+                                            " are both given; a request is about one of them. Remove one.");
+    for (const char* judged : {"baseline", "implement", "evaluate", "identify", "uncertainty"})
+        if (value.contains(judged))
+            reader.fault_at(judged, std::string(judged) + " needs a plant or a record: leave it out beside ultimate.");
+    if (!value.contains("tune")) request.tune = {MethodRequest{"all", {}}};
+}
+
+void check_source(const Json& value, JobRequest& request, Reader& reader) {
+    if (value.contains("ultimate")) return check_ultimate(value, request, reader);
     const bool plant = value.contains("plant"), record = value.contains("record");
     if (plant && record)
         reader.fault_at("record", "record and plant are both given; a request is about one of them. Remove one.");
     if (!plant && !record) {
         reader.fault(
             "plant or record is missing; give a plant such as {\"type\": \"fopdt\", \"K\": 2, \"T\": 10, \"L\": 3}, or "
-            "a recorded test.");
+            "a recorded test. Of an ultimate gain and period alone, give ultimate.");
     }
 }
 
@@ -264,6 +292,10 @@ const Description<JobRequest>& job_contract() {
                 "The plant; exactly one of plant and record.")
             .field("record", &JobRequest::record, maybe(object(record_contract())),
                    "The recorded test; exactly one of plant and record.")
+            .field(
+                "ultimate", &JobRequest::ultimate, maybe(object(ultimate_contract())),
+                "In place of both: ultimate gain and period alone. The rules that need no more are answered, without "
+                "figures of a loop.")
             .field("identify", &JobRequest::identify, object(identify_contract()), "How the record becomes a model.")
             .field("tune", &JobRequest::tune, tune_list(),
                    "The methods, one entry of the answer each; \"all\": every one.");
@@ -349,6 +381,7 @@ TuningRequest to_engine(JobRequest request) {
     TuningRequest out;
     out.subject = std::move(request.subject);
     if (request.record) out.record = std::move(request.read.record);
+    out.ultimate = request.ultimate;
     out.identify = request.identify;
     out.tune = std::move(request.tune);
     out.baseline = request.baseline;

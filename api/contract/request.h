@@ -16,6 +16,7 @@ struct JobRequest {
     std::optional<PlantModel> plant;
     std::optional<Subject> subject;  ///< that `plant` describes
     std::optional<GivenRecord> record;
+    std::optional<UltimateTest> ultimate;
     IdentifyQuestion identify;
     std::vector<MethodRequest> tune = {MethodRequest{}};
     std::optional<Controller> baseline;

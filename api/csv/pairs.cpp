@@ -1,11 +1,13 @@
 #include "api/csv/pairs.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <map>
 #include <optional>
 
 #include "api/csv/cell.h"
+#include "api/csv/columns/heading.h"
 #include "api/csv/text.h"
 #include "api/csv/time_stamp.h"
 
@@ -233,51 +235,107 @@ bool is_pair_line(const std::vector<Pair>& pairs, const std::vector<std::string>
     return known >= 2 && 2 * known >= keys.size();
 }
 
-std::vector<std::string> pair_keys(std::string_view text) {
-    constexpr int kLooked = 400;
-    constexpr std::size_t kLookedBytes = 4 << 20;
-    std::vector<Pair> pairs;
-    std::map<std::string, int> shapes;
-    int lines = 0, with_pairs = 0, stats = 0;
-    std::vector<std::vector<std::string>> found;
-    std::size_t at = 0;
-    while (const auto line = next_line(text.substr(0, kLookedBytes), at)) {
-        const std::string_view content = trimmed(*line);
-        const bool stat = content.rfind("Stats ", 0) == 0;
-        if (content.empty() || (lines >= kLooked && !stat)) {
-            if (stats >= kLooked) break;
-            continue;
+namespace {
+
+/// Lines of one kind: those with the same keys.
+struct PairFamily {
+    std::vector<std::string> keys;
+    int lines = 0;
+
+    bool holds(const std::vector<std::string>& wanted) const {
+        return std::ranges::all_of(wanted, [&](const std::string& name) {
+            return std::ranges::any_of(
+                keys, [&](const std::string& key) { return lower_case(key) == lower_case(trimmed(name)); });
+        });
+    }
+
+    /// Names a controller output and a measurement.
+    bool is_process() const {
+        bool u = false, y = false;
+        for (const std::string& key : keys) {
+            const Heading heading = split_heading(key);
+            const auto output = match(heading, kOutputRole), input = match(heading, kInputRole);
+            y = y || (output && !match(heading, kReferenceRole));
+            u = u || (input && !output);
         }
-        ++lines;
-        stats += stat ? 1 : 0;
-        split_pairs(content, pairs);
-        const auto numbers = std::count_if(pairs.begin(), pairs.end(), [](const Pair& pair) {
+        return u && y;
+    }
+};
+
+/// What the lines of a text show, the first ones and of the rest a part.
+class PairFamilies {
+public:
+    void look_at(std::string_view content) {
+        ++lines_;
+        const bool stat = content.starts_with("Stats ");
+        stats_ += stat ? 1 : 0;
+        split_pairs(content, pairs_);
+        const auto values = std::ranges::count_if(pairs_, [](const Pair& pair) {
             return pair.key != "time" && pair.key != "time_ms" && pair.key != "number in front";
         });
-        if (numbers < 2) continue;
-        ++with_pairs;
-        std::string shape;
+        if (values < 2) return;
+        ++with_pairs_;
         std::vector<std::string> keys;
-        for (const Pair& pair : pairs) {
-            if (std::find(keys.begin(), keys.end(), pair.key) != keys.end()) continue;
-            keys.push_back(pair.key);
-            shape += pair.key + "\n";
+        for (const Pair& pair : pairs_)
+            if (std::ranges::find(keys, pair.key) == keys.end()) keys.push_back(pair.key);
+        ++families_[std::move(keys)];
+    }
+
+    /// Whether lines of pairs are as many as those of a log.
+    bool may_be_log() const {
+        constexpr int kFewStats = 3;
+        return with_pairs_ > 1 && (2 * with_pairs_ >= lines_ || stats_ >= kFewStats);
+    }
+
+    int stats() const { return stats_; }
+
+    /// The best family of all; its lines are fewer than 2 where there is none.
+    PairFamily best(const std::vector<std::string>& wanted) const {
+        constexpr int kFewRows = 8;
+        PairFamily best;
+        std::array<int, 3> rank{};
+        for (const auto& [keys, lines] : families_) {
+            const PairFamily now{keys, lines};
+            const std::array<int, 3> at = {!wanted.empty() && lines > 1 && now.holds(wanted) ? 1 : 0,
+                                           lines >= kFewRows && now.is_process() ? 1 : 0, lines};
+            if (at <= rank) continue;
+            rank = at;
+            best = now;
         }
-        ++shapes[shape];
-        found.push_back(std::move(keys));
+        return best;
     }
-    constexpr int kFewStats = 3;
-    if (with_pairs < 2 || (2 * with_pairs < lines && stats < kFewStats)) return {};
-    const auto usual = std::max_element(shapes.begin(), shapes.end(),
-                                        [](const auto& a, const auto& b) { return a.second < b.second; });
-    if (usual->second < 2) return {};
-    std::vector<std::string> keys;
-    for (std::size_t from = 0; from < usual->first.size();) {
-        const std::size_t end = usual->first.find('\n', from);
-        keys.push_back(usual->first.substr(from, end - from));
-        from = end + 1;
+
+private:
+    std::vector<Pair> pairs_;
+    std::map<std::vector<std::string>, int> families_;
+    int lines_ = 0, with_pairs_ = 0, stats_ = 0;
+};
+
+}  // namespace
+
+std::vector<std::string> pair_keys(std::string_view text, const std::vector<std::string>& wanted) {
+    constexpr int kLooked = 400, kEvery = 16;  // lines looked at, and then one of so many
+    constexpr std::size_t kLookedBytes = 4 << 20;
+    PairFamilies families;
+    // A line that may have the wanted columns holds the last parts of their names.
+    const auto may_be_wanted = [&](std::string_view content) {
+        return !wanted.empty() && std::ranges::all_of(wanted, [&](const std::string& name) {
+            return name == "time" || content.find(name.substr(name.rfind('.') + 1)) != content.npos;
+        });
+    };
+    text = text.substr(0, kLookedBytes);
+    std::size_t at = 0;
+    for (int number = 0; const auto line = next_line(text, at);) {
+        const std::string_view content = trimmed(*line);
+        if (content.empty()) continue;
+        // A printer's log may begin with a dump; its reports come later.
+        const bool report = content.starts_with("Stats ") && families.stats() < kLooked;
+        if (++number <= kLooked || report || number % kEvery == 0 || may_be_wanted(content)) families.look_at(content);
     }
-    return keys;
+    const PairFamily family = families.best(wanted);
+    const bool named = !wanted.empty() && family.holds(wanted);
+    if (family.lines < 2 || !(families.may_be_log() || named)) return {};
+    return family.keys;
 }
 
 }  // namespace tunewright::api

@@ -18,8 +18,10 @@ struct Pair {
 void split_pairs(std::string_view line, std::vector<Pair>& out);
 
 /// The keys of a log of pairs, in the order in which they come; empty where the lines are no such log, and a table may
-/// be. Lines between them that hold fewer than half of the usual keys count for nothing.
-std::vector<std::string> pair_keys(std::string_view text);
+/// be. Where lines of several kinds have pairs, those are taken whose keys hold the `wanted` names; else those that
+/// name a controller output and a measurement; else the most. Lines between them that hold fewer than half of these
+/// keys count for nothing.
+std::vector<std::string> pair_keys(std::string_view text, const std::vector<std::string>& wanted = {});
 
 /// Whether a line belongs to the log: it holds at least half of the keys. `pairs` are those of the line, `keys` those
 /// of the whole log:

@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "api/csv/columns/columns.h"
+#include "api/csv/record_notes.h"
+#include "api/csv/shape/shape.h"
 #include "api/csv/text.h"
 #include "engine/numerics/statistics.h"
 
@@ -51,15 +53,9 @@ private:
 
 std::string separator_name(const CsvLayout& layout) {
     if (layout.pairs) return "pairs";
+    if (!layout.source_lines.empty()) return "values";
     if (layout.separator == '\t') return "tab";
     return layout.separator == ' ' ? "blanks" : std::string(1, layout.separator);
-}
-
-std::string unit_of(const CsvLayout& layout, const ColumnProfile& profile, std::size_t column) {
-    std::string unit = column < layout.headings.size() ? split_heading(layout.headings[column]).unit : "";
-    if (unit.empty() && !layout.below.empty() && column < layout.below.front().cells.size())
-        unit = std::string(layout.below.front().cells[column]);
-    return unit.empty() ? profile.suffix : unit;
 }
 
 double confidence_of(const CsvLayout& layout, std::size_t column, Role role, bool chosen) {
@@ -137,10 +133,10 @@ PreviewTime times_of(const CsvRecord& record, const CsvOptions& options) {
 
 CsvPreview preview_csv(std::string_view bytes, const CsvOptions& options) {
     CsvPreview preview;
-    std::string storage;
-    const std::string_view text = utf8_text(bytes, storage);
+    const CsvSource source(bytes, options.columns);
+    const std::string_view text = source.text();
     preview.encoding = encoding_of(bytes);
-    const CsvLayout layout = find_layout(text);
+    const CsvLayout& layout = source.layout();
     preview.separator = separator_name(layout);
     preview.decimal = layout.sign == DecimalSign::comma ? "," : ".";
     std::vector<ColumnProfile> held;
@@ -154,7 +150,7 @@ CsvPreview preview_csv(std::string_view bytes, const CsvOptions& options) {
         std::vector<CsvFault> faults;
         guess(find_columns(text, layout, held, options, faults), layout, options.columns, preview);
     }
-    auto read = read_csv_record(text, options);
+    auto read = read_csv_record(source, options);
     if (auto* record = std::get_if<CsvRecord>(&read)) preview.skipped = std::move(record->skipped);
     if (layout.data_line > 0) look_through(text, layout, held, preview);
     if (auto* faults = std::get_if<std::vector<CsvFault>>(&read)) {
@@ -164,6 +160,8 @@ CsvPreview preview_csv(std::string_view bytes, const CsvOptions& options) {
     auto& record = std::get<CsvRecord>(read);
     preview.time = times_of(record, options);
     preview.skipped_lines = record.dropped;
+    preview.runs = std::move(record.runs);
+    if (!preview.runs.empty()) preview.run = record.run;
     preview.notes = std::move(record.notes);
     if (!record.unread.empty()) preview.notes.push_back(std::move(record.unread));
     return preview;

@@ -32,10 +32,13 @@ struct PreviewTime {
 struct CsvPreview {
     std::vector<PreviewColumn> columns;
     int rows = 0;                     ///< lines of data
-    std::string separator;            ///< "," ";" "tab" "|" "blanks", or "pairs" for lines that name their values
+    std::string separator;            ///< "," ";" "tab" "|" "blanks", "pairs" for lines that name their values, or
+                                      ///< "values" for a file that was made into a table (shape/shape.h)
     std::string decimal;              ///< "." or ","
     std::string encoding;             ///< encoding_of the bytes
     std::optional<PreviewTime> time;  ///< where the record can be read
+    std::vector<CsvRun> runs;         ///< where the times begin again; empty: one run
+    std::optional<int> run;           ///< of several, the one that is read, from 1
     std::vector<CsvSkip> skipped;     ///< the first kMostSkips
     int skipped_lines = 0;            ///< lines of data that do not count
     std::vector<std::string> notes;   ///< as in CsvRecord

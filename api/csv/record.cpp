@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "api/csv/columns/columns.h"
+#include "api/csv/record_notes.h"
+#include "api/csv/shape/runs.h"
+#include "api/csv/shape/shape.h"
 #include "api/csv/text.h"
 #include "api/csv/time_column.h"
 #include "api/csv/time_stamp.h"
@@ -21,11 +25,14 @@ constexpr std::size_t kEnoughRows = 20, kRare = 50;
 
 class RecordReader {
 public:
-    RecordReader(std::string_view text, const CsvOptions& options)
-        : text_(text), options_(options), layout_(find_layout(text)) {}
+    RecordReader(const CsvSource& source, const CsvOptions& options)
+        : source_(source), text_(source.text()), options_(options), layout_(source.layout()) {}
 
     std::variant<CsvRecord, std::vector<CsvFault>> read() {
-        check_layout();
+        if (!source_.fault().empty())
+            fault("csv", source_.fault());
+        else
+            check_layout();
         if (faults_.empty()) {
             profiles_ = profiles(text_, layout_);
             columns_ = find_columns(text_, layout_, profiles_, options_, faults_);
@@ -33,6 +40,7 @@ public:
         if (faults_.empty()) read_lines();
         if (faults_.empty() && record_.t.empty())
             fault("csv", "csv has no complete sample: every line lacks t, u or y.");
+        if (faults_.empty()) choose_run();
         if (!faults_.empty()) return std::move(faults_);
         return std::move(record_);
     }
@@ -42,23 +50,9 @@ private:
         if (faults_.size() < kMaxFaults) faults_.push_back({std::move(where), std::move(message)});
     }
 
-    std::string no_data() const {
-        if (layout_.lines_of_text == 0)
-            return "csv is empty; it needs a heading line such as t,u,y and lines of numbers.";
-        for (const std::string& text : layout_.headings) {
-            for (const Role role : {kTimeRole, kInputRole, kOutputRole}) {
-                const auto named = match(split_heading(text), role);
-                if (named && named->level == 1) return "csv has headings but no line of numbers.";
-            }
-        }
-        return "csv has no line of numbers in columns, nor lines that name two values or more each; it begins with " +
-               in_quotes(first_line()) +
-               ". Export a heading line such as t,u,y and one line a sample, with all its values.";
-    }
-
     void check_layout() {
         if (layout_.data_line == 0) {
-            fault("csv", no_data());
+            fault("csv", no_data_sentence(layout_, first_line()));
         } else if (layout_.headings.empty() && layout_.narrow_heading_line > 0) {
             fault("csv", "Line " + std::to_string(layout_.narrow_heading_line) + " has " +
                              std::to_string(layout_.narrow_heading_cells) + " headings and line " +
@@ -67,18 +61,23 @@ private:
         }
     }
 
+    void choose_run() {
+        if (auto sentence = take_run(record_, options_.run)) fault("run", *std::move(sentence));
+    }
+
     std::string_view first_line() const {
-        std::string_view text = trimmed(text_);
+        std::string_view text = trimmed(source_.file_text());
         return text.substr(0, text.find_first_of("\r\n"));
     }
 
     // Times of a file that has none: from the spacing that is given, or that a column holds.
     double spacing() const {
-        if (options_.dt || !columns_.spacing) return options_.dt.value_or(1);
+        if (options_.dt) return *options_.dt;
+        if (columns_.head_spacing) return spacing_of(*columns_.head_spacing, options_.time_unit);
+        if (!columns_.spacing) return 1;
         const std::size_t column = *columns_.spacing;
-        const auto unit = seconds_per(split_heading(layout_.headings[column]).unit),
-                   answer = seconds_per(options_.time_unit);
-        return profiles_[column].first * (unit && answer ? *unit / *answer : 1);
+        const Heading heading = split_heading(layout_.headings[column]);
+        return spacing_of({is_frequency(heading), profiles_[column].first, heading.unit}, options_.time_unit);
     }
 
     void read_lines() {
@@ -92,7 +91,9 @@ private:
         CsvLines lines(text_, layout_);
         CsvLine line;
         while (lines.next(line)) {
-            if (line.cells.size() > layout_.width && !only_blanks_beyond(line))
+            if (are_headings(line))
+                skip(line.number, "the headings again");
+            else if (line.cells.size() > layout_.width && !only_blanks_beyond(line))
                 report_width(line);
             else
                 read_line(line, times);
@@ -106,9 +107,17 @@ private:
         if (unread_ > 0 && (record_.t.size() < kEnoughRows || (unread_ - 1) * kRare >= record_.t.size()))
             return void(faults_ = std::move(unread_faults_));
         record_.dropped += static_cast<int>(unread_);
-        record_.time_unit_known = options_.dt || columns_.spacing || !times || times->unit_known();
+        record_.time_unit_known =
+            options_.dt || columns_.spacing || columns_.head_spacing || !times || times->unit_known();
         hold_reference();
+        if (layout_.pivoted) hold_input();
         write_notes(times);
+    }
+
+    // A logger that was started again writes them again.
+    bool are_headings(const CsvLine& line) const {
+        if (layout_.headings.empty() || layout_.pairs || line.cells.front().empty()) return false;
+        return std::equal(line.cells.begin(), line.cells.end(), layout_.headings.begin(), layout_.headings.end());
     }
 
     void skip(int line, std::string reason) {
@@ -117,6 +126,7 @@ private:
 
     // The lines before the first row that are not its headings.
     void skip_head() {
+        if (!layout_.source_lines.empty()) return;
         std::size_t at = 0;
         for (int number = 1; number < layout_.data_line; ++number) {
             const auto line = next_line(text_, at);
@@ -137,6 +147,26 @@ private:
         if (unread_faults_.size() < kMaxFaults) unread_faults_.push_back({"csv", sentence + cure});
         reason.erase(0, reason.find_first_not_of(", "));
         skip(line.number, std::move(reason));
+    }
+
+    // u of a time that has only y is that of the time before; a time that has only u says nothing where u stays.
+    void hold_input() {
+        double last = std::numeric_limits<double>::quiet_NaN();
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < record_.t.size(); ++i) {
+            const double u = std::isnan(record_.u[i]) ? last : record_.u[i];
+            const bool moved = !(u == last);
+            last = u;
+            if (std::isnan(record_.y[i]) && !moved) continue;
+            record_.t[kept] = record_.t[i];
+            record_.u[kept] = u;
+            record_.y[kept] = record_.y[i];
+            if (!record_.r.empty()) record_.r[kept] = record_.r[i];
+            record_.lines[kept++] = record_.lines[i];
+        }
+        for (auto* column : {&record_.t, &record_.u, &record_.y}) column->resize(kept);
+        if (!record_.r.empty()) record_.r.resize(kept);
+        record_.lines.resize(kept);
     }
 
     // A set point that is written where it changes holds until the next one; the first one holds from the beginning.
@@ -189,9 +219,11 @@ private:
             if (!times->read(text, clock, line.number, t)) return report_cell(line, kTimeRole, text, times->stamps());
         }
         double u = 0, y = 0, r = std::numeric_limits<double>::quiet_NaN();
-        if (!read_value(line, kInputRole, u) || !read_value(line, kOutputRole, y)) return;
+        if (options_.u_step) u = (*options_.u_step)[1];
+        if ((columns_.at[kInputRole] && !read_value(line, kInputRole, u)) || !read_value(line, kOutputRole, y)) return;
         if (columns_.at[kReferenceRole]) r = read_reference(line);
-        if (std::isnan(u) && std::isnan(y)) {
+        if (std::isnan(y) && (std::isnan(u) || options_.u_step)) {
+            if (layout_.pivoted) return;
             ++record_.dropped;
             return skip(line.number, "neither u nor y");
         }
@@ -203,15 +235,22 @@ private:
         record_.lines.push_back(line.number);
     }
 
+    // u of words such as ON and OFF.
+    bool of_words(Role role) const {
+        const ColumnProfile& held = profiles_[*columns_.at[role]];
+        return role == kInputRole && held.switches > held.numbers;
+    }
+
     // NaN where the cell is there but holds no value.
     bool read_value(const CsvLine& line, Role role, double& value) {
         const std::string_view text = cell(line, *columns_.at[role]);
-        if (read_cell_number(text, value, layout_.sign, profiles_[*columns_.at[role]].suffix)) {
+        const ColumnProfile& held = profiles_[*columns_.at[role]];
+        if (!of_words(role) && read_cell_number(text, value, layout_.sign, held.suffix)) {
             if (std::abs(value) <= kLargest) return true;
             report_size(line, role);
             return false;
         }
-        if (role == kInputRole && read_switch(text, value)) return true;
+        if (of_words(role) && read_switch(text, value)) return true;
         if (!is_missing(text)) {
             report_cell(line, role, text, false);
             return false;
@@ -229,10 +268,10 @@ private:
         return number && std::abs(value) <= kLargest ? value : std::numeric_limits<double>::quiet_NaN();
     }
 
-    // Words of u are its two levels; beside numbers they would be a guess.
+    // Words of u are its two levels; numbers among them are damaged cells.
     bool read_switch(std::string_view text, double& value) {
         const auto level = switch_word(text);
-        if (!level || profiles_[*columns_.at[kInputRole]].numbers > 0) return false;
+        if (!level) return false;
         value = *level;
         std::string& word = *level > 0 ? high_word_ : low_word_;
         if (word.empty()) word = std::string(text);
@@ -249,7 +288,9 @@ private:
     void report_cell(const CsvLine& line, Role role, std::string_view text, bool stamps) {
         const bool other_separator = line.cells.size() == 1 && layout_.width > 1;
         const std::string reason = ", column " + column_name(role) + ": " + in_quotes(text) + " is not " +
-                                   (stamps ? "a time stamp like the first." : "a number.");
+                                   (stamps           ? "a time stamp like the first."
+                                    : of_words(role) ? "one of the column's two words."
+                                                     : "a number.");
         const char* cure = other_separator ? " The line is not separated like the others."
                                            : " Mend the line, or leave the cell blank to drop it.";
         // ON and OFF among numbers mean something, which is not known.
@@ -264,36 +305,10 @@ private:
                          " is beyond 1e30, no measurement. Mend the line, or leave the cell blank to drop it.");
     }
 
-    void note_switch() {
-        std::string levels;
-        if (!low_word_.empty()) levels = in_quotes(low_word_) + " is 0";
-        if (!high_word_.empty()) levels += (levels.empty() ? "" : " and ") + in_quotes(high_word_) + " is 1";
-        if (!levels.empty())
-            record_.notes.emplace_back("u is two levels: " + levels +
-                                       ". The gain is per switch, not per unit of power.");
-    }
-
-    void note_sign() {
-        auto& notes = record_.notes;
-        const std::string& open = layout_.open_number;
-        const bool comma = open.find(',') != std::string::npos;
-        const bool of_thousands = layout_.sign == (comma ? DecimalSign::point : DecimalSign::comma);
-        if (!open.empty() && layout_.sign == DecimalSign::either)
-            notes.push_back("Numbers such as " + in_quotes(open) +
-                            " are read with three decimals. If they are thousands, write them without the " +
-                            (comma ? "comma." : "point."));
-        else if (!open.empty() && of_thousands)
-            notes.push_back("Numbers such as " + in_quotes(open) +
-                            " are read as thousands: whole numbers stand beside them in the column.");
-        else if (layout_.sign == DecimalSign::comma)
-            notes.emplace_back("Numbers have a decimal comma.");
-    }
-
     void note_unit(Role role, const std::string& given) {
-        const std::size_t column = *columns_.at[role];
-        std::string unit = column < layout_.headings.size() ? split_heading(layout_.headings[column]).unit : "";
-        if (unit.empty() && !layout_.below.empty()) unit = std::string(cell(layout_.below.front(), column));
-        if (unit.empty()) unit = profiles_[column].suffix;
+        if (!columns_.at[role]) return;
+        const std::string unit =
+            of_words(role) ? "" : unit_of(layout_, profiles_[*columns_.at[role]], *columns_.at[role]);
         if (unit.empty() || unit == given) return;
         record_.notes.push_back(
             role_name(role) + " is in " + in_quotes(unit) + " by the file" +
@@ -302,13 +317,21 @@ private:
 
     void write_notes(std::optional<TimeColumn>& times) {
         auto& notes = record_.notes;
-        notes = std::move(columns_.notes);
+        notes = source_.notes();
+        std::ranges::move(columns_.notes, std::back_inserter(notes));
         if (times) {
             for (std::string& note : times->take_notes()) notes.push_back(std::move(note));
         }
         if (columns_.spacing)
             notes.emplace_back("Times are made from column " + in_quotes(layout_.headings[*columns_.spacing]) +
                                ", the spacing: " + tunewright::text(spacing_) + " " + options_.time_unit + ".");
+        if (columns_.head_spacing)
+            notes.emplace_back("Times are made from " + in_quotes(columns_.head_spacing->text) +
+                               " above the data: rows every " + tunewright::text(spacing_) + " " + options_.time_unit +
+                               ".");
+        if (options_.u_step)
+            notes.emplace_back("u steps from " + tunewright::text((*options_.u_step)[0]) + " to " +
+                               tunewright::text((*options_.u_step)[1]) + " at the first row, as given.");
         if (layout_.skipped > 0)
             notes.push_back(std::to_string(layout_.skipped) +
                             (layout_.skipped == 1 ? " line above the headings was" : " lines above the headings were") +
@@ -318,21 +341,26 @@ private:
             notes.emplace_back("The headings are those of the comment in line " + std::to_string(layout_.heading_line) +
                                ".");
         if (layout_.numbered) notes.emplace_back("The first column, which has no heading, numbers the rows.");
-        note_switch();
-        note_sign();
+        if (auto note = switch_note(low_word_, high_word_); !note.empty()) notes.push_back(std::move(note));
+        if (auto note = sign_note(layout_); !note.empty()) notes.push_back(std::move(note));
         if (unread_ > 0) {
             const std::string& first = unread_faults_.front().message;
             record_.unread = std::to_string(unread_) + (unread_ == 1 ? " line" : " lines") + " could not be read and " +
                              (unread_ == 1 ? "was" : "were") + " left out: " + first.substr(0, first.find(". ")) + ".";
         }
         if (!missing_word_.empty()) notes.push_back(in_quotes(missing_word_) + " and the like are read as no value.");
+        record_.u_stepped = options_.u_step.has_value();
+        if (const auto u = columns_.at[kInputRole];
+            u && (is_percent(layout_, profiles_[*u], *u) || options_.unit_u == "%"))
+            record_.u_full_scale = 100;
         note_unit(kInputRole, options_.unit_u);
         note_unit(kOutputRole, options_.unit_y);
     }
 
+    const CsvSource& source_;
     std::string_view text_;
     const CsvOptions& options_;
-    CsvLayout layout_;
+    const CsvLayout& layout_;
     std::vector<ColumnProfile> profiles_;
     FoundColumns columns_;
     std::size_t index_ = 0, unread_ = 0;
@@ -346,8 +374,12 @@ private:
 }  // namespace
 
 std::variant<CsvRecord, std::vector<CsvFault>> read_csv_record(std::string_view bytes, const CsvOptions& options) {
-    std::string storage;
-    return RecordReader(utf8_text(bytes, storage), options).read();
+    const CsvSource source(bytes, options.columns);
+    return read_csv_record(source, options);
+}
+
+std::variant<CsvRecord, std::vector<CsvFault>> read_csv_record(const CsvSource& source, const CsvOptions& options) {
+    return RecordReader(source, options).read();
 }
 
 }  // namespace tunewright::api

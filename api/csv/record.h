@@ -1,29 +1,27 @@
 // A recorded test as people export it: CSV text in, columns of numbers out.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
+#include "api/csv/column_choice.h"
+
 namespace tunewright::api {
-
-/// A heading, or the column's number from 1.
-using ColumnChoice = std::variant<std::string, int>;
-
-struct ColumnChoices {
-    std::optional<ColumnChoice> t, u, y, r = {};
-};
 
 struct CsvOptions {
     ColumnChoices columns;
     std::string time_unit = "s";  ///< of the answer
     bool time_unit_given =
         false;  ///< false: the unit in the time heading is believed and converted from only if it is not s
-    std::string file_time_unit = {};       ///< of the file's times, whatever it says; "" where it is to be believed
-    std::optional<double> dt;              ///< spacing for files without a time column, in time_unit
-    std::string unit_u = {}, unit_y = {};  ///< as the user names them; "" if not
+    std::string file_time_unit = {};  ///< of the file's times, whatever it says; "" where it is to be believed
+    std::optional<double> dt;         ///< spacing for files without a time column, in time_unit
+    std::optional<std::array<double, 2>> u_step = {};  ///< of a file without u: it steps so at the first row
+    std::optional<int> run = {};                       ///< of a file with several (runs.h), from 1
+    std::string unit_u = {}, unit_y = {};              ///< as the user names them; "" if not
     std::size_t most_samples = 2'000'000;
 };
 
@@ -33,20 +31,32 @@ struct CsvSkip {
     std::string reason;
 };
 
+/// One of several runs in a file.
+struct CsvRun {
+    int first_line = 0, last_line = 0;
+    int rows = 0;
+    double from = 0, to = 0;  ///< times
+    bool tests = false;       ///< u moves and y answers
+};
+
 struct CsvRecord {
-    std::vector<double> t, u, y;     ///< u and y are NaN where a cell is blank, "Bad", ...; never both
-    std::vector<double> r;           ///< set point, a number in each sample; empty: the file has none
-    std::vector<int> lines;          ///< of each sample in the file, from 1
-    int dropped = 0;                 ///< lines left out: unreadable, without a time, or with neither u nor y
-    std::string unread;              ///< a sentence about the lines that could not be read; "" if there are none
-    std::vector<CsvSkip> skipped;    ///< the first kMostSkips of them, and what stands above the rows
-    bool time_unit_known = true;     ///< by the file or by the options; else the times are taken to be in time_unit
-    std::vector<std::string> notes;  ///< what was found by itself, one sentence each
+    std::vector<double> t, u, y;         ///< u and y are NaN where a cell is blank, "Bad", ...; never both
+    std::vector<double> r;               ///< set point, a number in each sample; empty: the file has none
+    std::vector<int> lines;              ///< of each sample in the file, from 1
+    int dropped = 0;                     ///< lines left out: unreadable, without a time, or with neither u nor y
+    std::string unread;                  ///< a sentence about the lines that could not be read; "" if there are none
+    std::vector<CsvSkip> skipped;        ///< the first kMostSkips of them, and what stands above the rows
+    std::vector<CsvRun> runs;            ///< where the times begin again; empty: one run
+    int run = 1;                         ///< the one that is read, from 1
+    bool u_stepped = false;              ///< u is CsvOptions::u_step's
+    std::optional<double> u_full_scale;  ///< 100 where heading or unit say percent
+    bool time_unit_known = true;         ///< by the file or by the options; else the times are taken to be in time_unit
+    std::vector<std::string> notes;      ///< what was found by itself, one sentence each
 };
 
 inline constexpr std::size_t kMostSkips = 100;
 
-/// `where` is "csv" or "columns/t", ...
+/// `where` is "csv", "run", "u_step", or "columns/t", ...
 struct CsvFault {
     std::string where;
     std::string message;
@@ -60,5 +70,9 @@ struct CsvFault {
 /// fifty cannot be read (a total at the end, half a line of a serial port), it is left out (`unread`); else there are
 /// at most ten faults, each with its line.
 std::variant<CsvRecord, std::vector<CsvFault>> read_csv_record(std::string_view bytes, const CsvOptions& options);
+
+/// The same of an opened file (shape/shape.h).
+class CsvSource;
+std::variant<CsvRecord, std::vector<CsvFault>> read_csv_record(const CsvSource& source, const CsvOptions& options);
 
 }  // namespace tunewright::api

@@ -97,39 +97,47 @@ std::vector<Head> first_lines(std::string_view text) {
 }
 
 // The separator that splits most lines into equally many cells, more than one; those that are never there by chance
-// come first.
+// come first, unless only another splits the first line so, too: "ns=2;s=Tank" holds one that separates nothing.
 char find_separator(const std::vector<Head>& lines) {
     char best = ',';
     double best_share = 0;
     std::deque<std::string> storage;
     std::vector<std::string_view> cells;
+    std::optional<char> plain;
     for (const char separator : {'\t', ';', '|', ',', ' '}) {
         std::map<std::size_t, int> counts;
+        std::size_t first = 0;
         int all = 0;
         for (const Head& line : lines) {
             if (line.comment) continue;
             split_line(line.content, separator, cells, storage);
+            if (all++ == 0) first = cells.size();
             ++counts[cells.size()];
-            ++all;
         }
         counts.erase(1);
         counts.erase(0);
         int most = 0;
-        for (const auto& [count, times] : counts) most = std::max(most, times);
+        std::size_t usual = 0;
+        for (const auto& [count, times] : counts) {
+            if (times > most) usual = count;
+            most = std::max(most, times);
+        }
         const double share = all > 0 ? static_cast<double>(most) / all : 0;
         constexpr double kPlain = 0.8, kBetter = 0.05;
-        if (share >= kPlain) return separator;
+        constexpr std::size_t kColumns = 3;
+        if (share >= kPlain && first == usual && (!plain || (usual >= kColumns && separator != ' '))) return separator;
+        if (share >= kPlain && !plain) plain = separator;
         if (share > best_share + kBetter) {
             best = separator;
             best_share = share;
         }
     }
-    return best;
+    return plain.value_or(best);
 }
 
-CsvLayout pairs_layout(std::string_view text) {
+CsvLayout pairs_layout(std::string_view text, const ColumnChoices& chosen) {
     CsvLayout layout;
-    layout.headings = pair_keys(text);
+    layout.headings = pair_keys(text, chosen_names(chosen));
     layout.pairs = !layout.headings.empty();
     layout.width = layout.headings.size();
     layout.data_line = 1;
@@ -264,12 +272,12 @@ bool is_comment(std::string_view content) {
            content.substr(0, 2) == "\"#";
 }
 
-CsvLayout find_layout(std::string_view text) {
+CsvLayout find_layout(std::string_view text, const ColumnChoices& chosen) {
     CsvLayout table = table_layout(text);
     const std::vector<std::string_view> headings(table.headings.begin(), table.headings.end());
     // A remark such as "Kp=1 Ki=2" in the rows of a table makes them no log of pairs.
     if (table.data_line > 0 && roles_named(headings) > 1) return table;
-    CsvLayout pairs = pairs_layout(text);
+    CsvLayout pairs = pairs_layout(text, chosen);
     return pairs.pairs ? pairs : table;
 }
 
@@ -278,6 +286,11 @@ CsvLines::CsvLines(std::string_view text, const CsvLayout& layout)
       layout_(layout),
       at_(layout.data_at),
       number_(layout.data_line - 1) {}
+
+int CsvLines::source_line(int number) const {
+    const auto at = static_cast<std::size_t>(number) - 1;
+    return at < layout_.source_lines.size() ? layout_.source_lines[at] : number;
+}
 
 bool CsvLines::next_pairs(std::string_view content, CsvLine& line) {
     split_pairs(content, pairs_);
@@ -296,7 +309,7 @@ bool CsvLines::next(CsvLine& line) {
     unquoted_.clear();
     while (const auto content = next_line(text_, at_)) {
         ++number_;
-        line.number = number_;
+        line.number = source_line(number_);
         const std::string_view inner = trimmed(*content);
         if (inner.empty()) continue;
         if (layout_.pairs) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "api/csv/cell.h"
+#include "api/csv/column_choice.h"
 #include "api/csv/pairs.h"
 
 namespace tunewright::api {
@@ -37,6 +38,8 @@ struct CsvLayout {
     int skipped = 0;  ///< lines before the headings that are neither comment nor blank
     DecimalSign sign = DecimalSign::either;
     std::string open_number = {};      ///< the first that is three decimals or a thousand, as `sign` has it; "": none
+    bool pivoted = false;              ///< a blank cell is a value that another time has (shape/pivot.h)
+    std::vector<int> source_lines;     ///< of each line of the text, the file's line; empty: the same
     std::deque<std::string> unquoted;  ///< storage of cells that held doubled quotes
 };
 
@@ -44,8 +47,9 @@ struct CsvLayout {
 /// comments (#, % and //) and what a logger writes above the headings are skipped.
 /// The headings are a line of text as wide as the data, in the lines right above it: the one that names most roles,
 /// else the first; a comment of that width is a heading line too. Of a log of pairs (pairs.h) they are its names.
+/// Of a log with lines of several kinds, those are read that have the `chosen` columns (pairs.h).
 /// `text` must outlive what is returned.
-CsvLayout find_layout(std::string_view text);
+CsvLayout find_layout(std::string_view text, const ColumnChoices& chosen);
 
 /// The separator that a line such as sep=; names, as spreadsheets write it first; a comma where it names none that a
 /// byte can be. Nothing where the line is another.
@@ -71,6 +75,8 @@ public:
 
 private:
     bool next_pairs(std::string_view content, CsvLine& line);
+
+    int source_line(int number) const;
 
     std::string_view text_;
     const CsvLayout& layout_;

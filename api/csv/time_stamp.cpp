@@ -271,11 +271,27 @@ void skip_weekday(std::string_view& text) {
     text = rest;
 }
 
+/// "03/09/2024;23:55:00;7", date, clock and milliseconds, as "03/09/2024 23:55:00.007"; "" where it is no such text.
+std::string joined_stamp(std::string_view text) {
+    constexpr std::size_t kDigits = 3;
+    const std::size_t clock = text.find(';'), millis = std::min(text.find(';', clock + 1), text.size());
+    std::string_view digits = text.substr(std::min(millis + 1, text.size()));
+    if (digits.size() > kDigits || !std::ranges::all_of(digits, is_digit)) return {};
+    std::string out =
+        std::string(text.substr(0, clock)) + " " + std::string(text.substr(clock + 1, millis - clock - 1));
+    if (!digits.empty()) out += "." + std::string(kDigits - digits.size(), '0') + std::string(digits);
+    return out;
+}
+
 }  // namespace
 
 std::optional<TimeStamp> read_time_stamp(std::string_view text, DateOrder order) {
     constexpr std::size_t kShortest = 4, kLongest = 48;
     if (text.size() < kShortest || text.size() > kLongest) return std::nullopt;
+    if (text.find(';') != text.npos) {
+        const std::string joined = joined_stamp(text);
+        return joined.empty() ? std::nullopt : read_time_stamp(joined, order);
+    }
     std::string_view rest = text;
     if (!is_digit(rest.front())) skip_weekday(rest);
     TimeStamp stamp;

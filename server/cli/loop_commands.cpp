@@ -29,8 +29,16 @@ void add_record_options(CLI::App& app, api::CsvRequest& question) {
     app.add_option("--u-limits", question.u_limits, "CSV: the ends of the actuator, low and high")
         ->expected(2)
         ->type_name("NUMBER");
+    app.add_option("--u0", question.u0, "CSV: controller output before the first row")->type_name("NUMBER");
+    app.add_option("--y0", question.y0, "CSV: measurement before the first row")->type_name("NUMBER");
+    app.add_option("--u-step", question.u_step, "CSV without u: it stepped at the first row, from and to")
+        ->expected(2)
+        ->type_name("NUMBER");
+    app.add_option("--run", question.run, "CSV with several runs: which of them, from 1")->type_name("NUMBER");
     app.add_option("--time-unit", question.time_unit,
-                   "Unit of every time of the answer, and of a file's where it names none; s if not given")
+                   "Unit of a file's times, where it does not say or says it wrongly; of all times of a plant")
+        ->type_name("UNIT");
+    app.add_option("--answer-unit", question.answer_unit, "Unit of the times of the answer; s if not given")
         ->type_name("UNIT");
 }
 
@@ -38,6 +46,10 @@ void add_tune_options(CLI::App& app, TuneCommand& command) {
     app.add_option("file", command.file, "A request as JSON, or a recorded test as CSV; - reads standard input");
     app.add_option("--plant", command.words.plant, "A plant in place of a file: \"2 e^(-3s)/(10s+1)\"")
         ->type_name("TEXT");
+    app.add_option("--Ku", command.words.Ku, "In place of a plant: the gain at which the loop oscillates, with --Pu")
+        ->type_name("NUMBER");
+    app.add_option("--Pu", command.words.Pu, "The period of that oscillation")->type_name("TIME");
+    app.add_option("--K", command.words.K, "The static gain beside them, where it is known")->type_name("NUMBER");
     if (!command.all)
         app.add_option("--method", command.words.methods, "A tuning method; may be repeated (default: robust)")
             ->type_name("ID")

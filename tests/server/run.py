@@ -1,13 +1,14 @@
 #!/usr/bin/python3
-"""Runs every *_test.py beside it, in cli/, deploy/ and stores/, and in tests/docs and tests/clients, and prints the counts that
-script/test adds up."""
+"""Runs every *_test.py beside it, in cli/, deploy/, records/ and stores/, and in tests/docs and tests/clients, and
+prints the counts that script/test adds up."""
 
 import pathlib
 import sys
 import unittest
 
 HERE = pathlib.Path(__file__).resolve().parent
-ROOMS = [HERE, HERE / "cli", HERE / "deploy", HERE / "stores", HERE.parent / "docs", HERE.parent / "clients"]
+ROOMS = [HERE, *(HERE / room for room in ("cli", "deploy", "records", "stores")), HERE.parent / "docs",
+         HERE.parent / "clients"]
 sys.path[:0] = map(str, ROOMS)
 
 

@@ -225,7 +225,14 @@ const Description<TuningEntry>& entry_contract() {
         evaluation_field(d, "warnings", &Evaluation::warnings, list_of(answer(warning_contract())), "Remarks.");
         d.field("reduced_model", &TuningEntry::reduced_model, maybe(only_answered(one_of(plant_contract()))),
                 "The simpler model that the rule used.");
-        evaluation_field(d, "controller", &Evaluation::controller, one_of(controller_contract()), "The controller.");
+        d.field(
+            "controller", {},
+            [](const TuningEntry& entry, Writer& out) {
+                controller_contract().write(entry.unjudged ? *entry.unjudged : entry.evaluation->controller, out);
+            },
+            one_of(controller_contract()).schema,
+            "The controller. Of a request with ultimate it stands without the figures of a loop.", {},
+            [](const TuningEntry& entry) { return !entry.unjudged && !entry.evaluation; });
         evaluation_field(d, "equivalents", &Evaluation::equivalents, object(equivalents_contract()),
                          "The same loop in other forms.");
         evaluation_field(d, "robustness", &Evaluation::robustness, object(robustness_contract()), "Peaks and margins.");

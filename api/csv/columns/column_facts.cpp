@@ -18,7 +18,8 @@ bool ColumnFacts::holds_numbers(std::size_t column) const {
 
 bool ColumnFacts::switches(std::size_t column) const {
     const ColumnProfile& p = profiles_[column];
-    return p.switches > 0 && p.texts == 0 && p.stamps == 0;
+    const int others = p.texts + p.stamps;
+    return p.switches > 0 && kDamagedShare * others <= p.switches;
 }
 
 bool ColumnFacts::is_index(std::size_t column) const {

@@ -25,6 +25,9 @@ struct ColumnProfile {
     std::string first_text;                   ///< of the texts that are neither number nor stamp nor missing
 };
 
+/// Cells of another kind than their column's are damaged where they are at most one in so many.
+constexpr int kDamagedShare = 50;
+
 constexpr int kProfiledLines = 5000;
 
 /// Of the first kProfiledLines lines.

@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "api/csv/columns/heading_words.h"
 #include "api/describe/suggest.h"
 
 namespace tunewright::api {
@@ -23,24 +22,6 @@ std::string surplus_counted(const CsvLayout& layout) {
 }
 
 }  // namespace
-
-std::optional<CsvFault> one_line_a_tag(const ColumnFacts& facts) {
-    static constexpr std::string_view kTags[] = {"tagname",  "tag",    "varname", "pointname", "name",   "tag name",
-                                                 "variable", "series", "_field",  "entity_id", "metric", "signal",
-                                                 "point",    "sensor", "channel", "item",      "tagid",  "point name"};
-    static constexpr std::string_view kValues[] = {"value",  "varvalue", "wert", "vvalue",
-                                                   "_value", "state",    "val",  "reading"};
-    bool tag = false, value = false;
-    for (std::size_t i = 0; i < facts.size(); ++i) {
-        const std::string& name = facts.heading(i).name;
-        const ColumnProfile& p = facts.profile(i);
-        tag = tag || (p.text_changes > 0 && !facts.holds_numbers(i) && is_one_of(name, kTags));
-        value = value || is_one_of(name, kValues);
-    }
-    if (!tag || !value) return std::nullopt;
-    return CsvFault{"csv", "csv has one line for each tag and time (columns " + facts.headings_listed() +
-                               "); export it with one column for each tag, so that u and y stand in one line."};
-}
 
 std::optional<CsvFault> two_clocks(const ColumnFacts& facts, std::size_t time, std::size_t value) {
     if (value == 0 || value - 1 == time) return std::nullopt;
@@ -70,8 +51,13 @@ CsvFault missing_column(const ColumnFacts& facts, Role role) {
                                                              : "The headings are " + facts.headings_listed() + ".";
     if (role == kTimeRole)
         return column_fault(role, "No time column found. Choose one or enter the sampling time. " + said);
-    return column_fault(role, "No column is plainly " + role_name(role) + ", " + role_meaning(role) +
-                                  ". Choose its heading, or its number from 1. " + said);
+    const bool without_input = role == kInputRole && facts.size() <= 2;
+    return column_fault(role,
+                        "No column is plainly " + role_name(role) + ", " + role_meaning(role) +
+                            (without_input ? ". If the file has none and u stepped at the first row, give u_step, "
+                                             "[from, to]. "
+                                           : ". Choose its heading, or its number from 1. ") +
+                            said);
 }
 
 CsvFault equal_columns(Role role, Role other) {

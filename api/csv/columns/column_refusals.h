@@ -12,10 +12,7 @@
 
 namespace tunewright::api {
 
-/// Historians and databases export one line for each tag and time.
-std::optional<CsvFault> one_line_a_tag(const ColumnFacts& facts);
-
-/// Historians also export each tag with its own times: values in one row do not belong together. `value` is u or y.
+/// Historians export each tag with its own times: values in one row do not belong together. `value` is u or y.
 std::optional<CsvFault> two_clocks(const ColumnFacts& facts, std::size_t time, std::size_t value);
 
 /// A fault at the choice of the role's column: `where` is "columns/t" and so on.

@@ -24,12 +24,10 @@ public:
         }
         if (!faults_.empty()) return found_;
         chosen_ = found_.at;
-        if (!chosen_[kInputRole] && !chosen_[kOutputRole]) {
-            if (auto fault = one_line_a_tag(facts_)) faults_.push_back(*std::move(fault));
-        }
         find_terms();
         if (const auto letters = german_letters(facts_)) take_pair(*letters);
         find_spacing();
+        refuse_step_beside_column();
         if (wanted(kTimeRole)) take_fitting(kTimeRole, fits(kTimeRole));
         read_input_beside_output();
         if (!faults_.empty()) return found_;
@@ -37,6 +35,7 @@ public:
         if (!faults_.empty()) return found_;
         join_date_and_clock();
         if (wanted(kTimeRole)) time_by_content();
+        if (wanted(kTimeRole)) found_.head_spacing = spacing_above(facts_.text(), layout_);
         rest_by_content();
         find_reference();
         for (const Role role : {kTimeRole, kInputRole, kOutputRole}) {
@@ -49,7 +48,10 @@ public:
     }
 
 private:
-    bool wanted(Role role) const { return !found_.at[role] && !(role == kTimeRole && (options_.dt || found_.spacing)); }
+    bool wanted(Role role) const {
+        if (role == kTimeRole && (options_.dt || found_.spacing || found_.head_spacing)) return false;
+        return !found_.at[role] && !(role == kInputRole && options_.u_step);
+    }
 
     bool taken(std::size_t column) const {
         return found_.clock == column || std::find(found_.at.begin(), found_.at.end(), column) != found_.at.end();
@@ -61,15 +63,19 @@ private:
         if (taken(column) || found_.spacing == column) return false;
         const ColumnProfile& p = profiles_[column];
         if (role == kTimeRole) return facts_.may_be_time(column);
-        const bool numeric = p.numbers + p.missing > 0 && p.stamps == 0 && p.switches == 0 &&
+        const bool numeric = p.numbers + p.missing > 0 && rare(p.stamps, p) && rare(p.switches, p) &&
                              (p.texts == 0 || facts_.holds_numbers(column));
         if (role == kReferenceRole) return numeric && p.numbers > 0 && !is_term(column);
         if (is_term(column)) return false;
+        if (role == kInputRole && is_never_input(facts_.heading(column))) return false;
         if (role == kInputRole && facts_.switches(column))
             return !match(facts_.heading(column), kReferenceRole) &&
                    (!is_auxiliary(facts_.heading(column)) || is_state(facts_.heading(column)));
         return numeric && !is_auxiliary(facts_.heading(column));
     }
+
+    /// None, or damaged cells.
+    static bool rare(int count, const ColumnProfile& p) { return count == 0 || kDamagedShare * count <= p.numbers; }
 
     void take(Role role, std::size_t column, const std::string& why = "") {
         found_.at[role] = column;
@@ -91,12 +97,30 @@ private:
         faults_.push_back(several_columns(facts_, role, fits.best));
     }
 
+    // What is measured beside a process, such as humidity, is y where nothing else is.
+    NameFits output_fits() const {
+        const auto free = [&](std::size_t column) { return may_be(column, kOutputRole); };
+        NameFits all = fits_by_name(facts_, kOutputRole, free);
+        NameFits plain = fits_by_name(facts_, kOutputRole, [&](std::size_t column) {
+            return free(column) && !is_never_input(facts_.heading(column));
+        });
+        if (plain.best.empty()) return all;
+        for (const auto* left : {&all.best, &all.others}) {
+            for (const std::size_t i : *left)
+                if (is_never_input(facts_.heading(i))) plain.others.push_back(i);
+        }
+        return plain;
+    }
+
     void read_input_and_output() {
         NameFits u = wanted(kInputRole) ? fits(kInputRole) : NameFits{};
-        NameFits y = wanted(kOutputRole) ? fits(kOutputRole) : NameFits{};
+        NameFits y = wanted(kOutputRole) ? output_fits() : NameFits{};
         keep_partners(u, y);
         if (wanted(kInputRole) && wanted(kOutputRole) && u.best.empty() && y.best.empty() && take_data_set()) return;
-        if (wanted(kInputRole)) take_fitting(kInputRole, u);
+        // One that stands still was not driven: what the others hold shows whether it is u.
+        const bool still = u.best.size() == 1 && u.others.empty() && stands_still(u.best.front()) &&
+                           (!wanted(kOutputRole) || y.best.size() == 1);
+        if (wanted(kInputRole) && !still) take_fitting(kInputRole, u);
         if (wanted(kOutputRole)) take_fitting(kOutputRole, y);
         if (wanted(kInputRole) && faults_.empty()) take_command();
         refuse_strangers();
@@ -154,7 +178,7 @@ private:
     void check_clocks() {
         if (!found_.at[kTimeRole]) return;
         for (const Role role : {kInputRole, kOutputRole}) {
-            if (found_.clock && *found_.clock + 1 == *found_.at[role]) continue;
+            if (!found_.at[role] || (found_.clock && *found_.clock + 1 == *found_.at[role])) continue;
             if (auto fault = two_clocks(facts_, *found_.at[kTimeRole], *found_.at[role]))
                 return faults_.push_back(*std::move(fault));
         }
@@ -195,7 +219,8 @@ private:
         for (std::size_t i = 0; i < facts_.size(); ++i) {
             const ColumnProfile& p = profiles_[i];
             const bool constant = p.numbers != 2 && p.changes == 0;
-            if (taken(i) || !is_spacing(facts_.heading(i)) || !constant || !(p.first > 0) || p.texts > 0) continue;
+            const bool names = is_spacing(facts_.heading(i)) || is_frequency(facts_.heading(i));
+            if (taken(i) || !names || !constant || !(p.first > 0) || p.texts > 0) continue;
             for (std::size_t k = 0; k < facts_.size(); ++k) {
                 if (k != i && may_be(k, kTimeRole) && match(facts_.heading(k), kTimeRole)) return;
             }
@@ -222,6 +247,12 @@ private:
         if (r.best.empty()) return;
         found_.notes.push_back("Several columns may be the set point: " + facts_.shown(r.best) +
                                "; none is read. Choose one if it matters.");
+    }
+
+    void refuse_step_beside_column() {
+        if (options_.u_step && chosen_[kInputRole])
+            faults_.push_back(
+                {"u_step", "u_step is for a file without u, and columns.u names a column. Remove one of them."});
     }
 
     // "cmd" is what was sent to the plant, where nothing else is.
@@ -266,7 +297,7 @@ private:
             if (taken(i)) continue;
             const ColumnProfile& p = profiles_[i];
             const bool index = facts_.is_index(i);
-            if (p.stamps > 0 && p.numbers == 0 && p.texts == 0) stamps.push_back(i);
+            if (p.stamps > 0 && kDamagedShare * (p.numbers + p.texts) <= p.stamps) stamps.push_back(i);
             if (p.numbers > 2 && p.rises && p.stamps == 0 && p.texts == 0 && !index) rising.push_back(i);
         }
         if (!stamps.empty()) {
@@ -286,24 +317,46 @@ private:
         }
         for (std::size_t i = 0; i < profiles_.size(); ++i) {
             if (facts_.is_index(i)) continue;
-            if (may_be(i, kOutputRole) && profiles_[i].numbers > 0 && !is_spacing(facts_.heading(i))) free.push_back(i);
+            if (may_be(i, kOutputRole) && profiles_[i].numbers > 0 && !is_spacing(facts_.heading(i)) &&
+                !is_frequency(facts_.heading(i)))
+                free.push_back(i);
             if (facts_.switches(i) && may_be(i, kInputRole)) switching.push_back(i);
         }
+        if (wanted(kInputRole) && !wanted(kOutputRole)) take_moving_input(free, switching);
         if (wanted(kInputRole) && switching.size() == 1) {
             take(kInputRole, switching.front(), " (it switches)");
             std::erase(roles, kInputRole);
         }
         if (roles.size() == 1 && free.size() == 1 &&
+            (roles.front() != kInputRole || may_be(free.front(), kInputRole)) &&
             (roles.front() != kTimeRole ||
              (!layout_.headings.empty() && profiles_[free.front()].changes > 0 && facts_.mostly_one_way(free.front()))))
             return take(roles.front(), free.front(), " (the only column left)");
         if (roles.size() != 2 || free.size() != 2 || roles.front() == kTimeRole) return;
         for (const auto& [u, y] : {std::pair{free[0], free[1]}, std::pair{free[1], free[0]}}) {
-            if (!facts_.held(u, y)) continue;
+            if (!facts_.held(u, y) || !may_be(u, kInputRole)) continue;
             take(kInputRole, u, " (it stays on its levels)");
             take(kOutputRole, y, " (it moves)");
             return;
         }
+    }
+
+    bool stands_still(std::size_t column) const {
+        constexpr int kShown = 20;  // numbers
+        return profiles_[column].numbers >= kShown && profiles_[column].changes == 0;
+    }
+
+    // Beside y: the only column left that moves, else the named one that stands still, for the engine to refuse.
+    void take_moving_input(const std::vector<std::size_t>& free, const std::vector<std::size_t>& switching) {
+        const NameFits named = fits(kInputRole);
+        if (named.best.size() != 1) return;
+        std::vector<std::size_t> moving;
+        for (const std::size_t i : free)
+            if (profiles_[i].changes > 0 && may_be(i, kInputRole)) moving.push_back(i);
+        if (moving.size() + switching.size() == 1 && !moving.empty() &&
+            !match(facts_.heading(moving.front()), kOutputRole))
+            return take(kInputRole, moving.front(), " (the only other column that moves)");
+        if (switching.size() != 1) take(kInputRole, named.best.front());
     }
 
     void refuse_equal_columns() {

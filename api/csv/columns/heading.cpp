@@ -116,7 +116,7 @@ std::optional<NameMatch> match(const Heading& heading, Role role) {
     if (parts.size() > 1 && role == kInputRole && (parts.back() == "cmd" || parts.back() == "command") &&
         word_place(parts[parts.size() - 2], kInputRole))
         parts.pop_back();
-    if (role == kInputRole && is_state(heading)) {
+    if (role == kInputRole && is_state(heading) && parts.size() > 1) {
         const auto at = place(parts[parts.size() - 2], role);
         return at ? std::optional<NameMatch>(NameMatch{3, *at}) : std::nullopt;
     }
@@ -173,8 +173,65 @@ bool is_spacing(const Heading& heading) {
     return is_one_of(heading.name, kNames);
 }
 
+bool is_frequency(const Heading& heading) {
+    static constexpr std::string_view kNames[] = {
+        "fs",          "sample rate",    "sampling rate",      "samplerate",       "sampling frequency",
+        "sample_rate", "sampling_rate",  "sampling_frequency", "sample frequency", "abtastrate",
+        "f_s",         "abtastfrequenz", "sample_frequency"};
+    return is_one_of(heading.name, kNames);
+}
+
+bool is_percent(const Heading& heading) {
+    static constexpr std::string_view kWords[] = {"percent", "pct", "perc", "prozent", "pourcent", "percentage", "%"};
+    if (heading.unit == "%" || (!heading.text.empty() && heading.text.back() == '%')) return true;
+    return is_one_of(lower_case(heading.unit), kWords) ||
+           std::any_of(heading.words.begin(), heading.words.end(),
+                       [](const std::string& word) { return is_one_of(word, kWords); });
+}
+
+bool is_never_input(const Heading& heading) {
+    static constexpr std::string_view kWords[] = {"linkquality",
+                                                  "rssi",
+                                                  "lqi",
+                                                  "snr",
+                                                  "strength",
+                                                  "battery",
+                                                  "batt",
+                                                  "vbat",
+                                                  "vbatt",
+                                                  "vcc",
+                                                  "humidity",
+                                                  "rh",
+                                                  "illuminance",
+                                                  "lux",
+                                                  "co2",
+                                                  "voc",
+                                                  "pm25",
+                                                  "dewpoint",
+                                                  "barometer",
+                                                  "uptime",
+                                                  "heap",
+                                                  "freeheap",
+                                                  "firmware",
+                                                  "retries",
+                                                  "seq",
+                                                  "sequence",
+                                                  "linkqual",
+                                                  "quality",
+                                                  "weather",
+                                                  "feuchte",
+                                                  "luftfeuchte",
+                                                  "luftfeuchtigkeit",
+                                                  "batterie",
+                                                  "humedad",
+                                                  "humidit\xC3\xA9",
+                                                  "umidit\xC3\xA0"};
+    return std::any_of(heading.words.begin(), heading.words.end(),
+                       [](const std::string& word) { return is_one_of(word, kWords); });
+}
+
 bool is_state(const Heading& heading) {
-    return heading.words.size() > 1 && (heading.words.back() == "state" || heading.words.back() == "status");
+    return !heading.words.empty() && (heading.words.back() == "state" || heading.words.back() == "status");
 }
 
 bool is_term_letter(const Heading& heading) {
@@ -235,9 +292,9 @@ std::string number_behind(const Heading& heading) {
 }
 
 bool is_auxiliary(const Heading& heading) {
-    static constexpr std::string_view kBeside[] = {"quality", "status",  "mode",    "alarm",   "validity", "qual",
-                                                   "comment", "outside", "outdoor", "ambient", "event",    "auto",
-                                                   "manual",  "state",   "flag",    "spt"};
+    static constexpr std::string_view kBeside[] = {
+        "quality", "status", "mode",   "alarm", "validity", "qual", "comment",     "outside", "outdoor", "ambient",
+        "event",   "auto",   "manual", "state", "flag",     "spt",  "linkquality", "rssi",    "lqi",     "snr"};
     if (match(heading, kReferenceRole)) return true;
     return std::any_of(heading.words.begin(), heading.words.end(),
                        [](const std::string& word) { return is_one_of(word, kBeside); });

@@ -48,10 +48,20 @@ bool is_index(std::string_view heading);
 /// The spacing of the samples: "Ts", "dt", "sample time".
 bool is_spacing(const Heading& heading);
 
+/// How often samples come: "fs", "sample rate".
+bool is_frequency(const Heading& heading);
+
+/// "ssr_output_percent", "duty %", "heater_pct".
+bool is_percent(const Heading& heading);
+
+/// What belongs to the sensor, its radio or its supply, or is measured beside the process: signal quality, battery,
+/// humidity. Never u unless chosen.
+bool is_never_input(const Heading& heading);
+
 /// Set points, qualities, modes, alarms, the weather: never y or u unless chosen.
 bool is_auxiliary(const Heading& heading);
 
-/// "heater state", "pump status": u where it switches.
+/// "heater state", "pump status", "state": u where it switches.
 bool is_state(const Heading& heading);
 
 /// What a controller computes with: "error", "P", "I-Term". The letters alone count only where `with_letters`.

@@ -282,11 +282,15 @@ TEST(Csv, TwoMovingColumnsAreNotGuessedBetween) {
                           "The headings are"));
 }
 
-TEST(Csv, OneLineATagIsRefusedWithTheCure) {
-    EXPECT_THAT(first_fault("\"VarName\";\"TimeString\";\"VarValue\";\"Validity\";\"Time_ms\"\n"
-                            "\"TIC_PV\";\"21.11.2026 14:05:06\";20,5;1;46347586875,0\n"
-                            "\"TIC_OP\";\"21.11.2026 14:05:06\";40;1;46347586875,0\n"),
-                HasSubstr("export it with one column for each tag"));
+TEST(Csv, OneLineATagIsReadAsAColumnForEachTag) {
+    const auto read = read_csv_record(
+        "\"VarName\";\"TimeString\";\"VarValue\";\"Validity\";\"Time_ms\"\n"
+        "\"TIC_PV\";\"21.11.2026 14:05:06\";20,5;1;46347586875,0\n"
+        "\"TIC_OP\";\"21.11.2026 14:05:06\";40;1;46347586875,0\n",
+        {});
+    const auto& record = std::get<CsvRecord>(read);
+    EXPECT_THAT(record.u, ElementsAre(40));
+    EXPECT_THAT(record.y, ElementsAre(20.5));
 }
 
 TEST(Csv, DecimalCommasBetweenCommasAreRefused) {

@@ -133,6 +133,35 @@ class CommandLineTest(unittest.TestCase):
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertGreater(json.loads(done.stdout)["model"]["fit_percent"], 97)
 
+    def test_ku_and_pu_alone_are_tuned_by_the_rules_that_need_no_more(self):
+        done = run("tune", "--Ku", "0.903", "--Pu", "30.5", "--json")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        result = json.loads(done.stdout)
+        entries = {entry["title"]: entry for entry in result["controllers"] if "controller" in entry}
+        self.assertGreaterEqual(len(entries), 5)
+        classic = [entry for title, entry in entries.items() if title == "Ziegler-Nichols, ultimate gain (PID)"][0]
+        # Ziegler and Nichols (1942): 0.6 Ku, Pu/2, Pu/8.
+        self.assertAlmostEqual(classic["controller"]["Kp"], 0.6 * 0.903, places=12)
+        self.assertAlmostEqual(classic["controller"]["Ti"], 30.5 / 2, places=12)
+        self.assertAlmostEqual(classic["controller"]["Td"], 30.5 / 8, places=12)
+        for entry in entries.values():
+            self.assertEqual(entry["verdict"][0]["code"], "robustness-unknown")
+            self.assertNotIn("robustness", entry)
+        with_gain = json.loads(run("tune", "--Ku", "0.903", "--Pu", "30.5", "--K", "4", "--json").stdout)
+        self.assertGreater(len(with_gain["ranking"]), len(result["ranking"]))
+
+    def test_what_ku_and_pu_alone_cannot_answer_is_refused(self):
+        for words, pointer in ((("--Ku", "0.903"), "/ultimate/Pu"), (("--Ku", "0", "--Pu", "30"), "/ultimate/Ku"),
+                               (("--Ku", "1", "--Pu", "30", "--method", "robust"), None),
+                               (("--Ku", "1", "--Pu", "30", "--baseline", "1 2 3"), "/baseline"),
+                               (("--Ku", "1", "--Pu", "30", "--plant", "2/(s+1)"), None)):
+            with self.subTest(words):
+                done = run("tune", *words)
+                self.assertEqual(done.returncode, 1, done.stdout)
+                problem = json.loads(done.stderr)
+                if pointer:
+                    self.assertIn(pointer, [fault["pointer"] for fault in problem["errors"]])
+
     def test_identify_answers_traces_only_where_asked(self):
         record = os.path.join(os.path.dirname(__file__), "..", "..", "data", "records", "tclab-step.csv")
         without = json.loads(run("identify", record).stdout)["model"]

@@ -220,6 +220,7 @@ const previewed: Preview = {
   time: { unit: "s", assumed: true, from: 0, to: 599.5, dt: 0.5, gaps: 1, duplicates: 2 },
   skipped: [],
   skipped_lines: 0,
+  runs: [],
   notes: [],
   problems: [],
 };

@@ -28,6 +28,10 @@ export interface Preview {
     gaps: number;
     duplicates: number;
   };
+  /** Where the times begin again. */
+  runs: { first_line: number; last_line: number; rows: number; from: number; to: number; tests: boolean }[];
+  /** Of several runs, the one that is read, from 1. */
+  run?: number;
   skipped: { line: number; reason: string }[];
   skipped_lines: number;
   notes: string[];
@@ -60,7 +64,8 @@ export async function previewFile(file: Blob): Promise<FileRead> {
 }
 
 /** A record's text with what was chosen of it. */
-export async function previewRecord({ csv, columns, dt, time_unit }: RecordedTest): Promise<Preview> {
-  const request = { csv, ...(columns ? { columns } : {}), ...(dt ? { dt } : {}), ...(time_unit ? { time_unit } : {}) };
+export async function previewRecord({ csv, columns, dt, time_unit, u_step, run }: RecordedTest): Promise<Preview> {
+  const chosen = Object.entries({ columns, dt, time_unit, u_step, run }).filter(([, value]) => value !== undefined);
+  const request = { csv, ...Object.fromEntries(chosen) };
   return previewed((await call("POST", "v1/records/preview", request)).data);
 }

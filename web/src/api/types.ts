@@ -30,6 +30,10 @@ export interface RecordedTest {
   kind?: string;
   u0?: number;
   y0?: number;
+  /** Of a record without u: it stepped from one value to the other at the first sample. */
+  u_step?: [number, number];
+  /** Of a csv whose times begin again: which of its runs, from 1. */
+  run?: number;
   /** The ends of the actuator: low, high. */
   u_limits?: [number, number];
   /** The part that counts, in its own times. */

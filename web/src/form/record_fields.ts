@@ -5,7 +5,7 @@ import type { Preview } from "../api/records.ts";
 import { choiceField, textField } from "./controls.ts";
 import type { Field } from "./controls.ts";
 import type { FormErrors } from "./errors.ts";
-import { parseNumber } from "./number.ts";
+import { parseNumber, parseNumbers } from "./number.ts";
 
 export type Identify = Record<string, unknown>;
 
@@ -45,6 +45,13 @@ export function columnChoices(preview: Preview): [value: string, text: string][]
     return [/^[1-9]\d*$/.test(heading) ? number : heading, heading];
   });
 }
+
+/** Of a file whose times begin again, the runs in it. */
+const runChoices = ({ runs }: Preview): [value: string, text: string][] =>
+  runs.map(({ first_line, last_line, rows, tests }, index) => [
+    String(index + 1),
+    `${index + 1}: lines ${first_line} to ${last_line}, ${rows} rows${tests ? "" : ", no test"}`,
+  ]);
 
 const KINDS = [
   ["auto", "automatic"],
@@ -94,6 +101,9 @@ export function recordFields(errors: FormErrors, all: boolean): RecordFields {
     { label: "Times are in", choices: TIME_UNITS, pointer: () => "/record/time_unit" },
     errors,
   );
+  const run = choiceField({ label: "Run", choices: [["", FOUND]], pointer: () => "/record/run" }, errors);
+  run.element.hidden = true;
+  const uStep = optional("u stepped from, to", "where the file has no u: 0 50", "/record/u_step");
   const kind = choiceField({ label: "Kind of test", choices: KINDS, pointer: () => "/record/kind" }, errors);
   const model = choiceField({ label: "Model", choices: MODELS, pointer: () => "/identify/model" }, errors);
   const method = all
@@ -119,6 +129,8 @@ export function recordFields(errors: FormErrors, all: boolean): RecordFields {
         Object.values(columns).map((field) => field.element),
         timeUnit.element,
         dt.element,
+        uStep.element,
+        run.element,
       ),
       h(
         "div",
@@ -139,6 +151,13 @@ export function recordFields(errors: FormErrors, all: boolean): RecordFields {
         field.input.value ? [[name, columnOf(field.input.value)] as const] : [],
       );
       if (named.length > 0) record.columns = Object.fromEntries(named);
+      if (run.input.value) record.run = Number(run.input.value);
+      const step = uStep.input.value.trim();
+      if (step !== "") {
+        const levels = parseNumbers(step, "u_step");
+        if (levels.ok && levels.value.length === 2) record.u_step = [levels.value[0]!, levels.value[1]!];
+        else faults.push({ pointer: "/record/u_step", detail: "Write two numbers, from and to, such as 0 50." });
+      }
       if (timeUnit.input.value) record.time_unit = timeUnit.input.value;
       if (kind.input.value !== "auto") record.kind = kind.input.value;
       if (method && method.input.value !== "auto") identify["method"] = method.input.value;
@@ -155,6 +174,9 @@ export function recordFields(errors: FormErrors, all: boolean): RecordFields {
     load(record, identify = {}) {
       for (const name of COLUMN_NAMES) choose(columns[name].input, String(record.columns?.[name] ?? ""));
       choose(timeUnit.input, record.time_unit ?? "");
+      choose(run.input, record.run === undefined ? "" : String(record.run));
+      run.element.hidden = record.run === undefined;
+      uStep.input.value = record.u_step?.join(" ") ?? "";
       kind.input.value = known(KINDS, record.kind);
       model.input.value = known(MODELS, identify["model"]);
       if (method) method.input.value = known(METHODS, identify["method"]);
@@ -171,6 +193,14 @@ export function recordFields(errors: FormErrors, all: boolean): RecordFields {
     },
     offer(preview) {
       const choices = columnChoices(preview);
+      const runs = runChoices(preview);
+      const chosen = run.input.value;
+      run.element.hidden = runs.length === 0 && chosen === "";
+      run.input.replaceChildren(
+        h("option", { value: "" }, chosen === "" && preview.run ? `${FOUND}: run ${preview.run}` : FOUND),
+        ...runs.map(([value, text]) => h("option", { value }, text)),
+      );
+      choose(run.input, chosen);
       for (const name of COLUMN_NAMES) {
         const { input } = columns[name];
         const now = input.value;

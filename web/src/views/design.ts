@@ -24,6 +24,7 @@ import { progressCard } from "./cards/progress_card.ts";
 import { reportCards } from "./cards/report_cards.ts";
 import { settingsCard } from "./cards/settings_card.ts";
 import { titleCard } from "./cards/title_card.ts";
+import { isOfUltimate, showUltimate } from "./cards/ultimate_card.ts";
 import { showFailure, showVerdict } from "./cards/verdict_card.ts";
 import { createLegend, showEntryPlots } from "./drawn_entries.ts";
 import { figuresTable } from "./figures_table.ts";
@@ -225,6 +226,11 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     } else if (job.result?.range) {
       showRangeVerdict(verdict, job.result.range);
       range.show(job, job.result.range);
+      announce(verdict.textContent ?? "");
+    } else if (job.result && isOfUltimate(job.request)) {
+      for (const part of bodyParts) part.remove();
+      league.hidden = all.hidden = true;
+      showUltimate(verdict, job.result, unitNames(job.request?.units));
       announce(verdict.textContent ?? "");
     } else if (job.result && job.result.controllers.length > 0) {
       finished = { job, result: job.result };

@@ -187,7 +187,7 @@ export function jobsView(store: Store, text: string, announce: (sentence: string
     more.hidden = next === null;
     const words =
       search.value.trim() === ""
-        ? "There is no job yet. Start has four ways to make one."
+        ? "There is no job yet. Start has five ways to make one."
         : `No job has "${search.value.trim()}" in its name, method or id.`;
     found.textContent =
       jobs.length === 0

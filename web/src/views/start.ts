@@ -20,6 +20,7 @@ import { modelCard } from "./cards/model_card.ts";
 import { myControllerCard } from "./cards/my_controller_card.ts";
 import { recordCard } from "./cards/record_card.ts";
 import { todayCard } from "./cards/today_card.ts";
+import { ultimateCard } from "./cards/ultimate_card.ts";
 
 export interface View {
   element: HTMLElement;
@@ -84,6 +85,7 @@ export function startView(store: Store, events: StartEvents): StartView {
     onTune: () => void tuneRecord(false),
     onCompare: () => void tuneRecord(true),
   });
+  const ultimate = ultimateCard(errors, () => void tuneUltimate());
   const methods = methodsCard(errors);
   const today = todayCard(errors, () => {
     const units = unitNames(today.readUnits());
@@ -109,7 +111,7 @@ export function startView(store: Store, events: StartEvents): StartView {
     h(
       "p",
       { class: "lead" },
-      "Describe your process in one of four ways and press its button: you get controller settings, and the proof that the loop will hold with them.",
+      "Describe your process in one of five ways and press its button: you get controller settings, and the proof that the loop will hold with them.",
     ),
     recent,
     status,
@@ -129,6 +131,7 @@ export function startView(store: Store, events: StartEvents): StartView {
       ),
     ),
     equations.element,
+    ultimate.element,
     h(
       "div",
       { class: "cards two" },
@@ -159,7 +162,7 @@ export function startView(store: Store, events: StartEvents): StartView {
     const units = today.readUnits();
     const baseline = today.read();
     const chosen = all ? { tune: EVERY_METHOD, errors: [] } : methods.read();
-    const { plant: _plant, record: _record, identify: _identify, ...kept } = base;
+    const { plant: _plant, record: _record, identify: _identify, ultimate: _ultimate, ...kept } = base;
     const own = mineCard.read();
     // A program that a loaded request names stays; it has no field here.
     const request: TuningRequest = own.mine || kept.implement?.product ? withImplement(kept, implementOf(own.mine)) : kept;
@@ -200,6 +203,13 @@ export function startView(store: Store, events: StartEvents): StartView {
     await tunePlant(equations.read(), all);
   }
 
+  async function tuneUltimate(): Promise<void> {
+    const reading = ultimate.read();
+    const { name, units } = common(true).request;
+    const request: TuningRequest = { ...(name ? { name } : {}), ...(units ? { units } : {}), ultimate: reading.ultimate };
+    await send(request, reading.errors, false);
+  }
+
   async function tuneRecord(all: boolean): Promise<void> {
     const reading = record.read();
     const { request, faults } = compose({ record: reading.record, identify: reading.identify }, all);
@@ -222,6 +232,7 @@ export function startView(store: Store, events: StartEvents): StartView {
     today.load(request.units, request.baseline, request.name);
     methods.load(request.tune);
     if (request.record) record.load(request.record, request.identify);
+    ultimate.load(request);
     if (request.plant && !equations.load(request.plant) && !model.load(request.plant)) {
       status.textContent = `A plant of type ${request.plant.type} in this shape has no form here; send it to the service's API, or choose another kind.`;
       status.hidden = false;

@@ -31,7 +31,7 @@ export function recordCard(errors: FormErrors, events: RecordCardEvents): Record
   const file = h("input", {
     type: "file",
     class: "visually-hidden",
-    accept: ".csv,.txt,.tsv,text/csv,text/plain",
+    accept: ".csv,.txt,.tsv,.log,.json,text/csv,text/plain,application/json",
     tabindex: -1,
     "aria-label": "CSV file",
   });

@@ -10,6 +10,7 @@ import { plantTitle, plantWords } from "../../words/plant.ts";
 import { rangeWords } from "../../words/range.ts";
 import { reportLink } from "../report_link.ts";
 import { requestMenu } from "../request_menu.ts";
+import { isOfUltimate } from "./ultimate_card.ts";
 
 export interface TitleCard {
   element: HTMLElement;
@@ -60,7 +61,9 @@ export function titleCard(screen: string, announce: (sentence: string) => void, 
         ? rangeWords(range)
         : plant
           ? [...new Set([plantTitle(plant.type), plantWords(plant, unitNames(request?.units))])].join(": ")
-          : "from a recorded test";
+          : isOfUltimate(request)
+            ? "from Ku and Pu"
+            : "from a recorded test";
       const shown = plant && !job.result?.model && hasFormulaOnly(plant) ? [plantFormula(plant, "div", true)] : [];
       formula.replaceChildren(...shown);
       formula.hidden = shown.length === 0;

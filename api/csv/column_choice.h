@@ -1,0 +1,26 @@
+// Which columns of a file a request names.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace tunewright::api {
+
+/// A heading, or the column's number from 1.
+using ColumnChoice = std::variant<std::string, int>;
+
+struct ColumnChoices {
+    std::optional<ColumnChoice> t, u, y, r = {};
+};
+
+/// Those that are chosen by their headings.
+inline std::vector<std::string> chosen_names(const ColumnChoices& chosen) {
+    std::vector<std::string> names;
+    for (const auto* choice : {&chosen.t, &chosen.u, &chosen.y, &chosen.r})
+        if (*choice && std::holds_alternative<std::string>(**choice)) names.push_back(std::get<std::string>(**choice));
+    return names;
+}
+
+}  // namespace tunewright::api

@@ -1,0 +1,221 @@
+#include "api/csv/shape/shapes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "api/csv/columns/column_profile.h"
+#include "api/csv/columns/heading.h"
+#include "api/csv/columns/heading_words.h"
+
+namespace tunewright::api {
+namespace {
+
+constexpr std::string_view kTagNames[] = {
+    "tagname",       "tag",          "varname",    "pointname",     "name",          "tag name",    "tag_name",
+    "variable",      "series",       "_field",     "entity_id",     "metric",        "signal",      "point",
+    "sensor",        "channel",      "item",       "tagid",         "point name",    "tagindex",    "topic",
+    "key",           "measurement",  "attribute",  "parameter",     "variable name", "sensor_id",   "quantity",
+    "variable_name", "kanal",        "messstelle", "metric_name",   "_measurement",  "signal name", "data point",
+    "datapoint",     "statistic_id", "entity",     "friendly_name", "nodeid",        "node_id",     "object"};
+constexpr std::string_view kValueNames[] = {"value",   "varvalue", "wert",  "vvalue",   "_value",    "state", "val",
+                                            "reading", "payload",  "valor", "messwert", "datavalue", "data",  "mean"};
+constexpr std::string_view kFirstTime[] = {"_time", "last_changed", "last_updated"};
+constexpr std::string_view kMilliseconds[] = {"millitm", "millisecond", "milliseconds", "msec"};
+
+constexpr std::size_t kMostTags = 500;
+
+/// The columns of a long table; `clock` and `millis` where the time is in several.
+struct LongColumns {
+    std::size_t time = 0, value = 0;
+    std::vector<std::size_t> tags;
+    std::optional<std::size_t> clock, millis;
+    std::string time_heading;
+};
+
+class LongFinder {
+public:
+    LongFinder(std::string_view text, const CsvLayout& layout)
+        : text_(text), layout_(layout), profiles_(profiles(text, layout)) {
+        for (std::size_t i = 0; i < profiles_.size(); ++i)
+            headings_.push_back(split_heading(i < layout.headings.size() ? layout.headings[i] : ""));
+    }
+
+    std::optional<LongColumns> find() {
+        LongColumns out;
+        std::optional<std::size_t> value;
+        for (std::size_t i = 0; i < profiles_.size(); ++i) {
+            if (is_one_of(headings_[i].name, kTagNames) && is_tag(i)) out.tags.push_back(i);
+            if (!value && is_one_of(headings_[i].name, kValueNames)) value = i;
+        }
+        if (layout_.headings.empty()) return by_contents();
+        if (out.tags.empty() || !value) return std::nullopt;
+        std::erase(out.tags, *value);
+        out.value = *value;
+        if (out.tags.empty() || !find_time(out)) return std::nullopt;
+        return out;
+    }
+
+private:
+    bool times(std::size_t i) const {
+        const ColumnProfile& p = profiles_[i];
+        return p.stamps > 0 && p.stamps >= p.numbers + p.texts;
+    }
+
+    /// Words that change, or the numbers of tags.
+    bool is_tag(std::size_t i) const {
+        const ColumnProfile& p = profiles_[i];
+        const bool number = headings_[i].name == "tagindex" || headings_[i].name == "tagid";
+        return (p.text_changes > 0 && p.texts >= p.numbers + p.stamps) || (number && p.changes > 0);
+    }
+
+    bool find_time(LongColumns& out) const {
+        std::optional<std::size_t> time;
+        for (const std::string_view name : kFirstTime)
+            for (std::size_t i = 0; i < profiles_.size(); ++i)
+                if (!time && headings_[i].name == name && (times(i) || profiles_[i].numbers > 0)) time = i;
+        for (std::size_t i = 0; i < profiles_.size() && !time; ++i)
+            if (times(i) && match(headings_[i], kTimeRole)) time = i;
+        for (std::size_t i = 0; i < profiles_.size() && !time; ++i)
+            if (times(i)) time = i;
+        for (std::size_t i = 0; i < profiles_.size() && !time; ++i)
+            if (profiles_[i].numbers > 0 && i != out.value && match(headings_[i], kTimeRole)) time = i;
+        if (!time) return false;
+        out.time = *time;
+        out.time_heading = headings_[*time].text;
+        const ColumnProfile& p = profiles_[*time];
+        const bool dates = p.stamps > 0 && p.dates == p.stamps, clocks = p.stamps > 0 && p.clocks == p.stamps;
+        for (std::size_t i = 0; i < profiles_.size(); ++i) {
+            const ColumnProfile& q = profiles_[i];
+            if (i != out.time && times(i) && dates && q.clocks == q.stamps) out.clock = i;
+            if (i != out.time && times(i) && clocks && q.dates == q.stamps) {
+                out.clock = out.time;
+                out.time = i;
+                break;
+            }
+            if (is_one_of(headings_[i].name, kMilliseconds) && q.numbers > 0) out.millis = i;
+        }
+        if (out.clock) out.time_heading = "time";
+        return true;
+    }
+
+    /// Without headings: a stamp, a word that comes back, a value.
+    std::optional<LongColumns> by_contents() const {
+        constexpr std::size_t kColumns = 3;
+        constexpr int kRepeats = 4;
+        if (layout_.pairs || profiles_.size() != kColumns) return std::nullopt;
+        LongColumns out;
+        std::optional<std::size_t> time, value;
+        for (std::size_t i = 0; i < kColumns; ++i) {
+            const ColumnProfile& p = profiles_[i];
+            if (times(i))
+                time = i;
+            else if (p.texts > 0 && p.numbers == 0 && p.stamps == 0 && p.text_changes > 0)
+                out.tags.push_back(i);
+            else if (p.numbers > 0 && p.numbers >= p.texts)
+                value = i;
+        }
+        if (!time || !value || out.tags.size() != 1) return std::nullopt;
+        std::set<std::string, std::less<>> words;
+        CsvLines lines(text_, layout_);
+        CsvLine line;
+        int rows = 0;
+        while (rows < kProfiledLines && lines.next(line)) {
+            if (line.cells.size() != kColumns) continue;
+            ++rows;
+            words.emplace(line.cells[out.tags.front()]);
+        }
+        if (words.size() < 2 || static_cast<int>(words.size()) * kRepeats > rows) return std::nullopt;
+        out.time = *time;
+        out.value = *value;
+        out.time_heading = "time";
+        return out;
+    }
+
+    std::string_view text_;
+    const CsvLayout& layout_;
+    std::vector<ColumnProfile> profiles_;
+    std::vector<Heading> headings_;
+};
+
+/// The columns among `tags` whose words differ from line to line.
+std::vector<std::size_t> varying(std::string_view text, const CsvLayout& layout, const std::vector<std::size_t>& tags) {
+    if (tags.size() < 2) return tags;
+    CsvLines lines(text, layout);
+    CsvLine line;
+    // Two columns that always change together name the same tag twice.
+    std::vector<std::set<std::string>> seen(tags.size());
+    for (int n = 0; n < kProfiledLines && lines.next(line); ++n)
+        for (std::size_t k = 0; k < tags.size(); ++k)
+            if (tags[k] < line.cells.size()) seen[k].emplace(line.cells[tags[k]]);
+    std::size_t most = 0;
+    for (std::size_t k = 1; k < tags.size(); ++k)
+        if (seen[k].size() > seen[most].size()) most = k;
+    std::set<std::string> joint;
+    CsvLines again(text, layout);
+    for (int n = 0; n < kProfiledLines && again.next(line); ++n) {
+        std::string key;
+        for (const std::size_t tag : tags)
+            if (tag < line.cells.size()) key += std::string(line.cells[tag]) + "\n";
+        joint.insert(std::move(key));
+    }
+    if (joint.size() == seen[most].size()) return {tags[most]};
+    return tags;
+}
+
+std::string time_of(const CsvLine& line, const LongColumns& at) {
+    const auto cell = [&](std::size_t i) { return i < line.cells.size() ? std::string(line.cells[i]) : std::string(); };
+    std::string time = cell(at.time);
+    if (at.clock) time += " " + cell(*at.clock);
+    double millis = 0;
+    if (at.millis && time.find('.') == time.npos && read_cell_number(cell(*at.millis), millis) && millis >= 0 &&
+        millis < 1000) {
+        char digits[8];
+        std::snprintf(digits, sizeof digits, ".%03d", static_cast<int>(millis));
+        time += digits;
+    }
+    return time;
+}
+
+}  // namespace
+
+std::optional<ShapedText> long_table(std::string_view text, const CsvLayout& layout) {
+    if (layout.data_line == 0 || layout.width < 3) return std::nullopt;
+    const auto at = LongFinder(text, layout).find();
+    if (!at) return std::nullopt;
+    const std::vector<std::size_t> tags = varying(text, layout, at->tags);
+    Pivot pivot;
+    CsvLines lines(text, layout);
+    CsvLine line;
+    while (lines.next(line)) {
+        if (at->value >= line.cells.size()) continue;
+        std::string tag;
+        for (const std::size_t i : tags) {
+            if (i >= line.cells.size()) continue;
+            if (!tag.empty()) tag += ".";
+            tag += line.cells[i];
+        }
+        if (tag.empty()) continue;
+        if (is_one_of(split_heading(layout.headings.empty() ? "" : layout.headings[tags.front()]).name,
+                      {"tagindex", "tagid"}))
+            tag.insert(0, "Tag ");
+        pivot.add(time_of(line, *at), tag, line.cells[at->value], line.number);
+        if (pivot.tags().size() > kMostTags) {
+            ShapedText out;
+            out.fault = "csv has one line for each tag and time, of more than " + std::to_string(kMostTags) +
+                        " tags. Export only those of u and y.";
+            return out;
+        }
+    }
+    if (pivot.tags().size() < 2) return std::nullopt;
+    ShapedText out = pivot.table(at->time_heading.empty() ? "time" : at->time_heading);
+    out.notes.push_back("The file has one line for each tag and time; " + std::to_string(pivot.tags().size()) +
+                        " tags were put beside each other. u holds until its next value, y counts at its own times.");
+    return out;
+}
+
+}  // namespace tunewright::api

@@ -1,0 +1,198 @@
+#include "api/csv/shape/runs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/number_text.h"
+
+namespace tunewright::api {
+namespace {
+
+/// Rows [first, end) of a record; `countdown` of them come first and count down.
+struct RowRun {
+    std::size_t first = 0, end = 0, countdown = 0;
+
+    std::size_t rows() const { return end - first; }
+};
+
+constexpr std::size_t kShortest = 3;  // rows that go one way
+
+bool newest_first(const std::vector<double>& t) {
+    std::size_t up = 0, down = 0;
+    for (std::size_t i = 1; i < t.size(); ++i) {
+        up += t[i] > t[i - 1] ? 1 : 0;
+        down += t[i] < t[i - 1] ? 1 : 0;
+    }
+    return down > 9 * up && down > 2;
+}
+
+/// How many rows from `i` on count down, one after another.
+std::size_t falling(const std::vector<double>& t, std::size_t i) {
+    std::size_t end = i + 1;
+    while (end < t.size() && t[end] < t[end - 1]) ++end;
+    return end - i;
+}
+
+/// Whether the times begin again at row i of a run that began at `first`: they fall by half of what it has covered and
+/// go on from there, and the row before is not the false one.
+bool begins_again(const std::vector<double>& t, std::size_t first, std::size_t i) {
+    if (i - first < 2) return false;
+    const double latest =
+        *std::max_element(t.begin() + static_cast<std::ptrdiff_t>(first), t.begin() + static_cast<std::ptrdiff_t>(i));
+    const double covered = latest - t[first];
+    if (!(latest - t[i] > 0.5 * covered)) return false;
+    // A row far ahead of its neighbours is a false time.
+    if (t[i - 2] <= t[i] && (i < first + 3 || t[i - 3] <= t[i])) return false;
+    // A single row of the past is one, too.
+    return i + 1 < t.size() && t[i + 1] < latest;
+}
+
+std::vector<RowRun> runs_of(const std::vector<double>& t) {
+    std::vector<RowRun> runs;
+    RowRun run;
+    const auto start = [&](std::size_t i) {
+        run = {i, i, falling(t, i)};
+        if (run.countdown < kShortest) run.countdown = 0;
+        return std::max<std::size_t>(run.countdown, 1);
+    };
+    std::size_t i = start(0);
+    while (i < t.size()) {
+        if (t[i] < t[i - 1] && begins_again(t, run.first + (run.countdown > 0 ? run.countdown - 1 : 0), i)) {
+            run.end = i;
+            runs.push_back(run);
+            i += start(i);
+            continue;
+        }
+        ++i;
+    }
+    run.end = t.size();
+    runs.push_back(run);
+    return runs;
+}
+
+/// Puts the rows that count down in front of those that count up, where they belong together in time.
+void turn_countdown(CsvRecord& record, const RowRun& run) {
+    if (run.countdown == 0) return;
+    const std::size_t last = run.first + run.countdown - 1;
+    const double end = record.t[last];
+    for (std::size_t i = run.first; i < last; ++i) record.t[i] = 2 * end - record.t[i];
+    record.notes.push_back("The times count down in the lines " + std::to_string(record.lines[run.first]) + " to " +
+                           std::to_string(record.lines[last]) +
+                           ", before they count up: those lines were put in front, from t = " +
+                           tunewright::text(record.t[run.first]) + " on.");
+}
+
+/// Whether the rows that count up go on from those that count down.
+bool contiguous(const std::vector<double>& t, const RowRun& run) {
+    if (run.countdown == 0 || run.rows() == run.countdown) return true;
+    constexpr double kSpacings = 3;
+    const std::size_t last = run.first + run.countdown - 1;
+    const double step = t[last - 1] - t[last], next = t[last + 1] - t[last];
+    return next >= 0 && next <= kSpacings * step;
+}
+
+/// Whether u moves in the run and y then moves too: by a twentieth of what it does in the whole file.
+bool tests_something(const CsvRecord& record, const RowRun& run) {
+    constexpr std::size_t kFewRows = 8;
+    constexpr double kAnswer = 0.05;
+    if (run.rows() < kFewRows) return false;
+    double low = std::numeric_limits<double>::infinity(), high = -low, all_low = low, all_high = high;
+    bool moved = record.u_stepped;
+    double u = std::nan("");
+    for (std::size_t i = 0; i < record.t.size(); ++i) {
+        if (std::isnan(record.y[i])) continue;
+        all_low = std::min(all_low, record.y[i]);
+        all_high = std::max(all_high, record.y[i]);
+    }
+    for (std::size_t i = run.first; i < run.end; ++i) {
+        if (!std::isnan(record.u[i])) {
+            moved = moved || (!std::isnan(u) && record.u[i] != u);
+            u = record.u[i];
+        }
+        if (!moved || std::isnan(record.y[i])) continue;
+        low = std::min(low, record.y[i]);
+        high = std::max(high, record.y[i]);
+    }
+    return moved && high - low > kAnswer * (all_high - all_low);
+}
+
+void keep_rows(CsvRecord& record, const RowRun& run) {
+    const auto keep = [&](auto& column) {
+        if (column.empty()) return;
+        column.erase(column.begin() + static_cast<std::ptrdiff_t>(run.end), column.end());
+        column.erase(column.begin(), column.begin() + static_cast<std::ptrdiff_t>(run.first));
+    };
+    keep(record.t);
+    keep(record.u);
+    keep(record.y);
+    keep(record.r);
+    keep(record.lines);
+}
+
+std::string in_words(const CsvRun& run, std::size_t number) {
+    return "run " + std::to_string(number) + ", lines " + std::to_string(run.first_line) + " to " +
+           std::to_string(run.last_line) + " (" + std::to_string(run.rows) +
+           " rows, t = " + tunewright::text(run.from) + " to " + tunewright::text(run.to) +
+           (run.tests ? ")" : "; u does not move or y does not answer)");
+}
+
+void note_runs(CsvRecord& record, int taken, bool chosen) {
+    constexpr std::size_t kShown = 6;
+    std::string others;
+    std::size_t shown = 0;
+    for (std::size_t k = 0; k < record.runs.size(); ++k) {
+        if (static_cast<int>(k) + 1 == taken || ++shown > kShown) continue;
+        others += (others.empty() ? "" : "; ") + in_words(record.runs[k], k + 1);
+    }
+    if (shown > kShown) others += "; and " + std::to_string(shown - kShown) + " more";
+    const std::string sentence =
+        "The times begin again: the file holds " + std::to_string(record.runs.size()) + " runs. Read is " +
+        in_words(record.runs[static_cast<std::size_t>(taken) - 1], static_cast<std::size_t>(taken)) +
+        (chosen ? ", as chosen" : ", the longest in which y answers a move of u") + ". The others are " + others + ".";
+    // Where nobody has said which one is meant, it is a warning.
+    if (chosen)
+        record.notes.push_back(sentence);
+    else
+        record.unread += (record.unread.empty() ? "" : " ") + sentence;
+}
+
+}  // namespace
+
+std::optional<std::string> take_run(CsvRecord& record, std::optional<int> chosen) {
+    if (record.t.size() < 2) return std::nullopt;
+    std::vector<RowRun> runs =
+        newest_first(record.t) ? std::vector<RowRun>{{0, record.t.size(), 0}} : runs_of(record.t);
+    // A countdown that does not lead to a test is a run of its own.
+    for (std::size_t k = 0; k < runs.size(); ++k) {
+        if (contiguous(record.t, runs[k])) continue;
+        const RowRun rest{runs[k].first + runs[k].countdown, runs[k].end, 0};
+        runs[k].end = rest.first;
+        runs.insert(runs.begin() + static_cast<std::ptrdiff_t>(k) + 1, rest);
+    }
+    if (chosen && (*chosen < 1 || static_cast<std::size_t>(*chosen) > runs.size()))
+        return "run is " + std::to_string(*chosen) + "; the file holds " +
+               (runs.size() == 1 ? "one run, its times never begin again. Leave run out."
+                                 : std::to_string(runs.size()) + " runs, counted from 1.");
+    if (runs.size() == 1) {
+        turn_countdown(record, runs.front());
+        return std::nullopt;
+    }
+    std::size_t taken = 0;
+    for (std::size_t k = 0; k < runs.size(); ++k) {
+        const auto [low, high] = std::minmax_element(record.t.begin() + static_cast<std::ptrdiff_t>(runs[k].first),
+                                                     record.t.begin() + static_cast<std::ptrdiff_t>(runs[k].end));
+        record.runs.push_back({record.lines[runs[k].first], record.lines[runs[k].end - 1],
+                               static_cast<int>(runs[k].rows()), *low, *high, tests_something(record, runs[k])});
+        const CsvRun &best = record.runs[taken], &now = record.runs[k];
+        if (now.tests > best.tests || (now.tests == best.tests && now.rows > best.rows)) taken = k;
+    }
+    if (chosen) taken = static_cast<std::size_t>(*chosen) - 1;
+    record.run = static_cast<int>(taken) + 1;
+    note_runs(record, record.run, chosen.has_value());
+    turn_countdown(record, runs[taken]);
+    keep_rows(record, runs[taken]);
+    return std::nullopt;
+}
+
+}  // namespace tunewright::api

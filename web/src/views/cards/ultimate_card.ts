@@ -1,0 +1,95 @@
+// "Only Ku and Pu": an experiment with a proportional controller, and nothing else known; and the settings that rules
+// make of it.
+import type { FieldError, Result, TuningRequest } from "../../api/types.ts";
+import { h } from "../../dom.ts";
+import { textField } from "../../form/controls.ts";
+import type { FormErrors } from "../../form/errors.ts";
+import { parseNumber } from "../../form/number.ts";
+import { formatSetting } from "../../words/numbers.ts";
+import type { UnitNames } from "../../words/numbers.ts";
+
+export interface UltimateCard {
+  element: HTMLFormElement;
+  read(): { ultimate: Record<string, number>; errors: FieldError[] };
+  load(request: TuningRequest): void;
+}
+
+export function ultimateCard(errors: FormErrors, onTune: () => void): UltimateCard {
+  const field = (label: string, name: string, hint: string) =>
+    textField({ label, hint, pointer: () => `/ultimate/${name}` }, errors);
+  const fields = {
+    Ku: field("Ku", "Ku", "gain at which the loop oscillates"),
+    Pu: field("Pu", "Pu", "period of that oscillation"),
+    K: field("K", "K", "static gain, if it is known"),
+  };
+  const element = h(
+    "form",
+    { class: "card", novalidate: true, "aria-labelledby": "ultimate-title" },
+    h("h2", { id: "ultimate-title" }, "Only Ku and Pu"),
+    h(
+      "p",
+      { class: "hint" },
+      "You raised a proportional gain until the loop oscillated, and know nothing else. Rules give settings; how robust the loop is they cannot say.",
+    ),
+    h(
+      "details",
+      {},
+      h("summary", {}, "Enter them"),
+      h(
+        "div",
+        { class: "stack" },
+        h("div", { class: "fields" }, Object.values(fields).map(({ element: one }) => one)),
+        h("div", { class: "actions" }, h("button", { type: "submit", class: "primary" }, "Settings by these rules")),
+      ),
+    ),
+  );
+  element.addEventListener("submit", (event) => {
+    event.preventDefault();
+    onTune();
+  });
+  return {
+    element,
+    read() {
+      const ultimate: Record<string, number> = {};
+      const faults: FieldError[] = [];
+      for (const [name, { input }] of Object.entries(fields)) {
+        if (name === "K" && input.value.trim() === "") continue;
+        const parsed = parseNumber(input.value, name);
+        if (parsed.ok) ultimate[name] = parsed.value;
+        else faults.push({ pointer: `/ultimate/${name}`, detail: parsed.sentence });
+      }
+      return { ultimate, errors: faults };
+    },
+    load(request) {
+      const given = (request["ultimate"] ?? {}) as Record<string, number>;
+      for (const [name, { input }] of Object.entries(fields)) input.value = given[name] === undefined ? "" : String(given[name]);
+      const details = element.querySelector("details");
+      if (details) details.open = request["ultimate"] !== undefined;
+    },
+  };
+}
+
+/** Whether the answer is of Ku and Pu alone: settings without the figures of a loop. */
+export const isOfUltimate = (request: TuningRequest | undefined): boolean => request?.["ultimate"] !== undefined;
+
+/** The settings of every rule in a table, and above it what cannot be known. */
+export function showUltimate(verdict: HTMLElement, result: Result, units: UnitNames): void {
+  const heads = ["Rule", "Kp", `Ti (${units.time})`, `Td (${units.time})`];
+  const cell = (value: unknown): string => (typeof value === "number" ? formatSetting(value) : "–");
+  const rows = result.controllers.flatMap((entry) => {
+    const controller = entry.controller as Record<string, unknown> | undefined;
+    if (!controller) return [h("tr", {}, h("th", { scope: "row" }, entry.title ?? entry.method), h("td", { colspan: 3 }, entry.error?.detail ?? ""))];
+    const { Kp, Ti, Td } = controller;
+    return [h("tr", {}, h("th", { scope: "row" }, entry.title ?? entry.method), [Kp, Ti, Td].map((value) => h("td", {}, cell(value))))];
+  });
+  verdict.className = "verdict warn";
+  verdict.replaceChildren(
+    h("h2", {}, result.verdict?.[0]?.text ?? ""),
+    h(
+      "table",
+      { class: "figures" },
+      h("thead", {}, h("tr", {}, heads.map((head) => h("th", { scope: "col" }, head)))),
+      h("tbody", {}, rows),
+    ),
+  );
+}

@@ -47,6 +47,7 @@ void Builder::add_first_call() {
 
 void Builder::start_derivative(Block& start) {
     start.push_back(assign(slope_, 0.0));
+    if (!plan_.position) start.push_back(assign(slope_last_, 0.0));
     const Expr lead = c_ * setpoint_last_ - y_f_;
     if (plan_.rule == DerivativeRule::slope) {
         const Expr k = local("k", "counts", Type::integer);
@@ -108,10 +109,6 @@ void Builder::add_filter() {
 void Builder::add_slope() {
     add(remark("What the derivative acts on, and its slope."));
     lead_ = local("lead", "c r - y_f");
-    if (!plan_.position) {
-        slope_last_ = local("slope_last", "slope of the last call");
-        add(assign(slope_last_, slope_));
-    }
     add(assign(lead_, c_ * setpoint_ - y_f_));
     const auto step = [&] { return lead_ - lead_last_; };
     switch (plan_.rule) {
@@ -190,10 +187,9 @@ Block Builder::held() {
     Block block{assign(u_, plan_.integral ? bias_ : manual_output_)};
     if (plan_.integral) block.push_back(when(manual_, {assign(u_, manual_output_)}));
     bound(block, u_, u_min_, u_max_);
-    if (plan_.position) {
-        const Expr left = u_ - proportional_;
-        block.push_back(assign(integral_, plan_.derivative ? left - derivative_ : left));
-    }
+    // The derivative part stays out: at rest it is 0 but for the noise of one sample, which nothing would take back.
+    if (plan_.position) block.push_back(assign(integral_, u_ - proportional_));
+    if (!plan_.position && plan_.derivative) block.push_back(assign(slope_last_, 0.0));
     return block;
 }
 
@@ -232,6 +228,7 @@ Block Builder::velocity_output() {
     const Expr sum = u_last_ + proportional_ + increment_;
     Block block{assign(u_, plan_.derivative ? sum + derivative_ : sum)};
     bound(block, u_, low_, high_);
+    if (plan_.derivative) block.push_back(assign(slope_last_, slope_));
     return block;
 }
 

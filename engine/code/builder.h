@@ -84,9 +84,9 @@ private:
     Expr Kp_ = 0, Ti_ = 0, Td_ = 0, Ki_ = 0, Kd_ = 0, b_ = 0, direct_ = 0, u_min_ = 0, u_max_ = 0, rate_limit_ = 0;
     Expr Tr_ = 0, Tt_ = 0, bias_ = 0, y0_ = 0, at_rest_ = 0, restart_ = 0, Ts_ = 0, Tf_ = 0, c_ = 0, delta_r_ = 0;
     Expr started_ = 0, integral_ = 0, y_f_ = 0, filter_rate_ = 0, setpoint_last_ = 0, fed_last_ = 0, u_last_ = 0;
-    Expr slope_ = 0, lead_last_ = 0, lead_2_ = 0, lead_3_ = 0, history_ = 0, place_ = 0;
+    Expr slope_ = 0, slope_last_ = 0, lead_last_ = 0, lead_2_ = 0, lead_3_ = 0, history_ = 0, place_ = 0;
     Expr gain_last_ = 0, gain_d_last_ = 0, b_last_ = 0, pd_last_ = 0;
-    Expr gain_ = 0, gain_i_ = 0, gain_d_ = 0, error_ = 0, lead_ = 0, y_f_last_ = 0, slope_last_ = 0;
+    Expr gain_ = 0, gain_i_ = 0, gain_d_ = 0, error_ = 0, lead_ = 0, y_f_last_ = 0;
     Expr proportional_ = 0, derivative_ = 0, increment_ = 0, low_ = 0, high_ = 0;
 };
 

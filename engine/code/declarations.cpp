@@ -58,6 +58,7 @@ void Builder::declare_states() {
 
 void Builder::declare_history() {
     slope_ = state("slope", "slope of c r - y_f, as the rule has it");
+    if (!plan_.position) slope_last_ = state("slope_last", "slope that the last u contains; 0 in manual");
     if (plan_.rule == DerivativeRule::slope) {
         history_ = state("history", "c r - y_f of the last calls, in a ring", Type::real, plan_.pid.slope_samples);
         place_ = state("place", "the oldest of them", Type::integer);

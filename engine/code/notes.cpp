@@ -86,6 +86,10 @@ std::string manual_note(const Plan& plan) {
             ? "The integral part follows, so that the switch to automatic does not jump."
             : "The level of u follows, so that the switch to automatic does not jump; it stays where the switch left "
               "it until a restart.";
+    if (plan.derivative)
+        out +=
+            " D stays out of that, for its noise of one call would stay in u; it acts from the first call in automatic "
+            "on.";
     return out;
 }
 

@@ -270,6 +270,29 @@ TEST(PidAlgorithm, NeitherTheSwitchToAutomaticNorNewSettingsJump) {
     });
 }
 
+// What the operator's u does not contain must not be found in it later: of a false measurement in the last manual call
+// the proportional part and one share of the integral stay, and nothing of the derivative.
+TEST(PidAlgorithm, TheSwitchToAutomaticKeepsNothingOfTheDerivativesNoise) {
+    constexpr double kFalse = 3;
+    for_every_law([](const SampledPid& law) {
+        for (const double Ki : {law.gains.Ki, 0.0}) {
+            SampledPid pid = law;
+            pid.gains.Ki = Ki;
+            if (Ki == 0 && pid.velocity) continue;
+            const Program program = program_of(pid);
+            const auto later = [&](double error) {
+                Machine machine(program);
+                for (int k = 0; k < 20; ++k) machine.step(50, 50, true, 44);
+                machine.step(50, 50 + error, true, 44);
+                for (int k = 0; k < 400; ++k) machine.step(50, 50);
+                return machine.step(50, 50);
+            };
+            const double most = kFalse * (pid.gains.Kp + Ki * pid.Ts);
+            EXPECT_LE(std::abs(later(kFalse) - later(0)), most * (1 + 1e-9)) << "Ki " << Ki;
+        }
+    });
+}
+
 // Half an hour at a limit: without anti-windup the integral would need as long to come back.
 TEST(PidAlgorithm, ULeavesItsLimitAsSoonAsTheErrorHasTurned) {
     for (const AntiWindup anti_windup : {AntiWindup::back_calculation, AntiWindup::clamping}) {

@@ -31,16 +31,18 @@ public:
         double u = 0;
         if (given) {
             u = limited(manual ? manual_output : options_.bias);
-            level_ = u - P - D;
+            level_ = u - P;
         } else if (law_.velocity) {
-            // The last output and the increments of the sum.
-            u = rated(at(u_, 0) + (P + D - sum_before(now)) + share);
+            // The last output and the increments of the sum; what was given contains no D.
+            const double D_contained = given_last_ ? now.Kd * at(slope_, 1) : 0;
+            u = rated(at(u_, 0) + (P + D - sum_before(now)) + D_contained + share);
             level_ = u - P - D;
         } else {
             level_ = raw_before;
             u = options_.anti_windup == AntiWindup::clamping ? clamped(P + D, share) : tracked(P + D, share, now.Ki);
         }
         gains_ = now;
+        given_last_ = given;
         first_ = false;
         u_.push_back(u);
         return u;
@@ -148,7 +150,7 @@ private:
     CodeOptions options_;
     bool at_rest_;
     double Tt_;
-    bool first_ = true;
+    bool first_ = true, given_last_ = false;
     double v_ = 0, level_ = 0;
     Gains gains_;
     std::vector<double> r_, yf_, f_, phi_, slope_, u_;

@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "engine/loop/interior_margins.h"
+
 namespace tunewright {
 namespace {
 
@@ -108,7 +110,7 @@ Peaks ImcLoop::peaks(const LoopGrid& grid) const {
 }
 
 Margins ImcLoop::margins(const LoopGrid& grid) const {
-    return find_interior_margins([this](double omega) { return at(omega).L; }, grid);
+    return find_interior_margins([this](double omega) { return at(omega).L; }, grid, plant_.dead_time());
 }
 
 }  // namespace tunewright

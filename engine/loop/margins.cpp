@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "engine/loop/interior_margins.h"
 #include "engine/loop/stability.h"
 #include "engine/numerics/extremum.h"
 #include "engine/numerics/fast_complex.h"
@@ -19,6 +20,9 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kPi = std::numbers::pi;
 constexpr double kToRounding = 1e-13;  // of ln omega
 constexpr double kBetween = 1.05;      // |L| may be larger by it between neighbours than at both
+constexpr double kLongTurn = 1;        // rad of the dead time between neighbours: L may cross the axis more than once
+constexpr double kStride = 0.25;       // rad of the dead time from one look at L to the next
+constexpr int kMostStrides = 1000;     // a turn is 26: lags turn L as well
 
 constexpr double kFirstGain = 1.02, kGainRatio = 1.15, kLastGain = 1e3;  // of 1/K: where an unstable plant is tried
 constexpr std::array<double, 3> kStartGains = {0.2, 0.01, 1e-4};  // of 1/K: the first that leaves the loop stable
@@ -28,6 +32,64 @@ constexpr double kNoGain = 0.5;           // below it no turn of the dead time c
 constexpr double kEdgeTolerance = 1e-13;  // relative, of the frequency at which |T| passes 1/2
 constexpr double kWorthRefining = 0.9;    // of the largest value so far: a grid point below it is no peak's top
 constexpr double kTooSmall = 0.45;        // of the largest value so far: 2 |T| cannot come near it
+
+using OpenLoop = std::function<std::complex<double>(double)>;
+
+/// Where L crosses the real axis between two frequencies at which it is known.
+double real_crossing(const OpenLoop& open_loop, double left, double right, std::complex<double> a,
+                     std::complex<double> b) {
+    const auto imaginary = [&](double omega) {
+        const auto L = open_loop(omega);
+        return L.imag() / magnitude(L);
+    };
+    return log_root(imaginary, left, right, a.imag() / magnitude(a), b.imag() / magnitude(b), kToRounding);
+}
+
+/// Where |L| = 1 between two such frequencies.
+double unit_crossing(const OpenLoop& open_loop, double left, double right, std::complex<double> a,
+                     std::complex<double> b) {
+    const auto log_gain = [&](double omega) { return std::log(magnitude(open_loop(omega))); };
+    return log_root(log_gain, left, right, std::log(magnitude(a)), std::log(magnitude(b)), kToRounding);
+}
+
+/// The first frequency on the way at which L is negative: where |L| falls, or rises, all the way from 1 or from a top
+/// on, no later one is as near to -1.
+void note_first_crossing(Margins& margins, const OpenLoop& open_loop, double delay, double from, double to) {
+    const double stride = std::copysign(kStride / delay, to - from);
+    auto a = open_loop(from);
+    for (int i = 0; i < kMostStrides && from != to; ++i) {
+        const bool last = (from + stride - to) * stride >= 0;
+        const double next = last ? to : from + stride;
+        const auto b = open_loop(next);
+        if ((a.imag() < 0) != (b.imag() < 0) && a.real() + b.real() < 0) {
+            const double omega =
+                from < next ? real_crossing(open_loop, from, next, a, b) : real_crossing(open_loop, next, from, b, a);
+            return note_real_crossing(margins, open_loop(omega).real(), omega);
+        }
+        from = next;
+        a = b;
+    }
+}
+
+/// Between the grid's points i - 1 and i, where the dead time turns L often: of all crossings those nearest to -1. They
+/// lie beside |L| = 1, else beside the place where |L| is largest.
+void note_crossings_of_turns(Margins& margins, const OpenLoop& open_loop, const LoopGrid& grid, std::size_t i,
+                             double delay) {
+    const auto gain = [&](std::size_t k) { return magnitude(grid.point[k].L); };
+    const double left = grid.omega[i - 1], right = grid.omega[i];
+    const std::size_t larger = gain(i - 1) >= gain(i) ? i - 1 : i;
+    double from = grid.omega[larger];
+    if ((gain(i - 1) < 1) != (gain(i) < 1)) {
+        from = unit_crossing(open_loop, left, right, grid.point[i - 1].L, grid.point[i].L);
+    } else if (larger > 0 && larger + 1 < grid.omega.size() && gain(larger) >= gain(larger - 1) &&
+               gain(larger) >= gain(larger + 1)) {
+        const auto f = [&](double omega) { return magnitude(open_loop(omega)); };
+        const double top = log_maximum(f, grid.omega[larger - 1], {from, gain(larger)}, grid.omega[larger + 1]).x;
+        if (top > left && top < right) from = top;
+    }
+    if (from > left) note_first_crossing(margins, open_loop, delay, from, left);
+    if (from < right) note_first_crossing(margins, open_loop, delay, from, right);
+}
 
 void note_unit_crossing(Margins& margins, std::complex<double> L, double omega) {
     double lag = std::arg(L) + kPi;  // from -1 counter-clockwise to L: what a further lag uses up, in [0, 2 pi)
@@ -69,37 +131,38 @@ void note_real_crossing(Margins& margins, double real, double omega) {
     }
 }
 
-Margins find_interior_margins(const std::function<std::complex<double>(double)>& open_loop, const LoopGrid& grid) {
+Margins find_interior_margins(const OpenLoop& open_loop, const LoopGrid& grid, double delay) {
     Margins margins{kInfinity, 0, kInfinity, kInfinity, 0, 0};
-    const auto imaginary = [&](double omega) {
-        const auto L = open_loop(omega);
-        return L.imag() / magnitude(L);
-    };
-    const auto log_gain = [&](double omega) { return std::log(magnitude(open_loop(omega))); };
     for (std::size_t i = 1; i < grid.omega.size(); ++i) {
         const auto a = grid.point[i - 1].L, b = grid.point[i].L;
         const double left = grid.omega[i - 1], right = grid.omega[i];
-        const bool resolved = right <= grid.resolved_to;
         if (!std::isfinite(magnitude(a)) || !std::isfinite(magnitude(b))) continue;
         // A crossing nearer to 0 than one that is known says nothing new.
         const bool counts = kBetween * std::max(magnitude(a), magnitude(b)) > std::min(1.0, 1 / margins.gain_margin);
-        if (resolved && counts && (a.imag() < 0) != (b.imag() < 0) && (a.real() < 0 || b.real() < 0)) {
-            const double omega =
-                log_root(imaginary, left, right, a.imag() / magnitude(a), b.imag() / magnitude(b), kToRounding);
+        if (counts && delay * (right - left) > kLongTurn) {
+            note_crossings_of_turns(margins, open_loop, grid, i, delay);
+        } else if (counts && (a.imag() < 0) != (b.imag() < 0) && (a.real() < 0 || b.real() < 0)) {
+            const double omega = real_crossing(open_loop, left, right, a, b);
             note_real_crossing(margins, open_loop(omega).real(), omega);
         }
-        if (!resolved && 1 / magnitude(b) > 1) note_real_crossing(margins, -magnitude(b), right);
         if ((magnitude(a) < 1) != (magnitude(b) < 1)) {
-            const double omega =
-                log_root(log_gain, left, right, std::log(magnitude(a)), std::log(magnitude(b)), kToRounding);
+            const double omega = unit_crossing(open_loop, left, right, a, b);
             note_unit_crossing(margins, open_loop(omega), omega);
         }
     }
     return margins;
 }
 
+Margins find_interior_margins(const OpenLoop& open_loop, const LoopGrid& grid) {
+    return find_interior_margins(open_loop, grid, 0);
+}
+
 Margins find_margins(const Loop& loop, const LoopGrid& grid) {
-    Margins margins = find_interior_margins([&](double omega) { return loop.open_loop({0, omega}); }, grid);
+    Margins margins = find_interior_margins(
+        [&](double omega) {
+            return loop.open_loop({0, omega});
+        },
+        grid, loop.plant().dead_time());
     note_limits(margins, loop);
     return margins;
 }

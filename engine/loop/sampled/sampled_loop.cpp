@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "engine/loop/interior_margins.h"
 #include "engine/loop/winding.h"
 #include "engine/numerics/extremum.h"
 #include "engine/numerics/fast_complex.h"
@@ -183,7 +184,7 @@ Peaks SampledLoop::raised(Peaks peaks, const LoopGrid& grid) const {
 }
 
 Margins SampledLoop::margins(const LoopGrid& grid) const {
-    Margins margins = find_interior_margins([&](double omega) { return open_loop(omega); }, grid);
+    Margins margins = find_interior_margins([&](double omega) { return open_loop(omega); }, grid, turn(1));
     // At both ends L is real.
     note_real_crossing(margins, grid.point.back().L.real(), grid.omega.back());
     if (finite_at_zero()) note_real_crossing(margins, open_loop(0).real(), 0);

@@ -18,10 +18,23 @@ constexpr double kLongest = 1e3;       // of 1/omega_Ms: where it ends
 constexpr double kMostInDelay = 3e4;   // sample times in the dead time: a loop is looked at once for each
 constexpr double kShorter = 0.6;       // of a sample time: a shorter one that the whole loop must bear too
 constexpr double kLightDamping = 0.5;  // of a pole
-constexpr double kNext = 1.1;          // from one sample time to the next, where they are looked at one by one
-constexpr double kTolerance = 5e-5;    // of a sample time that is a guess
-constexpr double kExact = 1e-6;        // of one that is none, and of the Ms there
-constexpr double kNearby = 1.03;       // from one sample time to the next, where a guess was inexact
+constexpr double kNext = 1.04;         // from one sample time to the next, where they are looked at one by one
+constexpr double kNextNear = 1.01;     // the same where Ms is near its limit,
+constexpr double kNearLimit = 0.98;    // of it
+constexpr double kNextShort = 1.2;     // the same where the program is as good as continuous
+constexpr double kAsContinuous = 0.2;  // rad of the fastest swing in a sample, and
+constexpr double kFarBelowPeak = 0.1;  // of 1/omega_Ms: below both that is so
+constexpr double kSwing = 0.15;        // rad of the fastest swing, from one sample time to the next
+constexpr double kRoughly = 4e-3;      // of ln Ms: what a quick look may miss
+constexpr double kSmoothingLag = 15;  // sample times: so long a lag leaves no edge where the dead time is whole samples
+constexpr double kMostTurn = 1.5;    // rad of omega_Ms in a sample: beyond, the peak near it is not the loop's any more
+constexpr double kScanFrom = 0.1;    // of a guess: where the peak is followed from
+constexpr double kScanNext = 1.03;   // from one sample time to the next there
+constexpr int kMostWholeLooks = 16;  // of the whole loop, at dead times of whole samples
+constexpr double kSameTime = 1e-9;   // relative: sample times that differ by less are one
+constexpr double kTolerance = 5e-5;  // of a sample time that is a guess
+constexpr double kExact = 1e-6;      // of one that is none, and of the Ms there
+constexpr double kNearby = 1.03;     // from one sample time to the next, where a guess was inexact
 constexpr int kMostNearby = 10;
 constexpr double kWholeLoop = 1e-3;  // relative: how far the whole loop's Ms may be from that of the guess
 
@@ -72,20 +85,44 @@ private:
     double omega_;
 };
 
-/// A lightly damped mode is sampled well and badly in turns as the sample time grows.
-bool resonates(const LinearPlant& plant) {
-    return std::ranges::any_of(plant.poles(), [](std::complex<double> pole) {
-        return std::abs(pole.real()) < kLightDamping * std::abs(pole);
-    });
+/// The swing of the fastest lightly damped mode, rad/time; 0 without one. It is sampled well and badly in turns as the
+/// sample time grows.
+double fastest_swing(const LinearPlant& plant) {
+    double fastest = 0;
+    for (const auto pole : plant.poles())
+        if (std::abs(pole.real()) < kLightDamping * std::abs(pole)) fastest = std::max(fastest, pole.imag());
+    return fastest;
+}
+
+/// Without a lag much longer than the sample time, what arrives within a sample counts nearly in full or not at all at
+/// its end: the delay that the samples see falls from L + Ts to L where the dead time comes to fewer whole samples.
+bool has_edges(const LinearPlant& plant, double Ts) {
+    if (plant.dead_time() == 0 || plant.integrators() > 0) return false;
+    return std::ranges::none_of(plant.poles(),
+                                [=](std::complex<double> pole) { return std::abs(pole) * kSmoothingLag * Ts < 1; });
+}
+
+/// Of the sample times in (Ts, next] the longest that goes a whole number of times into the dead time, at which Ms has
+/// its edges and is largest; else `next`.
+double at_edge(const LinearPlant& plant, double Ts, double next) {
+    const double L = plant.dead_time();
+    if (L == 0) return next;
+    const double edge = L / std::ceil(L / next * (1 - kSameTime));
+    return edge > Ts * (1 + kSameTime) && edge <= next ? edge : next;
 }
 
 class Search {
 public:
     Search(const LinearPlant& plant, const ParallelPid& gains, double Ms, double omega_Ms, double factor)
-        : plant_(plant), gains_(gains), limit_(factor * Ms), at_0_(-std::log(factor)), omega_Ms_(omega_Ms) {}
+        : plant_(plant),
+          gains_(gains),
+          limit_(factor * Ms),
+          at_0_(-std::log(factor)),
+          omega_Ms_(omega_Ms),
+          swing_(fastest_swing(plant)) {}
 
     std::optional<double> result() {
-        if (!resonates(plant_))
+        if (swing_ == 0)
             if (const auto Ts = by_peak()) return Ts;
         return by_steps();
     }
@@ -122,18 +159,59 @@ private:
         return std::nullopt;
     }
 
+    /// The first sample time below a guess at which the peak comes to the limit, edge by edge.
+    double first_reached(double guess) const {
+        TrackedPeak peak(plant_, gains_, omega_Ms_);
+        const auto exactly = [&](double Ts) {
+            const double roughly = excess(peak.roughly(Ts));
+            return roughly < -kRoughly ? roughly : excess(peak.exactly(Ts));
+        };
+        double before = 0, low = kScanFrom * guess, f_before = at_0_, f_low = exactly(low);
+        while (low < guess) {
+            const double high = std::min(at_edge(plant_, low, kScanNext * low), guess), f_high = exactly(high);
+            if (f_high > 0 && f_low <= 0) return root_between(exactly, low, high, f_low, f_high, kExact * high);
+            // Behind an edge Ms may rise a little more before it falls.
+            if (before > 0 && f_low >= f_before && f_low >= f_high &&
+                may_exceed(0, {before, f_before}, {low, f_low}, {high, f_high})) {
+                const Maximum top = log_maximum(exactly, before, {low, f_low}, high);
+                if (top.value > 0) return root_between(exactly, before, top.x, f_before, top.value, kExact * low);
+            }
+            before = low;
+            f_before = f_low;
+            low = high;
+            f_low = f_high;
+        }
+        return guess;
+    }
+
+    /// Whether the whole loop bears the sample times below at which the dead time is whole samples.
+    bool bears_edges(double below, double from) const {
+        double Ts = from;
+        for (int i = 0; i < kMostWholeLooks; ++i) {
+            const double next = at_edge(plant_, Ts, below * std::pow(from / below, 1 - (i + 1.0) / kMostWholeLooks));
+            if (next >= below * (1 - kWholeLoop)) return true;
+            if (next > Ts && !bears(next)) return false;
+            Ts = std::max(Ts, next);
+        }
+        return true;
+    }
+
     /// Where nothing resonates the continuous loop's own peak decides, nearly: a guess from it alone, which the whole
     /// loop confirms.
     std::optional<double> by_peak() {
         TrackedPeak peak(plant_, gains_, omega_Ms_);
-        const auto Ts = guess(peak);
-        if (!Ts || *Ts < shortest()) return std::nullopt;
+        auto Ts = guess(peak);
+        if (!Ts || *Ts < shortest() || *Ts * omega_Ms_ > kMostTurn) return std::nullopt;
+        const bool edges = has_edges(plant_, *Ts);
+        if (edges) Ts = std::max(first_reached(*Ts), shortest());
         low_ = std::max(kShorter * *Ts, shortest());
-        bool borne = bears(*low_);
+        bool borne = bears(*low_) && (!edges || bears_edges(*Ts, *low_));
         // The guess's own peak is at the limit: the whole loop is no better.
         if (borne && loop(*Ts).keeps(limit_ * (1 + kWholeLoop))) return Ts;
-        // Another peak of the loop has become the higher one: what is looked for lies not far below.
-        while (*low_ > shortest()) {
+        // Another peak of the loop has become the higher one: what is looked for lies not far below, but where edges
+        // let it come and go.
+        if (edges) low_.reset();
+        while (low_ && *low_ > shortest()) {
             const double lower = std::max(kShorter * *low_, shortest());
             const bool lower_borne = bears(lower);
             if (borne && lower_borne) break;
@@ -145,13 +223,24 @@ private:
 
     /// The first sample time, from short ones on, that the whole loop does not bear.
     std::optional<double> by_steps() const {
-        double low = low_.value_or(shortest()), high = low * kNext;
+        double low = low_.value_or(shortest());
         if (!bears(low)) return std::nullopt;
-        for (; bears(high); high *= kNext) {
-            if (high > longest()) return std::nullopt;
+        while (low <= longest()) {
+            const bool near = !loop(low).keeps(limit_ * kNearLimit);
+            const double high = next(low, near);
+            if (!bears(high)) return between(low, high);
             low = high;
         }
-        return between(low, high);
+        return std::nullopt;
+    }
+
+    /// The next sample time to be looked at: near enough that neither a swing of the plant nor the dead time passes
+    /// much of its way from sample to sample in between, and nearer where Ms is near its limit.
+    double next(double Ts, bool near) const {
+        const bool as_continuous = Ts * swing_ < kAsContinuous && Ts * omega_Ms_ < kFarBelowPeak;
+        double further = Ts * (near ? kNextNear : as_continuous ? kNextShort : kNext);
+        if (!as_continuous && swing_ > 0) further = std::min(further, Ts + kSwing / swing_);
+        return at_edge(plant_, Ts, further);
     }
 
     /// Where the whole loop's Ms comes to the limit: the quick looks have seen it below at `low`, above at `high`.
@@ -180,7 +269,7 @@ private:
 
     const LinearPlant& plant_;
     const ParallelPid& gains_;
-    double limit_, at_0_, omega_Ms_;
+    double limit_, at_0_, omega_Ms_, swing_;
     std::optional<double> low_;  // where the steps start
 };
 

@@ -1,0 +1,88 @@
+// The longest sample time is one below which all keep the promise, also where Ms is jagged over the sample time: on
+// plants that are mostly dead time, at dead times of whole samples and in dense steps between them.
+#include "engine/evaluation/longest_sample_time.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "engine/loop/loop.h"
+#include "engine/loop/peaks.h"
+#include "engine/loop/sampled/sampled_loop.h"
+#include "engine/loop/stability.h"
+
+namespace tunewright {
+namespace {
+
+constexpr int kLoops = 40, kSteps = 150;
+constexpr double kFactor = 1.05;
+// Steps of the search are up to 1 % where Ms is near its limit: so much a hump between them may stand out.
+constexpr double kHump = 1.01;
+
+class Random {
+public:
+    explicit Random(unsigned seed) : random_(seed) {}
+    double log_uniform(double low, double high) { return low * std::pow(high / low, uniform(0, 1)); }
+    double uniform(double low, double high) { return std::uniform_real_distribution<>(low, high)(random_); }
+    bool one_in(unsigned n) { return random_() % n == 0; }
+
+private:
+    std::mt19937 random_;
+};
+
+struct StableLoop {
+    LinearPlant plant;
+    ParallelPid gains;
+    Peak S;
+};
+
+std::optional<StableLoop> drawn(Random& random, const Plant& plant) {
+    StableLoop drawn{*LinearPlant::make(plant), {}, {}};
+    const double time = drawn.plant.time_scale();
+    ParallelPid& g = drawn.gains;
+    g.Kp = random.one_in(6) ? 0 : random.log_uniform(0.05, 3);
+    g.Ki = random.log_uniform(0.05, 3) / (time * random.log_uniform(0.1, 2));
+    if (g.Kp > 0 && random.one_in(2)) {
+        g.Kd = g.Kp * time * random.log_uniform(0.02, 0.3);
+        g.filter = {FilterType::derivative, 0.1 * g.Kd / g.Kp};
+    }
+    const auto loop = Loop::make(drawn.plant, g);
+    if (!loop || !count_unstable_poles(*loop).stable()) return std::nullopt;
+    drawn.S = find_peaks(*loop, make_peak_grid(*loop)).S;
+    if (drawn.S.value > 2.5 || drawn.S.value < 1.1 || !(drawn.S.omega > 0) || !std::isfinite(drawn.S.omega))
+        return std::nullopt;
+    return drawn;
+}
+
+void holds_below(const StableLoop& loop) {
+    const auto Ts = longest_sample_time(loop.plant, loop.gains, loop.S.value, loop.S.omega, kFactor);
+    ASSERT_TRUE(Ts);
+    const double L = loop.plant.dead_time();
+    const auto keeps = [&](double h, double factor) {
+        return SampledLoop(loop.plant, {.gains = loop.gains, .Ts = h}).keeps(factor * loop.S.value);
+    };
+    for (int i = 1; i <= kSteps; ++i)
+        EXPECT_TRUE(keeps(*Ts * (0.02 + 0.98 * i / kSteps), kFactor * kHump)) << "at " << i << " of " << kSteps;
+    for (double n = std::ceil(L / *Ts); n < 40; ++n)
+        EXPECT_TRUE(keeps(L / n, kFactor * kHump)) << "with a dead time of " << n << " samples";
+    EXPECT_FALSE(keeps(*Ts, kFactor * 0.998)) << "Ms is not at its limit there";
+}
+
+TEST(LongestSampleTimeOfDeadTime, AllShorterOnesKeepItsPromise) {
+    Random random(17);
+    for (int made = 0; made < kLoops;) {
+        const double L = random.log_uniform(1, 60);
+        const Plant plant = made % 2 == 0 ? Plant(Fopdt{.K = 1, .T = 1, .L = L})
+                                          : Plant(Sopdt{.K = 1, .T1 = 1, .T2 = random.uniform(0.1, 1), .L = L});
+        const auto loop = drawn(random, plant);
+        if (!loop) continue;
+        ++made;
+        SCOPED_TRACE(testing::Message() << "loop " << made << ", L " << L << ", Kp " << loop->gains.Kp << ", Ki "
+                                        << loop->gains.Ki << ", Kd " << loop->gains.Kd);
+        holds_below(*loop);
+    }
+}
+
+}  // namespace
+}  // namespace tunewright

@@ -37,9 +37,51 @@ std::vector<double> matrix_product(std::span<const double> A, std::span<const do
     return result;
 }
 
+namespace {
+
+constexpr double kNoSquaring = 5;  // of a matrix: up to this norm its exponential is a fraction, nothing is squared
+constexpr int kMaxSweeps = 20;
+
+double power_of_two(double x) { return std::exp2(std::round(std::log2(x))); }
+
+/// Units of the states in which rows and columns are alike (Osborne 1960), powers of two. A state that nothing depends
+/// on, or that depends on nothing, gets one in which its row or column is at most 1.
+Eigen::VectorXd alike(Matrix& A) {
+    Eigen::VectorXd units = Eigen::VectorXd::Ones(A.rows());
+    bool changed = true;
+    for (int sweep = 0; sweep < kMaxSweeps && changed; ++sweep) {
+        changed = false;
+        for (Eigen::Index i = 0; i < A.rows(); ++i) {
+            const double own = std::abs(A(i, i)), row = A.row(i).lpNorm<1>() - own, column = A.col(i).lpNorm<1>() - own;
+            double unit = 1;
+            if (row > 0 && column > 0)
+                unit = power_of_two(std::sqrt(row) / std::sqrt(column));
+            else if (row > 1)
+                unit = power_of_two(row);
+            else if (column > 1)
+                unit = power_of_two(1 / column);
+            if (unit == 1 || !std::isfinite(unit) || unit == 0) continue;
+            A.row(i) /= unit;
+            A.col(i) *= unit;
+            units[i] *= unit;
+            changed = true;
+        }
+    }
+    return units;
+}
+
+}  // namespace
+
 std::vector<double> matrix_exponential(std::span<const double> matrix, int n) {
     if (n == 1) return {std::exp(matrix[0])};
-    const Matrix result = as_matrix(matrix, n).exp();
+    Matrix A = as_matrix(matrix, n);
+    if (!(A.cwiseAbs().colwise().sum().maxCoeff() > kNoSquaring)) {
+        const Matrix result = A.exp();
+        return {result.data(), result.data() + result.size()};
+    }
+    // Squaring as often as the largest entry asks for would lose as many digits, whose unit it may be alone.
+    const Eigen::VectorXd units = alike(A);
+    const Matrix result = units.asDiagonal() * Matrix(A.exp()) * units.cwiseInverse().asDiagonal();
     return {result.data(), result.data() + result.size()};
 }
 

@@ -14,10 +14,9 @@ namespace {
 using Index = std::size_t;
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-constexpr double kOnTheLimit = 1e-12;   // relative distance at which the slope decides
-constexpr double kRestOnLimit = 1e-9;   // of u at rest: the linear solution's rounding; nearer to a limit it is at it
-constexpr double kLeastScale = 1e-200;  // of y: keeps what is divided by the scale finite in a loop that never moves
-constexpr double kOwnTime = 0.1;        // of a time without an integral time of its own: the tracking time
+constexpr double kOnTheLimit = 1e-12;  // relative distance at which the slope decides
+constexpr double kRestOnLimit = 1e-9;  // of u at rest: the linear solution's rounding; nearer to a limit it is at it
+constexpr double kOwnTime = 0.1;       // of a time without an integral time of its own: the tracking time
 
 }  // namespace
 
@@ -141,14 +140,6 @@ LimitedRest find_rest(const LinearPlant& plant, const ParallelPid& controller, c
     rest.u = u > limits.max ? limits.max : limits.min;
     rest.y = plant.integrators() < 0 ? 0 : plant.low_frequency_gain() * (rest.u + in.d);
     return rest;
-}
-
-double scale_of_y(const LinearPlant& plant, const StepInputs& in, const ActuatorLimits& limits, double y_rest) {
-    double u = std::abs(in.d);
-    for (const double limit : {limits.min, limits.max})
-        if (std::isfinite(limit)) u += std::abs(limit);
-    const double gain = std::abs(plant.rational({0, 1 / own_time(plant)}));
-    return std::max({std::abs(in.r), std::abs(y_rest), gain * u, kLeastScale});
 }
 
 }  // namespace tunewright

@@ -69,7 +69,4 @@ struct LimitedRest {
 LimitedRest find_rest(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& in,
                       const ActuatorLimits& limits);
 
-/// The size that y has when the actuator does all it can over the plant's own time, > 0.
-double scale_of_y(const LinearPlant& plant, const StepInputs& in, const ActuatorLimits& limits, double y_rest);
-
 }  // namespace tunewright

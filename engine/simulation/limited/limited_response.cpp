@@ -11,6 +11,7 @@
 #include "engine/simulation/linear/response_end.h"
 #include "engine/simulation/linear/run_setup.h"
 #include "engine/simulation/run/delayed_input.h"
+#include "engine/simulation/run/loop_sizes.h"
 #include "engine/simulation/run/stopping_rule.h"
 
 namespace tunewright {
@@ -33,6 +34,15 @@ constexpr double kNearCrossing = 0.1;    // of the stride: a longer correction s
 constexpr double kAtCrossing = 1e-14;    // of the largest command: rounding
 constexpr double kFloor = 2e-3;          // of the largest deviation: errors are relative to at least that
 constexpr double kDoubling = 1.0 / 40;   // of the tolerance: the step's doubled length would still be fine
+
+/// |y| of a response that grows without bound: the actuator may do all that it can.
+double beyond_bounds(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& in,
+                     const ActuatorLimits& limits, double y_rest) {
+    StepInputs all{in.r, std::abs(in.d)};
+    for (const double limit : {limits.min, limits.max})
+        if (std::isfinite(limit)) all.d += std::abs(limit);
+    return kEscaped * std::max(std::abs(y_rest), loop_sizes(own_gain(plant, controller), controller, all).y);
+}
 
 /// How far the cubic through a and c misses b halfway, in value and slope.
 double miss(double h, Signal a, Signal b, Signal c) {
@@ -69,7 +79,7 @@ public:
           limits_(limits),
           options_(options),
           rest_(find_rest(plant, controller, in, limits)),
-          scale_y_(scale_of_y(plant, in, limits, rest_.y)),
+          beyond_(beyond_bounds(plant, controller, in, limits, rest_.y)),
           history_(response_.nodes, in.d),
           echoes_(echoes_that_count(std::abs(loop_.system().N), options.tolerance, kRetardedEchoes)),
           stopping_(options.settled, loop_.dead_time()) {
@@ -131,7 +141,7 @@ private:
         note(now_);
     }
 
-    bool escaped() const { return std::abs(now_.out.y.value) > kEscaped * scale_y_; }
+    bool escaped() const { return std::abs(now_.out.y.value) > beyond_; }
 
     bool finished() const {
         if (options_.horizon) return now_.t + slack() >= *options_.horizon;
@@ -334,7 +344,7 @@ private:
     ActuatorLimits limits_;
     const ResponseOptions& options_;
     LimitedRest rest_;
-    double scale_y_;
+    double beyond_;
     StepResponse response_;
     InputHistory history_;
     std::array<std::map<int, Stride>, 3> strides_;  // of each region, by level: length h0 2^level

@@ -6,16 +6,15 @@
 #include "engine/simulation/linear/linear_run.h"
 #include "engine/simulation/linear/mapped_steps.h"
 #include "engine/simulation/linear/scaled_steps.h"
+#include "engine/simulation/run/loop_sizes.h"
 
 namespace tunewright {
 namespace {
 
 /// |y| of a response that grows without bound.
-double beyond_bounds(const LinearPlant& plant, const RunSetup& setup, double delta_r) {
-    const StepInputs& in = setup.system.in;
-    const double time = plant.dead_time() + setup.h0;
-    return kEscaped * std::max({std::abs(in.r), delta_r, std::abs(setup.steady.y),
-                                std::abs(in.d) * std::abs(plant.rational({0, 1 / time}))});
+double beyond_bounds(const LinearPlant& plant, const ParallelPid& controller, const RunSetup& setup, double delta_r) {
+    const LoopSizes sizes = loop_sizes(own_gain(plant, controller), controller, setup.system.in);
+    return kEscaped * std::max({delta_r, std::abs(setup.steady.y), sizes.y});
 }
 
 StepResponse run_mapped(const RunSetup& setup, const ResponseOptions& options) {
@@ -34,7 +33,9 @@ StepResponse simulate_npid(const LinearPlant& plant, const ParallelPid& linear_p
                            const StepInputs& inputs, const ResponseOptions& options) {
     const RunSetup setup = set_up_run(plant, linear_part, inputs, options.repeat);
     if (setup.system.s.integral_state < 0) return run_mapped(setup, options);
-    return LinearRun<ScaledSteps>(setup, options, ErrorScaling{delta_r}, beyond_bounds(plant, setup, delta_r)).run();
+    return LinearRun<ScaledSteps>(setup, options, ErrorScaling{delta_r},
+                                  beyond_bounds(plant, linear_part, setup, delta_r))
+        .run();
 }
 
 }  // namespace tunewright

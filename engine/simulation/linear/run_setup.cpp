@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "engine/numerics/matrix/eigenvalues.h"
+#include "engine/simulation/run/loop_sizes.h"
 
 namespace tunewright {
 namespace {
@@ -54,7 +55,7 @@ RunSetup set_up_run(const LinearPlant& plant, const ParallelPid& controller, con
         if (setup.system.delayed)
             setup.level_of_L = static_cast<int>(std::lround(std::log2(setup.system.s.L / setup.h0)));
     }
-    setup.last_mapped = static_cast<int>(std::log2(kMostMapped * own_time(plant) / setup.h0));
+    setup.last_mapped = static_cast<int>(std::log2(kMostMapped * own_time(plant, controller) / setup.h0));
     return setup;
 }
 

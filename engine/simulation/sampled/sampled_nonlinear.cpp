@@ -4,7 +4,9 @@
 #include <deque>
 
 #include "engine/simulation/linear/response_recorder.h"
+#include "engine/simulation/nonlinear/nonlinear_loop.h"
 #include "engine/simulation/nonlinear/plant_run.h"
+#include "engine/simulation/run/loop_sizes.h"
 #include "engine/simulation/run/stopping_rule.h"
 
 namespace tunewright {
@@ -30,7 +32,8 @@ public:
           program_(law, limits),
           plant_(system, kTolerance),
           recorder_(response_, recording_, inputs.r),
-          rule_(options.settled, system.dead_time() + law.computation_delay + kFewSamples * law.Ts) {}
+          rule_(options.settled, system.dead_time() + law.computation_delay + kFewSamples * law.Ts),
+          least_size_u_(loop_sizes(size_of_effect(system, 1), law.gains, inputs).u) {}
 
     StepResponse result();
 
@@ -54,7 +57,8 @@ private:
     std::deque<Given> outputs_;         // computed, not given out yet
     double u_ = 0;                      // given out
     double y_quiet_ = 0, u_quiet_ = 0;  // near which y and u have stayed since they last moved
-    double size_y_ = 0, size_u_ = 0, first_size_ = 0;
+    double size_y_ = 0, size_u_ = 0;
+    double least_size_u_;  // of the loop, whatever the first samples are
 };
 
 // What arrives behind the dead time bends y at once where the plant's relative degree is one.
@@ -105,12 +109,13 @@ StepResponse NonlinearRun::result() {
     loop.settles = false;
     if (in_.d != 0) plant_.give(in_.d);
     for (int k = 0; k < options_.most_samples && !options_.stop.stop_requested(); ++k) {
-        const double t = (k + 1) * law_.Ts;
+        double t = (k + 1) * law_.Ts;
+        if (options_.horizon && t >= *options_.horizon - kAtOnce * t) t = *options_.horizon;
         outputs_.push_back({k * law_.Ts + law_.computation_delay, program_.step(in_.r, plant_.y())});
         if (!run_to(t)) break;
         note(t);
-        if (k < kFewSamples) first_size_ = std::max(size_y_, size_u_);
-        if (!(size_u_ <= kEscaped * first_size_)) break;
+        if (k < kFewSamples) least_size_u_ = std::max(least_size_u_, size_u_);
+        if (!(size_u_ <= kEscaped * least_size_u_)) break;
         loop.settles = options_.horizon ? t >= *options_.horizon : rule_.has_settled(t);
         if (loop.settles) break;
     }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/loop/sampled/held_plant.h"
+#include "engine/simulation/run/loop_sizes.h"
 #include "engine/simulation/run/stopping_rule.h"
 #include "engine/simulation/sampled/held_motion.h"
 
@@ -18,6 +19,7 @@ constexpr int kMostHalvings = 12;      // of a piece, before a node is set whate
 constexpr Index kMostNodes = 1000000;  // from there on no piece is halved any more
 constexpr double kLook = 0.309;        // of a piece: where swings that the middle meets at the same place are not
 constexpr double kRestOnLimit = 1e-9;  // of u at rest: nearer to a limit it is within
+constexpr double kSameInstant = 1e-9;  // of a sample: nearer instants are one
 constexpr int kRestSamples = 10;       // beyond the dead time: the least that a response must have rested for
 
 /// Where the linear loop rests.
@@ -68,14 +70,19 @@ private:
     double past(int k) const { return k < 0 ? 0 : u_[static_cast<Index>(k)]; }
     void sample(int k);
     void run_period(int k);
+    bool ends_by(double t) const { return t >= end_ - kSameInstant * law_.Ts; }
+    Piece cut(const Piece& piece, double h) const;
+    bool escaped() const { return !(largest_u_ <= kEscaped * sizes_.u && largest_y_ <= kEscaped * sizes_.y); }
     void run_piece(Piece& piece, int level, double t, double t_end, double v, double u);
     void add_node(double t, double v, double u);
     bool swings(Piece& piece, int level, HeldState start, const ResponseNode& left, const HeldOutput& end, double v);
     void note(double t);
 
+    const LinearPlant& plant_;
     const SampledPid law_;
     const StepInputs in_;
     const SampledOptions options_;
+    const double end_;  // the horizon
     PidProgram program_;
     SampledDelay to_plant_, computed_, load_;
     Rest rest_;
@@ -83,7 +90,8 @@ private:
     std::vector<Piece> pieces_;
     HeldState state_;
     std::vector<double> u_;
-    double largest_y_ = 0, largest_u_ = 0, scale_ = 0;
+    double largest_y_ = 0, largest_u_ = 0;
+    LoopSizes sizes_;
     double last_v_ = 0;
     double fastest_swing_ = 0;  // rad/time, of the plant's poles
     StoppingRule rule_;
@@ -92,9 +100,11 @@ private:
 
 SampledRun::SampledRun(const LinearPlant& plant, const SampledPid& law, const ProgramLimits& limits,
                        const StepInputs& inputs, const SampledOptions& options)
-    : law_(law),
+    : plant_(plant),
+      law_(law),
       in_(inputs),
       options_(options),
+      end_(options.horizon.value_or(std::numeric_limits<double>::infinity())),
       program_(law, limits),
       to_plant_(in_samples(plant.dead_time() + law.computation_delay, law.Ts)),
       computed_(in_samples(law.computation_delay, law.Ts)),
@@ -102,9 +112,12 @@ SampledRun::SampledRun(const LinearPlant& plant, const SampledPid& law, const Pr
       rest_(rest_within(plant, rest_of(plant, law.gains, inputs), limits.output, inputs.d)),
       reader_(plant),
       pieces_(pieces(plant)),
+      sizes_(loop_sizes(own_gain(plant, law.gains), law.gains, inputs)),
       rule_(options.settled, (to_plant_.whole + kRestSamples) * law.Ts) {
     state_.x.assign(static_cast<Index>(plant.realisation().n), 0.0);
     for (const auto pole : plant.poles()) fastest_swing_ = std::max(fastest_swing_, pole.imag());
+    sizes_.y = std::max(sizes_.y, std::abs(rest_.y));
+    sizes_.u = std::max(sizes_.u, std::abs(rest_.u));
 }
 
 std::vector<Piece> SampledRun::pieces(const LinearPlant& plant) const {
@@ -118,6 +131,11 @@ std::vector<Piece> SampledRun::pieces(const LinearPlant& plant) const {
                         borders[i] >= computed_.rest});
     }
     return made;
+}
+
+// The beginning of a piece, of length h.
+Piece SampledRun::cut(const Piece& piece, double h) const {
+    return {piece.from, HeldMotion(plant_, h), HeldMotion(plant_, kLook * h), piece.arrived, piece.given};
 }
 
 void SampledRun::add_node(double t, double v, double u) {
@@ -172,6 +190,11 @@ void SampledRun::run_period(int k) {
         const bool jumps = v != last_v_ || response_.nodes.empty() || u != response_.nodes.back().u;
         if (jumps) add_node(t, v, u);
         last_v_ = v;
+        if (ends_by(t_end)) {
+            if (t_end == end_) return run_piece(piece, 0, t, end_, v, u);
+            Piece last = cut(piece, end_ - t);
+            return run_piece(last, 0, t, end_, v, u);
+        }
         run_piece(piece, 0, t, t_end, v, u);
     }
 }
@@ -194,10 +217,10 @@ StepResponse SampledRun::result() {
         sample(k);
         run_period(k);
         const double t = (k + 1) * law_.Ts;
-        if (k < 2) scale_ = std::max({largest_y_, largest_u_, std::abs(in_.r), std::abs(in_.d), std::abs(rest_.u)});
-        if (!(largest_u_ <= kEscaped * scale_ && largest_y_ <= kEscaped * scale_)) break;
+        if (k < 2) sizes_.u = std::max(sizes_.u, largest_u_);
+        if (escaped()) break;
         note(t);
-        response_.settles = options_.horizon ? t >= *options_.horizon : rest_.exists && rule_.has_settled(t);
+        response_.settles = options_.horizon ? ends_by(t) : rest_.exists && rule_.has_settled(t);
         if (response_.settles) break;
     }
     response_.y_final = rest_.y;

@@ -20,7 +20,7 @@ namespace tunewright {
 struct SampledOptions {
     double tolerance = 1e-6;  ///< of the cubics between nodes, relative to the largest |y|
     double settled = 1e-8;    ///< ends when y and u stay this close to rest, relative to their largest deviation
-    std::optional<double> horizon = {};  ///< ends at the first sample from here on instead
+    std::optional<double> horizon = {};  ///< ends exactly there instead
     int most_samples = 400000;
     std::stop_token stop = {};  ///< asked once every sample; the response then ends, unsettled
 };

@@ -45,10 +45,9 @@ TEST(SampledNonlinear, OfALinearPlantInEquationsItIsTheLinearOne) {
             if (limited) limits = {.output = ActuatorLimits{-0.4, 0.5}, .y_resolution = 0.0137};
             SampledOptions fine;
             fine.tolerance = 1e-9;
-            fine.horizon = horizon - 0.5 * Ts;
+            fine.horizon = horizon;
             const StepResponse linear = simulate_sampled(plant, c->law, limits, in, fine);
-            const StepResponse nonlinear =
-                simulate_sampled(*equations, c->law, limits, in, {.horizon = horizon - 0.5 * Ts});
+            const StepResponse nonlinear = simulate_sampled(*equations, c->law, limits, in, {.horizon = horizon});
             EXPECT_LT(largest_difference(nonlinear, linear, horizon, 2 * 60 * 12 + 1), 1e-6);
             EXPECT_NEAR(nonlinear.nodes.back().t, horizon, 1e-9);
         }
@@ -118,7 +117,7 @@ TEST(SampledNonlinear, OfATankItIsThatOfRungeKutta) {
                 constexpr int kSamples = 60, kParts = 40;
                 for (const StepInputs in : {StepInputs{0.3, 0}, StepInputs{-0.15, 0.013}}) {
                     const StepResponse response =
-                        simulate_sampled(made_system(description), law, limits, in, {.horizon = 0.4 * kSamples - 0.1});
+                        simulate_sampled(made_system(description), law, limits, in, {.horizon = 0.4 * kSamples});
                     const std::vector<double> expected = own.run(law, limits, in.r, in.d, kSamples, kParts);
                     const auto values = sampled(response.nodes, 0.4 * kSamples, 2 * kSamples * kParts + 1);
                     double worst = 0, largest = 0;

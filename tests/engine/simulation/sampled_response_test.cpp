@@ -77,7 +77,7 @@ void compare(const Plant& plant, const OwnPlant& own, const SampledPid& law, con
              const StepInputs& in, int samples) {
     const LinearPlant linear = *LinearPlant::make(plant);
     const double Ts = law.Ts, horizon = samples * Ts;
-    const StepResponse response = simulate_sampled(linear, law, limits, in, {.horizon = horizon * (1 - 1e-9)});
+    const StepResponse response = simulate_sampled(linear, law, limits, in, {.horizon = horizon});
     ASSERT_TRUE(response.settles);
     EXPECT_NEAR(response.nodes.back().t, horizon, 1e-9 * horizon);
     const Trace trace = own_trace(own, dead_time(plant), {law, limits}, in.r, in.d, samples);
@@ -169,7 +169,7 @@ TEST(SampledResponse, NodesAscendAndTheOutputIsHeldBetweenThem) {
         const StepResponse response = simulate_sampled(plant, law, {}, {1, 0.5}, {.horizon = 7.3});
         const auto& nodes = response.nodes;
         EXPECT_EQ(nodes.front().t, 0);
-        EXPECT_NEAR(nodes.back().t, 7.4, 1e-12);  // the first sample from the horizon on
+        EXPECT_EQ(nodes.back().t, 7.3);  // between two samples
         // What the first sample asks for: Kp b r + Ki Ts r + Kd c r/(Tf + Ts), from the end of the delay on.
         const double first = 0.5 * 0.8 + 0.4 * 0.2 + 0.1 * 0.3 / (0.17 + 0.2);
         EXPECT_NEAR(nodes.front().u, delay == 0 ? first : 0, 1e-14);
@@ -245,6 +245,29 @@ TEST(SampledResponse, DoesNotRestWhereALimitLeavesAnIntegratorMoving) {
     const StepResponse response = simulate_sampled(plant, pid(0.5, 0.1, 0, 0.2), limits, {0, 1}, options);
     EXPECT_FALSE(response.settles);
     EXPECT_NEAR(response.nodes.back().y_slope, 0.7, 1e-9);
+}
+
+// What a run to infinity does up to the horizon, wherever that lies between two samples.
+TEST(SampledResponse, IndicesEndExactlyAtTheHorizon) {
+    const LinearPlant plant = *LinearPlant::make(kLags);
+    SampledPid law = pid(0.9, 0.6, 0.2, 0.2);
+    law.computation_delay = 0.07;
+    for (const StepInputs in : {StepInputs{1, 0}, StepInputs{0, 1}}) {
+        const StepResponse whole = simulate_sampled(plant, law, {}, in, {});
+        for (const double horizon : {0.05, 0.2, 0.31, 1.0, 3.333, 5.03, 6.0}) {
+            const StepResponse cut = simulate_sampled(plant, law, {}, in, {.horizon = horizon});
+            ASSERT_TRUE(cut.settles);
+            EXPECT_EQ(cut.nodes.back().t, horizon);
+            constexpr int kParts = 200000;
+            const auto values = sampled(whole.nodes, horizon, kParts + 1);
+            double IAE = 0;
+            for (int i = 0; i < kParts; ++i)
+                IAE +=
+                    horizon / kParts * 0.5 *
+                    (std::abs(in.r - values[std::size_t(i)].first) + std::abs(in.r - values[std::size_t(i) + 1].first));
+            EXPECT_NEAR(integral_of_absolute_error(cut.nodes, in.r, std::nullopt), IAE, 1e-5 * IAE + 1e-12) << horizon;
+        }
+    }
 }
 
 TEST(SampledResponse, SeesWhatSwingsWholeTimesBetweenTheSamples) {

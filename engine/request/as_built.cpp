@@ -5,6 +5,7 @@
 
 #include "engine/evaluation/evaluate.h"
 #include "engine/number_text.h"
+#include "engine/tuning/robust/degenerate_design.h"
 
 namespace tunewright {
 namespace {
@@ -106,6 +107,10 @@ void take_as_built(Expected<AsBuilt> built, Evaluation& evaluation, std::optiona
         return;
     }
     warn_of_difference(evaluation, *built);
+    if (const Robustness& r = built->loop.robustness; r.stable && r.omega_Ms)
+        if (auto degenerate =
+                robust::degenerate_design(*r.omega_Ms, built->fitted.controller.Ti, built->fitted.controller.Td))
+            evaluation.warnings.push_back(std::move(*degenerate));
     beside = std::move(*built);
 }
 

@@ -15,6 +15,7 @@ namespace {
 constexpr double kMargins[] = {0, 0.0005, 0.001, 0.002, 0.004, 0.015, 0.05};
 constexpr double kCoarse = 0.01;     // a step relative to the number: smaller ones are left to the rounding
 constexpr double kCostOfMargin = 2;  // of ln IAE, per share of M - 1
+constexpr int kFarSamples = 2;       // of a filter: from the number that its rule gives
 constexpr double kEqualTimes = 0.5;  // of sqrt(Ti Td): a start of a series form whose ideal twin has complex zeros
 
 /// Text and value of what is typed, one for each setting.
@@ -49,6 +50,12 @@ double period_of(const Build& build, const product::Settings& typed) {
             return product::solved(period->term, {}, &product::Quantities::Ts, period->term.Ts, *value) /
                    build.context.seconds_per_time;
     return build.Ts;
+}
+
+/// Whether the filter is a number of samples that is typed.
+bool counts_samples(const Build& build) {
+    return build.sampled() && build.product != nullptr && build.product->filter.kind == product::FilterKind::slope &&
+           build.product->filter.value == 0;
 }
 
 }  // namespace
@@ -264,6 +271,79 @@ void Settling::take(Expected<Fitted> typed) {
     best_ = std::move(typed);
 }
 
+Shape shape_of(const Build& build, const Wish& wish, const OwnForm& form, const Law& rules,
+               const TypedNumbers& numbers) {
+    Shape shape;
+    shape.has_derivative = wish.pid && (build.product == nullptr ||
+                                        product::parameter_of(*build.product, product::Role::derivative) != nullptr);
+    shape.sign = wish.sign;
+    shape.gain = numbers.gain.range();
+    shape.Ti = numbers.Ti.range();
+    shape.Td = numbers.Td.range();
+    shape.law = [&build, &form, rules, counted = counts_samples(build)](double gain, double Ti, double Td) {
+        const IdealPid pid = form.controller(gain, Ti, Td);
+        Law law = rules;
+        law.gains = to_parallel(pid);
+        if (counted) law.slope_samples = product::whole_samples(1 + 2 * pid.filter.Tf / build.Ts);
+        if (build.product == nullptr) law.derivative = rule_of(build, pid);
+        return law;
+    };
+    return shape;
+}
+
+/// A filter of whole samples cannot follow the derivative time as a filter's time does: their number is held, and the
+/// rest searched for it. Numbers from a few below to a few above what the filter's rule gives the free design are
+/// tried.
+class WholeSamples {
+public:
+    WholeSamples(const Build& build, const Wish& wish, const Law& rules, const TypedNumbers& numbers,
+                 const std::vector<const LinearPlant*>& plants, const RunControl& control)
+        : build_(build), wish_(wish), rules_(rules), numbers_(numbers), plants_(plants), control_(control) {}
+
+    Expected<Fitted> best(const Numbers& free) const {
+        const int at = free.shape.law(std::abs(free.found.gain), free.found.Ti, free.found.Td).slope_samples;
+        Settings start = free.found;
+        if (const auto there = found(at, start, Reach::wide)) start = *there;
+        Expected<Settings> least = Error{ErrorKind::no_feasible_controller, "", ""};
+        int samples = at;
+        for (int M = std::max(1, at - kFarSamples); M <= at + kFarSamples; ++M) {
+            const auto next = found(M, start, Reach::near);
+            if (!next || (least && next->load_IAE >= least->load_IAE)) continue;
+            least = next;
+            samples = M;
+        }
+        if (!least) return typed(at, free.found);
+        if (const auto last = found(samples, *least, Reach::near); last && last->load_IAE < least->load_IAE)
+            least = last;
+        return typed(samples, *least);
+    }
+
+private:
+    Wish held_at(int samples) const {
+        Wish held = wish_;
+        held.filter_time = [Tf = product::slope_filter_time(samples, build_.Ts)](double) { return Tf; };
+        return held;
+    }
+    Expected<Settings> found(int samples, const Settings& start, Reach reach) const {
+        const Wish held = held_at(samples);
+        const OwnForm form(build_, held);
+        return search(plants_, shape_of(build_, held, form, rules_, numbers_), held.limits, {start}, control_, reach);
+    }
+    Expected<Fitted> typed(int samples, const Settings& settings) const {
+        const Wish held = held_at(samples);
+        const OwnForm form(build_, held);
+        return Settling(build_, form, numbers_, plants_, held.limits, control_)
+            .best({shape_of(build_, held, form, rules_, numbers_), settings});
+    }
+
+    const Build& build_;
+    const Wish& wish_;
+    const Law& rules_;
+    const TypedNumbers& numbers_;
+    const std::vector<const LinearPlant*>& plants_;
+    const RunControl& control_;
+};
+
 /// The sign is settled before anything is searched: a controller turned round would be unstable at any gain.
 std::optional<Error> wrong_direction(const Build& build, const Wish& wish) {
     if (build.product == nullptr || build.product->action.kind != product::Action::Kind::reverse_only || wish.sign > 0)
@@ -296,27 +376,13 @@ Expected<Fitted> design(const Build& build, const std::vector<const LinearPlant*
     Settings start = start_of(build, wish);
     const auto rules = rules_of(build, form.controller(std::abs(start.gain), start.Ti, start.Td));
     if (!rules) return rules.error();
-    const bool slope = build.product != nullptr && build.product->filter.kind == product::FilterKind::slope &&
-                       build.product->filter.value == 0;
-    Shape shape;
-    shape.has_derivative = wish.pid && (build.product == nullptr ||
-                                        product::parameter_of(*build.product, product::Role::derivative) != nullptr);
-    shape.sign = wish.sign;
     const TypedNumbers numbers(build);
-    shape.gain = numbers.gain.range();
-    shape.Ti = numbers.Ti.range();
-    shape.Td = numbers.Td.range();
-    shape.law = [&](double gain, double Ti, double Td) {
-        const IdealPid pid = form.controller(gain, Ti, Td);
-        Law law = *rules;
-        law.gains = to_parallel(pid);
-        if (slope && build.sampled()) law.slope_samples = product::whole_samples(1 + 2 * pid.filter.Tf / build.Ts);
-        if (build.product == nullptr) law.derivative = rule_of(build, pid);
-        return law;
-    };
+    const Shape shape = shape_of(build, wish, form, *rules, numbers);
     const auto free = search(plants, shape, wish.limits, {start}, control);
     if (!free) return free.error();
     if (build.product == nullptr) return fit(build, form.controller(std::abs(free->gain), free->Ti, free->Td), true);
+    if (shape.has_derivative && counts_samples(build))
+        return WholeSamples(build, wish, *rules, numbers, plants, control).best({shape, *free});
     return Settling(build, form, numbers, plants, wish.limits, control).best({shape, *free});
 }
 

@@ -30,6 +30,14 @@ constexpr double kMargins[] = {1e-5, 1e-4, 1e-3};
 constexpr double kHolds = 1e-6;                      // relative excess over a limit that counts as none
 constexpr double kLowerGains[] = {0.95, 0.85, 0.7};  // where a loop at its limits swings, less gain may cost less
 
+// The net over both times on which other valleys than the start's are looked for. A resonance makes some that a simplex
+// from an ordinary design does not find: there Ti is a tenth of Td.
+constexpr double kNetStep = 2;  // from one value to the next
+constexpr int kNetBelow = 4, kNetAbove = 3;
+constexpr double kTdOfTi = 0.1;         // of a start without derivative, whose logarithm a search of Td cannot use
+constexpr double kBetter = 1e-3;        // relative: what another valley must save to be searched to its end
+constexpr std::size_t kMaxValleys = 3;  // that get a simplex of their own
+
 }  // namespace
 
 Limits within(const Limits& limits, double margin) {
@@ -49,8 +57,8 @@ public:
 
     void keep_margin(double margin) { inner_ = within(limits_, margin); }
 
-    /// The cost is infinite where no gain serves.
-    Settings at(double Ti, double Td);
+    /// The cost is infinite where no gain serves, or where what the load IAE cannot be below, 1/Ki, exceeds `enough`.
+    Settings at(double Ti, double Td, double enough = kInfinity);
     /// How far the limits would have to be widened for some gain to serve, as a factor of M - 1; infinite: no width
     /// helps. It leads a search from times without a gain to times with one.
     double widening(double Ti, double Td) const;
@@ -59,7 +67,7 @@ public:
 
 private:
     Law law(double gain, double Ti, double Td) const { return shape_.law(gain, Ti, Td); }
-    Settings with_limits(double Ti, double Td, const Limits& limits) const;
+    Settings with_limits(double Ti, double Td, const Limits& limits, double enough = kInfinity) const;
     double cost(double gain, double Ti, double Td) const { return load_iae_of(*plants_.front(), law(gain, Ti, Td)); }
 
     const std::vector<const LinearPlant*>& plants_;
@@ -69,12 +77,13 @@ private:
     std::vector<GainLimiter> limiters_;
 };
 
-Settings Search::with_limits(double Ti, double Td, const Limits& limits) const {
+Settings Search::with_limits(double Ti, double Td, const Limits& limits, double enough) const {
     Settings best{0, Ti, Td, kInfinity};
     const auto k = largest_gain(
         limiters_, [&](double gain) { return law(gain, Ti, Td); }, limits, shape_.gain.high);
     if (!k || *k < shape_.gain.low) return best;
     const double most = *k;
+    if (!(1 / std::abs(law(most, Ti, Td).gains.Ki) <= enough)) return best;
     best = {shape_.sign * most, Ti, Td, cost(most, Ti, Td)};
     for (const double share : kLowerGains) {
         const double gain = std::max(share * most, shape_.gain.low), lower = cost(gain, Ti, Td);
@@ -84,7 +93,9 @@ Settings Search::with_limits(double Ti, double Td, const Limits& limits) const {
     return best;
 }
 
-Settings Search::at(double Ti, double Td) { return with_limits(shape_.Ti.within(Ti), shape_.Td.within(Td), inner_); }
+Settings Search::at(double Ti, double Td, double enough) {
+    return with_limits(shape_.Ti.within(Ti), shape_.Td.within(Td), inner_, enough);
+}
 
 double Search::widening(double Ti, double Td) const {
     const auto serves = [&](double factor) {
@@ -192,6 +203,39 @@ Settings TimesSearch::best(Reach reach, const std::stop_token& stop) {
     return found;
 }
 
+/// The lowest points of the valleys on a net about the start, the best first.
+std::vector<Settings> valleys(Search& local, const Shape& shape, const Settings& start, const std::stop_token& stop) {
+    const int rows = shape.has_integral ? kNetBelow + 1 + kNetAbove : 1,
+              columns = shape.has_derivative ? kNetBelow + 1 + kNetAbove : 1;
+    const auto time = [](double from, bool varies, int i) {
+        return varies ? from * std::pow(kNetStep, i - kNetBelow) : from;
+    };
+    std::vector<Settings> net;
+    double least = local.at(start.Ti, start.Td).load_IAE;
+    for (int i = 0; i < rows && !stop.stop_requested(); ++i)
+        for (int j = 0; j < columns; ++j) {
+            const double Ti = time(start.Ti, shape.has_integral, i), Td = time(start.Td, shape.has_derivative, j);
+            net.push_back(local.at(Ti, Td, least));
+            least = std::min(least, net.back().load_IAE);
+        }
+    if (stop.stop_requested()) return {};
+    const auto cost = [&](int i, int j) {
+        const bool within = i >= 0 && i < rows && j >= 0 && j < columns;
+        return within ? net[static_cast<std::size_t>(i * columns + j)].load_IAE : kInfinity;
+    };
+    std::vector<Settings> found;
+    for (int i = 0; i < rows; ++i)
+        for (int j = 0; j < columns; ++j) {
+            bool lowest = std::isfinite(cost(i, j));
+            for (int a = -1; a <= 1; ++a)
+                for (int b = -1; b <= 1; ++b) lowest = lowest && cost(i, j) <= cost(i + a, j + b);
+            if (lowest) found.push_back(net[static_cast<std::size_t>(i * columns + j)]);
+        }
+    std::sort(found.begin(), found.end(), [](const Settings& a, const Settings& b) { return a.load_IAE < b.load_IAE; });
+    if (found.size() > kMaxValleys) found.resize(kMaxValleys);
+    return found;
+}
+
 }  // namespace
 
 Expected<Settings> search(const std::vector<const LinearPlant*>& plants, const Shape& shape, const Limits& limits,
@@ -199,12 +243,27 @@ Expected<Settings> search(const std::vector<const LinearPlant*>& plants, const S
     std::optional<Settings> best;
     for (Settings start : starts) {
         start.Ti = shape.Ti.within(start.Ti);
-        start.Td = shape.Td.within(start.Td);
+        start.Td = shape.Td.within(start.Td > 0 || !shape.has_derivative ? start.Td : kTdOfTi * start.Ti);
         // The first loop's frequencies serve all later ones.
         Search local(plants, shape, limits, shape.law(std::abs(start.gain), start.Ti, start.Td));
-        const Settings found = TimesSearch(local, shape, start).best(reach, control.stop);
+        const auto take = [&](const Settings& found) {
+            if (std::isfinite(found.load_IAE) && (!best || found.load_IAE < best->load_IAE)) best = found;
+        };
+        take(TimesSearch(local, shape, start).best(reach, control.stop));
+        if (reach == Reach::wide) {
+            std::optional<Settings> other;
+            for (const Settings& valley : valleys(local, shape, start, control.stop)) {
+                local.keep_margin(kMargins[0]);
+                const Settings found = TimesSearch(local, shape, valley).best(Reach::near, control.stop);
+                if (!other || found.load_IAE < other->load_IAE) other = found;
+            }
+            if (other && std::isfinite(other->load_IAE) &&
+                (!best || other->load_IAE < best->load_IAE * (1 - kBetter))) {
+                local.keep_margin(kMargins[0]);
+                take(TimesSearch(local, shape, *other).best(reach, control.stop));
+            }
+        }
         if (control.stop.stop_requested()) return Error{ErrorKind::cancelled, "", "The job was cancelled."};
-        if (std::isfinite(found.load_IAE) && (!best || found.load_IAE < best->load_IAE)) best = found;
     }
     return best ? Expected<Settings>(*best) : Expected<Settings>(none(limits));
 }

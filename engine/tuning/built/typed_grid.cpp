@@ -67,6 +67,11 @@ public:
             for (std::size_t i = 0; i < near_.settings.size(); ++i) {
                 const auto* value = std::get_if<double>(&near_.settings[i].value);
                 if (near_.settings[i].name != tunable.name || value == nullptr || *value == 0) continue;
+                // A number of samples has been chosen already, and the rest for it.
+                if (tunable.role == product::Role::filter &&
+                    product::parameter_named(*build_.product, tunable.name)->shape == product::Shape::slope_samples &&
+                    build_.sampled())
+                    continue;
                 numbers_.push_back({i, tunable.role, neighbours(tunable, *value)});
                 if (tunable.role == product::Role::gain) gain_step_ = step_of(tunable, *value);
             }

@@ -6,6 +6,7 @@
 #include "engine/number_text.h"
 #include "engine/tuning/method/setpoint.h"
 #include "engine/tuning/reaction_curve/amigo.h"
+#include "engine/tuning/robust/degenerate_design.h"
 #include "engine/tuning/robust/family.h"
 #include "engine/tuning/robust/feasibility.h"
 #include "engine/tuning/robust/verified_search.h"
@@ -63,15 +64,10 @@ Warning exceeded_inside(const std::vector<LinearPlant>& found, const DesignProbl
                 text(100 * worst) + " %. Lower Ms and Mt a little, or narrow the ranges."};
 }
 
-// Times 1/reference frequency: beyond them a design is no ordinary PID.
-constexpr double kShortTi = 1e-3, kLongTd = 1e3;
-
 void add_warnings(TunedController& result, const DesignProblem& problem, const DesignPoint& x) {
-    const double reference = reference_frequency(problem), Ti = std::exp(x[1]);
-    if (Ti * reference < kShortTi || (problem.pid && std::exp(x[2]) * reference > kLongTd))
-        result.warnings.push_back(
-            {"degenerate-design", "The optimum tends to pure integral and derivative action (Ti " + text(Ti) +
-                                      "): a smaller Ms or a longer filter time gives an ordinary PID."});
+    const double Td = problem.pid ? std::exp(x[2]) : 0;
+    if (auto degenerate = degenerate_design(reference_frequency(problem), std::exp(x[1]), Td))
+        result.warnings.push_back(std::move(*degenerate));
     if (problem.pid && !std::isfinite(x[2]))
         result.warnings.push_back(
             {"no-derivative", "No derivative time was found with which a PID does better than this PI: Td is 0."});

@@ -109,6 +109,9 @@ inline Form form_of(const std::string& product, const Case& c) {
     if (product == "rockwell_pide_independent") return {"PGain", "IGain", "DGain", q, 60 * q, q / 60, gains};
     if (product == "emerson_deltav_series") return {"GAIN", "RESET", "RATE", q, 1, 1, times};
     if (product == "klipper") return {"pid_Kp", "pid_Ki", "pid_Kd", duty, duty, duty, gains};
+    if (product == "reprapfirmware") return {"P", "I", "D", duty, duty, duty, gains};
+    if (product == "esphome_pid") return {"kp", "ki", "kd", 1 / Su, 1 / Su, 1 / Su, gains};
+    if (product == "openplc_iec_pid") return {"KP", "TR", "TD", -1, 1, 1, times};  // its error is y - r
     if (product == "mitsubishi_fx_pid") return {"KP", "TI", "TD", 100 * q, 10, 100, times, true};
     if (product == "omron_pid190") return {"P", "Tik_0_1s", "Tdk_0_1s", 1000 / q, 10, 10, band, true};
     if (product == "foxboro_pid") return {"PBAND", "INT", "DERIV", 100 / q, 1.0 / 60, 1.0 / 60, band};
@@ -191,7 +194,7 @@ private:
 
     bool serves(double K, double Ti, double Td) {
         const Typed t = typed(K, Ti, Td);
-        if (t.number(form_.integral) <= 0 || t.number(form_.gain) <= 0) return false;
+        if (t.number(form_.integral) <= 0 || t.number(form_.gain) * form_.of_gain <= 0) return false;
         return judge_.within_limits(own_program(product_, t));
     }
 

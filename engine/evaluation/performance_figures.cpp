@@ -36,7 +36,9 @@ const char* why_no_integral(const StepResponse& response, double target, bool to
     double scale = std::abs(target);
     for (const auto& node : response.nodes) scale = std::max(scale, std::abs(node.y));
     if (std::abs(target - response.y_final) > kAtTarget * scale)
-        return "The error does not go to 0 (no integral action), so its integral is infinite; give a horizon.";
+        return "The error does not go to 0 (no integral action, or u rests at its limit), so its integral is infinite; "
+               "give a "
+               "horizon.";
     return nullptr;
 }
 

@@ -5,24 +5,16 @@
 #include <utility>
 
 #include "engine/number_text.h"
+#include "engine/range/limit_remarks.h"
+#include "engine/range/schedule/look.h"
 
 namespace tunewright::range {
 namespace {
 
-constexpr int kMostPlacesAdded = 6;       // of one setting that must hold between its points
-constexpr double kAllowedBetween = 5e-5;  // of a limit between the points
+constexpr int kMostPlacesAdded = 6;  // of one setting that must hold between its points
 
 SettingsInUse always(const IdealPid& controller) {
     return [controller](double) { return std::vector<IdealPid>{controller}; };
-}
-
-const WorstPlace* worst_limit(const RangeCurve& curve) {
-    const WorstPlace* worst = nullptr;
-    const auto over = [](const WorstPlace& place) { return place.value.value_or(INFINITY) / place.limit; };
-    for (const WorstPlace& place : curve.worst)
-        if (place.quantity != Quantity::relative_IAE && (worst == nullptr || over(place) > over(*worst)))
-            worst = &place;
-    return worst;
 }
 
 DesignRules with_integrated_error(DesignRules rules) {
@@ -86,7 +78,7 @@ private:
             design_.one = *one;
             design_.one_curve = std::move(*curve);
             const WorstPlace* worst = worst_limit(design_.one_curve);
-            if (!problem_.hold_between || largest_excess(design_.one_curve) <= kAllowedBetween || one->partial) break;
+            if (!problem_.hold_between || !exceeds_limit(design_.one_curve) || one->partial) break;
             points.push_back(worst->at);
             std::ranges::sort(points);
             one = design_one_setting(points_, points, options_);
@@ -104,21 +96,12 @@ private:
 
     void warn_between() {
         if (!design_.one || design_.one_curve.places.empty()) return;
-        const double excess = largest_excess(design_.one_curve);
-        if (excess <= kAllowedBetween) return;
-        const WorstPlace* worst = worst_limit(design_.one_curve);
-        const std::string what = worst->quantity == Quantity::Ms ? "Ms" : "Mt";
-        design_.warnings.push_back(
-            {"limit-exceeded-between", "With one setting " + what +
-                                           (worst->value ? " is " + text(*worst->value) : " is infinite") + " at " +
-                                           places_.named(worst->at) + ", between the points at which its limit of " +
-                                           text(worst->limit) + " is held. Add a point there."});
+        if (auto warning = one_above_limit(design_.one_curve, places_)) design_.warnings.push_back(*warning);
     }
 
     bool one_is_enough() const {
         return design_.one && !design_.one_curve.places.empty() && !options_.rows &&
-               largest_relative_IAE(design_.one_curve) <= 1 + options_.allowance &&
-               largest_excess(design_.one_curve) <= kAllowedBetween;
+               largest_relative_IAE(design_.one_curve) <= 1 + options_.allowance && !exceeds_limit(design_.one_curve);
     }
 
     std::optional<Error> find_schedule() {
@@ -164,7 +147,13 @@ private:
         design_.partial = design_.partial || schedule.partial;
         if (curve) {
             schedule.worst_relative_IAE = std::max(schedule.worst_relative_IAE, largest_relative_IAE(*curve));
-            schedule.holds_limits = schedule.holds_limits && largest_excess(*curve) <= kAllowedBetween;
+            schedule.holds_limits = schedule.holds_limits && !exceeds_limit(*curve);
+            if (!schedule.holds_limits) {
+                const auto verified = verify(places_, own_, schedule.schedule, std::log1p(options_.allowance));
+                const double excess = verified ? std::expm1(verified->excess) : -1;
+                schedule.warnings.push_back(
+                    schedule_above_limit(*curve, std::max(largest_excess(*curve), excess), places_));
+            }
         }
         remark_price(schedule, options_.allowance);
         design_.warnings.insert(design_.warnings.end(), schedule.warnings.begin(), schedule.warnings.end());

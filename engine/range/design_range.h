@@ -60,13 +60,15 @@ std::vector<Error> option_faults(const RangeOptions& options);
 /// "tune", "schedule" and "evaluate", with the best so far.
 ///
 /// Warnings: the model's; "limit-exceeded-between" where one setting exceeds a limit between the points;
-/// "schedule-over-allowance". Errors: option_faults' first; those of Places::at; where neither a setting nor a schedule
-/// exists, that of the setting; cancelled before anything was found.
+/// "schedule-over-allowance"; "schedule-above-limit" where `holds_limits` is false. Errors: option_faults' first; those
+/// of Places::at; where neither a setting nor a schedule exists, that of the setting; cancelled before anything was
+/// found.
 Expected<RangeDesign> design_range(const RangeProblem& problem, const RunControl& control);
 
 /// What a schedule does over the range, without a design: quick, so that it can follow a hand. Its price is measured
 /// against optima that are searched at a few places and interpolated between; the worst places against their own.
-/// `one` is empty and the verdict says nothing. Rows ascend; hysteresis is in the unit of `at`.
+/// `one` is empty and the verdict says nothing; a schedule beyond a limit has the warning "schedule-above-limit". Rows
+/// ascend; hysteresis is in the unit of `at`.
 ///
 /// Errors: option_faults' first; those of Places::at.
 Expected<RangeDesign> judge_schedule(const RangeProblem& problem, const Schedule& schedule, const RunControl& control);

@@ -3,13 +3,13 @@
 #include <utility>
 
 #include "engine/range/design_range.h"
+#include "engine/range/limit_remarks.h"
 #include "engine/range/schedule/look.h"
 
 namespace tunewright::range {
 namespace {
 
-constexpr std::size_t kOwnPlaces = 9;    // with optima of their own; the worst places join them
-constexpr double kAllowedExcess = 5e-5;  // of a limit, before it counts as exceeded
+constexpr std::size_t kOwnPlaces = 9;  // with optima of their own; the worst places join them
 
 }  // namespace
 
@@ -37,7 +37,9 @@ Expected<RangeDesign> judge_schedule(const RangeProblem& problem, const Schedule
     design.warnings = model.warnings();
     ScheduleDesign& given = design.schedule.emplace();
     given.schedule = schedule;
-    given.holds_limits = std::max(largest_excess(*curve), verified->excess) <= kAllowedExcess;
+    const double excess = std::max(largest_excess(*curve), std::expm1(verified->excess));
+    given.holds_limits = excess <= kAllowedRelativeExcess;
+    if (!given.holds_limits) design.warnings.push_back(schedule_above_limit(*curve, excess, places));
     given.worst_relative_IAE = largest_relative_IAE(*curve);
     given.within_allowance = given.worst_relative_IAE <= 1 + problem.options.allowance;
     const auto longest = longest_sample_time(model, schedule);

@@ -135,7 +135,8 @@ TuningEntry Rows::entry(const PlannedRow& planned, const std::optional<TuningPro
     entry.source = planned.method->source;
     const auto& on_points = planned.method->options_on_points;
     entry.options = with_defaults(problem || on_points.empty() ? planned.method->options : on_points, planned.options);
-    const SetpointOptions setpoint = problem ? wanted_setpoint(*planned.method, entry.options) : SetpointOptions{};
+    SetpointOptions setpoint = problem ? wanted_setpoint(*planned.method, entry.options) : SetpointOptions{};
+    setpoint.may_filter = !request_.implement || request_.implement->product == nullptr;
     const double started = now_of(control);
     std::optional<built::Fitted> fitted;
     auto tuned = tuned_with(planned, problem, setpoint, control, fitted);

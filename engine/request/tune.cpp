@@ -237,9 +237,12 @@ Expected<TuningResult> TuningRun::result() {
     if (result_.model && !result_.ranking.empty())
         result_.model->region = result_.controllers[static_cast<size_t>(result_.ranking.front())].evaluation->region;
     result_.ranking_by = ranking_by(result_.controllers, terms);
-    const verdict::Context context{*subject_, request_.evaluate, request_.labels,
+    const verdict::Context context{*subject_,
+                                   request_.evaluate,
+                                   request_.labels,
                                    request_.implement ? request_.implement->Ts : 0,
-                                   result_.model ? &*result_.model : nullptr};
+                                   result_.model ? &*result_.model : nullptr,
+                                   problem_ ? &*problem_ : nullptr};
     verdict::judge(result_.controllers, context);
     result_.verdict = verdict::of_all(result_.controllers, result_.ranking, context, result_.partial);
     report(1, "tune", "Done.");

@@ -47,6 +47,9 @@ Expected<TypedPlant> of_formula(Cursor& cursor, double own_time) {
     return TypedPlant{*std::move(plant), std::move(formula)};
 }
 
+/// At most 15 digits: as many as a decimal keeps through a change of units, so 253 is no 252.99999999999997.
+std::string as_typed(double x) { return text(x, 15); }
+
 std::string polynomial_text(const Polynomial& p) {
     std::string out;
     for (std::size_t i = 0; i < p.size(); ++i) {
@@ -54,14 +57,14 @@ std::string polynomial_text(const Polynomial& p) {
         const std::size_t power = p.size() - 1 - i;
         out += out.empty() ? (p[i] < 0 ? "-" : "") : p[i] < 0 ? " - " : " + ";
         const bool one = std::abs(p[i]) == 1 && power > 0;
-        if (!one) out += exact_text(std::abs(p[i]));
+        if (!one) out += as_typed(std::abs(p[i]));
         if (power > 0) out += one ? "s" : " s";
         if (power > 1) out += "^" + std::to_string(power);
     }
     return out;
 }
 
-std::string delay_text(double L) { return L == 0 ? "" : L == 1 ? "e^(-s)" : "e^(-" + exact_text(L) + " s)"; }
+std::string delay_text(double L) { return L == 0 ? "" : L == 1 ? "e^(-s)" : "e^(-" + as_typed(L) + " s)"; }
 
 /// `top` e^(-Ls) over the factors.
 std::string quotient_text(std::string top, double L, const std::vector<Polynomial>& bottom) {
@@ -80,12 +83,12 @@ std::string quotient_text(std::string top, double L, const std::vector<Polynomia
 
 Polynomial lag(double T) { return T == 0 ? Polynomial{1} : Polynomial{T, 1}; }
 
-std::string text_of(const Fopdt& p) { return quotient_text(exact_text(p.K), p.L, {lag(p.T)}); }
-std::string text_of(const Sopdt& p) { return quotient_text(exact_text(p.K), p.L, {lag(p.T1), lag(p.T2)}); }
-std::string text_of(const Ipdt& p) { return quotient_text(exact_text(p.K), p.L, {{1, 0}, lag(p.T)}); }
+std::string text_of(const Fopdt& p) { return quotient_text(as_typed(p.K), p.L, {lag(p.T)}); }
+std::string text_of(const Sopdt& p) { return quotient_text(as_typed(p.K), p.L, {lag(p.T1), lag(p.T2)}); }
+std::string text_of(const Ipdt& p) { return quotient_text(as_typed(p.K), p.L, {{1, 0}, lag(p.T)}); }
 std::string text_of(const OscillatorySopdt& p) {
-    return "K=" + exact_text(p.K) + " T=" + exact_text(p.T) + " zeta=" + exact_text(p.zeta) +
-           (p.L == 0 ? "" : " L=" + exact_text(p.L));
+    return "K=" + as_typed(p.K) + " T=" + as_typed(p.T) + " zeta=" + as_typed(p.zeta) +
+           (p.L == 0 ? "" : " L=" + as_typed(p.L));
 }
 
 Polynomial without_leading_zeros(const std::vector<double>& coefficients) {
@@ -97,8 +100,8 @@ Polynomial without_leading_zeros(const std::vector<double>& coefficients) {
 std::string text_of(const TransferFunction& p) {
     const Polynomial num = without_leading_zeros(p.num), den = without_leading_zeros(p.den);
     if (den.size() == 1)
-        return quotient_text(num.size() == 1 ? exact_text(num[0] / den[0]) : polynomial_text(num), p.L, {});
-    return quotient_text(num.size() == 1 ? exact_text(num[0]) : "(" + polynomial_text(num) + ")", p.L, {den});
+        return quotient_text(num.size() == 1 ? as_typed(num[0] / den[0]) : polynomial_text(num), p.L, {});
+    return quotient_text(num.size() == 1 ? as_typed(num[0]) : "(" + polynomial_text(num) + ")", p.L, {den});
 }
 
 std::string roots_text(const std::vector<std::complex<double>>& roots) {
@@ -107,11 +110,11 @@ std::string roots_text(const std::vector<std::complex<double>>& roots) {
         const auto r = roots[i];
         out += " ";
         if (r.imag() == 0) {
-            out += exact_text(r.real());
+            out += as_typed(r.real());
             continue;
         }
         const bool pair = i + 1 < roots.size() && roots[i + 1] == std::conj(r);
-        out += exact_text(r.real()) + (pair ? "±" : r.imag() < 0 ? "-" : "+") + exact_text(std::abs(r.imag())) + "i";
+        out += as_typed(r.real()) + (pair ? "±" : r.imag() < 0 ? "-" : "+") + as_typed(std::abs(r.imag())) + "i";
         if (pair) ++i;
     }
     return out;
@@ -119,8 +122,8 @@ std::string roots_text(const std::vector<std::complex<double>>& roots) {
 
 std::string text_of(const Zpk& p) {
     return (p.zeros.empty() ? "" : "zeros" + roots_text(p.zeros) + ", ") +
-           (p.poles.empty() ? "poles none" : "poles" + roots_text(p.poles)) + ", gain " + exact_text(p.K) +
-           (p.L == 0 ? "" : ", delay " + exact_text(p.L));
+           (p.poles.empty() ? "poles none" : "poles" + roots_text(p.poles)) + ", gain " + as_typed(p.K) +
+           (p.L == 0 ? "" : ", delay " + as_typed(p.L));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "engine/number_text.h"
+#include "engine/range/limit_remarks.h"
 #include "engine/range/schedule/knots.h"
 #include "engine/range/schedule/look.h"
 
@@ -22,7 +23,6 @@ constexpr double kHopelessStep = 0.15;   // of what is left to the price allowed
 constexpr double kNearby = 0.3;          // of the distance of a search's places inside a part
 constexpr int kIterations = 14;
 constexpr int kNearestRows[] = {kMostRows, 10, 5, 2};  // where no number of rows stays within the allowance
-constexpr double kAllowedOfOne = 5e-5;                 // of ln of a limit: as one setting is held between the points
 
 /// The limits first, then the price.
 bool nearer(const ScheduleDesign& one, const std::optional<ScheduleDesign>& other) {
@@ -229,7 +229,7 @@ Expected<ScheduleDesign> same_everywhere(const Places& places, const OwnOptima& 
     const double allowed = std::log1p(options.allowance);
     const auto verified = verify(places, own, design.schedule, allowed);
     if (!verified) return verified.error();
-    design.holds_limits = verified->excess <= kAllowedOfOne;
+    design.holds_limits = verified->excess <= kAllowedRelativeExcess;
     design.within_allowance = verified->log_price <= allowed;
     design.worst_relative_IAE = std::exp(verified->log_price);
     return design;

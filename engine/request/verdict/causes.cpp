@@ -1,17 +1,12 @@
+#include "engine/request/verdict/cures.h"
 #include "engine/request/verdict/findings.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 namespace tunewright::verdict {
 namespace {
-
-constexpr double kAsGood = 1.05;        // PI may cost so much more than PID and still be as good
-constexpr double kExcessPercent = 10;   // over the optimum, worth a word
-constexpr double kDeadTimeRules = 2;    // times the lags: L/(L + T) above 2/3
-constexpr double kFilterDegrees = 20;   // of phase at the peak of |S|
-constexpr double kNoisy = 20;           // Mks over |Kp|: beyond the usual derivative gains N of 2 to 20
-constexpr double kNoiseOfRange = 0.02;  // standard deviation of u over the actuator's range
 
 double degrees(double radians) { return radians * 180 / std::numbers::pi; }
 
@@ -58,15 +53,24 @@ Found excess(const Case& c) {
 Found dead_time_rules(const Case& c) {
     const LinearPlant* plant = c.context.subject.linear();
     if (plant == nullptr || plant->integrators() != 0 || plant->unstable_poles() > 0) return {};
-    const double L = plant->dead_time(), lags = plant->lag_sum();
+    const double L = plant->dead_time();
+    // Of poles that swing the sum of the lags says little: a resonance of no damping has none.
+    const double lags = std::max(plant->lag_sum(), plant->time_scale() - L);
     const bool alone = plant->poles().empty();
     if (!(L > 0) || (!alone && !(lags > 0 && L >= kDeadTimeRules * lags))) return {};
     Draft draft("dead-time-rules", Level::note);
-    draft.say("Dead time rules this loop: ");
-    if (!alone) draft.say("it is ").number("dead_time_over_lags", L / lags).say(" times the lags, and ");
-    return draft.say("nothing acts sooner than ")
+    if (!alone) draft.say("The dead time is ").number("dead_time_over_lags", L / lags).say(" times the lags: nothing");
+    draft.say(alone ? "Nothing acts sooner than " : " acts sooner than ")
         .number("dead_time", L, printed_unit(c.context.labels.time))
-        .say(" after a disturbance. A shorter dead time would help more than any tuning.");
+        .say(" after a disturbance");
+    const Figure& IAE = c.performance().load.IAE;
+    const auto least = least_load_IAE(c);
+    if (least && IAE)
+        draft.say(", and no controller has a load IAE below ")
+            .number("least_load_IAE", *least)
+            .say("; this one has ")
+            .number("load_IAE", *IAE);
+    return draft.say(".");
 }
 
 Found filter_rules(const Case& c) {
@@ -77,16 +81,30 @@ Found filter_rules(const Case& c) {
     const double taken = filter_degrees(pid->filter, *r.omega_Ms), by_plant = degrees(*r.omega_Ms * plant->dead_time());
     if (taken < kFilterDegrees || taken <= by_plant) return {};
     const Labels& labels = c.context.labels;
-    return Draft("filter-rules", Level::note)
-        .say("The measurement's filter (Tf ")
+    Draft draft("filter-rules", Level::note);
+    draft.say("The measurement's filter (Tf ")
         .number("Tf", pid->filter.Tf, printed_unit(labels.time))
-        .say(") rules this loop: at ")
+        .say(") limits this loop: at ")
         .number("omega_Ms", *r.omega_Ms, "rad/" + labels.time)
         .say(" it takes ")
         .number("filter_degrees", taken)
         .say("° of phase, the dead time ")
         .number("dead_time_degrees", by_plant)
-        .say("°. A shorter filter would help more than any tuning.");
+        .say("°.");
+    const Figure& IAE = c.evaluation.performance.load.IAE;
+    const auto shorter = designed_with_filter(c, 0.5 * pid->filter.Tf);
+    if (!IAE || !shorter || !shorter->load_IAE || !(kAsGood * *shorter->load_IAE < *IAE)) return draft;
+    return draft.say(" With half of it (")
+        .number("shorter_Tf", 0.5 * pid->filter.Tf, printed_unit(labels.time))
+        .say(") the design within the same limits has a load IAE of ")
+        .number("shorter_load_IAE", *shorter->load_IAE)
+        .say(" instead of ")
+        .number("load_IAE", *IAE)
+        .say(", and a noise gain Mks of ")
+        .number("shorter_Mks", shorter->Mks, quotient_unit(labels.u, labels.y))
+        .say(" instead of ")
+        .number("Mks", *r.Mks, quotient_unit(labels.u, labels.y))
+        .say(".");
 }
 
 Found sample_time(const Case& c) {
@@ -103,13 +121,38 @@ Found sample_time(const Case& c) {
         .figure("percent", 5);
 }
 
+namespace {
+
+/// What the filter does to the same gains, where it leaves the loop its margins.
+void say_filtered(Draft& draft, const Case& c, const Filter& filter) {
+    const auto peaks = peaks_with_filter(c, filter);
+    const Figure& Ms = c.evaluation.robustness.Ms;
+    if (!peaks || !Ms || peaks->Ms > std::max(*Ms, kLittleMarginMs)) return;
+    const Labels& labels = c.context.labels;
+    draft.say(" With Tf = ")
+        .number("longer_Tf", filter.Tf, printed_unit(labels.time))
+        .say(" and the same gains Mks is ")
+        .number("filtered_Mks", peaks->Mks, quotient_unit(labels.u, labels.y))
+        .say(" and Ms ")
+        .number("filtered_Ms", peaks->Ms)
+        .say(".");
+}
+
+Finding no_filter(const Case& c) {
+    Draft draft("no-filter", Level::warning);
+    draft.say("The derivative has no filter: nothing bounds what noise does to the controller output.");
+    const auto pid = to_ideal(c.evaluation.controller);
+    if (pid) say_filtered(draft, c, {FilterType::derivative, std::abs(pid->Td) / kUsualN});
+    return draft;
+}
+
+}  // namespace
+
 Found noise(const Case& c) {
     const Robustness& r = c.evaluation.robustness;
     const double Kp = std::abs(gains(c.evaluation.controller).Kp);
     const Labels& labels = c.context.labels;
-    if (!r.Mks && gains(c.evaluation.controller).Kd != 0)
-        return Draft("no-filter", Level::warning)
-            .say("The derivative has no filter: nothing bounds what noise does to the controller output. Give it one.");
+    if (!r.Mks && gains(c.evaluation.controller).Kd != 0) return no_filter(c);
     const auto& measured = c.evaluation.performance.noise;
     const auto& actuator = c.context.options.actuator;
     if (measured && measured->u_std && *measured->u_std > 0) {
@@ -119,13 +162,16 @@ Found noise(const Case& c) {
             .number("u_std", *measured->u_std, printed_unit(labels.u))
             .say(" (standard deviation).");
     }
-    if (!r.Mks || !(Kp > 0) || *r.Mks < kNoisy * Kp) return {};
-    return Draft("noise-gain", Level::warning)
-        .say("Noise reaches the controller output up to ")
+    if (!r.Mks || !(Kp > 0) || *r.Mks < kNoisy * Kp || !noise_gain_peaks_beyond(c)) return {};
+    Draft draft("noise-gain", Level::warning);
+    draft.say("Noise reaches the controller output up to ")
         .number("ratio", *r.Mks / Kp)
         .say(" times as strong as by the proportional gain (Mks ")
         .number("Mks", *r.Mks, quotient_unit(labels.u, labels.y))
-        .say("). If the output looks restless, raise Tf.");
+        .say(").");
+    if (const auto pid = to_ideal(c.evaluation.controller); pid && pid->filter.type != FilterType::none)
+        say_filtered(draft, c, {pid->filter.type, 2 * pid->filter.Tf});
+    return draft;
 }
 
 }  // namespace tunewright::verdict

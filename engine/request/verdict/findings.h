@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/request/verdict/thresholds.h"
 #include "engine/request/verdict/verdict.h"
 
 namespace tunewright::verdict {
@@ -19,14 +20,6 @@ struct PlacedPeak {
     double value = 0;
     std::string where;  ///< "", " on your controller as it is built", " on the worst plant" or of the ideal loop on it
 };
-
-/// A limit counts as reached within this relative distance; beyond it, as broken. On several plants the worst of them
-/// is searched for, and the limit is held to the second.
-inline constexpr double kReached = 2e-3, kHeldOnWorst = 1e-2;
-
-/// Above this Ms little margin is left, and above the second the loop is too sharp for a plant that changes. Åström
-/// and Hägglund, Advanced PID Control (2006), section 4.6: reasonable Ms lie between 1.2 and 2.
-inline constexpr double kLittleMarginMs = 1.7, kTooSharpMs = 2;
 
 /// An entry that has an evaluation.
 struct Case {
@@ -58,6 +51,9 @@ const Performance& performance_of(const TuningEntry& entry);
 /// loop as it is built are stable and settle, with Ms at most 1.7 and within its limit.
 std::vector<Finding> heads(const Case& c);
 
+/// Of a finding of a verdict: it is one of these, and not good.
+bool is_head(const Finding& finding);
+
 /// Of an entry that has no controller: that there is none, and the reason.
 std::vector<Finding> no_controller(const Error& error);
 
@@ -83,10 +79,14 @@ Found nonlinear_margins(const Case& c);  ///< what margins mean where plant or c
 Found large_errors(const Case& c);       ///< whether the nonlinear integral lets errors of every size die out
 
 // responses.cpp
-Found load_error(const Case& c);     ///< IAE of the load step, against today's
-Found overshoot(const Case& c);      ///< of a set-point step
-Found movement(const Case& c);       ///< of u, against today's
-Found at_its_limits(const Case& c);  ///< u reaches the actuator's ends
+Found load_error(const Case& c);                      ///< IAE of the load step, against today's
+Found overshoot(const Case& c);                       ///< of a set-point step, what was asked for, and what keeps it
+std::optional<Level> overshoot_level(const Case& c);  ///< of that finding, known without the search for what keeps it
+Found movement(const Case& c);                        ///< of u, against today's
+
+// actuator.cpp
+Found actuator_too_small(const Case& c);  ///< u rests at its limit: the steps that it carries
+Found at_its_limits(const Case& c);       ///< u reaches the actuator's ends
 
 // causes.cpp
 Found PI_or_PID(const Case& c);

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <string>
 
 #include "engine/identification/model_grade.h"
 #include "engine/request/verdict/findings.h"
@@ -10,7 +12,6 @@ namespace {
 using Found = std::optional<Finding>;
 
 constexpr double kRounding = 1e-6;
-constexpr double kOscillatoryMt = 2;  // the set-point response rings: as a second-order loop with zeta 0.26
 
 Found unstable(const Case& c) {
     if (c.evaluation.robustness.stable) return {};
@@ -42,7 +43,7 @@ Found not_settling(const Case& c) {
     if (c.warned_of("left-domain"))
         return Draft("not-settling", Level::bad).say("A response leaves what the equations describe.");
     const bool at_rest = p.setpoint.settling_time && p.load.recovery_time && !c.warned_of("does-not-settle");
-    if (at_rest || !c.has_integral()) return {};
+    if (at_rest || !c.has_integral() || actuator_too_small(c)) return {};
     if (c.context.options.horizon)
         return Draft("short-horizon", Level::warning)
             .say("The responses are not at rest at the end of the time asked for.");
@@ -109,11 +110,14 @@ Found doubtful_model(const Case& c) {
 
 Found restless_as_built(const Case& c) {
     if (!c.built() || !c.robustness().stable || c.context.options.horizon || !c.has_integral()) return {};
+    if (actuator_too_small(c)) return {};
     const Performance& p = c.performance();
     if (p.setpoint.settling_time && p.load.recovery_time) return {};
     return Draft("restless-as-built", Level::warning)
         .say("On your controller as it is built the response does not come to rest.");
 }
+
+Found large_overshoot(const Case& c) { return overshoot_level(c) == Level::warning ? overshoot(c) : Found{}; }
 
 Found not_as_built(const Case& c) {
     if (!c.warned_of("not-as-built")) return {};
@@ -145,13 +149,22 @@ Finding robust(const Case& c) {
 
 std::vector<Finding> heads(const Case& c) {
     std::vector<Finding> found;
-    for (const auto& head :
-         {unstable, unstable_as_built, unstable_member, not_settling, too_sharp, above_limit, little_margin,
-          doubtful_model, oscillatory, restless_as_built, not_as_built, no_integral, margin_unknown})
+    for (const auto& head : {unstable, unstable_as_built, unstable_member, not_settling, too_sharp, above_limit,
+                             actuator_too_small, little_margin, doubtful_model, oscillatory, large_overshoot,
+                             restless_as_built, not_as_built, no_integral, margin_unknown})
         if (auto finding = head(c)) found.push_back(std::move(*finding));
     if (found.empty()) found.push_back(robust(c));
     std::ranges::stable_sort(found, [](const Finding& a, const Finding& b) { return a.level > b.level; });
     return found;
+}
+
+bool is_head(const Finding& finding) {
+    static const std::set<std::string> codes{
+        "unstable",      "unstable-as-built", "unstable-member", "model-too-uncertain", "not-settling",
+        "short-horizon", "too-sharp",         "above-limit",     "actuator-too-small",  "little-margin",
+        "oscillatory",   "doubtful-model",    "overshoot",       "restless-as-built",   "not-as-built",
+        "no-integral",   "margin-unknown"};
+    return finding.level >= Level::warning && codes.contains(finding.code);
 }
 
 std::vector<Finding> no_controller(const Error& error) {

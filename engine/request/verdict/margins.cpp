@@ -6,9 +6,6 @@
 namespace tunewright::verdict {
 namespace {
 
-constexpr double kWorsePercent_Ms = 5, kWorsePercent_IAE = 20;  // of the loop as built, before it is a warning
-constexpr double kAnyGain = 100;                                // a margin beyond it is as good as none
-
 std::string frequency_unit(const Case& c) { return "rad/" + c.context.labels.time; }
 
 void say_place(Draft& draft, const std::string& name, const std::optional<double>& omega, const Case& c) {
@@ -40,9 +37,7 @@ Found as_built(const Case& c) {
     if (!c.built()) return {};
     const AsBuilt& built = *c.entry.as_built;
     const Robustness &ideal = c.evaluation.robustness, &runs = built.loop.robustness;
-    if (!runs.stable)
-        return Draft("as-built", Level::note)
-            .say("Only the ideal loop is stable. Sample faster, or design for your controller.");
+    if (!runs.stable) return Draft("as-built", Level::note).say("Only the ideal loop is stable.");
     if (!runs.Ms || !ideal.Ms) return {};
     const bool worse =
         built.Ms_percent.value_or(0) > kWorsePercent_Ms || built.load_IAE_percent.value_or(0) > kWorsePercent_IAE;
@@ -100,9 +95,7 @@ Found all_members(const Case& c) {
     const double percent = std::min(99.9, std::floor(1000 * region->stable_fraction) / 10);
     Draft draft("members", Level::note);
     draft.say("Stable on ").number("stable_percent", percent, "%");
-    return draft.say(record
-                         ? " of the identified uncertainty. Record a better test, or ask for a lower Ms."
-                         : " of the plants that it must serve. Ask for a lower Ms, or hold the limits on all of them.");
+    return draft.say(record ? " of the identified uncertainty." : " of the plants that it must serve.");
 }
 
 Found margins(const Case& c) {

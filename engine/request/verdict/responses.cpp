@@ -1,14 +1,11 @@
+#include "engine/request/verdict/cures.h"
 #include "engine/request/verdict/findings.h"
+#include "engine/tuning/method/setpoint.h"
 
 #include <cmath>
 
 namespace tunewright::verdict {
 namespace {
-
-constexpr double kSame = 1.15;      // ratios between its inverse and itself are no difference
-constexpr double kMovesMore = 1.5;  // times the movement of u today
-constexpr double kMovesMuchMore = 3;
-constexpr double kOvershootPercent = 15;  // worth a word
 
 struct Share {
     double low, high;
@@ -27,12 +24,38 @@ constexpr Share kShares[] = {{0.09, 0.11, "about a tenth of"},
                              {1.9, 2.1, "about twice"},
                              {2.85, 3.15, "about three times"}};
 
+/// What keeps the overshoot within so many percent, tried on the loop that runs.
+void say_cure(Draft& draft, const Case& c, double percent) {
+    const auto cure = overshoot_cure(c, percent);
+    if (!cure) return;
+    if (cure->lag > 0)
+        draft.say(" A first-order lag of ")
+            .number("setpoint_lag", cure->lag, printed_unit(c.context.labels.time))
+            .say(" on the set point keeps it within ");
+    else
+        draft.say(" A set-point weight b of ").number("b", cure->b).say(" keeps it within ");
+    draft.number("kept_percent", percent, "%").say(".");
+}
+
 const Performance* todays_performance(const Case& c) {
     if (c.today == nullptr) return nullptr;
     return &performance_of(*c.today);
 }
 
+std::optional<double> asked_overshoot(const Case& c) {
+    return c.entry.options.number(std::string(kSetpointOption) + "/overshoot");
+}
+
 }  // namespace
+
+std::optional<Level> overshoot_level(const Case& c) {
+    const Figure& percent = c.performance().setpoint.overshoot_percent;
+    if (!percent) return {};
+    const double above = *percent - asked_overshoot(c).value_or(*percent);
+    if (*percent > kLargeOvershootPercent || above > kOvershootFarAbove) return Level::warning;
+    if (*percent >= kOvershootPercent || above > kOvershootAbove) return Level::note;
+    return {};
+}
 
 void say_ratio(Draft& draft, double ratio) {
     for (const Share& share : kShares)
@@ -66,13 +89,16 @@ Found load_error(const Case& c) {
 
 Found overshoot(const Case& c) {
     const Figure& percent = c.performance().setpoint.overshoot_percent;
-    if (!percent || *percent < kOvershootPercent) return {};
-    Draft draft("overshoot", Level::note);
+    const auto level = overshoot_level(c);
+    if (!level) return {};
+    const auto asked = asked_overshoot(c);
+    Draft draft("overshoot", *level);
     draft.say("A set-point step overshoots by ").number("overshoot_percent", *percent, "%");
-    const auto pid = to_ideal(c.evaluation.controller);
-    if (std::holds_alternative<Npid>(c.evaluation.controller) || !pid) return draft.say(".");
-    return draft.say(pid->b > 0 ? "; a lower set-point weight b or a filtered set point avoids it."
-                                : "; a filtered set point avoids it.");
+    if (asked && *percent > *asked + kOvershootAbove)
+        draft.say(", more than the ").number("asked_percent", *asked, "%").say(" asked for");
+    draft.say(".");
+    say_cure(draft, c, asked.value_or(kDefaultOvershoot));
+    return draft;
 }
 
 Found movement(const Case& c) {
@@ -86,17 +112,7 @@ Found movement(const Case& c) {
     draft.say("The controller output moves ")
         .number("ratio", ratio)
         .say(" times as much as today on a set-point step (TV ");
-    return draft.number("TV", *TV, unit)
-        .say(" against ")
-        .number("TV_today", *today->setpoint.TV, unit)
-        .say("). If that wears the actuator, ask for a lower Ms or raise Tf.");
-}
-
-Found at_its_limits(const Case& c) {
-    if (!c.warned_of("actuator-limited")) return {};
-    return Draft("at-limits", Level::warning)
-        .say(
-            "The controller output reaches its limit on these steps; Ms and the margins hold only between the limits.");
+    return draft.number("TV", *TV, unit).say(" against ").number("TV_today", *today->setpoint.TV, unit).say(").");
 }
 
 }  // namespace tunewright::verdict

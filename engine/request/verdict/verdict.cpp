@@ -1,11 +1,11 @@
 #include "engine/request/verdict/findings.h"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 namespace tunewright::verdict {
 namespace {
-
-constexpr double kAsGoodAsToday = 0.95;  // of today's load IAE: less is worth a change
 
 bool is_baseline(const TuningEntry& entry) { return entry.method == "baseline"; }
 
@@ -14,6 +14,9 @@ const TuningEntry* todays(const std::vector<TuningEntry>& entries) {
         if (is_baseline(entry) && entry.evaluation) return &entry;
     return nullptr;
 }
+
+/// A large one is among the heads.
+Found small_overshoot(const Case& c) { return overshoot_level(c) == Level::note ? overshoot(c) : Found{}; }
 
 std::vector<Finding> verdict_on(const TuningEntry& entry, const TuningEntry* today, const Context& context) {
     if (!entry.evaluation) return entry.error ? no_controller(*entry.error) : std::vector<Finding>{};
@@ -33,7 +36,7 @@ std::vector<Finding> verdict_on(const TuningEntry& entry, const TuningEntry* tod
     }
     for (const auto& finding :
          {active_limit, all_members, margins, nonlinear_margins, large_errors, load_error, as_built, at_its_limits,
-          movement, noise, sample_time, overshoot, PI_or_PID, excess, dead_time_rules, filter_rules})
+          movement, noise, sample_time, small_overshoot, PI_or_PID, excess, dead_time_rules, filter_rules})
         add(finding(c));
     std::stable_sort(verdict.begin() + after_heads, verdict.end(), [](const Finding& a, const Finding& b) {
         return (a.level >= Level::warning) > (b.level >= Level::warning);
@@ -43,15 +46,63 @@ std::vector<Finding> verdict_on(const TuningEntry& entry, const TuningEntry* tod
 
 Level level_of(const TuningEntry& entry) { return entry.verdict.front().level; }
 
-/// The best by level, and then by rank; -1 where none may be entered.
+/// An entry that may be taken, and what decides.
+struct Candidate {
+    int index = 0;
+    bool held = false, valid = false;
+    Level level = Level::good;
+    double load_IAE = INFINITY;
+
+    std::pair<bool, bool> group() const { return {!held, !valid}; }
+};
+
+bool has(const std::vector<Finding>& findings, const char* code) {
+    return std::ranges::any_of(findings, [&](const Finding& finding) { return finding.code == code; });
+}
+
+/// The loosest limit on Ms that was asked of a design; 0: none was.
+double asked_limit(const std::vector<TuningEntry>& entries) {
+    double loosest = 0;
+    for (const TuningEntry& entry : entries)
+        if (entry.evaluation && !is_baseline(entry)) loosest = std::max(loosest, entry.asked_Ms.value_or(0));
+    return loosest;
+}
+
+/// Little margin is nothing against an entry where it was asked for.
+Level level_for_choice(const TuningEntry& entry, double asked_Ms) {
+    const Figure& Ms = entry.standing ? entry.standing->Ms : Figure{};
+    const bool as_asked = Ms && *Ms <= asked_Ms * (1 + kReached);
+    Level level = Level::good;
+    for (const Finding& finding : entry.verdict)
+        if (is_head(finding) && !(as_asked && finding.code == "little-margin")) level = std::max(level, finding.level);
+    return level;
+}
+
+Candidate candidate(const TuningEntry& entry, int index, double asked_Ms) {
+    const auto outside = [](const Warning& warning) { return warning.code == "outside-validity"; };
+    return {.index = index,
+            .held = !has(entry.verdict, "above-limit") && (!entry.standing || entry.standing->holds()),
+            .valid = std::ranges::none_of(entry.evaluation->warnings, outside),
+            .level = level_for_choice(entry, asked_Ms),
+            .load_IAE = performance_of(entry).load.IAE.value_or(INFINITY)};
+}
+
+/// The one to take; -1 where none may be entered. The first group has what keeps the limits and is within its rule's
+/// validity. What costs many times as much as another of its group leaves it; of the rest the best by level, and then
+/// by rank.
 int choice(const std::vector<TuningEntry>& entries, const std::vector<int>& ranking) {
-    int best = -1;
+    std::vector<Candidate> left;
     for (const int index : ranking) {
         const TuningEntry& entry = entries[static_cast<std::size_t>(index)];
         if (is_baseline(entry) || !entry.evaluation || level_of(entry) == Level::bad) continue;
-        if (best < 0 || level_of(entry) < level_of(entries[static_cast<std::size_t>(best)])) best = index;
+        left.push_back(candidate(entry, index, asked_limit(entries)));
     }
-    return best;
+    if (left.empty()) return -1;
+    const auto first = std::ranges::min(left, {}, &Candidate::group).group();
+    std::erase_if(left, [&](const Candidate& one) { return one.group() != first; });
+    const double least = std::ranges::min(left, {}, &Candidate::load_IAE).load_IAE;
+    std::erase_if(left, [&](const Candidate& one) { return one.load_IAE > kManyFold * least; });
+    return std::ranges::min_element(left, {}, &Candidate::level)->index;
 }
 
 std::string name_of(const TuningEntry& entry, int index) {

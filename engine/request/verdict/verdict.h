@@ -8,6 +8,7 @@
 #include "engine/plant/subject.h"
 #include "engine/request/entry.h"
 #include "engine/request/verdict/finding.h"
+#include "engine/tuning/method/method.h"
 
 namespace tunewright::verdict {
 
@@ -18,6 +19,7 @@ struct Context {
     Labels labels;
     double sample_time = 0;                  ///< of the user's controller; 0: continuous or not known
     const IdentifiedModel* model = nullptr;  ///< of a record
+    const TuningProblem* problem = nullptr;  ///< that methods work on; null: nothing is designed
 };
 
 /// Writes every entry's verdict. The first finding says what the loop is, and its level is the entry's; what belongs to
@@ -26,6 +28,9 @@ void judge(std::vector<TuningEntry>& entries, const Context& context);
 
 /// Over all entries, which have their verdicts: which to take, against today's. `ranking`: indices of entries, best
 /// first; those left out are not taken. `partial`: somebody stopped the search. Empty without entries.
+///
+/// Taken is an entry that is not bad, in this order: it keeps the limits that were asked for; its rule is within its
+/// validity; no other such entry costs less than a third of its load IAE; its level; its rank.
 std::vector<Finding> of_all(const std::vector<TuningEntry>& entries, const std::vector<int>& ranking,
                             const Context& context, bool partial);
 

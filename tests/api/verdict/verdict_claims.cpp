@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <regex>
+#include <utility>
 
 namespace tunewright::api {
 namespace {
@@ -13,6 +14,26 @@ std::optional<double> at(const Json& value, const std::string& pointer) {
     const Json::json_pointer where(pointer);
     if (!value.contains(where) || !value[where].is_number()) return std::nullopt;
     return value[where].get<double>();
+}
+
+/// Whether u has to be beyond its limits at rest after the load step or the set-point step, by the request alone; a
+/// set's first plant counts.
+bool needs_more_than_the_actuator_has(const Json& request) {
+    const Json::json_pointer place("/evaluate/actuator");
+    if (!request.contains(place)) return false;
+    const double low = request[place]["min"], high = request[place]["max"];
+    const Json& plant = request["plant"]["type"] == "set" ? request["plant"]["plants"][0] : request["plant"];
+    if (-1 < low) return true;
+    if (plant["type"] == "ipdt") return false;
+    const double K = plant.contains("K") ? plant["K"].get<double>()
+                                         : plant["num"].back().get<double>() / plant["den"].back().get<double>();
+    return 1 / K < low || 1 / K > high;
+}
+
+/// y comes to rest by itself, whatever u is.
+bool rests_alone(const Json& request) {
+    const Json& plant = request["plant"]["type"] == "set" ? request["plant"]["plants"][0] : request["plant"];
+    return plant["type"] != "ipdt" && !(plant["type"] == "fopdt" && plant["T"].get<double>() < 0);
 }
 
 bool null_at(const Json& value, const std::string& pointer) {
@@ -42,6 +63,7 @@ const std::map<std::string, std::vector<std::string>>& places() {
         {"u_std", {"/performance/noise/u_std"}},
         {"longest_sample_time", {"/longest_sample_time"}},
         {"excess_percent", {"/optimum_at_Ms/excess_percent"}},
+        {"asked_percent", {"/options/setpoint/overshoot"}},
         {"Tf", {"/controller/filter/Tf"}},
         {"Ms_limit", {"/options/Ms", "/options/limit"}},
         {"Mt_limit", {"/options/Mt"}},
@@ -223,7 +245,26 @@ void check_result(const Json& answer, std::vector<std::string>& faults) {
     }
     const Json& chosen = entries[head["figures"]["entry"].get<std::size_t>()];
     const Json& own = chosen["verdict"][0]["level"];
-    if (rank(own) == 3 || rank(own) > best) faults.push_back("takes " + own.dump() + " though a better one is there");
+    if (rank(own) == 3) faults.push_back("takes what is bad");
+    const auto group = [&](const Json& entry) {
+        bool held = !entry.contains("standing") || entry["standing"].value("why", "").empty(), valid = true;
+        for (const Json& finding : entry["verdict"]) held = held && finding["code"] != "above-limit";
+        for (const Json& warning : entry["warnings"]) valid = valid && warning["code"] != "outside-validity";
+        return std::pair(!held, !valid);
+    };
+    const auto IAE = [](const Json& entry) {
+        return at(entry, runs(entry) + "/performance/load/IAE").value_or(INFINITY);
+    };
+    for (const Json& entry : entries) {
+        if (entry.value("method", "") == "baseline" || entry.contains("error")) continue;
+        if (rank(entry["verdict"][0]["level"]) == 3) continue;
+        if (group(entry) < group(chosen)) faults.push_back("takes what does not hold or is not valid");
+        if (group(entry) == group(chosen) && 3.00001 * IAE(entry) < IAE(chosen))
+            faults.push_back("takes what costs many times as much");
+        if (group(entry) == group(chosen) && IAE(entry) <= IAE(chosen) &&
+            rank(entry["verdict"][0]["level"]) < rank(own) && finding(chosen["verdict"], "little-margin") == nullptr)
+            faults.push_back("takes " + own.dump() + " though a better one is there that costs less");
+    }
     if (head["code"] == "take" && head["level"] != own)
         faults.push_back("the level is not the entry's: " + head.dump());
     if (head["code"] == "keep-today") {
@@ -256,6 +297,12 @@ Facts facts_of(const Json& entry, const Json& request) {
     const bool stable = entry["robustness"]["stable"];
     const bool integral = at(entry, "/equivalents/parallel/Ki").value_or(0) != 0;
     bad(!stable, "unstable");
+    const bool too_small = integral && needs_more_than_the_actuator_has(request);
+    if (too_small && stable)
+        rests_alone(request) ? doubt(true, "the actuator is too small") : bad(true, "the actuator is too small");
+    const auto overshoot = at(entry, runs(entry) + "/performance/setpoint/overshoot_percent");
+    const double asked_percent = at(entry, "/options/setpoint/overshoot").value_or(100);
+    doubt(overshoot.value_or(0) > 25.00001 || overshoot.value_or(0) > asked_percent + 2.00001, "overshoot");
     for (const std::string place : {"", "/implemented"}) {
         if (place != "" && !entry.contains("implemented")) continue;
         const Json& robustness = entry[Json::json_pointer(place + "/robustness")];
@@ -263,7 +310,9 @@ Facts facts_of(const Json& entry, const Json& request) {
         doubt(null_at(robustness, "/Ms"), "Ms is not known" + place);
         const bool at_rest = at(entry, place + "/performance/setpoint/settling_time") &&
                              at(entry, place + "/performance/load/recovery_time");
-        if (integral && !at_rest && stable)
+        if (integral && !at_rest && stable && too_small)
+            rests_alone(request) ? doubt(true, "the actuator is too small") : bad(true, "unbounded");
+        else if (integral && !at_rest && stable)
             place.empty() && !horizon ? bad(true, "not at rest")
                                       : doubt(place.empty() || !horizon, "not at rest" + place);
     }
@@ -289,7 +338,8 @@ Facts facts_of(const Json& entry, const Json& request) {
     doubt(worst > 1.70001, "Ms above 1.7");
     doubt(!integral, "no integral action");
     for (const Json& warning : entry["warnings"]) {
-        bad(warning["code"] == "left-domain" || (warning["code"] == "does-not-settle" && integral && !horizon),
+        bad(warning["code"] == "left-domain" ||
+                (warning["code"] == "does-not-settle" && integral && !horizon && !too_small),
             warning["code"]);
         doubt(warning["code"] == "not-as-built" || warning["code"] == "does-not-settle", warning["code"]);
     }

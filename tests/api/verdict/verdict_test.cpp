@@ -153,7 +153,7 @@ TEST(Verdict, IsContradictedByNoFigureOfControllersThatWereSent) {
 /// The loop that runs is designed for: its ideal twin may lie above the limit, and runs nowhere.
 TEST(Verdict, OfADesignForAControllerIsThatOfTheLoopAsItIsBuilt) {
     const Json request = {{"plant", {{"type", "fopdt"}, {"K", 2}, {"T", 10}, {"L", 3}}},
-                          {"tune", {{{"method", "robust"}, {"Ms", 1.6}}}},
+                          {"tune", {{{"method", "robust"}, {"Ms", 1.6}, {"setpoint", {{"overshoot", 20}}}}}},
                           {"implement", {{"product", "simulink_pid_parallel"}, {"sample_time", 0.5}}},
                           {"evaluate", {{"points", 0}}}};
     const auto outcome = run_job(std::get<PreparedJob>(prepare_job(request.dump())), {});

@@ -1,6 +1,7 @@
 // A schedule between given points: where the plant or the settings bend, the limits are nearest.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -132,6 +133,23 @@ TEST(Schedule, ThatIsGivenIsFoundToExceedALimitBetweenTheCurvesPlaces) {
     const WorstPlace& worst = *std::ranges::find(judged->schedule_curve.worst, Quantity::Ms, &WorstPlace::quantity);
     EXPECT_NEAR(worst.at, 57.18, 0.1);
     EXPECT_NEAR(worst.value.value_or(0), 1.3586, 3e-4);  // 1.35858 at 57.196 by a dense sweep
+
+    // However little it is above a limit, a warning says so with figures that differ; within the limits none does.
+    for (const double excess : {0.1, 1e-3, 1e-4, -1e-4}) {
+        options.limits.Ms = *worst.value / (1 + excess);
+        options.limits.Mt = 2;
+        const auto again = judge_schedule({.scheduling = {}, .model = *model, .options = options}, given, {});
+        ASSERT_TRUE(again && again->schedule);
+        const auto warning = std::ranges::find(again->warnings, "schedule-above-limit", &Warning::code);
+        EXPECT_EQ(again->schedule->holds_limits, excess < 0) << excess;
+        ASSERT_EQ(warning != again->warnings.end(), excess > 0) << excess;
+        if (excess < 0) continue;
+        const std::string& text = warning->detail;
+        const double is = std::stod(text.substr(text.find("Ms is ") + 6)),
+                     limit = std::stod(text.substr(text.find("limit of ") + 9));
+        EXPECT_GT(is, limit) << text;
+        EXPECT_NEAR(std::stod(text.substr(text.find("(by ") + 4)) / (100 * excess), 1, 0.02) << text;
+    }
 }
 
 // A product's table may reach beyond the range: what its settings would do there is not judged.

@@ -1,0 +1,144 @@
+#include "engine/request/verdict/cures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "engine/evaluation/evaluate.h"
+#include "engine/loop/peaks.h"
+#include "engine/loop/stability.h"
+#include "engine/numerics/propagator.h"
+#include "engine/simulation/limited/limited_response.h"
+#include "engine/simulation/linear/indices.h"
+#include "engine/simulation/linear/linear_response.h"
+#include "engine/simulation/sampled/sampled_response.h"
+
+namespace tunewright::verdict {
+namespace {
+
+constexpr int kDoublings = 10, kHalvings = 6;  // of a lag that the loop that runs needs longer
+constexpr double kOwnTolerance = 0.01;         // percentage points, of a response that was simulated another way
+
+/// Of the loop that runs with this weight and lag; infinite where it does not settle.
+double overshoot_with(const Case& c, const LinearPlant& plant, const SetpointCure& cure) {
+    const EvaluateOptions& options = c.context.options;
+    const double r = options.setpoint_step;
+    StepResponse response;
+    if (c.built() && c.entry.as_built->fitted.law.Ts > 0) {
+        SampledPid law = c.entry.as_built->fitted.law;
+        law.gains.b = cure.b;
+        law.gains.setpoint_lag = cure.lag;
+        response = simulate_sampled(plant, law, {.output = options.actuator}, {r, 0}, {});
+    } else {
+        ParallelPid acting =
+            gains(c.built() ? built::continuous(c.entry.as_built->fitted.controller) : c.evaluation.controller);
+        acting.b = cure.b;
+        acting.setpoint_lag = cure.lag;
+        response = options.actuator
+                       ? simulate_limited(plant, acting, {r, 0}, {options.actuator->min, options.actuator->max}, {})
+                       : simulate_linear(plant, acting, {r, 0}, {});
+    }
+    if (!response.settles) return INFINITY;
+    const Extremes y = extremes_of_y(response.nodes);
+    return 100 * ((r > 0 ? y.max : y.min) / r - 1);
+}
+
+const LinearPlant* only_linear(const Case& c) {
+    return c.context.subject.equations() == nullptr ? c.context.subject.linear() : nullptr;
+}
+
+MethodOptions with_filter_time(const MethodOptions& options, double Tf) {
+    MethodOptions changed;
+    for (const auto& [path, value] : options.values())
+        if (!path.starts_with("filter/")) changed.set(path, value);
+    changed.set("filter/Tf", Tf);
+    return changed;
+}
+
+}  // namespace
+
+std::optional<SetpointCure> overshoot_cure(const Case& c, double percent) {
+    const LinearPlant* plant = only_linear(c);
+    const bool product = c.built() && c.entry.as_built->fitted.product != nullptr;
+    const auto pid =
+        c.built() ? Expected<IdealPid>(c.entry.as_built->fitted.controller) : to_ideal(c.evaluation.controller);
+    if (plant == nullptr || !pid || std::holds_alternative<Npid>(c.evaluation.controller)) return std::nullopt;
+    // The weights of a series form are its own, and those of a product are settled by its design.
+    const bool may_weigh = !product && std::holds_alternative<IdealPid>(c.evaluation.controller);
+    const auto kept = [&](const SetpointCure& cure) {
+        return overshoot_with(c, *plant, cure) <= percent + kOwnTolerance;
+    };
+    auto cure = cure_overshoot(*plant, percent, *pid, may_weigh);
+    if (cure && kept(*cure)) return cure;
+    if (cure && cure->lag == 0) cure = cure_overshoot(*plant, percent, *pid, false);
+    if (!cure) return std::nullopt;
+    double low = 0;
+    for (int i = 0; !kept(*cure); ++i, cure->lag *= 2) {
+        if (i == kDoublings) return std::nullopt;
+        low = cure->lag;
+    }
+    for (int i = 0; low > 0 && i < kHalvings; ++i) {
+        const SetpointCure middle{cure->b, 0.5 * (low + cure->lag)};
+        (kept(middle) ? cure->lag : low) = middle.lag;
+    }
+    return cure;
+}
+
+std::optional<double> least_load_IAE(const Case& c) {
+    const LinearPlant* plant = only_linear(c);
+    if (plant == nullptr || c.context.options.horizon || !(plant->dead_time() > 0)) return std::nullopt;
+    // x' = A x + B, and the integral of h = C x + D as one more state.
+    const Realisation& of = plant->realisation();
+    const auto n = static_cast<std::size_t>(of.n), m = n + 1;
+    std::vector<double> F(m * m, 0.0), b(m, 0.0);
+    for (std::size_t i = 0; i < n; ++i) {
+        std::copy_n(of.A.begin() + static_cast<std::ptrdiff_t>(i * n), n,
+                    F.begin() + static_cast<std::ptrdiff_t>(i * m));
+        F[n * m + i] = of.C[i];
+        b[i] = of.B[i];
+    }
+    b[n] = of.D;
+    const double L = plant->dead_time();
+    const Propagator propagator(static_cast<int>(m), F, std::vector<double>(m, 0.0), b, L);
+    const double integral = propagator.step(L).column(m + 4)[n];
+    if (!std::isfinite(integral)) return std::nullopt;
+    return std::abs(integral * c.context.options.load_step);
+}
+
+std::optional<FilteredPeaks> peaks_with_filter(const Case& c, const Filter& filter) {
+    const LinearPlant* plant = only_linear(c);
+    if (plant == nullptr || std::holds_alternative<Npid>(c.evaluation.controller)) return std::nullopt;
+    ParallelPid other = gains(c.evaluation.controller);
+    other.filter = filter;
+    const auto loop = Loop::make(*plant, other);
+    if (!loop || !count_unstable_poles(*loop).stable()) return std::nullopt;
+    const Peaks peaks = find_peaks(*loop, make_peak_grid(*loop));
+    if (!std::isfinite(peaks.S.value) || !std::isfinite(peaks.CS.value)) return std::nullopt;
+    return FilteredPeaks{peaks.S.value, peaks.CS.value};
+}
+
+bool noise_gain_peaks_beyond(const Case& c) {
+    const LinearPlant* plant = c.context.subject.linear();
+    if (plant == nullptr) return true;
+    const auto loop = Loop::make(*plant, gains(c.evaluation.controller));
+    if (!loop) return true;
+    const Peaks peaks = find_peaks(*loop, make_peak_grid(*loop));
+    return peaks.CS.omega > peaks.S.omega;
+}
+
+std::optional<OtherDesign> designed_with_filter(const Case& c, double Tf) {
+    const TuningProblem* problem = c.context.problem;
+    const TuningEntry& entry = c.entry;
+    if (problem == nullptr || problem->family || problem->nonlinear != nullptr || entry.over_region || c.built() ||
+        entry.method != "robust" || entry.options.text("objective") != "load_iae")
+        return std::nullopt;
+    const auto design = find_method(entry.method)->tune(*problem, with_filter_time(entry.options, Tf), {});
+    if (!design) return std::nullopt;
+    EvaluateOptions figures = c.context.options;
+    figures.points = 0;
+    const auto evaluation = evaluate(c.context.subject, design->controller, figures);
+    if (!evaluation || !evaluation->robustness.Mks) return std::nullopt;
+    return OtherDesign{evaluation->performance.load.IAE, *evaluation->robustness.Mks};
+}
+
+}  // namespace tunewright::verdict

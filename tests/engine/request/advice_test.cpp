@@ -1,0 +1,274 @@
+// Findings that advise: what they say is done, and helps as they say. Others state facts, which are held too.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "engine/controller/product/catalogue.h"
+#include "engine/evaluation/evaluate.h"
+#include "engine/evaluation/evaluate_sampled.h"
+#include "engine/request/evaluate_all.h"
+#include "engine/request/tune.h"
+#include "tests/engine/plant/subject_of.h"
+
+namespace tunewright {
+namespace {
+
+using verdict::Finding;
+using verdict::Level;
+
+const Finding* said(const TuningEntry& entry, const std::string& code) {
+    const auto found = std::ranges::find(entry.verdict, code, &Finding::code);
+    return found != entry.verdict.end() ? &*found : nullptr;
+}
+
+TuningRequest advice_request(const Plant& plant, const std::string& method, double M = 0) {
+    TuningRequest request;
+    request.subject = test::subject_of(plant);
+    request.tune = {{.method = method, .options = {}}};
+    if (M > 0) request.tune[0].options.set("Ms", M), request.tune[0].options.set("Mt", M);
+    request.evaluate.points = 0;
+    return request;
+}
+
+std::vector<TuningEntry> entries_of(const TuningRequest& request) {
+    auto result = tune(request, {});
+    EXPECT_TRUE(result) << result.error().message;
+    return result ? std::move(result->controllers) : std::vector<TuningEntry>{};
+}
+
+TuningEntry evaluated(const Plant& plant, const Controller& controller, EvaluateOptions options = {}) {
+    options.points = 0;
+    auto result = evaluate_all(test::subject_of(plant), {controller}, options, {}, {}, {});
+    EXPECT_TRUE(result) << result.error().message;
+    return std::move(result->controllers.front());
+}
+
+class Chance {
+public:
+    explicit Chance(unsigned seed) : random_(seed) {}
+    double log_between(double low, double high) {
+        return low * std::pow(high / low, std::uniform_real_distribution<>()(random_));
+    }
+
+private:
+    std::mt19937 random_;
+};
+
+TEST(Advice, AShorterFilterIsTriedBeforeItIsNamed) {
+    Chance any(4);
+    int made = 0, advised = 0;
+    for (int i = 0; i < 30; ++i) {
+        Plant plant = TransferFunction{.num = {1}, .den = {any.log_between(1, 20), any.log_between(5, 20), 1}, .L = 0};
+        if (i % 3 == 1)
+            plant = OscillatorySopdt{.K = 1, .T = 1, .zeta = any.log_between(0.02, 0.5), .L = any.log_between(0.1, 2)};
+        if (i == 0) plant = OscillatorySopdt{.K = 1, .T = 1, .zeta = 0.0275, .L = 1};
+        const auto request = advice_request(plant, "robust", any.log_between(1.3, 2));
+        const auto result = tune(request, {});
+        if (!result || !result->controllers[0].evaluation) continue;
+        const Finding* finding = said(result->controllers[0], "filter-rules");
+        made += finding != nullptr;
+        EXPECT_EQ(finding == nullptr || finding->text.find("would help") == std::string::npos, true);
+        if (finding == nullptr || !finding->figures.contains("shorter_Tf")) continue;
+        ++advised;
+        auto again = request;
+        again.tune[0].options.set("filter/Tf", finding->figures.at("shorter_Tf"));
+        const auto entries = entries_of(again);
+        const double IAE = *entries.at(0).evaluation->performance.load.IAE;
+        EXPECT_NEAR(IAE / finding->figures.at("shorter_load_IAE"), 1, 1e-6);
+        EXPECT_LT(1.05 * IAE, finding->figures.at("load_IAE"));
+    }
+    EXPECT_GT(made, 5);
+    EXPECT_GT(advised, 3);
+}
+
+// h is the plant's step response without its dead time: K (L - T (1 - e^(-L/T))) of first order, K L of a dead time.
+TEST(Advice, TheLeastLoadIaeOfADeadTimeIsBelowThatOfEveryController) {
+    for (const double L : {2.0, 5.0, 25.0, 400.0}) {
+        for (const double K : {0.3, -20.0}) {
+            auto request = advice_request(Fopdt{.K = K, .T = 1, .L = L}, "all");
+            request.evaluate.load_step = -2;
+            int seen = 0;
+            for (const TuningEntry& entry : entries_of(request)) {
+                if (!entry.evaluation) continue;
+                const Finding* finding = said(entry, "dead-time-rules");
+                if (finding == nullptr || !finding->figures.contains("least_load_IAE")) continue;
+                ++seen;
+                const double least = finding->figures.at("least_load_IAE");
+                EXPECT_NEAR(least / (2 * std::abs(K) * (L - (1 - std::exp(-L)))), 1, 1e-8);
+                EXPECT_GT(*entry.evaluation->performance.load.IAE, least * (1 - 1e-6)) << entry.title;
+                EXPECT_EQ(finding->text.find("would help"), std::string::npos);
+            }
+            EXPECT_GT(seen, 10);
+        }
+    }
+    const TuningEntry alone =
+        evaluated(TransferFunction{.num = {3}, .den = {1}, .L = 4}, IdealPid{.Kp = 0.02, .Ti = 0.5});
+    ASSERT_NE(said(alone, "dead-time-rules"), nullptr);
+    EXPECT_NEAR(said(alone, "dead-time-rules")->figures.at("least_load_IAE"), 12, 1e-9);
+}
+
+TEST(Advice, WhatKeepsAnOvershootKeepsIt) {
+    Chance any(9);
+    int weights = 0, lags = 0;
+    for (int i = 0; i < 40; ++i) {
+        const double L = any.log_between(0.05, 3);
+        Plant plant = Fopdt{.K = 2, .T = 1, .L = L};
+        if (i % 3 == 1) plant = Ipdt{.K = 1, .L = L};
+        if (i % 3 == 2) plant = Sopdt{.K = 1, .T1 = 1, .T2 = 0.6, .L = L};
+        for (const char* method : {"ziegler_nichols_ultimate", "simc", "tyreus_luyben"}) {
+            for (const TuningEntry& entry : entries_of(advice_request(plant, method))) {
+                const Finding* finding = entry.evaluation ? said(entry, "overshoot") : nullptr;
+                if (finding == nullptr || !finding->figures.contains("kept_percent")) continue;
+                IdealPid pid = std::get<IdealPid>(entry.evaluation->controller);
+                if (finding->figures.contains("b")) pid.b = finding->figures.at("b"), ++weights;
+                if (finding->figures.contains("setpoint_lag"))
+                    pid.setpoint_lag = finding->figures.at("setpoint_lag"), ++lags;
+                const TuningEntry cured = evaluated(plant, pid);
+                EXPECT_LE(*cured.evaluation->performance.setpoint.overshoot_percent,
+                          finding->figures.at("kept_percent") + 0.02)
+                    << entry.title << " on plant " << i;
+                EXPECT_EQ(*cured.evaluation->performance.load.IAE, *entry.evaluation->performance.load.IAE);
+            }
+        }
+    }
+    EXPECT_GT(weights, 10);
+    EXPECT_GT(lags, 5);
+}
+
+TEST(Advice, ALongerFilterDoesWhatIsSaidOfIt) {
+    const Fopdt plant{.K = 1, .T = 10, .L = 1};
+    int advised = 0;
+    for (const double Tf : {0.002, 0.005, 0.01}) {
+        for (const FilterType type : {FilterType::none, FilterType::derivative, FilterType::measurement_second_order}) {
+            IdealPid pid{.Kp = 4, .Ti = 8, .Td = 0.4, .filter = {type, type == FilterType::none ? 0 : Tf}};
+            const TuningEntry entry = evaluated(plant, pid);
+            const Finding* finding = said(entry, type == FilterType::none ? "no-filter" : "noise-gain");
+            ASSERT_NE(finding, nullptr);
+            if (!finding->figures.contains("longer_Tf")) continue;
+            ++advised;
+            pid.filter = {type == FilterType::none ? FilterType::derivative : type, finding->figures.at("longer_Tf")};
+            const TuningEntry longer = evaluated(plant, pid);
+            EXPECT_NEAR(*longer.evaluation->robustness.Mks / finding->figures.at("filtered_Mks"), 1, 1e-9);
+            EXPECT_NEAR(*longer.evaluation->robustness.Ms / finding->figures.at("filtered_Ms"), 1, 1e-9);
+            EXPECT_LT(*longer.evaluation->robustness.Ms, 1.7);
+            if (entry.evaluation->robustness.Mks) {
+                EXPECT_LT(*longer.evaluation->robustness.Mks, 0.7 * *entry.evaluation->robustness.Mks);
+            }
+        }
+    }
+    EXPECT_GT(advised, 4);
+}
+
+// |C S| of a PI is 1/K at rest, however small its Kp: that is no noise.
+TEST(Advice, ThePeakAtRestIsNoNoiseGain) {
+    for (const double Kp : {1e-4, 0.01, 0.04}) {
+        const TuningEntry entry = evaluated(Fopdt{.K = 1, .T = 1, .L = 25}, IdealPid{.Kp = Kp, .Ti = 60 * Kp});
+        ASSERT_GT(*entry.evaluation->robustness.Mks, 20 * Kp);
+        EXPECT_EQ(said(entry, "noise-gain"), nullptr) << Kp;
+    }
+}
+
+// The largest steps that are named are carried, and a hundredth more is not.
+TEST(Advice, AnActuatorThatIsTooSmallIsNamedWithTheStepsThatItCarries) {
+    EvaluateOptions options;
+    options.actuator = ActuatorLimits{-0.3, 0.4};
+    const Fopdt plant{.K = 2, .T = 10, .L = 3};
+    const IdealPid pid{.Kp = 0.8, .Ti = 8};
+    for (const double sign : {1.0, -1.0}) {
+        options.setpoint_step = options.load_step = sign;
+        const TuningEntry entry = evaluated(plant, pid, options);
+        const Finding* finding = said(entry, "actuator-too-small");
+        ASSERT_NE(finding, nullptr);
+        EXPECT_EQ(finding->level, Level::warning);
+        for (const char* code : {"no-integral", "not-settling"}) EXPECT_EQ(said(entry, code), nullptr) << code;
+        const double r = finding->figures.at("largest_setpoint_step"), d = finding->figures.at("largest_load_step");
+        EXPECT_NEAR(r, sign > 0 ? 0.8 : -0.6, 1e-12);
+        EXPECT_NEAR(d, sign > 0 ? 0.3 : -0.4, 1e-12);
+        const auto with = [&](double share) {
+            EvaluateOptions other = options;
+            other.setpoint_step = share * r;
+            other.load_step = share * d;
+            return evaluated(plant, pid, other);
+        };
+        EXPECT_EQ(said(with(0.99), "actuator-too-small"), nullptr);
+        EXPECT_TRUE(with(0.99).evaluation->performance.load.IAE && with(0.99).evaluation->performance.setpoint.IAE);
+        EXPECT_NE(said(with(1.01), "actuator-too-small"), nullptr);
+        EXPECT_FALSE(with(1.01).evaluation->performance.load.IAE || with(1.01).evaluation->performance.setpoint.IAE);
+    }
+}
+
+TEST(Advice, AnActuatorThatIsTooSmallCondemnsNoMethod) {
+    auto request = advice_request(Fopdt{.K = 2, .T = 10, .L = 3}, "robust");
+    request.tune.push_back({.method = "simc", .options = {}});
+    request.evaluate.actuator = ActuatorLimits{-0.2, 0.2};
+    const auto result = tune(request, {});
+    ASSERT_TRUE(result);
+    EXPECT_EQ(result->verdict.front().code, "take");
+    EXPECT_EQ(result->controllers[0].verdict.front().code, "actuator-too-small");
+    // Where nothing holds y it is bad, for the same reason.
+    request.subject = test::subject_of(Ipdt{.K = 1, .L = 1});
+    const auto runaway = tune(request, {});
+    ASSERT_TRUE(runaway);
+    EXPECT_EQ(runaway->controllers[0].verdict.front().code, "actuator-too-small");
+    EXPECT_EQ(runaway->controllers[0].verdict.front().level, Level::bad);
+}
+
+TEST(Advice, OnEquationsTheStepThatTheActuatorCarriesIsWhereTheyComeToRest) {
+    // y = x^2 at rest x = u: from u 1 up to 1.2, y goes from 1 to 1.44.
+    NonlinearPlant plant{.states = {{"x", 1}},
+                         .parameters = {},
+                         .equations = {{"x", "u - x"}},
+                         .input = {.name = "u", .nominal = 1, .min = 0.0, .max = 1.2},
+                         .output = "x^2",
+                         .L = 0.1};
+    EvaluateOptions options;
+    options.points = 0;
+    options.setpoint_step = 0.6;
+    options.load_step = 0.1;
+    const auto result = evaluate_all(test::subject_of(plant), {IdealPid{.Kp = 0.5, .Ti = 0.5}}, options, {}, {}, {});
+    ASSERT_TRUE(result) << result.error().message;
+    const Finding* finding = said(result->controllers[0], "actuator-too-small");
+    ASSERT_NE(finding, nullptr);
+    EXPECT_NEAR(finding->figures.at("largest_setpoint_step"), 0.44, 1e-9);
+}
+
+// A firmware without weight and filter: the step's overshoot, what was asked for, and the lag that keeps it.
+TEST(Advice, OvershootAskedAndReachedAreNotApartWithoutAWord) {
+    int apart = 0;
+    for (const std::string product : {"klipper", "marlin", "siemens_fb41_cont_c", "esphome_pid"}) {
+        auto request = advice_request(Fopdt{.K = 1, .T = 100, .L = 30}, "robust", 1.6);
+        const auto* known = product::find(product);
+        ASSERT_NE(known, nullptr) << product;
+        built::Build build;
+        build.product = known;
+        build.context = product::Context::with_spans({.y_low = 0, .y_high = 200, .u_low = 0, .u_high = 100}, 1);
+        build.context.loop_clock_s = 1;
+        build.Ts = 1;
+        request.implement = build;
+        const auto result = tune(request, {});
+        if (!result || !result->controllers[0].as_built) continue;
+        const TuningEntry& entry = result->controllers[0];
+        const double reached = *entry.as_built->loop.performance.setpoint.overshoot_percent;
+        const Finding* finding = said(entry, "overshoot");
+        EXPECT_EQ(finding != nullptr, reached > 5.05) << product << " reaches " << reached;
+        if (finding == nullptr) continue;
+        ++apart;
+        EXPECT_EQ(finding->figures.at("overshoot_percent"), reached);
+        EXPECT_EQ(finding->figures.at("asked_percent"), 5);
+        EXPECT_EQ(finding->level, reached > 7 ? Level::warning : Level::note);
+        EXPECT_EQ(entry.verdict.front().level == Level::good, reached <= 7);
+        ASSERT_TRUE(finding->figures.contains("setpoint_lag")) << product << finding->text;
+        SampledPid law = entry.as_built->fitted.law;
+        law.gains.setpoint_lag = finding->figures.at("setpoint_lag");
+        const auto cured = evaluate_sampled(*request.subject, law, {}, request.evaluate);
+        ASSERT_TRUE(cured);
+        EXPECT_LE(*cured->performance.setpoint.overshoot_percent, 5.02) << product;
+    }
+    EXPECT_GE(apart, 1);
+}
+
+}  // namespace
+}  // namespace tunewright

@@ -31,7 +31,7 @@ const TuningEntry* taken(const TuningResult& result) {
 }
 
 // From the figures of the answer alone.
-bool holds(const TuningEntry& entry) {
+bool keeps_limits(const TuningEntry& entry) {
     const Robustness& r = entry.evaluation->robustness;
     const Performance& p = entry.evaluation->performance;
     const auto Mt = entry.options.number("Mt");
@@ -48,13 +48,13 @@ void expect_not_dominated(const TuningResult& result) {
     const TuningEntry* best = taken(result);
     ASSERT_NE(best, nullptr) << result.verdict.front().text;
     const double IAE = best->evaluation->performance.load.IAE.value_or(INFINITY);
-    const bool any = std::ranges::any_of(result.controllers,
-                                         [](const TuningEntry& e) { return e.evaluation && holds(e) && valid(e); });
+    const bool any = std::ranges::any_of(
+        result.controllers, [](const TuningEntry& e) { return e.evaluation && keeps_limits(e) && valid(e); });
     if (any) {
-        EXPECT_TRUE(holds(*best) && valid(*best)) << best->title;
+        EXPECT_TRUE(keeps_limits(*best) && valid(*best)) << best->title;
     }
     for (const TuningEntry& other : result.controllers) {
-        if (!other.evaluation || !holds(other) || !valid(other)) continue;
+        if (!other.evaluation || !keeps_limits(other) || !valid(other)) continue;
         EXPECT_GE(*other.evaluation->performance.load.IAE, IAE / 3) << best->title << " before " << other.title;
         // Nor by a tenth by one that is as good a level and no less robust.
         const bool as_good = other.verdict.front().level <= best->verdict.front().level &&

@@ -137,24 +137,35 @@ std::string method_label(const JobRequest& request) {
     return request.tune.size() == 1 ? request.tune.front().method : "several";
 }
 
+/// What a request comes to, with what reading its record has found.
+Expected<TuningResult> tuned(JobRequest request, const RunControl& control) {
+    const ReadRecord read{
+        {}, request.read.dropped, request.read.notes, request.read.unread, request.read.time_unit_known};
+    const IdentifyQuestion question = request.identify;
+    const bool recorded = request.record.has_value();
+    auto result = tune(to_engine(std::move(request)), control);
+    if (!result || !result->model) return result;
+    if (recorded) {
+        add_reading(read, *result->model);
+        leave_out_traces(question, *result->model);
+    } else {
+        // Who sent it has it.
+        result->model.reset();
+    }
+    return result;
+}
+
 /// The answer to a request whose hash is known.
 JobOutcome computed(JobRequest request, std::string_view hash, const RunControl& control) {
     const std::string method = method_label(request);
-    const ReadRecord read{
-        {}, request.read.dropped, request.read.notes, request.read.unread, request.read.time_unit_known};
     const std::optional<Units> units = request.units;
     const Outline outline(request);
-    const IdentifyQuestion question = request.identify;
-    auto result = tune(to_engine(std::move(request)), control);
+    auto result = tuned(std::move(request), control);
     if (!result) {
         JobOutcome outcome = failure(to_problem(result.error()));
         if (result.error().kind == ErrorKind::cancelled) outcome = {JobOutcome::Status::cancelled, {}, {}};
         outcome.method = method;
         return outcome;
-    }
-    if (result->model) {
-        add_reading(read, *result->model);
-        leave_out_traces(question, *result->model);
     }
     std::string line = outline.of(*result);
     const auto status = result->partial ? JobOutcome::Status::cancelled : JobOutcome::Status::succeeded;
@@ -264,7 +275,7 @@ Answer evaluate_call(std::string_view body, const RunControl& control) {
     const auto& request = std::get<EvaluateRequest>(decoded);
 
     const auto result = evaluate_all(*request.subject, request.controllers, request.evaluate, request.build,
-                                     labels_of(request.units), control);
+                                     labels_of(request.units), control, request.model ? &*request.model : nullptr);
     if (!result) return refusal(to_problem(result.error()));
     Writer out;
     evaluate_answer_contract().write(*result, out);
@@ -274,7 +285,7 @@ Answer evaluate_call(std::string_view body, const RunControl& control) {
 Answer design_call(std::string_view body, const RunControl& control) {
     auto decoded = read_body(body, design_request_contract());
     if (const auto* problem = std::get_if<Problem>(&decoded)) return refusal(*problem);
-    auto result = tune(to_engine(std::get<DesignRequest>(std::move(decoded))), control);
+    auto result = tuned(std::get<DesignRequest>(std::move(decoded)), control);
     if (!result) return refusal(to_problem(result.error()));
     // Nobody keeps half a search that was stopped.
     if (result->partial) return refusal(to_problem(Error{ErrorKind::timeout, "", "The design was stopped."}));

@@ -31,6 +31,7 @@ void ask_for_unit(IdentifiedModel& model) {
 
 void add_reading(const ReadRecord& read, IdentifiedModel& model) {
     DataQuality& quality = model.data_quality;
+    quality.time_unit_assumed = !read.time_unit_known;
     if (!read.time_unit_known) ask_for_unit(model);
     if (!read.unread.empty()) model.warnings.push_back({"lines-left-out", read.unread});
     quality.samples_dropped += read.dropped;

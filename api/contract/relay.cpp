@@ -11,8 +11,8 @@ namespace tunewright::api {
 const Description<UltimatePoint>& ultimate_point_contract() {
     static const auto description = [] {
         Description<UltimatePoint> d("UltimatePoint", "A gain, and the period at which the loop oscillates with it.");
-        d.field("Ku", &UltimatePoint::Ku, only_answered(number()), "Ultimate gain.", {.unit = "u/y"})
-            .field("Pu", &UltimatePoint::Pu, only_answered(number()), "Period.", {.unit = "time"});
+        d.field("Ku", &UltimatePoint::Ku, number(), "Ultimate gain.", {.required = true, .unit = "u/y"})
+            .field("Pu", &UltimatePoint::Pu, number(), "Period.", {.required = true, .unit = "time"});
         return d;
     }();
     return description;
@@ -32,16 +32,18 @@ static const Description<ShiftedPoint>& shifted_point_contract() {
 const Description<LimitCycle>& limit_cycle_contract() {
     static const auto description = [] {
         Description<LimitCycle> d("LimitCycle", "The steady oscillation of a relay test.");
-        d.field("Pu", &LimitCycle::Pu, only_answered(number()), "Period.", {.unit = "time"})
+        d.field("Pu", &LimitCycle::Pu, only_answered(number()), "Period.", {.required = true, .unit = "time"})
             .field("Au", &LimitCycle::Au, only_answered(number()), "|G(j 2 pi/Pu)| (Liu and Gao, Eq. 4).",
-                   {.unit = "y/u"})
-            .field("phi_u", &LimitCycle::phi_u, only_answered(number()), "Its angle, in (-2 pi, 0].", {.unit = "rad"})
-            .field("periods", &LimitCycle::periods, only_answered(integer(0, 1 << 30)), "Whole steady periods used.")
+                   {.required = true, .unit = "y/u"})
+            .field("phi_u", &LimitCycle::phi_u, only_answered(number()), "Its angle, in (-2 pi, 0].",
+                   {.required = true, .unit = "rad"})
+            .field("periods", &LimitCycle::periods, only_answered(integer(0, 1 << 30)), "Whole steady periods used.",
+                   {.required = true})
             .field("shift", &LimitCycle::shift, maybe(answer(shifted_point_contract())),
                    "The response at the same frequency, shifted into the right half-plane.")
             .field("fit_rms", &LimitCycle::fit_rms, only_answered(maybe(number())),
                    "Root mean square of model minus record over the steady periods (Eq. 15).", {.unit = "y"})
-            .field("describing_function", &LimitCycle::describing_function, maybe(answer(ultimate_point_contract())),
+            .field("describing_function", &LimitCycle::describing_function, maybe(object(ultimate_point_contract())),
                    "Ultimate point by the describing function: an approximation; the model's is better.")
             .field("t_plus", &LimitCycle::t_plus, only_answered(maybe(number())),
                    "How long u stays at its upper level in each period.", {.unit = "time"})

@@ -4,7 +4,9 @@
 #include "api/contract/methods.h"
 #include "api/contract/plant/typed.h"
 #include "api/contract/product/product.h"
+#include "api/contract/result/identified_model.h"
 #include "engine/evaluation/evaluate.h"
+#include "engine/request/identified_region.h"
 
 namespace tunewright::api {
 namespace {
@@ -118,16 +120,21 @@ void check_ultimate(const Json& value, JobRequest& request, Reader& reader) {
     if (!value.contains("tune")) request.tune = {MethodRequest{"all", {}}};
 }
 
-void check_source(const Json& value, JobRequest& request, Reader& reader) {
-    if (value.contains("ultimate")) return check_ultimate(value, request, reader);
-    const bool plant = value.contains("plant"), record = value.contains("record");
-    if (plant && record)
-        reader.fault_at("record", "record and plant are both given; a request is about one of them. Remove one.");
-    if (!plant && !record) {
-        reader.fault(
-            "plant or record is missing; give a plant such as {\"type\": \"fopdt\", \"K\": 2, \"T\": 10, \"L\": 3}, or "
-            "a recorded test. Of an ultimate gain and period alone, give ultimate.");
-    }
+/// A request is about one of `sources`, members that exclude each other; `others`: how those beside a plant are asked
+/// for.
+void check_source(const Json& value, const std::vector<std::string>& sources, const std::string& others,
+                  Reader& reader) {
+    std::vector<std::string> given;
+    for (const std::string& source : sources)
+        if (value.contains(source)) given.push_back(source);
+    if (given.size() > 1)
+        reader.fault_at(given[1],
+                        given[1] + " and " + given[0] + " are both given; a request is about one of them. Remove one.");
+    if (given.empty())
+        reader.fault(listed(sources) +
+                     " is missing; give a plant such as {\"type\": \"fopdt\", \"K\": 2, \"T\": 10, "
+                     "\"L\": 3}, " +
+                     others + ".");
 }
 
 void read_baseline(const Json& value, JobRequest& request, Reader& reader) {
@@ -177,7 +184,7 @@ void check_implement(const Json&, JobRequest& request, Reader& reader) {
 }
 
 void check_job(const Json&, JobRequest& request, Reader& reader) {
-    if (request.uncertainty == "identified" && !request.record) {
+    if (request.uncertainty == "identified" && !request.record && !request.model) {
         reader.fault_at("uncertainty",
                         "uncertainty is \"identified\", which needs a record. For a plant give the plant its own "
                         "uncertainty, such as {\"K\": [0.8, 1.2]}.");
@@ -189,8 +196,16 @@ void check_job(const Json&, JobRequest& request, Reader& reader) {
     check_loops(*request.subject, *request.baseline, reader);
 }
 
+/// Of a model that was read without a fault.
+std::optional<Subject> made_of(const IdentifiedModel& model, Reader& reader) {
+    auto made = subject_of(model);
+    if (made) return std::move(*made);
+    reader.fault_at("model", made.error().message);
+    return std::nullopt;
+}
+
 void check_controllers(const Json&, EvaluateRequest& request, Reader& reader) {
-    request.subject = subject_of(*request.plant, reader);
+    request.subject = request.model ? made_of(*request.model, reader) : subject_of(*request.plant, reader);
     if (!request.subject) return;
     const Reader::At list(reader, "controllers");
     for (std::size_t i = 0; i < request.controllers.size(); ++i) {
@@ -212,15 +227,26 @@ void add_judged(Description<Request>& d) {
         .field("evaluate", &Request::evaluate, object(evaluate_options_contract()), "What is simulated and answered.");
 }
 
-Codec<std::vector<MethodRequest>> one_method() {
-    auto codec = list_of(method_request(), 1, 1);
-    codec.read = [list = codec.read](const Json& value, std::vector<MethodRequest>& target, Reader& reader) {
-        const std::size_t before = reader.count();
-        list(value, target, reader);
-        if (reader.clean_since(before) && target.front().of_all())
-            reader.fault("tune asks for every method; a design is made by one. Post a job for all of them.");
-    };
-    return codec;
+constexpr const char* kModelSentence =
+    "What an answer has as `model` for a record, sent back in the record's place: the record is not identified again.";
+
+// What a job asks, and a design at once.
+template <class Request>
+void add_question(Description<Request>& d) {
+    d.field("identify", &Request::identify, object(identify_contract()), "How the record becomes a model.")
+        .field("tune", &Request::tune, tune_list(), "The methods, one entry of the answer each; \"all\": every one.");
+    add_judged(d);
+    d.field("uncertainty", &Request::uncertainty,
+            choice<std::string>({{"auto", "auto"}, {"none", "none"}, {"identified", "identified"}}),
+            "identified: robust holds its limits over the record's 95 % confidence region. auto: where the "
+            "design on the model alone breaks a limit there, both are answered, the one that holds it first.");
+}
+
+template <class Request>
+void add_checks(Description<Request>& d) {
+    d.check([](const Json& value, Request& request, Reader& reader) { check_implement(value, request, reader); })
+        .check([](const Json& value, Request& request, Reader& reader) { check_job(value, request, reader); })
+        .check(resolve_record<Request>);
 }
 
 }  // namespace
@@ -295,28 +321,23 @@ const Description<JobRequest>& job_contract() {
             .field(
                 "ultimate", &JobRequest::ultimate, maybe(object(ultimate_contract())),
                 "In place of both: ultimate gain and period alone. The rules that need no more are answered, without "
-                "figures of a loop.")
-            .field("identify", &JobRequest::identify, object(identify_contract()), "How the record becomes a model.")
-            .field("tune", &JobRequest::tune, tune_list(),
-                   "The methods, one entry of the answer each; \"all\": every one.");
-        add_judged(d);
-        d.field("uncertainty", &JobRequest::uncertainty,
-                choice<std::string>({{"auto", "auto"}, {"none", "none"}, {"identified", "identified"}}),
-                "identified: robust holds its limits over the record's 95 % confidence region. auto: where the "
-                "design on the model alone breaks a limit there, both are answered, the one that holds it first.")
-            .field("timeout_s", &JobRequest::timeout_s, number({.exclusive_minimum = 0, .maximum = kLongest}),
-                   "Time allowed for the job; it fails with type timeout after it.", {.unit = "s"})
+                "figures of a loop.");
+        add_question(d);
+        d.field("timeout_s", &JobRequest::timeout_s, number({.exclusive_minimum = 0, .maximum = kLongest}),
+                "Time allowed for the job; it fails with type timeout after it.", {.unit = "s"})
             .field("priority", &JobRequest::low_priority, choice<bool>({{"normal", false}, {"low", true}}),
                    "low: it takes its turn among the entries of batches, after single jobs of normal priority.")
             .field("notify", &JobRequest::notify, maybe(object(notify_contract())),
                    "Whom to tell when the job has ended.")
-            .check_presence(check_source)
-            .check(check_implement)
-            .check(check_job)
-            .check(resolve_record<JobRequest>)
+            .check_presence([](const Json& value, JobRequest& request, Reader& reader) {
+                if (value.contains("ultimate")) return check_ultimate(value, request, reader);
+                check_source(value, {"plant", "record"},
+                             "or a recorded test. Of an ultimate gain and period alone, give ultimate", reader);
+            })
             .example({{"name", "TIC-101"},
                       {"plant", {{"type", "fopdt"}, {"K", 2}, {"T", 10}, {"L", 3}}},
                       {"tune", Json::array({Json{{"method", default_method()}, {"Ms", 1.4}, {"Mt", 1.4}}})}});
+        add_checks(d);
         return d;
     }();
     return description;
@@ -325,18 +346,23 @@ const Description<JobRequest>& job_contract() {
 const Description<DesignRequest>& design_request_contract() {
     static const auto description = [] {
         using D = DesignRequest;
-        Description<D> d("DesignRequest", "A plant and the one method that designs for it.");
+        Description<D> d("DesignRequest",
+                         "What a job asks, without the terms on which a job is run; in place of a record also the "
+                         "model that was found in it.");
         add_labels(d);
-        d.field("plant", &D::plant, maybe(plant_model_or_text()), "The plant.", {.required = true})
-            .field("tune", &D::tune, one_method(), "The method with its options, alone in its list.");
-        add_judged(d);
+        d.field("plant", &D::plant, maybe(plant_model_or_text()), "The plant; exactly one of plant, record and model.")
+            .field("record", &D::record, maybe(object(record_contract())), "The recorded test.")
+            .field("model", &D::model, maybe(object(model_contract())), kModelSentence);
+        add_question(d);
         d.field(
              "start", &D::start, maybe(one_of(controller_contract())),
              "A design nearby, such as the last answer: a hint. The whole search is made, so no answer depends on it.")
-            .check([](const Json& value, D& request, Reader& reader) { check_implement(value, request, reader); })
-            .check([](const Json& value, D& request, Reader& reader) { check_job(value, request, reader); })
+            .check_presence([](const Json& value, D&, Reader& reader) {
+                check_source(value, {"plant", "record", "model"}, "a recorded test, or the model of one", reader);
+            })
             .example({{"plant", {{"type", "fopdt"}, {"K", 2}, {"T", 10}, {"L", 3}}},
                       {"tune", Json::array({Json{{"method", default_method()}, {"Ms", 1.6}, {"Mt", 1.6}}})}});
+        add_checks(d);
         return d;
     }();
     return description;
@@ -345,15 +371,20 @@ const Description<DesignRequest>& design_request_contract() {
 const Description<EvaluateRequest>& evaluate_request_contract() {
     constexpr std::size_t kMaxControllers = 50;
     static const auto description = [] {
-        Description<EvaluateRequest> d("EvaluateRequest", "A plant and controllers for it.");
+        Description<EvaluateRequest> d("EvaluateRequest", "A plant, or the model of a record, and controllers for it.");
         add_labels(d);
-        d.field("plant", &EvaluateRequest::plant, maybe(plant_model_or_text()), "The plant.", {.required = true})
+        d.field("plant", &EvaluateRequest::plant, maybe(plant_model_or_text()),
+                "The plant; exactly one of plant and model.")
+            .field("model", &EvaluateRequest::model, maybe(object(model_contract())), kModelSentence)
             .field("controllers", &EvaluateRequest::controllers,
                    list_of(one_of(controller_contract()), 1, kMaxControllers), "The controllers.", {.required = true})
             .field("evaluate", &EvaluateRequest::evaluate, object(evaluate_options_contract()),
                    "What is simulated and answered.")
             .field("implement", &EvaluateRequest::implement, maybe(object(implement_contract())),
                    "The user's own controller, on which they are judged too.")
+            .check_presence([](const Json& value, EvaluateRequest&, Reader& reader) {
+                check_source(value, {"plant", "model"}, "or the model of a record", reader);
+            })
             .check(check_controllers)
             .check([](const Json&, EvaluateRequest& request, Reader& reader) { resolve_build(request, reader); })
             .example({{"plant", {{"type", "fopdt"}, {"K", 2}, {"T", 10}, {"L", 3}}},
@@ -382,6 +413,7 @@ TuningRequest to_engine(JobRequest request) {
     out.subject = std::move(request.subject);
     if (request.record) out.record = std::move(request.read.record);
     out.ultimate = request.ultimate;
+    out.model = std::move(request.model);
     out.identify = request.identify;
     out.tune = std::move(request.tune);
     out.baseline = request.baseline;

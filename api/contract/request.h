@@ -17,6 +17,7 @@ struct JobRequest {
     std::optional<Subject> subject;  ///< that `plant` describes
     std::optional<GivenRecord> record;
     std::optional<UltimateTest> ultimate;
+    std::optional<IdentifiedModel> model;  ///< of a record, sent back; of a design alone
     IdentifyQuestion identify;
     std::vector<MethodRequest> tune = {MethodRequest{}};
     std::optional<Controller> baseline;
@@ -32,7 +33,7 @@ struct JobRequest {
     std::optional<built::Build> baseline_build;  ///< of `baseline_settings`
 };
 
-/// One method on a plant, answered while the client waits.
+/// A tuning request, answered while the client waits.
 struct DesignRequest : JobRequest {
     std::optional<Controller> start;  ///< a design nearby; a hint
 };
@@ -41,7 +42,8 @@ struct EvaluateRequest {
     std::optional<std::string> name;
     std::optional<Units> units;
     std::optional<PlantModel> plant;
-    std::optional<Subject> subject;  ///< that `plant` describes
+    std::optional<IdentifiedModel> model;  ///< in the place of a plant: of a record, sent back
+    std::optional<Subject> subject;        ///< that they describe
     std::vector<Controller> controllers;
     std::optional<GivenBuild> implement;
     EvaluateOptions evaluate;

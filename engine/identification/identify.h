@@ -101,6 +101,7 @@ struct DataQuality {
     std::optional<MissingPart> gaps;     ///< spacings of more than five times the usual one
     std::optional<MissingPart> missing;  ///< rows without y; `longest` is the longest time from one y to the next
     int repeated_times = 0, backward_times = 0;
+    bool time_unit_assumed = false;  ///< nothing names the unit of the times; who reads the file fills it in
     std::vector<Saturation> saturation;
     std::optional<FalseReadings> outliers;
     std::optional<ClosedLoop> closed_loop;

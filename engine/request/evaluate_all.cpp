@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "engine/evaluation/evaluate.h"
+#include "engine/request/identified_region.h"
 #include "engine/request/optimum_at_ms.h"
 #include "engine/request/verdict/verdict.h"
 #include "engine/tuning/arrieta/tradeoff_report.h"
@@ -40,7 +41,8 @@ std::vector<int> by_load_IAE(const std::vector<TuningEntry>& entries) {
 
 Expected<EvaluationResult> evaluate_all(const Subject& subject, const std::vector<Controller>& controllers,
                                         const EvaluateOptions& options, const std::optional<built::Build>& implement,
-                                        const verdict::Labels& labels, const RunControl& control) {
+                                        const verdict::Labels& labels, const RunControl& control,
+                                        const IdentifiedModel* model) {
     const auto now = [&] { return control.now_ms ? control.now_ms() : 0; };
     EvaluationResult result;
     if (subject.equations() != nullptr) result.operating_point = operating_point(*subject.equations());
@@ -64,10 +66,11 @@ Expected<EvaluationResult> evaluate_all(const Subject& subject, const std::vecto
         if (optima) entry.optimum_at_Ms = optima->compare_at_Ms(*evaluation, control);
         if (implement)
             take_as_built(built_from(subject, *implement, watched, *evaluation, control), *evaluation, entry.as_built);
+        if (model != nullptr) warn_of_band(*evaluation, model->excited_band);
         evaluation->compute_ms = now() - start;
         entry.evaluation = std::move(*evaluation);
     }
-    const verdict::Context context{subject, options, labels, implement ? implement->Ts : 0};
+    const verdict::Context context{subject, options, labels, implement ? implement->Ts : 0, model};
     draw_together(result.controllers);
     verdict::judge(result.controllers, context);
     result.verdict = verdict::of_all(result.controllers, by_load_IAE(result.controllers), context, false);

@@ -7,6 +7,7 @@
 #include "engine/controller/pid.h"
 #include "engine/evaluation/evaluation.h"
 #include "engine/expected.h"
+#include "engine/identification/identify.h"
 #include "engine/plant/nonlinear/linearisation.h"
 #include "engine/plant/subject.h"
 #include "engine/progress.h"
@@ -25,8 +26,10 @@ struct EvaluationResult {
 ///
 /// Errors: those of evaluate(), `where` = "controllers/<index>/..."; timeout where it was stopped.
 /// `labels`: in which verdicts speak. `implement`: each is also settled for the user's own controller and judged on it.
+/// `model`: the one from a record that `subject` is made of; null for a plant that was given.
 Expected<EvaluationResult> evaluate_all(const Subject& subject, const std::vector<Controller>& controllers,
                                         const EvaluateOptions& options, const std::optional<built::Build>& implement,
-                                        const verdict::Labels& labels, const RunControl& control);
+                                        const verdict::Labels& labels, const RunControl& control,
+                                        const IdentifiedModel* model = nullptr);
 
 }  // namespace tunewright

@@ -63,4 +63,9 @@ Expected<PlantFamily> identified_region(const IdentifiedModel& model) {
     return family;
 }
 
+Expected<Subject> subject_of(const IdentifiedModel& model) {
+    auto region = identified_region(model);
+    return Subject::of_family(region ? std::move(*region) : family_of(model.plant));
+}
+
 }  // namespace tunewright

@@ -18,6 +18,7 @@ double now_of(const RunControl& control) { return control.now_ms ? control.now_m
 Error placed(const TuningRequest& request, Error error, const std::string& where) {
     if (in_plant(error)) {
         if (request.record) error.where = "record";
+        if (request.model) error.where = "model";
     } else if (!error.where.empty()) {
         error.where = where + "/" + error.where;
     }

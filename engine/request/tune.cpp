@@ -33,6 +33,7 @@ private:
 
     std::optional<Error> find_plant();
     std::optional<Error> take_record();
+    std::optional<Error> take_model(IdentifiedModel model);
     void state_problem();
     bool repeats(const TuningEntry& entry) const;
     bool tune_rows(const std::vector<PlannedRow>& planned, double from, double to);
@@ -80,24 +81,31 @@ std::optional<Error> TuningRun::take_record() {
     report(0, "identify", "Fitting models to the record.");
     auto model = identify(*request_.record, request_.identify, share(0, kIdentifyShare));
     if (!model) return model.error();
-    auto region = identified_region(*model);
-    if (!region && request_.identified_region == IdentifiedRegion::held) return region.error();
-    auto subject = Subject::of_family(region ? *region : family_of(model->plant));
+    return take_model(std::move(*model));
+}
+
+std::optional<Error> TuningRun::take_model(IdentifiedModel model) {
+    if (request_.identified_region == IdentifiedRegion::held) {
+        auto region = identified_region(model);
+        if (!region) return region.error();
+        held_ = std::move(*region);
+    }
+    auto subject = subject_of(model);
     if (!subject) return placed(request_, subject.error(), "");
     subject_ = std::move(*subject);
-    if (request_.identified_region == IdentifiedRegion::held) held_ = *region;
-    if (const auto at = model->standard_errors.find("L"); at != model->standard_errors.end())
-        dead_time_std_ = at->second;
-    result_.model = std::move(*model);
+    if (const auto at = model.standard_errors.find("L"); at != model.standard_errors.end()) dead_time_std_ = at->second;
+    result_.model = std::move(model);
     return std::nullopt;
 }
 
 std::optional<Error> TuningRun::find_plant() {
-    if (request_.subject.has_value() == request_.record.has_value())
+    const int given = request_.subject.has_value() + request_.record.has_value() + request_.model.has_value();
+    if (given != 1)
         return Error{ErrorKind::invalid_argument, "",
-                     request_.subject ? "Both plant and record are given; give one of them."
-                                      : "Neither plant nor record is given; give one of them."};
+                     given > 1 ? "More than one of plant, record and model is given; give one of them."
+                               : "Neither plant, record nor model is given; give one of them."};
     if (request_.record) return take_record();
+    if (request_.model) return take_model(*request_.model);
     subject_ = request_.subject;
     if (subject_->family() != nullptr) held_ = *subject_->family();
     if (subject_->equations() != nullptr) result_.operating_point = operating_point(*subject_->equations());

@@ -30,8 +30,9 @@ struct UltimateTest {
 };
 
 struct TuningRequest {
-    std::optional<Subject> subject;  ///< exactly one of subject, record and ultimate
+    std::optional<Subject> subject;  ///< exactly one of subject, record, model and ultimate
     std::optional<Record> record;
+    std::optional<IdentifiedModel> model;  ///< what an earlier request found in its record
     std::optional<UltimateTest> ultimate;
     IdentifyOptions identify;
     std::vector<MethodRequest> tune = {MethodRequest{}};

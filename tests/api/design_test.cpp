@@ -1,6 +1,9 @@
 // POST /v1/design and /v1/frontier: what they answer, as what, and what they refuse.
 #include <gmock/gmock.h>
 
+#include <cmath>
+#include <cstdint>
+
 #include "support.h"
 
 namespace tunewright::api {
@@ -50,19 +53,105 @@ TEST(Design, DoesNotDependOnWhereItStarts) {
     }
 }
 
-TEST(Design, IsOfOneMethodOnAPlant) {
-    const Answer two = design(R"("tune": [{"method": "robust"}, {"method": "simc"}])");
-    EXPECT_EQ(two.status, 422);
-    EXPECT_THAT(two.body, HasSubstr("\"/tune\""));
-    const Answer all = design(R"("tune": [{"method": "all"}])");
-    EXPECT_EQ(all.status, 422);
-    EXPECT_THAT(all.body, HasSubstr("one"));
-    const Answer record = design_call(R"({"record": {"dt": 1, "u": [0, 1], "y": [0, 1]}})", {});
-    EXPECT_EQ(record.status, 422);
-    EXPECT_THAT(record.body, HasSubstr("record is not a field here"));
-    const Answer start = design(R"("start": {"Kp": "x"})");
-    EXPECT_EQ(start.status, 422);
-    EXPECT_THAT(start.body, HasSubstr("/start/Kp"));
+// y of 2 e^(-3s)/(10s + 1) after a step of u by 5 at t = 10, with noise of 0.1 that every run draws alike.
+Json step_record() {
+    Json record{{"dt", 0.5}, {"u", Json::array()}, {"y", Json::array()}};
+    std::uint32_t state = 1;
+    for (int i = 0; i < 160; ++i) {
+        const double t = 0.5 * i, since = t - 13;
+        state = state * 1664525u + 1013904223u;
+        const double noise = 0.1 * (static_cast<double>(state >> 8) / (1 << 24) - 0.5);
+        record["u"].push_back(t < 10 ? 20 : 25);
+        record["y"].push_back(40 + (since > 0 ? 10 * (1 - std::exp(-since / 10)) : 0) + noise);
+    }
+    return record;
+}
+
+/// An answer without the times it took and what names it.
+Json figures_of(Json answer) {
+    for (Json& entry : answer["controllers"]) entry.erase("compute_ms");
+    return {{"controllers", answer["controllers"]}, {"verdict", answer["verdict"]}, {"ranking", answer["ranking"]}};
+}
+
+Json live_answer(const Answer& answer) {
+    EXPECT_EQ(answer.status, 200) << answer.body;
+    return Json::parse(answer.body);
+}
+
+TEST(Design, TakesWhatAJobTakes) {
+    Json request{{"units", {{"time", "min"}, {"u", "%"}}},
+                 {"plant", "2 e^(-3s)/(10s+1)"},
+                 {"tune", Json::array({Json{{"method", "robust"}, {"Ms", 1.5}}, Json{{"method", "simc"}}})},
+                 {"baseline", {{"Kp", 0.5}, {"Ti", 10}}},
+                 {"implement", {{"product", "siemens_pid_compact"}, {"y_span", {0, 200}}, {"u_span", {0, 100}}}},
+                 {"evaluate", {{"setpoint_step", 5}, {"actuator", {{"min", -20}, {"max", 30}}}, {"points", 50}}}};
+    for (const Json& tune : {request["tune"], Json("all")}) {
+        request["tune"] = tune;
+        const Json live = live_answer(design_call(request.dump(), {}));
+        expect_kept(live, "DesignAnswer");
+        EXPECT_EQ(figures_of(live), figures_of(design_run(request.dump())));
+    }
+}
+
+TEST(Design, IsTheSameForARecordAndForTheModelThatWasFoundInIt) {
+    for (const char* uncertainty : {"auto", "identified", "none"}) {
+        Json request{{"record", step_record()},
+                     {"uncertainty", uncertainty},
+                     {"tune", Json::array({Json{{"method", "robust"}, {"Ms", 1.6}}, Json{{"method", "simc"}}})},
+                     {"baseline", {{"Kp", 0.5}, {"Ti", 10}}}};
+        const Json job = design_run(request.dump());
+        const Json live = live_answer(design_call(request.dump(), {}));
+        expect_kept(live, "DesignAnswer");
+        EXPECT_EQ(figures_of(live), figures_of(job)) << uncertainty;
+        EXPECT_EQ(live["model"]["plant"], job["model"]["plant"]);
+
+        request.erase("record");
+        request["model"] = job["model"];
+        const Json sent_back = live_answer(design_call(request.dump(), {}));
+        expect_kept(sent_back, "DesignAnswer");
+        EXPECT_EQ(figures_of(sent_back), figures_of(job)) << uncertainty;
+        EXPECT_FALSE(sent_back.contains("model"));
+    }
+}
+
+TEST(Design, OfARecordIsEvaluatedOnItsModelWithTheRegion) {
+    const Json request{{"record", step_record()}, {"baseline", {{"Kp", 0.9}, {"Ti", 10}}}};
+    const Json job = design_run(request.dump());
+    Json baseline = job["controllers"].back();
+    ASSERT_EQ(baseline["method"], "baseline");
+    const Json evaluated = live_answer(
+        evaluate_call(Json{{"model", job["model"]}, {"controllers", Json::array({request["baseline"]})}}.dump(),
+                      {}))["controllers"][0];
+    for (const char* member : {"controller", "robustness", "performance", "region", "warnings"})
+        EXPECT_EQ(evaluated[member], baseline[member]) << member;
+    EXPECT_EQ(evaluated["verdict"][0], baseline["verdict"][0]);
+}
+
+TEST(Design, IsAboutOneThing) {
+    const Json model = design_run(Json{{"record", step_record()}}.dump())["model"];
+    const Json plant{{"type", "fopdt"}, {"K", 2}, {"T", 10}, {"L", 3}};
+    const auto refused = [](const Json& request) {
+        const Answer answer = design_call(request.dump(), {});
+        EXPECT_EQ(answer.status, 422) << answer.body;
+        return answer.body;
+    };
+    EXPECT_THAT(refused({{"plant", plant}, {"model", model}}), HasSubstr("model and plant are both given"));
+    EXPECT_THAT(refused({{"tune", "all"}}), HasSubstr("plant, record or model is missing"));
+    EXPECT_THAT(refused({{"plant", plant}, {"start", {{"Kp", "x"}}}}), HasSubstr("/start/Kp"));
+    EXPECT_THAT(refused({{"plant", plant}, {"timeout_s", 5}}), HasSubstr("timeout_s is not a field here"));
+    Json broken = model;
+    broken.erase("fit_percent");
+    EXPECT_THAT(refused({{"model", broken}}), HasSubstr("/model/fit_percent"));
+    broken = model;
+    broken["covariance"]["matrix"][0][1] = 7;
+    EXPECT_THAT(refused({{"model", broken}}), HasSubstr("/model/covariance/matrix"));
+    broken = model;
+    broken["covariance"]["matrix"][0][0] = -1;
+    EXPECT_THAT(refused({{"model", broken}}), HasSubstr("/model/covariance"));
+    broken = model;
+    broken["plant"]["K"] = 0;
+    EXPECT_THAT(refused({{"model", broken}}), HasSubstr("/model/plant/K"));
+    EXPECT_EQ(prepare_job(Json{{"model", model}}.dump()).index(), 1u) << "a job keeps its record";
 }
 
 TEST(Design, SaysWhyThereIsNone) {

@@ -340,15 +340,12 @@ const Description<RegionFigures>& region_contract() {
 const Description<Warning>& warning_contract() {
     static const auto description = [] {
         Description<Warning> d("Warning", "A remark: a code for programs, a sentence for people.");
-        const auto words = [] {
-            return Codec<std::string>{{}, text(0).write, [](SchemaBook&) { return Json{{"type", "string"}}; }};
-        };
-        d.field("code", &Warning::code, words(), "Stable, in kebab-case.")
-            .field("detail", &Warning::detail, words(), "One sentence with the figures.")
-            .field(
-                "level", &Warning::level,
-                only_answered(choice<WarningLevel>({{"warning", WarningLevel::warning}, {"bad", WarningLevel::bad}})),
-                "bad: what it belongs to is not to be used as it stands.");
+        constexpr std::size_t kMaxCode = 100, kMaxDetail = 10'000;
+        d.field("code", &Warning::code, text(kMaxCode), "Stable, in kebab-case.", {.required = true})
+            .field("detail", &Warning::detail, text(kMaxDetail), "One sentence with the figures.", {.required = true})
+            .field("level", &Warning::level,
+                   choice<WarningLevel>({{"warning", WarningLevel::warning}, {"bad", WarningLevel::bad}}),
+                   "bad: what it belongs to is not to be used as it stands.");
         return d;
     }();
     return description;

@@ -1,9 +1,12 @@
 #include "api/contract/result/identified_model.h"
 
+#include <algorithm>
+
 #include "api/contract/plant/plant.h"
 #include "api/contract/relay.h"
 #include "api/contract/result/evaluation.h"
 #include "engine/identification/model_grade.h"
+#include "engine/plant/linear/linear_plant.h"
 
 namespace tunewright::api {
 namespace {
@@ -119,6 +122,8 @@ const Description<DataQuality>& quality_contract() {
             .field("missing", &Q::missing, maybe(answer(missing_contract())), "Rows without a number for y.")
             .field("repeated_times", &Q::repeated_times, count(), "Rows with the time of the row above.")
             .field("backward_times", &Q::backward_times, count(), "Rows out of order in time; left out.")
+            .field("time_unit_assumed", &Q::time_unit_assumed, unless<bool>(truth(), [](bool it) { return !it; }),
+                   "true: nothing names the unit of the times, which were taken as seconds. Left out where one does.")
             .field("saturation", &Q::saturation,
                    unless<std::vector<Saturation>>(list_of(answer(saturation_contract())),
                                                    [](const auto& levels) { return levels.empty(); }),
@@ -133,6 +138,19 @@ const Description<DataQuality>& quality_contract() {
 }
 
 Codec<std::map<std::string, double>> standard_errors() { return numbers_by_name("Symbol of the parameter."); }
+
+/// The same where a model is sent back.
+Codec<std::map<std::string, double>> given_errors() {
+    auto codec = standard_errors();
+    codec.read = [](const Json& value, std::map<std::string, double>& target, Reader& reader) {
+        if (!value.is_object()) return reader.fault(wrong_kind(value, "an object such as {\"K\": 0.1}", reader));
+        for (const auto& [name, error] : value.items()) {
+            const Reader::At at(reader, name);
+            if (const auto read = read_number(error, {.minimum = 0}, reader)) target[name] = *read;
+        }
+    };
+    return codec;
+}
 
 const Description<Candidate>& candidate_contract() {
     static const auto description = [] {
@@ -151,25 +169,30 @@ const Description<Candidate>& candidate_contract() {
     return description;
 }
 
+/// One row and one column for each name, equal on both sides of the diagonal.
+void check_matrix(const ParameterCovariance& covariance, Reader& reader) {
+    const std::size_t size = covariance.names.size();
+    const auto& rows = covariance.matrix;
+    const bool square =
+        rows.size() == size && std::ranges::all_of(rows, [&](const auto& row) { return row.size() == size; });
+    bool same = square;
+    for (std::size_t i = 0; same && i < size; ++i)
+        for (std::size_t j = 0; j < i; ++j) same = same && rows[i][j] == rows[j][i];
+    if (!same)
+        reader.fault_at("matrix", "matrix must be symmetric, with a row and a column for each of the " +
+                                      std::to_string(size) + " names. Send it as the answer had it.");
+}
+
 const Description<ParameterCovariance>& covariance_contract() {
     static const auto description = [] {
         Description<ParameterCovariance> d("Covariance", "How the errors of the model's parameters belong together.");
-        d.field("names", &ParameterCovariance::names, list_of(words()), "Order of rows and columns.")
-            .field(
-                "matrix", {},
-                [](const ParameterCovariance& covariance, Writer& out) {
-                    out.begin_array();
-                    for (const auto& row : covariance.matrix) {
-                        out.begin_array();
-                        for (const double value : row) out.number(value);
-                        out.end_array();
-                    }
-                    out.end_array();
-                },
-                [](SchemaBook&) {
-                    return Json{{"type", "array"}, {"items", {{"type", "array"}, {"items", {{"type", "number"}}}}}};
-                },
-                "Symmetric.");
+        constexpr std::size_t kMaxName = 10, kMaxParameters = 8;
+        d.field("names", &ParameterCovariance::names, list_of(text(kMaxName), 1, kMaxParameters),
+                "Order of rows and columns.", {.required = true})
+            .field("matrix", &ParameterCovariance::matrix, list_of(numbers(1, kMaxParameters), 1, kMaxParameters),
+                   "Symmetric.", {.required = true})
+            .check(
+                [](const Json&, ParameterCovariance& covariance, Reader& reader) { check_matrix(covariance, reader); });
         return d;
     }();
     return description;
@@ -180,9 +203,10 @@ const Description<ExcitedBand>& band_contract() {
         Description<ExcitedBand> d("ExcitedBand",
                                    "Where the answer to u stands out of the noise: the record's own estimate of "
                                    "P(j omega) has a relative standard error below 100 %.");
-        d.field("omega_low", &ExcitedBand::omega_low, only_answered(number()), "2 pi over the record's length.",
-                {.unit = "rad/time"})
-            .field("omega_high", &ExcitedBand::omega_high, only_answered(number()), "Upper end.", {.unit = "rad/time"});
+        d.field("omega_low", &ExcitedBand::omega_low, number({.minimum = 0}), "2 pi over the record's length.",
+                {.required = true, .unit = "rad/time"})
+            .field("omega_high", &ExcitedBand::omega_high, number({.minimum = 0}), "Upper end.",
+                   {.required = true, .unit = "rad/time"});
         return d;
     }();
     return description;
@@ -201,15 +225,30 @@ const Description<FitTrace>& fit_contract() {
     return description;
 }
 
+/// What a model that is sent back is computed with.
+void check_region(const IdentifiedModel& model, Reader& reader) {
+    if (const auto plant = LinearPlant::make(model.plant); !plant)
+        return reader.fault_below(plant.error().where, 0, plant.error().message);
+    const auto& [names, matrix] = model.covariance;
+    if (names.empty()) return;
+    const auto region = PlantRegion::of_covariance(model.plant, names, matrix);
+    if (!region)
+        reader.fault_at("covariance",
+                        "covariance is no covariance of the plant's parameters. Send it as the "
+                        "answer had it, or leave it out.");
+}
+
 }  // namespace
 
 const Description<IdentifiedModel>& model_contract() {
     static const auto description = [] {
         using M = IdentifiedModel;
-        Description<M> d("Model", "The plant that was found in the record.");
-        d.field("plant", &M::plant, only_answered(one_of(plant_contract())), "The model.")
-            .field("fit_percent", &M::fit_percent, only_answered(number()),
-                   "100 (1 - |y - yhat|/|y - mean(y)|), free run, offset estimated.")
+        Description<M> d("Model",
+                         "The plant that was found in the record. POST /v1/design and /v1/evaluate take it back, in "
+                         "the place of the record.");
+        d.field("plant", &M::plant, one_of(plant_contract()), "The model.", {.required = true})
+            .field("fit_percent", &M::fit_percent, number(),
+                   "100 (1 - |y - yhat|/|y - mean(y)|), free run, offset estimated.", {.required = true})
             .field(
                 "grade", {}, [](const M& model, Writer& out) { out.text(name_of(grade_of(model))); },
                 [](SchemaBook&) {
@@ -218,19 +257,23 @@ const Description<IdentifiedModel>& model_contract() {
                 "How far it may be relied on. good; usable: with care, there are warnings; doubtful: it explains less "
                 "than 70 % of the record's movement, less than 90 % where what it misses is no noise, or a warning "
                 "says that it may be another plant.")
-            .field("standard_errors", &M::standard_errors, standard_errors(), "By parameter.")
+            .field("standard_errors", &M::standard_errors, given_errors(), "By parameter.", {.required = true})
             .field("covariance", &M::covariance,
-                   unless<ParameterCovariance>(answer(covariance_contract()),
+                   unless<ParameterCovariance>(object(covariance_contract()),
                                                [](const auto& covariance) { return covariance.names.empty(); }),
                    "Of the parameters.")
-            .field("limit_cycle", &M::limit_cycle, maybe(answer(limit_cycle_contract())), "Of a relay test.")
+            .field("alternatives", &M::alternatives, list_of(one_of(plant_contract())),
+                   "Best fits of other structures that the record does not distinguish from the model: the 95 % "
+                   "confidence region has them too.",
+                   {.required = true})
+            .field("limit_cycle", &M::limit_cycle, maybe(object(limit_cycle_contract())), "Of a relay test.")
             .field("frequency_points", &M::frequency_points,
                    unless<std::vector<FrequencyPoint>>(list_of(answer(frequency_point_contract())),
                                                        [](const auto& points) { return points.empty(); }),
                    "Of the plant, from the record alone.")
             .field("ultimate_point", &M::ultimate_point, maybe(answer(ultimate_point_contract())),
                    "Of the model; left out where no gain makes it oscillate.")
-            .field("excited_band", &M::excited_band, maybe(answer(band_contract())),
+            .field("excited_band", &M::excited_band, maybe(object(band_contract())),
                    "The frequencies at which the record determines the plant's response.")
             .field("region", &M::region, maybe(answer(region_contract())),
                    "The best-ranked controller on the 95 % confidence region; each entry has its own.")
@@ -240,7 +283,8 @@ const Description<IdentifiedModel>& model_contract() {
                    unless<FitTrace>(answer(fit_contract()), [](const auto& fit) { return fit.t.empty(); }),
                    "The model beside the record; with identify.traces.")
             .field("data_quality", &M::data_quality, answer(quality_contract()), "What was found in the record.")
-            .field("warnings", &M::warnings, list_of(answer(warning_contract())), "Remarks.");
+            .field("warnings", &M::warnings, list_of(object(warning_contract())), "Remarks.", {.required = true})
+            .check([](const Json&, M& model, Reader& reader) { check_region(model, reader); });
         return d;
     }();
     return description;

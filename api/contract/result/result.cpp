@@ -267,6 +267,25 @@ const Description<TuningEntry>& entry_contract() {
     return description;
 }
 
+// The fields ranking and ranking_by of an answer.
+template <class Answer>
+void add_ranking(Description<Answer>& d, Callable<const TuningResult&(const Answer&)> of) {
+    d.field(
+         "ranking", {},
+         [of](const Answer& answer, Writer& out) {
+             out.begin_array();
+             for (const int index : of(answer).ranking) out.integer(index);
+             out.end_array();
+         },
+         [](SchemaBook&) {
+             return Json{{"type", "array"}, {"items", {{"type", "integer"}}}};
+         },
+         "Indices into controllers, best first; entries without a controller are left out.")
+        .field(
+            "ranking_by", {}, [of](const Answer& answer, Writer& out) { out.text(of(answer).ranking_by); },
+            words().schema, "What they are ranked by.");
+}
+
 }  // namespace
 
 const Description<ResultAnswer>& result_contract() {
@@ -287,24 +306,11 @@ const Description<ResultAnswer>& result_contract() {
              list_of(answer(entry_contract())).schema, "One entry a method, in the order asked for; the baseline last.")
             .field(
                 "verdict", {}, [](const ResultAnswer& a, Writer& out) { findings().write(a.result.verdict, out); },
-                findings().schema, kWhichToTake)
-            .field(
-                "ranking", {},
-                [](const ResultAnswer& a, Writer& out) {
-                    out.begin_array();
-                    for (const int index : a.result.ranking) out.integer(index);
-                    out.end_array();
-                },
-                [](SchemaBook&) {
-                    return Json{{"type", "array"}, {"items", {{"type", "integer"}}}};
-                },
-                "Indices into controllers, best first; entries without a controller are left out.")
-            .field(
-                "ranking_by", {}, [](const ResultAnswer& a, Writer& out) { out.text(a.result.ranking_by); },
-                words().schema, "What they are ranked by.")
-            .field(
-                "partial", {}, [](const ResultAnswer& a, Writer& out) { out.boolean(a.result.partial); },
-                boolean().schema, "True: cancelled after a feasible design was found; this is the best so far.")
+                findings().schema, kWhichToTake);
+        add_ranking<ResultAnswer>(d, [](const ResultAnswer& a) -> const TuningResult& { return a.result; });
+        d.field(
+             "partial", {}, [](const ResultAnswer& a, Writer& out) { out.boolean(a.result.partial); }, boolean().schema,
+             "True: cancelled after a feasible design was found; this is the best so far.")
             .field(
                 "version", {}, [](const ResultAnswer&, Writer& out) { out.text(TUNEWRIGHT_VERSION); }, words().schema,
                 "Of the service.")
@@ -324,10 +330,13 @@ const Description<ResultAnswer>& result_contract() {
 const Description<TuningResult>& design_answer_contract() {
     static const auto description = [] {
         using R = TuningResult;
-        Description<R> d("DesignAnswer", "The method's entry, and the baseline's behind it.");
+        Description<R> d("DesignAnswer", "What a job's result has, without what names and dates it.");
+        d.field("model", &R::model, maybe(answer(model_contract())), "Of a record; left out where it was sent.");
         add_operating_point<R>(d, [](const R& a) { return pointer(a.operating_point); });
-        d.field("controllers", &R::controllers, list_of(answer(entry_contract())), "One or two entries.")
+        d.field("controllers", &R::controllers, list_of(answer(entry_contract())),
+                "One entry a method, in the order asked for; the baseline last.")
             .field("verdict", &R::verdict, findings(), kWhichToTake);
+        add_ranking<R>(d, [](const R& a) -> const TuningResult& { return a; });
         return d;
     }();
     return description;

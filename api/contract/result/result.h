@@ -25,7 +25,7 @@ struct ResultAnswer {
 /// `model` is left out where the request had a plant, `operating_point` and `linear_model` where the plant is linear.
 const Description<ResultAnswer>& result_contract();
 
-/// The answer of POST /v1/design: the method's entry, and the baseline's behind it.
+/// The answer of POST /v1/design.
 const Description<TuningResult>& design_answer_contract();
 
 /// The answer of POST /v1/evaluate: the same entries, without the members of a method.

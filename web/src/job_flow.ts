@@ -4,7 +4,7 @@ import { newest } from "./api/latest.ts";
 import { isFinal } from "./api/types.ts";
 import type { Job, TuningRequest } from "./api/types.ts";
 import { byAllMethods } from "./form/tuning_request.ts";
-import { addressOfJob, rewriteAddress, showsJob } from "./routes.ts";
+import { addressOfJob, showsJob, stepAddress } from "./routes.ts";
 import type { JobScreen, Route } from "./routes.ts";
 import type { Store } from "./store.ts";
 
@@ -15,8 +15,11 @@ export interface JobFlow {
   tune(request: TuningRequest): Promise<void>;
   /** Every method on what this request is about. */
   compareAll(request: TuningRequest): Promise<void>;
-  /** A job in the place of the one that is shown: the screen stays, Back leads where it led before. Throws where the entry of that index gets no answer. */
-  retune(request: TuningRequest, index: number): Promise<void>;
+  /**
+   * A job in the place of the one that is shown: the screen stays, and Back leads to the design before, as its job has it.
+   * Throws where the entry of that index gets no answer. Answers the job, null where another one has taken its place.
+   */
+  retune(request: TuningRequest, index: number): Promise<Job | null>;
   /** Reports what becomes of a job until it has ended or another one is followed. */
   follow(id: string): void;
   take(job: Job): void;
@@ -36,23 +39,24 @@ export function jobFlow(store: Store): JobFlow {
   }
 
   /** The newest one counts: what an older one comes to is told to nobody. */
-  async function retune(request: TuningRequest, index: number): Promise<void> {
+  async function retune(request: TuningRequest, index: number): Promise<Job | null> {
     const from = store.get().route;
     const isNewest = beginRetune();
     const job = await postJobAndWait(request, LONGEST_WAIT_S).catch((error: unknown) => {
       if (isNewest()) throw error;
     });
-    if (!job || !isNewest()) return;
+    if (!job || !isNewest()) return null;
     const failure = job.error ?? job.result?.controllers[index]?.error;
     if (failure) throw new Error(failure.detail ?? failure.title ?? "There is no such design.");
     const now = store.get().route;
     // The same job's screen: a slider that has moved since writes its own address.
-    if (from.screen !== "design" || now.screen !== "design" || now.job !== from.job) return;
-    const { values: _turned, ...kept } = now;
-    const route: Route = { ...kept, job: job.id };
-    store.set((workspace) => ({ ...workspace, route, job, jobTrouble: "" }));
-    rewriteAddress(now, { ...route, entry: store.get().selected });
+    if (from.screen !== "design" || now.screen !== "design" || now.job !== from.job) return null;
+    const { values: _turned, ...before } = now;
+    const route: Route = { ...before, job: job.id, entry: index };
+    store.set((workspace) => ({ ...workspace, route, job, selected: index, jobTrouble: "" }));
+    stepAddress(now, before, route);
     if (!isFinal(job.status)) follow(job.id);
+    return job;
   }
 
   function follow(id: string): void {

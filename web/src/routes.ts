@@ -117,13 +117,25 @@ export function formatRoute(route: Route): string {
 }
 
 /**
- * Writes the address anew, as no step of its own. After Back or a link the address is another screen's before the page
- * follows: then it stays, or that step of the history would be lost. `from`: what the page shows.
+ * After Back or a link the address is another screen's before the page follows: then it stays, or that step of the history
+ * would be lost.
  */
-export function rewriteAddress(from: Route, next: Route): void {
+function stillAt(from: Route): boolean {
   const now = parseRoute(location.hash);
   const same = showsStart(from) ? showsStart(now) : now.screen === from.screen;
-  if (same && (!showsJob(from) || !showsJob(now) || from.job === now.job)) history.replaceState(null, "", formatRoute(next));
+  return same && (!showsJob(from) || !showsJob(now) || from.job === now.job);
+}
+
+/** Writes the address anew, as no step of its own. `from`: what the page shows. */
+export function rewriteAddress(from: Route, next: Route): void {
+  if (stillAt(from)) history.replaceState(null, "", formatRoute(next));
+}
+
+/** A step of its own, without leaving the screen: Back leads to `before`. */
+export function stepAddress(from: Route, before: Route, next: Route): void {
+  if (!stillAt(from)) return;
+  history.replaceState(null, "", formatRoute(before));
+  history.pushState(null, "", formatRoute(next));
 }
 
 function decode(text: string): string {

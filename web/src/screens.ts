@@ -1,9 +1,9 @@
 // Which screen belongs to the address: made, kept or made anew, and what they hand to each other.
-import { notConnected, sentenceOf } from "./api/client.ts";
+import { notConnected, sentenceOf, whenBack } from "./api/client.ts";
 import { getJob, getRecentJobs, postJob } from "./api/jobs.ts";
 import { isRangeRequest } from "./api/range.ts";
 import type { Batch } from "./api/job_lists.ts";
-import type { FieldError, IdentifyRequest, TuningRequest } from "./api/types.ts";
+import type { FieldError, IdentifyRequest, TuningRequest, Units } from "./api/types.ts";
 import { h } from "./dom.ts";
 import type { TuneSubject } from "./form/tuning_request.ts";
 import type { JobFlow } from "./job_flow.ts";
@@ -48,6 +48,9 @@ export function screens(
   let start: StartView | null = null;
   let relay: RelayView | null = null;
   let range: RangeView | null = null;
+  /** The loop on Start whose plant the relay test is on; null: it has one of its own. */
+  let relayOf: { units: Units | undefined; loop: number } | null = null;
+  const ofStart = (): boolean => relayOf !== null && relayOf.loop === startScreen().loops();
   /** How often the form of Start was filled from elsewhere. */
   let fills = 0;
   /** What was chosen on Identify, of the record at that address. */
@@ -78,6 +81,7 @@ export function screens(
       onJob: (job, all) => flow.open(job, all ? "compare" : "design"),
       onRecord: openRecord,
       onRelay(form, values) {
+        relayOf = { units: startScreen().units(), loop: startScreen().loops() };
         location.hash = formatRoute({ screen: "relay", plant: form, values });
       },
       onModel: (form, values) => typed(showsStart, { screen: "new", plant: form, values }),
@@ -88,8 +92,11 @@ export function screens(
   /** Kept too, with what was typed. */
   function relayScreen(): RelayView {
     relay ??= relayView(announce, {
-      units: () => startScreen().units(),
-      onIdentify: openRecord,
+      units: () => (ofStart() ? relayOf!.units : startScreen().typedUnits()),
+      onIdentify(test) {
+        if (!ofStart()) startScreen().beginLoop("record");
+        openRecord(test);
+      },
       onPlant: (plant, values) => typed(({ screen }) => screen === "relay", { screen: "relay", plant, values }),
     });
     return relay;
@@ -123,7 +130,9 @@ export function screens(
   async function tuneSubject(subject: TuneSubject, all: boolean): Promise<FieldError[]> {
     const { request, faults } = startScreen().compose(subject, all);
     if (faults.length > 0) return faults;
-    flow.open(await postJob(request), all ? "compare" : "design");
+    const job = await postJob(request);
+    startScreen().endLoop();
+    flow.open(job, all ? "compare" : "design");
     return [];
   }
 
@@ -173,17 +182,17 @@ export function screens(
     }
   }
 
-  function fillForm(request: TuningRequest): void {
+  function fillForm(request: TuningRequest, example = false): void {
     fills += 1;
-    startScreen().load(request);
+    startScreen().load(request, example);
   }
 
   /** Of what stands in the form; a reload of the page begins anew. */
   const fillMark = (): string => `${performance.timeOrigin}/${fills}`;
 
   /** An entry of the history remembers what it filled the form with: Back finds what was typed since. */
-  function fillForEntry(request: TuningRequest): void {
-    fillForm(request);
+  function fillForEntry(request: TuningRequest, example: boolean): void {
+    fillForm(request, example);
     history.replaceState({ fill: fillMark() }, "");
   }
 
@@ -203,18 +212,23 @@ export function screens(
         // A range is changed on its own screen.
         if (isRangeRequest(job.request))
           return location.replace(formatRoute({ screen: "range", example: "", job: job.id }));
-        if (job.request) fillForEntry(job.request);
+        if (job.request) fillForEntry(job.request, false);
       }
       if (route.screen === "example") {
         await listed;
         if (store.get().route !== route) return;
         const example = store.get().examples.find((candidate) => candidate.id === route.id);
-        if (example) fillForEntry(example.request);
+        if (example) fillForEntry(example.request, true);
         else store.set((workspace) => ({ ...workspace, serviceTrouble: `There is no example "${route.id}".` }));
       }
     } catch (error) {
-      if (store.get().route === route)
-        store.set((workspace) => ({ ...workspace, serviceTrouble: sentenceOf(error) }));
+      if (store.get().route !== route) return;
+      const sentence = sentenceOf(error);
+      store.set((workspace) => ({ ...workspace, serviceTrouble: sentence }));
+      void whenBack(error, () => {
+        store.set((workspace) => (workspace.serviceTrouble === sentence ? { ...workspace, serviceTrouble: "" } : workspace));
+        if (store.get().route === route) void loadForm(route);
+      });
     }
   }
 

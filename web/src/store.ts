@@ -12,7 +12,7 @@ export interface Workspace {
   job: Job | null;
   /** Why the job cannot be shown or followed at the moment, or "". */
   jobTrouble: string;
-  /** Whose settings and verdict are shown; null: the first entry that has an answer. */
+  /** Whose settings and verdict are shown; null: the one that the answer says to take. */
   selected: number | null;
   /** Indices of the entries drawn, at most four. Null: the default choice. */
   drawn: number[] | null;

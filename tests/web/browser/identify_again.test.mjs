@@ -86,6 +86,6 @@ test("candidate and check box are as they were chosen after Back, and the record
     await page.getByRole("heading", { name: "Model from the record" }).waitFor();
     const { request } = await jobOf(page);
     assert.equal(request.record.csv, stepTest);
-    assert.deepEqual([request.name, request.units], ["TIC-9", { time: "s", y: "degC" }]);
+    assert.deepEqual([request.name, request.units], ["TIC-9", { y: "degC" }]);
   });
 });

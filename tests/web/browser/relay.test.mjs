@@ -33,7 +33,6 @@ test("from a model to the relay test on it: record, limit cycle and plan as the 
     await page.getByRole("button", { name: "Simulate" }).click();
     const response = await second;
     assert.deepEqual(response.request().postDataJSON(), {
-      units: { time: "s" },
       plant: { type: "fopdt", K: 1, T: 10, L: 2 },
       relay: {
         u_plus: 1.3,

@@ -25,6 +25,21 @@ export function waitAfter(error: unknown): number | null {
   return error.retryAfter ? error.retryAfter * 1000 : LOST_WAIT_MS;
 }
 
+const isLost = (error: unknown): boolean => error instanceof ApiError && error.status === 0;
+
+/** Goes when the service answers again, where this was the failure of a call that did not reach it. */
+export async function whenBack(error: unknown, go: () => void): Promise<void> {
+  if (!isLost(error)) return;
+  for (;;) {
+    await new Promise((over) => setTimeout(over, LOST_WAIT_MS));
+    const answered = await call("GET", "healthz").then(
+      () => true,
+      (again: unknown) => !isLost(again),
+    );
+    if (answered) return go();
+  }
+}
+
 export interface Reply {
   status: number;
   data: unknown;

@@ -1,9 +1,8 @@
 // Figures of given controllers on a plant, at once; and what a method does over its whole range.
 import { call } from "./client.ts";
 import { deleteJob, postJobAndWait } from "./jobs.ts";
-import type { Implement } from "./products.ts";
 import type { Tradeoff } from "./reports.ts";
-import type { Controller, Entry, Plant, TuningRequest } from "./types.ts";
+import type { Controller, Entry, Plant } from "./types.ts";
 
 /** What the service adds to a controller is not part of its settings. */
 export const settingsOf = ({ action: _action, why_null: _why, ...settings }: Controller): Controller => settings;
@@ -17,24 +16,6 @@ export async function stepOf(
 ): Promise<Entry> {
   const evaluate = { setpoint_step, horizon, points: SLIDER_POINTS };
   const request = { plant, controllers: [settingsOf(controller)], evaluate };
-  const answer = (await call("POST", "v1/evaluate", request)).data as { controllers: Entry[] };
-  return answer.controllers[0]!;
-}
-
-/** A controller judged on the user's own, under the steps of its request, without traces. */
-export async function evaluateAsBuilt(
-  plant: Plant,
-  controller: Controller,
-  implement: Implement,
-  { units, evaluate }: TuningRequest,
-): Promise<Entry> {
-  const request = {
-    plant,
-    controllers: [settingsOf(controller)],
-    implement,
-    units: units ?? {},
-    evaluate: { ...evaluate, points: 0 },
-  };
   const answer = (await call("POST", "v1/evaluate", request)).data as { controllers: Entry[] };
   return answer.controllers[0]!;
 }

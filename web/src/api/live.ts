@@ -1,60 +1,93 @@
-// What is asked while a hand moves: one design, one controller's figures, the front of robust optima. Nothing of it is kept.
+// What is asked while a hand moves: a design, one controller's figures, the front of robust optima. Nothing of it is kept.
 import { call } from "./client.ts";
 import { settingsOf } from "./evaluate.ts";
 import { deleteJob, postJobAndWait } from "./jobs.ts";
+import type { Implement } from "./products.ts";
 import type { Front } from "./reports.ts";
-import type { Controller, Entry, Plant, TuneEntry, TuningRequest } from "./types.ts";
+import type { Controller, Entry, Model, Plant, Result, TuningRequest } from "./types.ts";
 
-/** What stays the same while settings move. */
-export interface LiveSubject {
-  plant: Plant;
-  /** Units, steps, actuator, the user's own controller and today's settings are those of the request. */
-  request: TuningRequest;
-  /** Today's settings in the ideal form, where they could be read so. */
-  today: Controller | null;
+/** What a call is about: a plant, or the model of a record with its region, so that the record is not identified again. */
+export type CallSubject = { plant: Plant } | { model: Partial<Model> };
+
+/** Members of a model that a design depends on. */
+const SENT_BACK = [
+  "plant",
+  "fit_percent",
+  "standard_errors",
+  "covariance",
+  "alternatives",
+  "limit_cycle",
+  "excited_band",
+  "warnings",
+] as const;
+
+/** The model as it can be sent back; null where it was made by a service that does not tell all of its region. */
+function sentBack(model: Model | undefined): Partial<Model> | null {
+  if (!model?.alternatives) return null;
+  return Object.fromEntries(SENT_BACK.flatMap((name) => (model[name] === undefined ? [] : [[name, model[name]]])));
+}
+
+/** Null where there is no plant. */
+export function callSubject(request: TuningRequest, result: Result): CallSubject | null {
+  const model = sentBack(result.model);
+  if (model) return { model };
+  const plant = result.model?.plant ?? request.plant;
+  return plant ? { plant } : null;
+}
+
+/** A job's request as POST /v1/design takes it: without the terms on which a job is run, and with its record's model. */
+export function designBody(request: TuningRequest, result: Result): Record<string, unknown> {
+  const { timeout_s: _timeout, priority: _priority, notify: _notify, ...asked } = request;
+  const model = asked.record ? sentBack(result.model) : null;
+  if (!model) return asked;
+  const { record: _record, identify: _identify, ...rest } = asked;
+  return { ...rest, model };
+}
+
+/** Given controllers on what the request is about, as POST /v1/evaluate takes them. */
+export function evaluateBody(
+  request: TuningRequest,
+  subject: CallSubject,
+  controllers: readonly Controller[],
+): Record<string, unknown> {
+  const { name, units, implement, evaluate } = request;
+  return {
+    ...(name ? { name } : {}),
+    ...(units ? { units } : {}),
+    ...subject,
+    controllers: controllers.map(settingsOf),
+    ...(implement ? { implement } : {}),
+    ...(evaluate ? { evaluate } : {}),
+  };
 }
 
 /** While a slider is held half the samples are enough; let go, the request's own number is answered. */
 const HELD_POINTS = 200;
 
-const evaluateOf = ({ request }: LiveSubject, held: boolean): Record<string, unknown> =>
-  held ? { ...request.evaluate, points: HELD_POINTS } : { ...request.evaluate };
+export const withHeldPoints = (body: Record<string, unknown>): Record<string, unknown> => ({
+  ...body,
+  evaluate: { ...(body["evaluate"] as object | undefined), points: HELD_POINTS },
+});
 
-/** The entry first, then today's settings where there are any. */
-export async function designOf(
-  subject: LiveSubject,
-  tune: TuneEntry,
-  held: boolean,
-  signal: AbortSignal,
-): Promise<Entry[]> {
-  const { units, implement, baseline } = subject.request;
-  const body = {
-    plant: subject.plant,
-    tune: [tune],
-    ...(units ? { units } : {}),
-    ...(implement ? { implement } : {}),
-    ...(baseline ? { baseline } : {}),
-    evaluate: evaluateOf(subject, held),
-  };
-  return ((await call("POST", "v1/design", body, {}, signal)).data as { controllers: Entry[] }).controllers;
-}
+/** What a job's result has that depends on its controllers. */
+export type DesignAnswer = Pick<Result, "controllers" | "verdict" | "ranking" | "ranking_by">;
 
-/** The same for settings that are given. */
-export async function entriesOf(
-  subject: LiveSubject,
+export const designOf = async (body: unknown, signal: AbortSignal): Promise<DesignAnswer> =>
+  (await call("POST", "v1/design", body, {}, signal)).data as DesignAnswer;
+
+export const entriesOf = async (body: unknown, signal?: AbortSignal): Promise<Entry[]> =>
+  ((await call("POST", "v1/evaluate", body, {}, signal)).data as { controllers: Entry[] }).controllers;
+
+/** A controller judged on the user's own, under the steps of its request, without traces. */
+export async function evaluateAsBuilt(
+  subject: CallSubject,
   controller: Controller,
-  held: boolean,
-  signal: AbortSignal,
-): Promise<Entry[]> {
-  const { units, implement } = subject.request;
-  const body = {
-    plant: subject.plant,
-    controllers: [controller, ...(subject.today ? [subject.today] : [])].map(settingsOf),
-    ...(units ? { units } : {}),
-    ...(implement ? { implement } : {}),
-    evaluate: evaluateOf(subject, held),
-  };
-  return ((await call("POST", "v1/evaluate", body, {}, signal)).data as { controllers: Entry[] }).controllers;
+  implement: Implement,
+  request: TuningRequest,
+): Promise<Entry> {
+  const asked = { ...request, implement, evaluate: { ...request.evaluate, points: 0 } };
+  const body = evaluateBody(asked, subject, [controller]);
+  return (await entriesOf(body))[0]!;
 }
 
 export interface FrontTerms {

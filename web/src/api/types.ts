@@ -301,6 +301,10 @@ export interface Model {
   /** Where the request asked for traces. */
   fit?: { t: number[]; y: (number | null)[]; y_model: (number | null)[]; u?: (number | null)[] };
   standard_errors?: Record<string, number | null>;
+  covariance?: { names: string[]; matrix: number[][] };
+  /** Of other structures, which the region has too. Older results do not tell. */
+  alternatives?: Plant[];
+  excited_band?: { omega_low: number; omega_high: number };
   data_quality?: Record<string, unknown>;
   warnings?: Notice[];
   why_null?: WhyNull;

@@ -47,6 +47,14 @@ function worthDrawing(result: Result): number[] {
   return calm.length > 0 ? calm : drawn;
 }
 
+/** The entry that is shown first: the one that the answer says to take, else the first that has a controller. */
+export function proposedEntry(result: Result): number {
+  const taken = result.verdict?.[0]?.figures?.["entry"];
+  const entry = typeof taken === "number" ? result.controllers[taken] : undefined;
+  if (entry && !entry.error) return taken!;
+  return Math.max(0, result.controllers.findIndex((candidate) => !candidate.error));
+}
+
 /** The best of the ranking and today's settings, at most four, in the order of the entries. */
 export function defaultDrawn(result: Result): number[] {
   const entries = result.controllers;

@@ -1,4 +1,5 @@
 // Labelled controls: text fields with unit and hint, choices, check boxes. All of them can carry an error sentence.
+import { whenReleased } from "../api/press.ts";
 import { h, uniqueId } from "../dom.ts";
 import type { Control, FormErrors } from "./errors.ts";
 
@@ -45,9 +46,8 @@ function assemble<T extends Control["input"]>(input: T, options: ControlOptions,
     element,
     input,
     control,
-    setUnit(text) {
-      unit.textContent = text ? ` (${text})` : "";
-    },
+    // A longer label may need another line, which moves what is being pressed below it.
+    setUnit: (text) => whenReleased(() => (unit.textContent = text ? ` (${text})` : "")),
     setLabel(text) {
       label.textContent = text;
     },

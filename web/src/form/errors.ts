@@ -1,4 +1,5 @@
 // Faults at their fields: one sentence beside the field, the same in a summary that takes the focus.
+import { ApiError, sentenceOf, whenBack } from "../api/client.ts";
 import { whenReleased } from "../api/press.ts";
 import type { FieldError } from "../api/types.ts";
 import { h } from "../dom.ts";
@@ -99,6 +100,15 @@ export class FormErrors {
     this.summary.scrollIntoView({ block: "nearest" });
   }
 
+  /** A call that failed: what it says of fields, and in general. A service that was away is no problem once it is back. */
+  fail(error: unknown, listed: FieldError[] = error instanceof ApiError ? (error.problem.errors ?? []) : []): void {
+    this.show(listed, sentenceOf(error));
+    const said = this.summary.firstElementChild;
+    void whenBack(error, () => {
+      if (this.summary.firstElementChild === said) this.clear();
+    });
+  }
+
   /** The control that now shows the fault. */
   private place(error: FieldError): Control | undefined {
     const controls = [...this.controls.keys()];
@@ -156,7 +166,7 @@ export function inLabels({ pointer, detail }: FieldError, own: string, labels: R
 }
 
 /** Opens the folded parts of the page that an element is in. */
-function openAround(element: Element): void {
+export function openAround(element: Element): void {
   for (let at = element.closest("details"); at; at = at.parentElement?.closest("details") ?? null) at.open = true;
 }
 

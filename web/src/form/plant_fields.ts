@@ -23,6 +23,10 @@ export interface PlantFields {
   /** False where these fields cannot show such a plant. */
   load(plant: Plant): boolean;
   loadTyped(form: string, values: Record<string, string>): void;
+  /** Another loop: its plant is known exactly until somebody says otherwise. */
+  beginLoop(): void;
+  /** Whether somebody types another plant, rather than changing a parameter. */
+  isLine(input: EventTarget | null): boolean;
   /** The form's id and the texts as typed: what an address keeps. */
   typed(): { form: string; values: Record<string, string> };
   setUnits(units: UnitNames): void;
@@ -194,6 +198,11 @@ export function plantFields(errors: FormErrors, active: () => boolean, onChange:
       choose(match, Object.keys(values).length > 0 ? values : examples(match));
       askFields();
     },
+    beginLoop() {
+      const known = fields.find((item) => item.name === "uncertainty")?.field.input;
+      if (known && known !== document.activeElement) known.value = "";
+    },
+    isLine: (input) => input === line.input,
     typed: () => ({ form: form.id, values: texts() }),
     setUnits(next) {
       const changed = next.time !== units.time;

@@ -5,6 +5,7 @@ import type { Preview } from "../api/records.ts";
 import { choiceField, textField } from "./controls.ts";
 import type { Field } from "./controls.ts";
 import type { FormErrors } from "./errors.ts";
+import { openAround } from "./errors.ts";
 import { parseNumber, parseNumbers } from "./number.ts";
 
 export type Identify = Record<string, unknown>;
@@ -16,6 +17,8 @@ export interface RecordFields {
   load(record: RecordedTest, identify: Identify | undefined): void;
   /** The columns to choose among, and what was found of them. */
   offer(preview: Preview): void;
+  /** Leads to the choice of the times' unit, wherever it is folded away. */
+  askUnit(): void;
 }
 
 type ColumnName = "t" | "u" | "y" | "r";
@@ -190,6 +193,10 @@ export function recordFields(errors: FormErrors, all: boolean): RecordFields {
         record: all ? defined({ u_limits }) : defined({ u0, y0, u_limits, from, to }),
         identify: all ? others : { ...others, ...defined({ method: given, shift }) },
       };
+    },
+    askUnit() {
+      openAround(timeUnit.input);
+      timeUnit.input.focus();
     },
     offer(preview) {
       const choices = columnChoices(preview);

@@ -3,6 +3,7 @@
 import type { Implement } from "../api/products.ts";
 import type {
   Candidate,
+  Entry,
   IdentifyRequest,
   Model,
   Plant,
@@ -53,21 +54,42 @@ export const withBaseline = (request: TuningRequest, baseline: TypedBaseline): T
   baseline,
 });
 
-/** What the entry of that index was made by, whose order is that of `tune`; null for today's settings. */
+/** The entry stands behind the one that holds on the record's region, which the same row of the request has made. */
+function isSibling(entry: Entry, before: Entry | undefined): boolean {
+  return Boolean(before?.over_region) && before?.method === entry.method && same(before?.options, entry.options);
+}
+
+/** What every row of the request is made by: as it was sent, or what "all" came to. */
+function rowsAsked(request: TuningRequest, result: Result): TuneEntry[] {
+  const all = request.tune === undefined || asksForAll(request.tune);
+  return all ? everyMethod(result) : (request.tune as TuneEntry[]);
+}
+
+/** Of every entry the row of the request that has made it; -1 for today's settings. */
+export function rowsOf(request: TuningRequest, result: Result): number[] {
+  const asked = rowsAsked(request, result);
+  let row = -1;
+  return result.controllers.map((entry, index) => {
+    if (entry.method === "baseline") return -1;
+    if (isSibling(entry, result.controllers[index - 1])) return row;
+    // A job that was stopped early has no entries of some rows.
+    const next = asked.findIndex((tune, at) => at > row && tune.method === entry.method);
+    if (next >= 0) row = next;
+    return next;
+  });
+}
+
+/** What the entry of that index was made by; null for today's settings. */
 export function tuneEntryOf(request: TuningRequest, result: Result, index: number): TuneEntry | null {
   const entry = result.controllers[index];
   if (!entry || entry.method === "baseline") return null;
-  const given =
-    request.tune === undefined || asksForAll(request.tune) ? everyMethod(result) : (request.tune as TuneEntry[]);
-  const tune = given[index];
-  return tune?.method === entry.method ? tune : { method: entry.method };
+  return rowsAsked(request, result)[rowsOf(request, result)[index] ?? -1] ?? { method: entry.method };
 }
 
-/** The same request with one of its entries made by other options. */
+/** The same request with the row of one of its entries made by other options. */
 export function withTune(request: TuningRequest, result: Result, index: number, tune: TuneEntry): TuningRequest {
-  const all = request.tune === undefined || asksForAll(request.tune);
-  const given = all ? everyMethod(result) : (request.tune as TuneEntry[]);
-  return { ...request, tune: given.map((entry, at) => (at === index ? tune : entry)) };
+  const row = rowsOf(request, result)[index];
+  return { ...request, tune: rowsAsked(request, result).map((entry, at) => (at === row ? tune : entry)) };
 }
 
 /** The same request with other options of a method; null: of the only one. */
@@ -80,22 +102,18 @@ export function withOptions(request: TuningRequest, method: string | null, optio
 /** Options that say the same as lambda in another way. */
 const IN_PLACE_OF_LAMBDA = ["Ms", "disturbance_peak", "dead_time_error"];
 
-/** `index`: of the entry in the result, whose order is that of `tune`. */
+/** `index`: of the entry in the result. */
 export function withLambda(request: TuningRequest, result: Result, index: number, lambda: number): TuningRequest {
-  const given =
-    request.tune === undefined || asksForAll(request.tune) ? everyMethod(result) : (request.tune as TuneEntry[]);
-  const tune = given.map((entry, at): TuneEntry => {
-    if (at !== index) return entry;
-    const kept = Object.entries(entry).filter(([name]) => !IN_PLACE_OF_LAMBDA.includes(name));
-    return { ...Object.fromEntries(kept), method: entry.method, lambda, curve: true };
-  });
-  return { ...request, tune };
+  const entry = tuneEntryOf(request, result, index);
+  if (!entry) return request;
+  const kept = Object.entries(entry).filter(([name]) => !IN_PLACE_OF_LAMBDA.includes(name));
+  return withTune(request, result, index, { ...Object.fromEntries(kept), method: entry.method, lambda, curve: true });
 }
 
 /** "all" as the list that it stood for, each variant with its options. */
 const everyMethod = (result: Result): TuneEntry[] =>
   result.controllers
-    .filter((entry) => entry.method !== "baseline")
+    .filter((entry, index) => entry.method !== "baseline" && !isSibling(entry, result.controllers[index - 1]))
     .map((entry) => ({
       method: entry.method,
       ...Object.fromEntries(Object.entries(entry.options ?? {}).filter(([, value]) => value !== null)),

@@ -3,25 +3,26 @@ import { batch, computed, signal } from "@preact/signals-core";
 import type { ReadonlySignal } from "@preact/signals-core";
 import { ApiError } from "../api/client.ts";
 import { latest } from "../api/latest.ts";
-import { designOf, entriesOf } from "../api/live.ts";
-import type { LiveSubject } from "../api/live.ts";
-import type { Entry } from "../api/types.ts";
+import { designOf, entriesOf, withHeldPoints } from "../api/live.ts";
+import type { Controller, Entry } from "../api/types.ts";
 import { ahead } from "./ahead.ts";
 import { samePoint, stepBack, stepForward, stepTo } from "./point.ts";
 import type { Point, Steps } from "./point.ts";
+import { costOfRow, designShown, handQuestion, handShown, questionOf } from "./shown.ts";
+import type { Shown, Turnable } from "./shown.ts";
 
 /** What the sliders start from: an entry of a job. */
 export interface Proposal {
-  subject: LiveSubject;
+  from: Turnable;
   point: Point;
-  entry: Entry;
+  /** Today's settings in the ideal form, where they could be read so. */
+  today: Controller | null;
 }
 
-export interface Answer {
+/** What is shown of a point. */
+export interface Answer extends Shown {
   point: Point;
   entry: Entry;
-  /** Today's settings under the same horizon. */
-  today: Entry | null;
 }
 
 export interface Live {
@@ -33,6 +34,8 @@ export interface Live {
   readonly held: ReadonlySignal<boolean>;
   /** No answer has come for a while. */
   readonly late: ReadonlySignal<boolean>;
+  /** The design takes too long to follow a hand: it is asked for when it is let go. Its time in ms; 0: it follows. */
+  readonly waits: ReadonlySignal<number>;
   /** Why there is no newer answer, or "". */
   readonly trouble: ReadonlySignal<string>;
   readonly canUndo: ReadonlySignal<boolean>;
@@ -59,6 +62,8 @@ export interface Live {
 
 const LATE_MS = 150;
 const RETRY_S = 2;
+/** What takes longer to compute does not follow a hand. */
+const LONGEST_FRAME_MS = 250;
 
 interface Question {
   point: Point;
@@ -77,13 +82,36 @@ export function liveDesign(onSettled: (point: Point) => void): Live {
   let lateTimer: ReturnType<typeof setTimeout> | undefined;
   let retryTimer: ReturnType<typeof setTimeout> | undefined;
 
-  const work = ({ point: asked, held: coarse }: Question, abort: AbortSignal): Promise<Entry[]> => {
-    const { subject } = proposal.peek()!;
-    return asked.hand ? entriesOf(subject, asked.hand, coarse, abort) : designOf(subject, asked.tune!, coarse, abort);
+  const waits = signal(0);
+  /** What the last design of this proposal took; by hand nothing is searched unless it is made for a product. */
+  const cost = { design: 0, hand: 0 };
+  const costs = (asked: Point): "design" | "hand" => (asked.hand ? "hand" : "design");
+  const waitsFor = (asked: Point): number => {
+    const ms = cost[costs(asked)];
+    return ms > LONGEST_FRAME_MS ? ms : 0;
   };
+
+  async function work({ point: asked, held: coarse }: Question, abort: AbortSignal): Promise<Shown> {
+    const { from, today } = proposal.peek()!;
+    if (!asked.hand) {
+      const answer = await designOf(questionOf(from, asked.tune!, coarse), abort);
+      return designShown(from, asked.tune!, answer, coarse);
+    }
+    const body = handQuestion(from, asked.hand, today)!;
+    return handShown(from, asked, body, await entriesOf(coarse ? withHeldPoints(body) : body, abort));
+  }
+
+  /** What does not follow a hand is not asked for before one comes either. */
+  function* following(points: Iterable<Point>): Generator<Point> {
+    for (const ahead of points) {
+      if (waitsFor(ahead) > 0) return;
+      yield ahead;
+    }
+  }
+
   let underWay = false;
-  const next = ahead<Point, Entry[]>((asked, abort) => work({ point: asked, held: true }, abort), () => underWay);
-  const calls = latest<Question, Entry[]>(
+  const next = ahead<Point, Shown>((asked, abort) => work({ point: asked, held: true }, abort), () => underWay);
+  const calls = latest<Question, Shown>(
     work,
     {
       onBusy: (busy) => {
@@ -92,27 +120,20 @@ export function liveDesign(onSettled: (point: Point) => void): Live {
         expectNothing();
         next.resume();
       },
-      onAnswer(entries, question) {
-        const [entry, today] = entries;
-        if (question.held) next.keep(question.point, entries);
+      onAnswer(shown, question) {
+        const entry = shown.result.controllers[shown.index];
+        if (question.held) next.keep(question.point, shown);
+        cost[costs(question.point)] = shown.cost;
         expectNothing();
         if (!samePoint(question.point, point.peek()!)) expectSoon();
         batch(() => {
           trouble.value = entry?.error?.detail ?? "";
-          if (entry && !entry.error) answer.value = { point: question.point, entry: named(entry, question.point), today: today ?? null };
+          if (entry && !entry.error) answer.value = { ...shown, point: question.point, entry };
         });
       },
       onError: fail,
     },
   );
-
-  /** Settings by hand keep the name of what they were moved from, and its limits to be drawn. */
-  function named(entry: Entry, { tune, hand }: Point): Entry {
-    if (!hand) return entry;
-    const from = proposal.peek()!.entry;
-    const limits = Object.entries(tune ?? {}).filter(([name]) => name === "Ms" || name === "Mt");
-    return { ...entry, method: from.method, options: Object.fromEntries(limits), title: `${from.title ?? from.method}, by hand` };
-  }
 
   function fail(error: unknown): void {
     expectNothing();
@@ -138,6 +159,7 @@ export function liveDesign(onSettled: (point: Point) => void): Live {
     clearTimeout(retryTimer);
     const start = proposal.peek()!;
     if (!question.held && samePoint(question.point, start.point)) {
+      waits.value = 0;
       calls.drop();
       expectNothing();
       batch(() => {
@@ -148,7 +170,9 @@ export function liveDesign(onSettled: (point: Point) => void): Live {
     }
     const known = question.held ? next.known(question.point) : undefined;
     if (known) return calls.give(known, question);
+    waits.value = question.held ? waitsFor(question.point) : 0;
     expectSoon();
+    if (waits.value > 0) return;
     calls.send(question);
   }
 
@@ -177,7 +201,10 @@ export function liveDesign(onSettled: (point: Point) => void): Live {
 
   function standAt(from: Proposal | null, at: Steps | null): void {
     forget();
+    cost.design = from ? costOfRow(from.from) : 0;
+    cost.hand = 0;
     batch(() => {
+      waits.value = 0;
       proposal.value = from;
       steps.value = at;
       point.value = at?.now ?? null;
@@ -192,6 +219,7 @@ export function liveDesign(onSettled: (point: Point) => void): Live {
     answer,
     held,
     late,
+    waits,
     trouble,
     canUndo: computed(() => (steps.value?.past.length ?? 0) > 0),
     canRedo: computed(() => (steps.value?.future.length ?? 0) > 0),
@@ -208,7 +236,7 @@ export function liveDesign(onSettled: (point: Point) => void): Live {
       });
       ask({ point: to, held: true });
     },
-    expect: next.towards,
+    expect: (points) => next.towards(following(points)),
     settle(to) {
       next.towards([]);
       const before = steps.peek();

@@ -1,7 +1,6 @@
 // The form of a range: points or equations, the way the plant varies, what is asked.
 import { parsePlant } from "../api/plants.ts";
 import type { RangeExample, RangeRequest } from "../api/range.ts";
-import { ApiError, sentenceOf } from "../api/client.ts";
 import type { Preview } from "../api/records.ts";
 import type { FieldError } from "../api/types.ts";
 import { h } from "../dom.ts";
@@ -108,7 +107,7 @@ export function rangeForm(errors: FormErrors, events: RangeFormEvents): RangeFor
   }
 
   function complain(error: unknown): void {
-    errors.show(error instanceof ApiError ? (error.problem.errors ?? []) : [], sentenceOf(error));
+    errors.fail(error);
   }
 
   /** The service writes a plant that came as parameters as one would type it. */

@@ -1,5 +1,4 @@
 // The schedule as a table: its rows can be typed over; how it stands is said above it.
-import { ApiError, sentenceOf } from "../api/client.ts";
 import type { RangeContent, ScheduleRow } from "../api/range.ts";
 import { h, passFocus, uniqueId } from "../dom.ts";
 import { textField } from "../form/controls.ts";
@@ -144,7 +143,7 @@ export function scheduleCard(events: ScheduleEvents): ScheduleCard {
     follow: write,
     complain(error) {
       back.hidden = false;
-      errors.show(error instanceof ApiError ? (error.problem.errors ?? []) : [], sentenceOf(error));
+      errors.fail(error);
     },
   };
 }

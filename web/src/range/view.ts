@@ -1,5 +1,5 @@
 // Range: a loop over its whole operating range. Points or equations in; one setting, a schedule to move, and runs out.
-import { ApiError, sentenceOf } from "../api/client.ts";
+import { ApiError } from "../api/client.ts";
 import { getJob } from "../api/jobs.ts";
 import { latest } from "../api/latest.ts";
 import { designRange, getRangeExamples, isRangeRequest } from "../api/range.ts";
@@ -78,7 +78,7 @@ export function rangeView(store: Store, announce: (sentence: string) => void, ev
 
   function complain(error: unknown): void {
     const problem = error instanceof ApiError ? error.problem : {};
-    errors.show(atSharedFields(problem.errors ?? []), sentenceOf(error));
+    errors.fail(error, atSharedFields(problem.errors ?? []));
   }
 
   /** The request as typed; null where it cannot be sent, which the form then says. */

@@ -2,7 +2,7 @@
 import { isRangeRequest } from "../api/range.ts";
 import { isFinal } from "../api/types.ts";
 import type { Job, Result, TuningRequest } from "../api/types.ts";
-import { defaultDrawn, drawnEntries, entryNames } from "../charts/drawn.ts";
+import { defaultDrawn, drawnEntries, entryNames, proposedEntry } from "../charts/drawn.ts";
 import type { Drawn } from "../charts/drawn.ts";
 import { recordFrame } from "../charts/record.ts";
 import { BESIDE_LINEAR, hasLinear } from "../charts/responses.ts";
@@ -35,6 +35,7 @@ import { showComputed, showNotes } from "./notes.ts";
 import { ownController } from "./own_controller.ts";
 import type { View } from "./start.ts";
 import { turnedDesign } from "./turned_design.ts";
+import type { OnScreen } from "./turned_design.ts";
 
 /** From so many entries on the figures stand below the plots, across the page. */
 const BROAD_FROM = 3;
@@ -52,7 +53,7 @@ export interface DesignEvents extends JobEvents {
   /** Tunes another request and shows that job. */
   onTune(request: TuningRequest): Promise<void>;
   /** Tunes again and shows the answer in this one's place; throws where the entry of that index gets none. */
-  onRetune(request: TuningRequest, index: number): Promise<void>;
+  onRetune(request: TuningRequest, index: number): Promise<Job | null>;
 }
 
 export function designView(store: Store, announce: (sentence: string) => void, events: DesignEvents): View {
@@ -83,6 +84,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
   const plots = plotGrid(announce);
   const linearNote = h("p", { class: "hint", hidden: true }, BESIDE_LINEAR);
   let finished: { job: Job; result: Result } | null = null;
+  let screen: OnScreen | null = null;
   const turned = turnedDesign(store, announce, {
     onAnswer: showTurned,
     onLate: (late) => {
@@ -90,7 +92,10 @@ export function designView(store: Store, announce: (sentence: string) => void, e
       verdict.classList.toggle("late", late);
     },
     onHold: plots.hold,
-    onRetune: events.onRetune,
+    onKeep: async (request, index) => {
+      const job = await events.onRetune(request, index);
+      return job && { job, index };
+    },
   });
   const main = h("div", { class: "main-column" }, legend.element, linearNote, plots.element);
   const aside = h("div", { class: "side" }, settings.element, figures);
@@ -100,29 +105,30 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     h("summary", {}, "More: my controller, code, set point against load, how it was computed"),
     h("div", { class: "more-cards" }, own.side, ...reportsAt("below"), ...own.below, computed),
   );
-  const below = h("div", { class: "below" }, model, ...reportsAt("above"), notes, more);
+  const followsLater = h("p", { class: "hint", hidden: true }, "What stands below follows when you let go.");
+  const below = h("div", { class: "below" }, followsLater, model, ...reportsAt("above"), notes, more);
   const headRight = h("div", { class: "head-right" }, trouble, verdict, cures.element, progress.element, range.element);
   const element = h("main", { class: "design", id: "main" }, title.element, headRight);
   const bodyParts = [turned.controls, main, turned.front, aside, below];
 
   /** The entry whose settings are shown. */
   function selectedEntry(result: Result, workspace: Workspace): number {
-    const firstAnswer = result.controllers.findIndex((candidate) => !candidate.error);
-    return Math.min(workspace.selected ?? Math.max(0, firstAnswer), result.controllers.length - 1);
+    return Math.min(workspace.selected ?? proposedEntry(result), result.controllers.length - 1);
+  }
+
+  /** The request of what is shown: a job's, or that with the member altered that was turned last. */
+  function requestShown(job: Job, { path, request }: OnScreen): TuningRequest {
+    return path === "v1/jobs" ? (request as TuningRequest) : (job.request ?? {});
   }
 
   async function retune(lambda: number): Promise<void> {
-    const workspace = store.get();
-    const { request, result } = workspace.job ?? {};
-    if (!request || !result) return;
-    const index = selectedEntry(result, workspace);
-    await events.onRetune(withLambda(request, result, index, lambda), index);
+    if (!finished || !screen) return;
+    const request = requestShown(finished.job, screen);
+    await events.onRetune(withLambda(request, screen.result, screen.index, lambda), screen.index);
   }
 
   async function retuneWhole(request: TuningRequest): Promise<void> {
-    const workspace = store.get();
-    const result = workspace.job?.result;
-    if (result) await events.onRetune(request, selectedEntry(result, workspace));
+    if (screen) await events.onRetune(request, screen.index);
   }
 
   function showFigures(result: Result, listed: number[], drawn: Drawn[], names: string[], units: UnitNames, held: boolean): void {
@@ -147,39 +153,47 @@ export function designView(store: Store, announce: (sentence: string) => void, e
   }
 
   /** What moves with a slider: verdict, settings, figures and plots. */
-  function showMoving(job: Job, result: Result, workspace: Workspace, held: boolean): Drawn[] {
+  function showMoving(job: Job, whole: Result, workspace: Workspace, held: boolean): Drawn[] {
+    screen = turned.onScreen(job, whole, selectedEntry(whole, workspace));
+    const { result, index, origin } = screen;
+    title.setShown(screen, result === whole);
     const entries = result.controllers;
     const names = entryNames(entries);
     const units = unitNames(job.request?.units);
-    const drawn = drawnEntries(result, workspace.drawn ?? defaultDrawn(result));
-    const selected = selectedEntry(result, workspace);
-    const listed = listedEntries(entries.length, drawn, selected);
-    showVerdict(verdict, result, names, selected, listed);
-    settings.show(entries[selected]!, names[selected]!, units);
+    const drawn = drawnEntries(result, workspace.drawn ? drawnOf(workspace.drawn, origin) : defaultDrawn(result));
+    const listed = listedEntries(entries.length, drawn, index);
+    const record = formatRoute({ screen: "identify", job: job.id });
+    showVerdict(verdict, result, names, index, listed, record);
+    settings.show(entries[index]!, names[index]!, units);
     showFigures(result, listed, drawn, names, units, held);
     linearNote.hidden = !hasLinear(drawn);
-    showEntryPlots(plots, drawn, job.request, selected);
+    showEntryPlots(plots, drawn, job.request, index);
     return drawn;
   }
+
+  /** Entries of the job as they stand in what is shown; of two in the place of one the first. */
+  const drawnOf = (chosen: number[], origin: number[]): number[] =>
+    chosen.flatMap((index) => (origin.includes(index) ? [origin.indexOf(index)] : []));
 
   function showResult(job: Job, whole: Result, workspace: Workspace): void {
     const selected = selectedEntry(whole, workspace);
     turned.show(job, whole, selected);
-    const result = turned.effective(whole);
+    if (!main.isConnected) element.append(...bodyParts);
+    const drawn = showMoving(job, whole, workspace, false);
+    const { result, index, origin } = screen!;
     const entries = result.controllers;
     const names = entryNames(entries);
     const units = unitNames(job.request?.units);
-    if (!main.isConnected) element.append(...bodyParts);
-    const drawn = showMoving(job, result, workspace, false);
     // The record stands still while a slider moves.
     plots.show("record", result.model ? recordFrame(result.model, job.request) : null);
-    const listed = listedEntries(entries.length, drawn, selected);
+    const listed = listedEntries(entries.length, drawn, index);
     element.classList.toggle("broad", listed.length >= BROAD_FROM);
     // Rules and robustness of a nonlinear plant rest on its linear model.
     const linear = result.model?.plant ?? result.linear_model ?? job.request?.plant;
-    const reported = { name: names[selected]!, entry: entries[selected]!, model: linear, request: job.request, units };
+    const reported = { name: names[index]!, entry: entries[index]!, model: linear, request: job.request, units };
     for (const card of reports) card.show(reported);
-    own.show({ job, result: whole, index: selected, name: names[selected]!, units });
+    const request = requestShown(job, screen!);
+    own.show({ job, request, result, index, name: names[index]!, units, code: result === whole ? index : null });
     if (model.childElementCount === 0) {
       const about = result.model ? modelResult(result.model, units) : operatingCard(result, job.request);
       model.replaceChildren(...(about ? [about] : []));
@@ -187,23 +201,23 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     model.hidden = model.childElementCount === 0;
     showNotes(
       notes,
-      listed.map((index) => entries[index]!),
-      listed.map((index) => names[index]!),
+      listed.map((at) => entries[at]!),
+      listed.map((at) => names[at]!),
     );
-    showComputed(computed, result, entries[selected]!, names, units);
-    legend.show(entries, listed, names, drawn, selected);
+    showComputed(computed, result, entries[index]!, names, units);
+    legend.show(entries, listed, names, drawn, index, origin);
   }
 
-  /** An answer to the sliders is drawn when it arrives, not in a later frame. */
+  /** An answer to the sliders is drawn when it arrives, not in a later frame; what stands below waits for the hand. */
   function showTurned(held: boolean): void {
     if (!finished) return;
     const { job, result } = finished;
-    const moved = turned.answer()?.entry.controller ?? null;
-    own.follow(moved);
-    title.setOwn(moved === null);
-    if (held) return void showMoving(job, turned.effective(result), store.get(), true);
-    showResult(job, result, store.get());
-    if (turned.answer()) announce(verdict.textContent ?? "");
+    const workspace = store.get();
+    followsLater.hidden = !held;
+    below.classList.toggle("late", held);
+    if (!held) showResult(job, result, workspace);
+    else showMoving(job, result, workspace, true);
+    if (!held && turned.answer()) announce(verdict.textContent ?? "");
   }
 
   let announced: Result | null = null;

@@ -15,12 +15,13 @@ import { commonLimits } from "../words/limits.ts";
 
 export interface Legend {
   element: HTMLElement;
-  /** `listed`: indices of the entries that have a place here. */
-  show(entries: Entry[], listed: number[], names: string[], drawn: Drawn[], selected: number): void;
+  /** `listed`: indices of the entries that have a place here. `origin`: where each of all entries stands in the job's result. */
+  show(entries: Entry[], listed: number[], names: string[], drawn: Drawn[], selected: number, origin?: number[]): void;
 }
 
 export function createLegend(store: Store): Legend {
   const element = h("fieldset", { class: "legend" });
+  let placeOf = (index: number): number => index;
   const controls = (): HTMLElement[] => [...element.querySelectorAll<HTMLElement>("input, button")];
 
   function drawBox(entry: Entry, index: number, name: string, indices: number[]): HTMLElement {
@@ -36,7 +37,7 @@ export function createLegend(store: Store): Legend {
       const drawn = box.checked
         ? [...indices, index].sort((a, b) => a - b)
         : indices.filter((other) => other !== index);
-      store.set((workspace) => ({ ...workspace, drawn }));
+      store.set((workspace) => ({ ...workspace, drawn: [...new Set(drawn.map(placeOf))] }));
     });
     return box;
   }
@@ -47,14 +48,15 @@ export function createLegend(store: Store): Legend {
       class: "quiet",
       "aria-pressed": String(selected),
       title: "Show its settings and verdict",
-      onclick: () => store.set((workspace) => ({ ...workspace, selected: index })),
+      onclick: () => store.set((workspace) => ({ ...workspace, selected: placeOf(index) })),
     };
     return h("button", attributes, item ? swatch(item.look) : null, name);
   }
 
   return {
     element,
-    show(entries, listed, names, drawn, selected) {
+    show(entries, listed, names, drawn, selected, origin) {
+      placeOf = (index) => origin?.[index] ?? index;
       // The controls are made anew; whoever stood on one stands on it again.
       const focused = controls().findIndex((control) => control === document.activeElement);
       const indices = drawn.map((item) => item.index);

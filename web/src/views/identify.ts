@@ -1,5 +1,5 @@
 // Identify: a recorded test, the models that explain it, whether it was good enough, and which part of it counts.
-import { ApiError, sentenceOf } from "../api/client.ts";
+import { ApiError } from "../api/client.ts";
 import { identify } from "../api/experiments.ts";
 import { previewRecord } from "../api/records.ts";
 import { latest, newest } from "../api/latest.ts";
@@ -18,7 +18,7 @@ import { createPlot } from "../plot/plot.ts";
 import type { Plot } from "../plot/plot.ts";
 import { formatNumber, unitNames } from "../words/numbers.ts";
 import { structureTitle } from "../words/plant.ts";
-import { qualityOf } from "../words/quality.ts";
+import { qualityOf, timeUnitDoubt } from "../words/quality.ts";
 import { candidatesCard } from "./cards/candidates_card.ts";
 import type { CandidateChoice } from "./cards/candidates_card.ts";
 import { cycleCard } from "./cards/cycle_card.ts";
@@ -113,8 +113,11 @@ export function identifyView(
     onTune: (all) => void tune(all),
   });
   const quality = qualityCard();
+  const unitDoubt = h("p", { class: "trouble", role: "status" });
+  const chooseUnit = h("button", { type: "button", onclick: () => fields.askUnit() }, "Choose the unit");
+  const doubt = h("div", { class: "unit-doubt", hidden: true }, unitDoubt, chooseUnit);
   const cycle = cycleCard();
-  const side = h("div", { class: "side" }, candidates.element, quality.element);
+  const side = h("div", { class: "side" }, doubt, candidates.element, quality.element);
   const body = h("div", { class: "identify-body" }, record, side, cycle.element);
   const menu = requestMenu(announce);
   menu.show("", null);
@@ -155,6 +158,8 @@ export function identifyView(
       side.hidden = false;
       candidates.show(answer, units);
       quality.show(answer, units);
+      unitDoubt.textContent = timeUnitDoubt(answer);
+      doubt.hidden = unitDoubt.textContent === "";
       cycle.show(answer.limit_cycle, answer.ultimate_point, answer.frequency_points, units);
       const words = qualityOf(answer, units);
       sentence.textContent = words.input;
@@ -173,7 +178,7 @@ export function identifyView(
       draw();
       if (!whole) void look();
       if (!whole) reading.querySelector("details")!.open = true;
-      errors.show(pointed, sentenceOf(error));
+      errors.fail(error, pointed);
     },
   });
 
@@ -248,7 +253,7 @@ export function identifyView(
       if (faults.length > 0) errors.show(faults);
     } catch (error) {
       const problem = error instanceof ApiError ? error.problem : {};
-      errors.show(atRecordText(problem.errors ?? []), sentenceOf(error));
+      errors.fail(error, atRecordText(problem.errors ?? []));
     } finally {
       candidates.setBusy(false);
     }

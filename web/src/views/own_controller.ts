@@ -2,6 +2,7 @@
 // entry's controller as code.
 import { ApiError, sentenceOf } from "../api/client.ts";
 import { latest } from "../api/latest.ts";
+import { callSubject } from "../api/live.ts";
 import { getProduct } from "../api/products.ts";
 import type { AsEntered, Product, SettingValue } from "../api/products.ts";
 import type { Controller, Entry, Job, Result, TuningRequest } from "../api/types.ts";
@@ -22,10 +23,15 @@ import type { TypedAnswer, TypedQuestion } from "./typed_question.ts";
 
 interface Shown {
   job: Job;
+  /** That the result belongs to. */
+  request: TuningRequest;
+  /** As it is shown, turned or not. */
   result: Result;
   index: number;
   name: string;
   units: UnitNames;
+  /** The entry of the job that the service can write as code; null where what is shown is not the job's own. */
+  code: number | null;
 }
 
 export interface OwnController {
@@ -107,7 +113,7 @@ export function ownController(
   }
 
   function showTodays(): void {
-    const baseline = shown?.job.request?.baseline;
+    const baseline = shown?.request.baseline;
     if (baseline?.product === undefined || baseline.product !== mine?.product) return;
     getProduct(baseline.product).then((product) => {
       today.setProduct(product);
@@ -116,7 +122,7 @@ export function ownController(
   }
 
   function showRedesign(): void {
-    const before = shown?.job.request?.implement;
+    const before = shown?.request.implement;
     const implement = implementOf(mine);
     redesign.hidden = !shown || sameImplement(before, implement) || (mine !== null && !implement);
     redesign.textContent = mine ? "Design for this controller" : "Design for an ideal controller";
@@ -137,8 +143,8 @@ export function ownController(
   /** The service writes what a job has, not what is tried. */
   function showCode(): void {
     if (!shown) return;
-    const { job, index, name, units, result } = shown;
-    code.show(!tried && result.controllers[index]?.controller ? { job: job.id, index, name, units } : null);
+    const { job, code: index, name, units, result } = shown;
+    code.show(!tried && index !== null && result.controllers[index]?.controller ? { job: job.id, index, name, units } : null);
   }
 
   function ask(): void {
@@ -150,8 +156,8 @@ export function ownController(
       asked = "";
       return typed.hide();
     }
-    const request = shown.job.request ?? {};
-    const key = JSON.stringify([shown.job.id, shown.index, implement, tried]);
+    const request = shown.request;
+    const key = JSON.stringify([shown.job.id, shown.index, implement, controller]);
     if (key === asked) return;
     asked = key;
     const known = !tried && sameImplement(request.implement, implement) ? entry.as_entered : undefined;
@@ -166,8 +172,8 @@ export function ownController(
       );
       return;
     }
-    const plant = tried ? null : (shown.result.model?.plant ?? request.plant ?? null);
-    calls.send({ implement, controller, plant, request });
+    const subject = tried ? null : callSubject(request, shown.result);
+    calls.send({ implement, controller, subject, request });
   }
 
   async function work(button: HTMLButtonElement, request: TuningRequest): Promise<void> {
@@ -196,12 +202,12 @@ export function ownController(
   }
 
   async function designForMine(): Promise<void> {
-    const request = shown?.job.request;
+    const request = shown?.request;
     if (request) await work(redesign, withImplement(request, implementOf(mine)));
   }
 
   async function designBesideToday(settings: Record<string, SettingValue> | undefined): Promise<void> {
-    const request = shown?.job.request;
+    const request = shown?.request;
     const implement = implementOf(mine);
     if (!request || !mine) return;
     if (!settings) return complain(`Nothing is typed yet: write what stands in ${mine.name} now.`);
@@ -234,7 +240,7 @@ export function ownController(
       if (!sameJob || shown?.index !== next.index) tried = null;
       shown = next;
       if (!sameJob) {
-        mine = mineOfRequest(next.job.request?.implement, inUnits(mine, next.units));
+        mine = mineOfRequest(next.request.implement, inUnits(mine, next.units));
         picker.setUnits(next.units);
         picker.set(mine);
         nameMine();

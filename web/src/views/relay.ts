@@ -1,5 +1,4 @@
 // Relay test: what one would show on a plant, how to make it, and its record for Identify.
-import { ApiError, sentenceOf } from "../api/client.ts";
 import { simulateRelay } from "../api/experiments.ts";
 import type { RelayAnswer, RelayPlan, RelayRequest, RelaySettings } from "../api/experiments.ts";
 import { latest } from "../api/latest.ts";
@@ -20,7 +19,7 @@ import type { View } from "./start.ts";
 
 export interface RelayEvents {
   /** The labels of the units that stand on Start. */
-  units(): Units;
+  units(): Units | undefined;
   onIdentify(request: IdentifyRequest): void;
   /** The plant as typed, for the address. */
   onPlant(form: string, values: Record<string, string>): void;
@@ -135,7 +134,7 @@ export function relayView(announce: (sentence: string) => void, events: RelayEve
       if (parsed.ok) relay[name] = parsed.value;
       else faults.push({ pointer: `/relay/${name}`, detail: parsed.sentence });
     }
-    return { request: { units: events.units(), plant: reading.plant, relay }, errors: faults };
+    return { request: { ...named(), plant: reading.plant, relay }, errors: faults };
   }
 
   function setBusy(now: boolean): void {
@@ -169,8 +168,7 @@ export function relayView(announce: (sentence: string) => void, events: RelayEve
       announce(`Oscillates with a period of ${formatNumber(next.limit_cycle.Pu, 4)} ${units.time}.`);
     },
     onError(error) {
-      const problem = error instanceof ApiError ? error.problem : {};
-      errors.show(problem.errors ?? [], sentenceOf(error));
+      errors.fail(error);
       markStale(true);
     },
   });
@@ -200,6 +198,11 @@ export function relayView(announce: (sentence: string) => void, events: RelayEve
     identify.disabled = now;
   }
 
+  function named(): { units?: Units } {
+    const units = events.units();
+    return units ? { units } : {};
+  }
+
   function simulate(): void {
     const now = read();
     errors.clear();
@@ -212,7 +215,7 @@ export function relayView(announce: (sentence: string) => void, events: RelayEve
   }
 
   function hand(): void {
-    if (answer) events.onIdentify({ units: events.units(), record: { ...answer.record } });
+    if (answer) events.onIdentify({ ...named(), record: { ...answer.record } });
   }
 
   form.addEventListener("submit", (event) => {

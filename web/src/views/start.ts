@@ -1,7 +1,7 @@
 // Start: a record, a model, or an example; everything below is optional.
-import { ApiError, sentenceOf } from "../api/client.ts";
+import { ApiError } from "../api/client.ts";
 import { postJob } from "../api/jobs.ts";
-import type { Example, FieldError, IdentifyRequest, Job, RecordedTest, TuningRequest, Units } from "../api/types.ts";
+import type { FieldError, IdentifyRequest, Job, RecordedTest, TuningRequest, Units } from "../api/types.ts";
 import { h } from "../dom.ts";
 import { FormErrors } from "../form/errors.ts";
 import { keptNote } from "../form/kept_note.ts";
@@ -15,6 +15,7 @@ import { formatRoute } from "../routes.ts";
 import type { Store, Workspace } from "../store.ts";
 import { unitNames } from "../words/numbers.ts";
 import { equationsCard } from "./cards/equations_card.ts";
+import { exampleElement } from "./cards/example_element.ts";
 import { methodsCard } from "./cards/methods_card.ts";
 import { modelCard } from "./cards/model_card.ts";
 import { myControllerCard } from "./cards/my_controller_card.ts";
@@ -40,13 +41,24 @@ export interface StartEvents {
   onRelay(form: string, values: Record<string, string>): void;
 }
 
+/** Which card describes the loop. */
+export type LoopKind = "model" | "equations" | "record" | "ultimate";
+
 export interface StartView extends View {
-  load(request: TuningRequest): void;
+  load(request: TuningRequest, example?: boolean): void;
   loadTyped(form: string, values: Record<string, string>): void;
   loadRecord(record: RecordedTest, identify: Record<string, unknown> | undefined): void;
+  /** Another loop, which comes from elsewhere. */
+  beginLoop(kind: LoopKind): void;
+  /** A job was made of what stands in the form. */
+  endLoop(): void;
   /** A tuning request about this, with the methods (or all of them), units and settings that stand in the form. */
   compose(subject: TuneSubject, all?: boolean): { request: TuningRequest; faults: FieldError[] };
-  units(): Units;
+  units(): Units | undefined;
+  /** Those that were typed for a loop that is not tuned yet. */
+  typedUnits(): Units | undefined;
+  /** How many loops stood in the form so far. */
+  loops(): number;
   /** Names of the chosen methods. */
   methods(): string[];
 }
@@ -58,6 +70,11 @@ export function startView(store: Store, events: StartEvents): StartView {
   const errors = new FormErrors();
   // Parts of a loaded request that have no field: sent back as they came.
   let base: TuningRequest = {};
+  // What the rest of the form speaks of; null: nothing was filled in or tuned yet.
+  let loop: LoopKind | null = null;
+  let ofExample = false;
+  /** How many there were. */
+  let loops = 0;
   const kept = keptNote("the request", () => {
     base = {};
     showKept();
@@ -67,7 +84,7 @@ export function startView(store: Store, events: StartEvents): StartView {
   const heading = h("h1", { tabindex: -1 }, "What do you have?");
   const status = h("p", { class: "trouble", role: "status", hidden: true });
   // Faults of a plant belong to the card that it was written on.
-  let subject: "model" | "equations" = "model";
+  let subject: LoopKind = "model";
   const model = modelCard(errors, () => subject === "model", {
     onTune: () => void tuneModel(false),
     onCompare: () => void tuneModel(true),
@@ -78,10 +95,11 @@ export function startView(store: Store, events: StartEvents): StartView {
     onTune: () => void tuneEquations(false),
     onCompare: () => void tuneEquations(true),
     onChange: (values) => events.onModel("nonlinear", values),
-    onExample: (example) => load(example.request),
+    onExample: (example) => load(example.request, true),
   });
   const record = recordCard(errors, {
     onIdentify: identifyRecord,
+    onNew: () => (loop === null ? (loop = "record") : beginLoop("record")),
     onTune: () => void tuneRecord(false),
     onCompare: () => void tuneRecord(true),
   });
@@ -140,18 +158,45 @@ export function startView(store: Store, events: StartEvents): StartView {
     ),
   );
 
-  async function send(request: TuningRequest, faults: FieldError[], all: boolean): Promise<void> {
+  for (const [kind, card] of [["model", model], ["equations", equations], ["ultimate", ultimate]] as const)
+    for (const event of ["input", "submit"]) card.element.addEventListener(event, () => turnTo(kind), true);
+  // Another model in the place of an example's is no variation of it.
+  model.element.addEventListener("input", ({ target }) => ofExample && model.isLine(target) && beginLoop("model"), true);
+
+  /** Nothing of the loop before, or of what the form was filled with, belongs to another one; what was typed since does. */
+  function beginLoop(kind: LoopKind): void {
+    loops += 1;
+    ofExample = false;
+    loop = kind;
+    base = {};
+    for (const card of [today, methods, model]) card.beginLoop();
+    showMine(inUnits(store.get().mine, unitNames(today.readUnits())));
+  }
+
+  /** The loop that was begun is described on another card now. */
+  function turnTo(kind: LoopKind): void {
+    if (loop === null || loop === kind) loop = kind;
+    else beginLoop(kind);
+  }
+
+  /** A job was made of what stands here: all of it is that loop's. */
+  function endLoop(): void {
+    for (const card of [today, methods, record]) card.endLoop();
+  }
+
+  /** `own`: it is the form's. */
+  async function send(request: TuningRequest, faults: FieldError[], all: boolean, own = true): Promise<void> {
     errors.clear();
     if (faults.length > 0) return errors.show(faults);
     if (busy) return;
     busy = true;
     element.setAttribute("aria-busy", "true");
     try {
-      events.onJob(await postJob(request), all);
+      const job = await postJob(request);
+      if (own) endLoop();
+      events.onJob(job, all);
     } catch (error) {
-      const problem = error instanceof ApiError ? error.problem : {};
-      const listed = atRecordText(problem.errors ?? []);
-      errors.show(listed, sentenceOf(error));
+      errors.fail(error, error instanceof ApiError ? atRecordText(error.problem.errors ?? []) : []);
     } finally {
       busy = false;
       element.removeAttribute("aria-busy");
@@ -162,7 +207,7 @@ export function startView(store: Store, events: StartEvents): StartView {
     const units = today.readUnits();
     const baseline = today.read();
     const chosen = all ? { tune: EVERY_METHOD, errors: [] } : methods.read();
-    const { plant: _plant, record: _record, identify: _identify, ultimate: _ultimate, ...kept } = base;
+    const { plant: _p, record: _r, identify: _i, uncertainty: _u, ultimate: _ultimate, ...kept } = base;
     const own = mineCard.read();
     // A program that a loaded request names stays; it has no field here.
     const request: TuningRequest = own.mine || kept.implement?.product ? withImplement(kept, implementOf(own.mine)) : kept;
@@ -170,7 +215,7 @@ export function startView(store: Store, events: StartEvents): StartView {
     delete request.units;
     delete request.baseline;
     if (today.readName()) request.name = today.readName();
-    if (Object.keys(units).length > 0) request.units = units;
+    if (units) request.units = units;
     request.tune = chosen.tune;
     if (baseline.baseline) request.baseline = baseline.baseline;
     return { request, faults: [...chosen.errors, ...baseline.errors, ...own.errors] };
@@ -184,7 +229,9 @@ export function startView(store: Store, events: StartEvents): StartView {
 
   function compose(subject: TuneSubject, all = false): { request: TuningRequest; faults: FieldError[] } {
     const { request, faults } = common(all);
-    return { request: { ...request, ...subject }, faults };
+    // What a loaded request held its limits on belongs to its record; Identify has its own choice.
+    const held = "record" in subject && base.record ? { uncertainty: base["uncertainty"] } : {};
+    return { request: { ...request, ...defined({ ...held, ...subject }) }, faults };
   }
 
   async function tunePlant(reading: PlantReading, all: boolean): Promise<void> {
@@ -194,16 +241,19 @@ export function startView(store: Store, events: StartEvents): StartView {
 
   async function tuneModel(all: boolean): Promise<void> {
     subject = "model";
+    turnTo("model");
     await model.settled();
     await tunePlant(model.read(), all);
   }
 
   async function tuneEquations(all: boolean): Promise<void> {
     subject = "equations";
+    turnTo("equations");
     await tunePlant(equations.read(), all);
   }
 
   async function tuneUltimate(): Promise<void> {
+    turnTo("ultimate");
     const reading = ultimate.read();
     const { name, units } = common(true).request;
     const request: TuningRequest = { ...(name ? { name } : {}), ...(units ? { units } : {}), ultimate: reading.ultimate };
@@ -211,23 +261,31 @@ export function startView(store: Store, events: StartEvents): StartView {
   }
 
   async function tuneRecord(all: boolean): Promise<void> {
+    turnTo("record");
     const reading = record.read();
     const { request, faults } = compose({ record: reading.record, identify: reading.identify }, all);
     await send(request, [...reading.errors, ...faults], all);
   }
 
   function identifyRecord(): void {
+    turnTo("record");
     const reading = record.read();
     errors.clear();
     if (reading.errors.length > 0) return errors.show(reading.errors);
     const { record: test, identify } = reading;
     const name = today.readName();
-    events.onRecord({ ...(name ? { name } : {}), units: today.readUnits(), record: test, identify });
+    const units = today.readUnits();
+    events.onRecord({ ...(name ? { name } : {}), ...(units ? { units } : {}), record: test, identify });
   }
 
-  function load(request: TuningRequest): void {
+  function load(request: TuningRequest, example = false): void {
     errors.clear();
+    endLoop();
+    loops += 1;
+    ofExample = example;
     base = request;
+    loop = kindOf(request);
+    status.hidden = true;
     showMine(mineOfRequest(request.implement, inUnits(mine, unitNames(request.units))));
     today.load(request.units, request.baseline, request.name);
     methods.load(request.tune);
@@ -253,7 +311,9 @@ export function startView(store: Store, events: StartEvents): StartView {
       status.hidden = troubled === "";
     }
     const elements = workspace.examples.map((example) =>
-      exampleElement(example, (all) => void send(all ? byAllMethods(example.request) : example.request, [], all)),
+      exampleElement(example, (all) =>
+        void send(all ? byAllMethods(example.request) : example.request, [], all, false),
+      ),
     );
     const [first, others] = [elements.slice(0, EXAMPLES_SHOWN), elements.slice(EXAMPLES_SHOWN)];
     equations.setExamples(workspace.examples);
@@ -303,12 +363,18 @@ export function startView(store: Store, events: StartEvents): StartView {
     dispose: leave,
     load,
     loadTyped(form, values) {
-      if (form === "nonlinear") equations.loadTyped(values);
-      else model.loadTyped(form, values);
+      const kind = form === "nonlinear" ? "equations" : "model";
+      const another = kind === "equations" ? equations.loadTyped(values) : model.loadTyped(form, values);
+      if (another && loop !== null) beginLoop(kind);
+      else if (another) loop = kind;
     },
     loadRecord: record.load,
+    beginLoop,
+    endLoop,
+    loops: () => loops,
     compose,
     units: today.readUnits,
+    typedUnits: today.typedUnits,
     methods() {
       const { tune } = methods.read();
       return tune.map((entry) => entry.method.replaceAll("_", " "));
@@ -316,31 +382,12 @@ export function startView(store: Store, events: StartEvents): StartView {
   };
 }
 
-function exampleElement(example: Example, tune: (all: boolean) => void): HTMLElement {
-  return h(
-    "div",
-    { class: "example" },
-    h("h3", {}, example.title),
-    example.description || example.source ? h("p", { class: "hint" }, example.description ?? example.source) : null,
-    h(
-      "p",
-      { class: "actions" },
-      h("button", { type: "button", onclick: () => tune(false), "aria-label": `Tune: ${example.title}` }, "Tune"),
-      h(
-        "button",
-        {
-          type: "button",
-          class: "quiet",
-          onclick: () => tune(true),
-          "aria-label": `Compare all methods: ${example.title}`,
-        },
-        "Compare all",
-      ),
-      h(
-        "a",
-        { href: formatRoute({ screen: "example", id: example.id }), "aria-label": `See in the form: ${example.title}` },
-        "See in the form",
-      ),
-    ),
-  );
+function kindOf({ record, ultimate, plant }: TuningRequest): LoopKind {
+  if (record) return "record";
+  if (ultimate) return "ultimate";
+  return plant?.type === "nonlinear" ? "equations" : "model";
 }
+
+/** JSON knows no undefined; neither does what is compared with it. */
+const defined = (values: Record<string, unknown>): Record<string, unknown> =>
+  Object.fromEntries(Object.entries(values).filter(([, value]) => value !== undefined));

@@ -1,30 +1,42 @@
 // A job's entry that is turned by sliders: what they start from, and the job's result as it reads with the newest answer.
 import { sentenceOf } from "../api/client.ts";
 import { effect, untracked } from "@preact/signals-core";
-import type { LiveSubject } from "../api/live.ts";
+import { callSubject } from "../api/live.ts";
 import { isFinal } from "../api/types.ts";
 import type { Entry, Job, Method, Plant, Result, TuningRequest } from "../api/types.ts";
 import { h, passFocus } from "../dom.ts";
-import { tuneEntryOf, withTune } from "../form/tuning_request.ts";
+import { rowsOf, tuneEntryOf } from "../form/tuning_request.ts";
 import type { Knob } from "../live/knobs.ts";
 import { liveDesign } from "../live/live.ts";
 import type { Answer } from "../live/live.ts";
-import { firstStep, pointOf, samePoint, tiedAt, valuesOf } from "../live/point.ts";
+import { firstStep, pointOf, samePoint, stepTo, tiedAt, valuesOf } from "../live/point.ts";
 import type { Point, Steps } from "../live/point.ts";
 import { rewriteAddress } from "../routes.ts";
 import type { Store } from "../store.ts";
+import { keptOtherwise } from "../words/kept.ts";
 import { formatNumber, unitNames } from "../words/numbers.ts";
 import { controlsCard } from "./cards/controls_card.ts";
 import { frontCard } from "./cards/front_card.ts";
 import type { FrontSubject } from "./cards/front_card.ts";
+
+/** A result as it is shown, and what gives it. */
+export interface OnScreen {
+  result: Result;
+  /** Of the entry that is shown. */
+  index: number;
+  /** The entries' places in the job's own result. */
+  origin: number[];
+  path: string;
+  request: unknown;
+}
 
 export interface TurnedDesign {
   controls: HTMLElement;
   front: HTMLElement;
   /** Sliders for that entry of the job. */
   show(job: Job, result: Result, index: number): void;
-  /** The result with the newest answer in the entry's place. */
-  effective(result: Result): Result;
+  /** With the newest answer, where the entry that is shown was turned; else as the job has it. */
+  onScreen(job: Job, result: Result, index: number): OnScreen;
   /** The newest answer, if the entry was turned. */
   answer(): Answer | null;
   dispose(): void;
@@ -36,11 +48,14 @@ export interface TurnedEvents {
   /** Plots are old: an answer is awaited for long. */
   onLate(late: boolean): void;
   onHold(held: boolean): void;
-  onRetune(request: TuningRequest, index: number): Promise<void>;
+  /** A job of what is shown; returns it with the place of the entry, null where another one has taken over. */
+  onKeep(request: TuningRequest, index: number): Promise<{ job: Job; index: number } | null>;
 }
 
 /** Of a limit on Ms: an answer within it is not called above. */
 const LIMIT_TOLERANCE = 1e-3;
+
+const same = (a: unknown, b: unknown): boolean => JSON.stringify(a) === JSON.stringify(b);
 
 /** Measured points have no responses over time, hence no front. */
 const hasFront = (plant: Plant): boolean => plant.type !== "frequency_response";
@@ -63,21 +78,16 @@ export function turnedDesign(
   const controls = controlsCard(live);
   const front = frontCard(announce, controls.turnMs, () => controls.setLowest(front.lowest()));
   const trouble = h("p", { class: "trouble", role: "status", hidden: true });
+  const waits = h("p", { class: "hint", hidden: true });
   const about = h("p", {});
-  const keep = h("button", { type: "button", onclick: () => keepIt() });
+  const keep = h("button", { type: "button", onclick: () => keepIt() }, "Keep this design");
   const keeping = h("p", { class: "actions" }, keep);
   const away = h("div", { class: "trouble", hidden: true }, about, keeping);
-  controls.element.append(trouble, away);
+  controls.element.append(waits, trouble, away);
 
   const base = (): Entry | undefined => shown?.result.controllers[shown.index];
   const todayOf = (result: Result): Entry | undefined =>
     result.controllers.find((entry) => entry.method === "baseline" && !entry.error);
-
-  function subjectOf(job: Job, result: Result): LiveSubject | null {
-    const plant = result.model?.plant ?? job.request?.plant;
-    if (!plant) return null;
-    return { plant, request: job.request ?? {}, today: todayOf(result)?.controller ?? null };
-  }
 
   /** One step was made: the address has it. */
   function settled(point: Point): void {
@@ -97,21 +107,28 @@ export function turnedDesign(
     void keepDesign();
   }
 
-  /** The job's report, request and code are the proposal's: a design that stays has a job of its own. */
+  /** The job's report and code are the proposal's: a design that stays has a job of its own, of the request that is shown. */
   async function keepDesign(): Promise<void> {
-    const tune = live.point.peek()?.tune;
-    if (!shown?.job.request || !tune) return;
+    const shownNow = live.answer.peek();
+    if (!shownNow || shownNow.path !== "v1/jobs") return;
     keep.disabled = true;
-    kept = live.point.peek();
+    kept = shownNow.point;
+    const before = shownNow.entry;
     try {
-      await events.onRetune(withTune(shown.job.request, shown.result, shown.index, tune), shown.index);
+      const made = await events.onKeep(shownNow.request as TuningRequest, shownNow.index);
+      const otherwise = made ? keptOtherwise(before, made.job, made.index) : "";
+      if (otherwise) complain(otherwise);
     } catch (error) {
-      trouble.textContent = sentenceOf(error);
-      trouble.hidden = false;
+      complain(sentenceOf(error));
       kept = null;
     } finally {
       keep.disabled = false;
     }
+  }
+
+  function complain(sentence: string): void {
+    trouble.textContent = sentence;
+    trouble.hidden = false;
   }
 
   /** The limit on Ms that a design was made for; null by hand and for rules. */
@@ -126,14 +143,10 @@ export function turnedDesign(
     away.hidden = !answer;
     if (!answer) return;
     const { hand } = answer.point;
-    const everyModel = shown?.job.request?.["uncertainty"] === "identified";
     keeping.hidden = hand !== null;
-    keep.textContent = everyModel ? "Hold the limits for every model" : "Keep this design";
     about.textContent = hand
-      ? `${aboveLimit(answer)}Report, request and code are the proposal's; settings by hand have none.`
-      : everyModel
-        ? "Turned for the best model alone, not for every model consistent with the record. Report, request and code are the proposal's."
-        : "Report, request and code are the proposal's. Keep this design to have its own.";
+      ? `${aboveLimit(answer)}Settings by hand have no report and no code; the request asks for their figures.`
+      : "Report and code are the job's own design. Keep this design to have its own.";
   }
 
   /** Settings by hand keep to no limit. */
@@ -146,7 +159,8 @@ export function turnedDesign(
 
   /** What the curves hold to, besides Ms. */
   function frontTerms({ tune }: Point): Pick<FrontSubject, "kind" | "terms"> {
-    if (tune?.method !== "robust") return { kind: null, terms: { Mt: "tied" } };
+    const onRegion = shown?.job.request?.["uncertainty"] === "identified" || base()?.over_region;
+    if (tune?.method !== "robust" || onRegion) return { kind: null, terms: { Mt: "tied" } };
     const { Mt, Mks, filter, objective = "load_iae", controller } = tune;
     const alone = Mks === undefined && objective === "load_iae";
     const kind = controller === "PI" ? "PI" : "PID";
@@ -174,7 +188,21 @@ export function turnedDesign(
     const entry = live.answer.peek()?.entry ?? base();
     if (!entry || front.element.hidden || !shown) return;
     const answered = live.answer.peek()?.point ?? proposal;
-    front.place(entry, limitAt(answered), live.answer.peek()?.today ?? todayOf(shown.result) ?? null);
+    front.place(entry, limitAt(answered), todayOf(live.answer.peek()?.result ?? shown.result) ?? null);
+  }
+
+  /** Entries of one row of the request are turned together. */
+  function leave(index: number, steps: Steps): void {
+    left.set(index, steps);
+    const request = shown?.job.request;
+    if (!shown || !request) return;
+    const rows = rowsOf(request, shown.result);
+    for (const [other, row] of rows.entries()) {
+      const tune = tuneEntryOf(request, shown.result, other);
+      if (other === index || row < 0 || row !== rows[index]) continue;
+      if (same(tune, steps.now.tune)) left.delete(other);
+      else left.set(other, stepTo(firstStep({ tune, hand: null }), { tune: steps.now.tune, hand: null }));
+    }
   }
 
   const leaving = [
@@ -195,6 +223,11 @@ export function turnedDesign(
     effect(() => {
       trouble.textContent = live.trouble.value;
       trouble.hidden = live.trouble.value === "";
+    }),
+    effect(() => {
+      const ms = live.waits.value;
+      waits.hidden = ms === 0;
+      waits.textContent = ms === 0 ? "" : `Follows when you let go: this design takes about ${formatNumber(ms / 1000, 2)} s.`;
     }),
     effect(() => showAway(live.answer.value)),
   ];
@@ -217,15 +250,15 @@ export function turnedDesign(
     const entry = base();
     if (!shown || !entry) return;
     const { job, result, index } = shown;
-    const subject = subjectOf(job, result);
-    const usable = Boolean(subject && entry.controller && !entry.error && isFinal(job.status));
+    const request = job.request ?? {};
+    const usable = Boolean(callSubject(request, result) && entry.controller && !entry.error && isFinal(job.status));
     controls.element.hidden = !usable;
     front.element.hidden = !usable;
-    if (!usable || !subject) return live.stop();
+    if (!usable) return live.stop();
     proposal = { tune: job.request ? tuneEntryOf(job.request, result, index) : null, hand: null };
     knobs = controls.show(proposal, entry, methodOf(entry), unitNames(job.request?.units));
     const at = to ?? firstStep(addressedPoint(proposal, entry));
-    live.start({ subject, point: proposal, entry }, at);
+    live.start({ from: { request, result, index }, point: proposal, today: todayOf(result)?.controller ?? null }, at);
     if (addressed && !to) return showFront();
     addressed = true;
     settled(at.now);
@@ -267,22 +300,19 @@ export function turnedDesign(
       const moved = movedOn(job);
       const before = live.steps.peek();
       if (shown?.job.id !== job.id) left.clear();
-      else if (before) left.set(shown.index, before);
+      else if (before) leave(shown.index, before);
       shown = { job, result, index };
       begin(moved ? firstStep(moved) : (left.get(index) ?? null));
     },
-    effective(result) {
+    onScreen(job, result, index) {
       const answer = live.answer.peek();
-      if (!answer || !shown || shown.result !== result) return result;
-      const controllers = result.controllers.map((entry, at) =>
-        at === shown!.index ? answer.entry : entry.method === "baseline" && answer.today ? { ...answer.today, method: "baseline" } : entry,
-      );
-      return { ...result, controllers };
+      const turned = answer && shown && shown.result === result && shown.index === index;
+      return turned ? answer : { result, index, origin: [...result.controllers.keys()], path: "v1/jobs", request: job.request };
     },
     answer: () => live.answer.peek(),
     dispose() {
       document.removeEventListener("keydown", onKey);
-      for (const leave of leaving) leave();
+      for (const stop of leaving) stop();
       controls.dispose();
       front.dispose();
       live.dispose();

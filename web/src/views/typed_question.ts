@@ -1,15 +1,16 @@
 // What to ask the service for the settings of an entry, or of a controller that is tried by hand, in the user's own product.
-import { evaluateAsBuilt } from "../api/evaluate.ts";
+import { evaluateAsBuilt } from "../api/live.ts";
 import { getProduct, settingsFor } from "../api/products.ts";
 import type { AsEntered, Implement, Product } from "../api/products.ts";
-import type { Controller, Entry, Plant, TuningRequest } from "../api/types.ts";
+import type { CallSubject } from "../api/live.ts";
+import type { Controller, Entry, TuningRequest } from "../api/types.ts";
 
 export interface TypedQuestion {
   implement: Implement & { product: string };
   /** Of the entry, or as tried. */
   controller: Controller;
   /** Null: what is tried by hand, of which only the settings are asked. */
-  plant: Plant | null;
+  subject: CallSubject | null;
   request: TuningRequest;
 }
 
@@ -21,9 +22,9 @@ export interface TypedAnswer {
 }
 
 /** The settings with the loop as built; the settings alone where this plant cannot be judged so. */
-export async function askTyped({ implement, controller, plant, request }: TypedQuestion): Promise<TypedAnswer> {
+export async function askTyped({ implement, controller, subject, request }: TypedQuestion): Promise<TypedAnswer> {
   const product = await getProduct(implement.product);
-  const judged = plant ? await evaluateAsBuilt(plant, controller, implement, request).catch(() => null) : null;
+  const judged = subject ? await evaluateAsBuilt(subject, controller, implement, request).catch(() => null) : null;
   const entered = judged?.as_entered ?? (await settingsFor(implement, controller, request.units));
   return { product, entered, judged };
 }

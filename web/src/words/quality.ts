@@ -38,6 +38,14 @@ function headOf(model: Model, level: Level, warnings: number, notes: number): st
   return notes > 0 ? `Good enough, with ${counted(notes, "remark")}.` : "Good enough.";
 }
 
+/** The unit of the record's times, where it may be another: every time and gain of the answer hangs on it. "" where it is named. */
+export function timeUnitDoubt(model: Model): string {
+  const doubtful = model.warnings?.find((warning) => warning.code === "time-unit-doubtful");
+  if (doubtful) return doubtful.detail;
+  if (model.data_quality?.["time_unit_assumed"] !== true) return "";
+  return "Nothing names the unit of the record's times: they are taken as seconds. If they are milliseconds, every time here is a thousand times too long.";
+}
+
 const counted = (count: number, name: string): string => `${count} ${name}${count === 1 ? "" : "s"}`;
 
 const listOf = (value: unknown): string[] =>
@@ -78,6 +86,7 @@ function rowsOf(model: Model, units: UnitNames): [string, string][] {
     "steps",
     "settled",
     "notes",
+    "time_unit_assumed",
     "why_null",
   ]);
   for (const [name, value] of Object.entries(quality)) if (!known.has(name)) rows.push(...otherRows(name, value));

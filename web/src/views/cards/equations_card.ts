@@ -13,7 +13,8 @@ export interface EquationsCard {
   read(): PlantReading;
   /** False where this card cannot show such a plant. */
   load(plant: Plant): boolean;
-  loadTyped(values: Record<string, string>): void;
+  /** Whether it says other equations than before. */
+  loadTyped(values: Record<string, string>): boolean;
   setExamples(examples: Example[]): void;
   setUnits(units: UnitNames): void;
 }
@@ -97,8 +98,10 @@ export function equationsCard(errors: FormErrors, active: () => boolean, events:
       return shown;
     },
     loadTyped(values) {
+      const before = JSON.stringify(fields.texts());
       if (Object.keys(values).length > 0) fields.show(equationsOfAddress(values));
       details.open = true;
+      return JSON.stringify(fields.texts()) !== before;
     },
     setExamples(all) {
       examples = all.filter((example) => example.request.plant?.type === "nonlinear");

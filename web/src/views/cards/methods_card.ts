@@ -6,6 +6,7 @@ import { choiceField, textField } from "../../form/controls.ts";
 import type { Field } from "../../form/controls.ts";
 import type { Control, FormErrors } from "../../form/errors.ts";
 import { fieldsOf, readField, typedText } from "../../form/fields.ts";
+import { typedParts } from "../../form/typed.ts";
 import type { FieldKind, FieldSpec } from "../../form/fields.ts";
 import { asksForAll } from "../../form/tuning_request.ts";
 import { formatRoute } from "../../routes.ts";
@@ -19,6 +20,10 @@ export interface MethodsCard {
   setUnits(units: UnitNames): void;
   read(): { tune: TuneEntry[]; errors: FieldError[] };
   load(tune: TuneEntry[] | string | undefined): void;
+  /** Another loop: the default again, unless methods were chosen for this one. */
+  beginLoop(): void;
+  /** What stands here is this loop's. */
+  endLoop(): void;
 }
 
 /** Options that decide what comes out: shown at once, the others on request. */
@@ -78,6 +83,7 @@ export function methodsCard(errors: FormErrors): MethodsCard {
     found,
   );
   search.addEventListener("input", filter);
+  const typed = typedParts(list);
 
   /** What is chosen stays in sight, whatever is searched for. */
   function filter(): void {
@@ -183,6 +189,13 @@ export function methodsCard(errors: FormErrors): MethodsCard {
     filter();
   }
 
+  function load(tune: TuneEntry[] | string | undefined): void {
+    typed.forget();
+    // A comparison of all methods is a button, not a choice of each.
+    wanted = tune === undefined || asksForAll(tune) ? DEFAULT_TUNE : (tune as TuneEntry[]);
+    show();
+  }
+
   return {
     element,
     setMethods(methods) {
@@ -230,11 +243,11 @@ export function methodsCard(errors: FormErrors): MethodsCard {
       if (tune.length === 0) faults.push({ pointer: "/tune", detail: "No method is chosen. Choose at least one." });
       return { tune, errors: faults };
     },
-    load(tune) {
-      // A comparison of all methods is a button, not a choice of each.
-      wanted = tune === undefined || asksForAll(tune) ? DEFAULT_TUNE : (tune as TuneEntry[]);
-      show();
+    load,
+    beginLoop() {
+      if (!typed.has("")) load(undefined);
     },
+    endLoop: typed.forget,
   };
 }
 

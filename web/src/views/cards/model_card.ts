@@ -10,9 +10,12 @@ export interface ModelCard {
   element: HTMLFormElement;
   read(): PlantReading;
   settled(): Promise<void>;
+  beginLoop(): void;
+  isLine(input: EventTarget | null): boolean;
   /** False where this card cannot show such a plant. */
   load(plant: Plant): boolean;
-  loadTyped(form: string, values: Record<string, string>): void;
+  /** Whether it says another model than before. */
+  loadTyped(form: string, values: Record<string, string>): boolean;
   setUnits(units: UnitNames): void;
 }
 
@@ -62,8 +65,14 @@ export function modelCard(errors: FormErrors, active: () => boolean, events: Mod
     element,
     read: fields.read,
     settled: fields.settled,
+    beginLoop: fields.beginLoop,
+    isLine: fields.isLine,
     load: fields.load,
-    loadTyped: fields.loadTyped,
+    loadTyped(form, values) {
+      const before = JSON.stringify(fields.typed());
+      fields.loadTyped(form, values);
+      return JSON.stringify(fields.typed()) !== before;
+    },
     setUnits: fields.setUnits,
   };
 }

@@ -1,5 +1,4 @@
 // "A recorded test": a CSV file dropped, chosen or pasted. The service finds and reads the columns; nothing is parsed here.
-import { ApiError, sentenceOf } from "../../api/client.ts";
 import { newest } from "../../api/latest.ts";
 import { previewFile, previewRecord } from "../../api/records.ts";
 import type { Preview } from "../../api/records.ts";
@@ -8,6 +7,7 @@ import { h } from "../../dom.ts";
 import type { FormErrors } from "../../form/errors.ts";
 import { csvOf, recordFields } from "../../form/record_fields.ts";
 import type { Identify } from "../../form/record_fields.ts";
+import { typedParts } from "../../form/typed.ts";
 import { previewPanel, tooLarge } from "../../form/record_preview.ts";
 import { recordText } from "../../form/record_text.ts";
 
@@ -15,11 +15,15 @@ export interface RecordCard {
   element: HTMLFormElement;
   read(): { record: RecordedTest; identify: Identify; errors: FieldError[] };
   load(record: RecordedTest, identify: Identify | undefined): void;
+  /** Another loop, which is none of this record. */
+  endLoop(): void;
 }
 
 export interface RecordCardEvents {
   /** Look at the record first: also what a file that arrives does. */
   onIdentify(): void;
+  /** A record that is not the one before. */
+  onNew(): void;
   /** Straight to the controller. */
   onTune(): void;
   /** By every method. */
@@ -97,19 +101,23 @@ export function recordCard(errors: FormErrors, events: RecordCardEvents): Record
     errors.clear();
     status.textContent = `Reading ${chosen.name}...`;
     const read = await previewFile(chosen).catch((error: unknown) => {
-      const problem = error instanceof ApiError ? error.problem : {};
       if (!isNewest()) return null;
-      errors.show(problem.errors ?? [], sentenceOf(error));
+      errors.fail(error);
       status.textContent = `${chosen.name} could not be read.`;
       return null;
     });
     // Another file, or text, has come since.
     if (!read || !isNewest()) return;
     csv.write(read.text);
-    // What was chosen of another file means nothing here.
-    fields.load({}, fields.read().identify);
+    begin({});
     status.textContent = `${chosen.name}: ${read.preview.rows} rows.`;
     if (show(read.preview)) events.onIdentify();
+  }
+
+  /** What was chosen of another file means nothing here; how to identify stays where it was chosen for this one. */
+  function begin(record: RecordedTest): void {
+    fields.load(record, typed.has("") ? fields.read().identify : {});
+    events.onNew();
   }
 
   /** Whether the record can be read as it is; else it says what is missing, where it can be chosen. */
@@ -145,9 +153,11 @@ export function recordCard(errors: FormErrors, events: RecordCardEvents): Record
 
   csv.onChange(() => {
     forgetFile();
+    begin(typed.has("") ? fields.read().record : {});
     void look();
   });
   reading.addEventListener("change", () => void look());
+  const typed = typedParts(reading);
   file.addEventListener("change", () => void take(file.files?.[0]));
   // The whole card takes the file: people do not aim.
   element.addEventListener("dragover", (event) => {
@@ -183,7 +193,9 @@ export function recordCard(errors: FormErrors, events: RecordCardEvents): Record
           : read.errors,
       };
     },
+    endLoop: typed.forget,
     load(record, identify) {
+      typed.forget();
       forgetFile();
       beginLook();
       csv.write(csvOf(record));

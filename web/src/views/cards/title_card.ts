@@ -17,8 +17,8 @@ export interface TitleCard {
   heading: HTMLElement;
   /** `entry`: the controller that the screen shows, if it shows one; the report is about it. */
   show(job: Job | null, entry?: number | null): void;
-  /** Whether what is shown is the job's own; report and request are left out where it is not. */
-  setOwn(own: boolean): void;
+  /** The request that gives what is shown, and whether that is the job's own, of which alone there is a report. */
+  setShown(shown: { path: string; request: unknown }, own: boolean): void;
 }
 
 /** `screen`: the heading of a job without a name. `actions`: beside the links that every job has. */
@@ -40,11 +40,10 @@ export function titleCard(screen: string, announce: (sentence: string) => void, 
   );
   let about: Job | null = null;
   let chosen: number | null = null;
-  let own = true;
 
   function showOwn(): void {
-    menu.show("v1/jobs", own ? about?.request : null);
-    report.show(own && about?.result ? about.id : null, chosen);
+    menu.show("v1/jobs", about?.request);
+    report.show(about?.result ? about.id : null, chosen);
   }
 
   return {
@@ -74,9 +73,9 @@ export function titleCard(screen: string, announce: (sentence: string) => void, 
       chosen = entry;
       showOwn();
     },
-    setOwn(now) {
-      own = now;
-      showOwn();
+    setShown({ path, request }, own) {
+      menu.show(path, request);
+      report.show(own && about?.result ? about.id : null, chosen);
     },
   };
 }

@@ -8,16 +8,24 @@ import type { FormErrors } from "../../form/errors.ts";
 import { keptNote } from "../../form/kept_note.ts";
 import { parseNumber } from "../../form/number.ts";
 import { productFields } from "../../form/product_fields.ts";
+import { typedParts } from "../../form/typed.ts";
 import { mineOfRequest, typedBaseline } from "../../my_controller.ts";
 import type { MyController } from "../../my_controller.ts";
 import { exactText } from "../../words/numbers.ts";
 
 export interface TodayCard {
   element: HTMLElement;
-  readUnits(): Units;
+  /** Undefined: none is named. */
+  readUnits(): Units | undefined;
+  /** Those that were typed since the loop began. */
+  typedUnits(): Units | undefined;
   read(): { baseline: Baseline | undefined; errors: FieldError[] };
   load(units: Units | undefined, baseline: Baseline | undefined, name: string | undefined): void;
   readName(): string;
+  /** Another loop: what was filled in, or belonged to the loop before, is emptied; what was typed for this one stays. */
+  beginLoop(): void;
+  /** What stands here is this loop's: the next one has to be typed anew. */
+  endLoop(): void;
   /** The user's own controller, whose own form is then one of the forms. */
   setMine(mine: MyController | null): void;
 }
@@ -26,6 +34,9 @@ const DEFAULT_FILTER = "derivative";
 
 /** In place of a form: the settings as they stand in the user's own controller. */
 const OWN = "own";
+
+/** The part of the card that is no label. */
+const BASELINE = "baseline";
 
 const FORMS = [
   ["ideal", "ideal"],
@@ -38,7 +49,7 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
   const unit = (label: string, pointer: string, value: string, placeholder: string): ReturnType<typeof textField> =>
     textField({ label, value, placeholder, pointer: () => pointer }, errors);
   const name = unit("Loop name", "/name", "", "TIC-101");
-  const time = unit("Time unit", "/units/time", "s", "s");
+  const time = unit("Time unit", "/units/time", "", "s");
   const u = unit("Unit of u", "/units/u", "", "%");
   const y = unit("Unit of y", "/units/y", "", "degC");
   for (const field of [time, u, y]) field.input.addEventListener("change", onUnits);
@@ -121,6 +132,42 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
   label();
   form.input.addEventListener("change", label);
 
+  const labels = { name, time, u, y };
+
+  function loadLabels(units: Units | undefined, loopName: string | undefined): void {
+    name.input.value = loopName ?? "";
+    time.input.value = units?.time ?? "";
+    u.input.value = units?.u ?? "";
+    y.input.value = units?.y ?? "";
+  }
+
+  function loadBaseline(baseline: Baseline | undefined): void {
+    if (baseline?.product !== undefined) {
+      const { product, settings, ...spans } = baseline;
+      const loaded = mineOfRequest({ product, ...spans }, mine);
+      rest = {};
+      setMine(loaded, settings);
+      form.input.value = OWN;
+      return label();
+    }
+    own.load({});
+    const known = baseline && FORMS.some(([id]) => id === baseline.form);
+    form.input.value = known ? baseline.form : "ideal";
+    label();
+    const text = (value: unknown): string => (typeof value === "number" ? exactText(value) : "");
+    names().forEach((key, index) => {
+      slots[index]!.input.value = text(baseline?.[key]);
+    });
+    delta.input.value = text(baseline?.["delta_r"]);
+    const given = baseline?.["filter"] as Filter | null | undefined;
+    const filtered = given && given.type !== "none" ? given : null;
+    filter.input.value = text(filtered?.Tf);
+    filterType = filtered?.type ?? DEFAULT_FILTER;
+    // A filter with its time has its field, and is gone when that is emptied.
+    const shown = ["form", "delta_r", ...names(), ...(filtered && filter.input.value === "" ? [] : ["filter"])];
+    keep(Object.fromEntries(Object.entries(baseline ?? {}).filter(([key]) => !shown.includes(key))));
+  }
+
   const element = h(
     "section",
     { class: "card", "aria-labelledby": "today-title" },
@@ -133,16 +180,24 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
     h("div", { class: "fields" }, name.element, time.element, u.element, y.element),
   );
 
+  /** A unit that nobody has named is not sent: the service then says what it takes it for. */
+  function unitsOf(counts: (part: string) => boolean): Units | undefined {
+    const named = Object.entries({ time, u, y }).flatMap(([part, field]) => {
+      const text = field.input.value.trim();
+      return text !== "" && counts(part) ? [[part, text] as const] : [];
+    });
+    return named.length > 0 ? Object.fromEntries(named) : undefined;
+  }
+
+  const partOf = (input: EventTarget | null): string =>
+    Object.entries(labels).find(([, field]) => field.input === input)?.[0] ?? BASELINE;
+  const typed = typedParts(element, partOf);
+
   return {
     element,
     readName: () => name.input.value.trim(),
-    readUnits() {
-      const units: Units = {};
-      if (time.input.value.trim()) units.time = time.input.value.trim();
-      if (u.input.value.trim()) units.u = u.input.value.trim();
-      if (y.input.value.trim()) units.y = y.input.value.trim();
-      return units;
-    },
+    readUnits: () => unitsOf(() => true),
+    typedUnits: () => unitsOf((part) => typed.has(part)),
     setMine,
     read() {
       if (isOwn()) return readOwn();
@@ -175,35 +230,16 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
       return { baseline, errors: faults };
     },
     load(units, baseline, loopName) {
-      name.input.value = loopName ?? "";
-      time.input.value = units?.time ?? "s";
-      u.input.value = units?.u ?? "";
-      y.input.value = units?.y ?? "";
-      if (baseline?.product !== undefined) {
-        const { product, settings, ...spans } = baseline;
-        const loaded = mineOfRequest({ product, ...spans }, mine);
-        rest = {};
-        setMine(loaded, settings);
-        form.input.value = OWN;
-        label();
-        return onUnits();
-      }
-      const known = baseline && FORMS.some(([id]) => id === baseline.form);
-      form.input.value = known ? baseline.form : "ideal";
-      label();
-      const text = (value: unknown): string => (typeof value === "number" ? exactText(value) : "");
-      names().forEach((key, index) => {
-        slots[index]!.input.value = text(baseline?.[key]);
-      });
-      delta.input.value = text(baseline?.["delta_r"]);
-      const given = baseline?.["filter"] as Filter | null | undefined;
-      const filtered = given && given.type !== "none" ? given : null;
-      filter.input.value = text(filtered?.Tf);
-      filterType = filtered?.type ?? DEFAULT_FILTER;
-      // A filter with its time has its field, and is gone when that is emptied.
-      const shown = ["form", "delta_r", ...names(), ...(filtered && filter.input.value === "" ? [] : ["filter"])];
-      keep(Object.fromEntries(Object.entries(baseline ?? {}).filter(([key]) => !shown.includes(key))));
+      typed.forget();
+      loadLabels(units, loopName);
+      loadBaseline(baseline);
       onUnits();
     },
+    beginLoop() {
+      for (const [part, field] of Object.entries(labels)) if (!typed.has(part)) field.input.value = "";
+      if (!typed.has(BASELINE)) loadBaseline(undefined);
+      onUnits();
+    },
+    endLoop: typed.forget,
   };
 }

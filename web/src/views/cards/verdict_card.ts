@@ -3,6 +3,7 @@ import type { Finding, Job, Result } from "../../api/types.ts";
 import { h } from "../../dom.ts";
 import { reasonOf } from "../../words/league.ts";
 import { withMinus } from "../../words/numbers.ts";
+import { timeUnitDoubt } from "../../words/quality.ts";
 
 /** The classes of the levels; a note looks like any text. */
 export const LEVEL_CLASS: Record<Finding["level"], string> = { good: "good", note: "", warning: "warn", bad: "bad" };
@@ -13,13 +14,14 @@ const NO_VERDICT: Finding = { code: "none", level: "note", text: "Tuned by an ol
 const said = (finding: Finding): HTMLElement =>
   h("span", { class: LEVEL_CLASS[finding.level], "data-code": finding.code }, `${withMinus(finding.text)} `);
 
-/** `listed`: the entries whose failures are worth a line here. */
+/** `listed`: the entries whose failures are worth a line here. `recordAddress`: where the record can be read otherwise. */
 export function showVerdict(
   card: HTMLElement,
   result: Result,
   names: string[],
   selected: number,
   listed: number[],
+  recordAddress: string,
 ): void {
   const entries = result.controllers;
   const [head = NO_VERDICT, ...others] = entries[selected]!.verdict ?? [];
@@ -33,6 +35,8 @@ export function showVerdict(
   card.className = `verdict ${LEVEL_CLASS[head.level]}`;
   card.replaceChildren(h("h2", {}, who, withMinus(head.text)), h("p", {}, [...stopped, ...others].map(said)));
   if (failures.length > 0) card.append(h("ul", {}, failures));
+  const doubt = result.model ? timeUnitDoubt(result.model) : "";
+  if (doubt) card.append(h("p", { class: "trouble" }, `${doubt} `, h("a", { href: recordAddress }, "Choose the unit")));
 }
 
 /** What the kinds of failures are called. */

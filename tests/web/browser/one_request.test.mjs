@@ -1,0 +1,202 @@
+// Design shows one request: a slider alters one member of it, what is kept is what was shown, and verdicts belong to it.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import path from "node:path";
+import test from "node:test";
+import { openDesign, PLANT, setting, shows, slider } from "../design_page.mjs";
+import { browserTests, dropFile, root } from "../harness.mjs";
+import { assertRequestIsShown, designAnswered, designOnScreen, watchCalls } from "../shown_request.mjs";
+
+const { withPage, jobOf, post } = browserTests();
+const heater = readFileSync(path.join(root, "tests/data/records/tclab-step.csv"), "utf8");
+
+async function tuneRecord(page, name, text) {
+  await dropFile(page, ".drop", name, text);
+  await page.getByRole("button", { name: "Use and tune" }).click();
+  await slider(page, "Robustness Ms").waitFor();
+}
+
+test("a slider on a design for a record's region designs for the region", async () => {
+  await withPage("", {}, async (page) => {
+    const settled = watchCalls(page);
+    await tuneRecord(page, "heater.csv", heater);
+    const Kp = await setting(page, "Kp");
+    assert.ok(Math.abs(Kp / 4.05 - 1) < 0.01, `Kp ${Kp}`);
+    await slider(page, "Robustness Ms").focus();
+    await page.keyboard.press("ArrowRight");
+    await page.waitForURL(/Ms=1\.41/);
+    await settled();
+    const turned = await setting(page, "Kp");
+    assert.ok(turned > Kp && turned < 1.05 * Kp, `Kp ${Kp} becomes ${turned}`);
+    const { request } = await assertRequestIsShown(page, post, "one step");
+    assert.equal(request.tune[0].Ms, 1.41);
+    assert.ok(request.record, "the request is that of the record");
+  });
+});
+
+test("a gain by hand on a record's design is judged on the record's region", async () => {
+  await withPage("", {}, async (page) => {
+    const settled = watchCalls(page);
+    await tuneRecord(page, "heater.csv", heater);
+    const Kp = page.locator(".controls").getByRole("textbox", { name: "Kp" });
+    await Kp.fill("11");
+    await Kp.press("Enter");
+    await page.waitForURL(/Kp=11/);
+    await settled();
+    const { verdict } = await designOnScreen(page);
+    assert.match(verdict[0], /on the worst plant|unstable/i);
+    await assertRequestIsShown(page, post, "by hand");
+  });
+});
+
+test("the model of a record is sent while a slider moves, not the record", async () => {
+  await withPage("", {}, async (page) => {
+    const settled = watchCalls(page);
+    await tuneRecord(page, "heater.csv", heater);
+    await settled();
+    const bodies = [];
+    page.on("request", (request) => {
+      if (request.url().endsWith("/v1/design")) bodies.push(request.postDataJSON());
+    });
+    await slider(page, "Robustness Ms").focus();
+    await page.keyboard.press("ArrowRight");
+    await page.waitForURL(/Ms=1\.41/);
+    await settled();
+    assert.ok(bodies.length > 0);
+    for (const body of bodies) assert.deepEqual([body.record, typeof body.model.covariance], [undefined, "object"]);
+  });
+});
+
+test("a design that takes long says that it follows, and follows when it is let go", async () => {
+  await withPage("", {}, async (page) => {
+    const settled = watchCalls(page);
+    // As a job would tell whose design took a second.
+    await page.route("**/v1/jobs/*", async (route) => {
+      const response = await route.fetch();
+      if (response.status() !== 200) return route.fulfill({ response });
+      const job = await response.json();
+      for (const entry of job.result?.controllers ?? []) entry.compute_ms = 1000;
+      await route.fulfill({ response, json: job });
+    });
+    await page.goto(new URL(PLANT, page.url()).href);
+    await openDesign(page);
+    await settled();
+    const Kp = await setting(page, "Kp");
+    const range = slider(page, "Robustness Ms");
+    const asked = [];
+    page.on("request", (request) => request.url().endsWith("/v1/design") && asked.push(request));
+    await range.evaluate((input) => {
+      input.value = String(Number(input.value) + 20);
+      input.dispatchEvent(new Event("input", { bubbles: true }));
+    });
+    await page.getByText("Follows when you let go: this design takes about 1.0 s.").waitFor();
+    assert.deepEqual([asked.length, await setting(page, "Kp")], [0, Kp]);
+    await page.getByText("What stands below follows when you let go.").waitFor();
+    await range.evaluate((input) => input.dispatchEvent(new Event("change", { bubbles: true })));
+    await page.waitForURL(/Ms=1\.6/);
+    await settled();
+    await page.getByText(/Follows when you let go/).waitFor({ state: "hidden" });
+    assert.ok((await setting(page, "Kp")) > Kp);
+    await assertRequestIsShown(page, post, "let go");
+  });
+});
+
+test("every member of the request stays when one is turned: product, limits of u, set point, baseline, the other entries", async () => {
+  const request = {
+    units: { time: "min", u: "%", y: "degC" },
+    plant: { type: "fopdt", K: 1.25, T: 40, L: 8, uncertainty: { K: [0.8, 1.2] } },
+    tune: [{ method: "robust", Ms: 1.5, Mt: 1.5, setpoint: { overshoot: 2 } }, { method: "simc" }, { method: "lambda" }],
+    baseline: { form: "ideal", Kp: 0.6, Ti: 50 },
+    implement: { product: "siemens_pid_compact", y_span: [0, 200], u_span: [0, 100] },
+    evaluate: { setpoint_step: 5, actuator: { min: -20, max: 30 } },
+  };
+  await withPage("", {}, async (page) => {
+    const settled = watchCalls(page);
+    const { id } = await post("v1/jobs", request);
+    await page.goto(new URL(`#/jobs/${id}/design?entry=0`, page.url()).href);
+    await slider(page, "Robustness Ms").focus();
+    await page.keyboard.press("Shift+ArrowRight");
+    await page.waitForURL(/Ms=1\.6/);
+    await settled();
+    const shown = await assertRequestIsShown(page, post, "one step");
+    const { tune, ...others } = shown.request;
+    const { tune: before, ...same } = request;
+    assert.deepEqual(others, same);
+    assert.deepEqual(tune.slice(1), before.slice(1));
+    assert.deepEqual([tune[0].Ms, tune[0].Mt, tune[0].setpoint.overshoot], [1.6, 1.6, 2]);
+  });
+});
+
+for (const [what, open] of [
+  ["a plant", (page) => page.goto(new URL(PLANT, page.url()).href).then(() => openDesign(page, true))],
+  ["a record", (page) => tuneRecord(page, "heater.csv", heater)],
+]) {
+  test(`Keep keeps what is on the screen, to the digit, and Back leads to the design before: ${what}`, async () => {
+    await withPage("", {}, async (page) => {
+      const settled = watchCalls(page);
+      await open(page);
+      await settled();
+      const first = { job: (await jobOf(page)).id, ...(await designOnScreen(page)) };
+      for (const [name, value] of [["Robustness Ms", "1.55"], ["Set-point overshoot", "0"]]) {
+        const field = page.locator(".controls").getByRole("textbox", { name });
+        await field.fill(value);
+        await field.press("Enter");
+        await settled();
+      }
+      const turned = await designOnScreen(page);
+      assert.notDeepEqual(turned.settings, first.settings);
+      await page.getByRole("button", { name: "Keep this design" }).click();
+      await page.waitForFunction((id) => !location.hash.includes(id), first.job);
+      await settled();
+      assert.deepEqual(await designOnScreen(page), turned);
+      const kept = await jobOf(page);
+      const entry = Number(/entry=(\d+)/.exec(page.url())[1]);
+      assert.deepEqual(designAnswered(kept.result.controllers[entry]).settings, turned.settings);
+      assert.equal(await page.getByText("What is kept is not what was shown").count(), 0);
+      await page.goBack();
+      await page.waitForURL(new RegExp(first.job));
+      await slider(page, "Robustness Ms").waitFor();
+      await settled();
+      assert.deepEqual((await designOnScreen(page)).settings, first.settings);
+      await page.goForward();
+      await page.waitForURL(new RegExp(kept.id));
+      await slider(page, "Robustness Ms").waitFor();
+      await settled();
+      assert.deepEqual(await designOnScreen(page), turned);
+    });
+  });
+}
+
+test("a kept design that comes out otherwise says what differs", async () => {
+  await withPage(PLANT, {}, async (page) => {
+    const settled = watchCalls(page);
+    await openDesign(page);
+    await slider(page, "Robustness Ms").focus();
+    await page.keyboard.press("Shift+ArrowRight");
+    await settled();
+    await page.route("**/v1/jobs", async (route) => {
+      if (route.request().method() !== "POST") return route.continue();
+      const response = await route.fetch();
+      const job = await response.json();
+      job.result.controllers[0].controller.Kp = 2.5;
+      await route.fulfill({ response, json: job });
+    });
+    await page.getByRole("button", { name: "Keep this design" }).click();
+    await page.getByText(/What is kept is not what was shown: Kp 2\.\d+ is now 2\.5; the service, version .*, computed it anew\./).waitFor();
+  });
+});
+
+test("a job opens on the entry that its answer says to take", async () => {
+  const request = {
+    plant: { type: "fopdt", K: 1.25, T: 40, L: 8 },
+    tune: [{ method: "ziegler_nichols_step" }, { method: "simc" }, { method: "robust", Ms: 1.4, Mt: 1.4 }],
+  };
+  await withPage("", {}, async (page) => {
+    const { id, result } = await post("v1/jobs", request);
+    const { entry } = result.verdict[0].figures;
+    assert.ok(entry > 0, "the first is not the one to take");
+    await page.goto(new URL(`#/jobs/${id}/design`, page.url()).href);
+    await shows(page, "Kp", result.controllers[entry].controller.Kp);
+    assert.deepEqual(await designOnScreen(page), designAnswered(result.controllers[entry]));
+  });
+});

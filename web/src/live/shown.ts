@@ -1,0 +1,134 @@
+// What a turned design shows: one request with one member altered, and the result that belongs to it. No element of the page.
+import { callSubject, designBody, evaluateBody, withHeldPoints } from "../api/live.ts";
+import type { DesignAnswer } from "../api/live.ts";
+import type { Controller, Entry, Result, TuneEntry, TuningRequest } from "../api/types.ts";
+import { rowsOf, withTune } from "../form/tuning_request.ts";
+import type { Point } from "./point.ts";
+
+/** A job's entry that is turned. */
+export interface Turnable {
+  request: TuningRequest;
+  result: Result;
+  index: number;
+}
+
+export interface Shown {
+  /** What gives it, as it would be posted there: a job for a design, the figures of settings by hand. */
+  path: "v1/jobs" | "v1/evaluate";
+  request: unknown;
+  result: Result;
+  /** Of the entry that is turned. */
+  index: number;
+  /** Index in the result of the job that is turned, of each entry here. */
+  origin: number[];
+  /** What it took to compute what follows a hand, ms. */
+  cost: number;
+  /** False: what is said over all entries, and their figures beside each other, waits until the hand lets go. */
+  whole: boolean;
+}
+
+/** The job's request with the one member altered that a slider moves. */
+export const alteredBy = ({ request, result, index }: Turnable, tune: TuneEntry): TuningRequest =>
+  withTune(request, result, index, tune);
+
+/** Rows of the request; one is asked for as a whole while a slider is held. */
+const rowCount = (request: TuningRequest): number => (Array.isArray(request.tune) ? request.tune.length : 1);
+
+/** What is asked of POST /v1/design; `held`: of the turned row alone, with few samples. */
+export function questionOf(from: Turnable, tune: TuneEntry, held: boolean): Record<string, unknown> {
+  const body = designBody(alteredBy(from, tune), from.result);
+  return held ? { ...withHeldPoints(body), tune: [tune] } : body;
+}
+
+/** The entries of the job that the same row of its request has made. */
+function rowMates({ request, result, index }: Turnable): number[] {
+  const rows = rowsOf(request, result);
+  return rows.flatMap((row, at) => (row === rows[index] && row >= 0 ? [at] : []));
+}
+
+const todaysOf = (entries: readonly Entry[]): Entry | undefined => entries.find((entry) => entry.method === "baseline");
+
+/** Which of a row's new entries is the one that was turned: held on the region before the model alone. */
+const sameKind = (turned: Entry, made: readonly Entry[]): number =>
+  Math.max(0, made.findIndex((entry) => Boolean(entry.over_region) === Boolean(turned.over_region)));
+
+/** An answer of the turned row alone, among the job's other entries, which it does not touch. */
+function amongOthers(from: Turnable, answer: DesignAnswer): Pick<Shown, "result" | "index" | "origin"> {
+  const { result, index } = from;
+  const mates = rowMates(from);
+  const made = answer.controllers.filter((entry) => entry.method !== "baseline");
+  const today = todaysOf(answer.controllers);
+  const first = mates[0] ?? index;
+  const before = result.controllers.slice(0, first);
+  const after = result.controllers.slice(first + Math.max(1, mates.length));
+  const controllers = [...before, ...made, ...after].map((entry) => (entry.method === "baseline" && today ? today : entry));
+  const origin = [
+    ...before.keys(),
+    ...made.map((_, at) => mates[at] ?? mates.at(-1) ?? index),
+    ...after.map((_, at) => result.controllers.length - after.length + at),
+  ];
+  const alone = before.length === 0 && after.every((entry) => entry.method === "baseline");
+  const { verdict: _verdict, ranking: _ranking, ranking_by: _by, request_hash: _hash, ...kept } = result;
+  return {
+    result: { ...kept, ...(alone ? answer : {}), controllers },
+    index: first + sameKind(result.controllers[index]!, made),
+    origin,
+  };
+}
+
+/** What a design's answer shows. */
+export function designShown(from: Turnable, tune: TuneEntry, answer: DesignAnswer, held: boolean): Shown {
+  const request = alteredBy(from, tune);
+  const row = rowsOf(from.request, from.result)[from.index]!;
+  const single = rowCount(request) === 1;
+  const path = "v1/jobs";
+  if (single || held)
+    return { path, request, ...amongOthers(from, answer), cost: costOf(answer.controllers), whole: single };
+  const { request_hash: _hash, ...kept } = from.result;
+  const result: Result = { ...kept, ...answer };
+  const rows = rowsOf(request, result);
+  const before = rowsOf(from.request, from.result);
+  const origin = rows.map((made, at) => {
+    const mates = before.flatMap((other, index) => (other === made ? [index] : []));
+    const place = at - rows.indexOf(made);
+    return mates[place] ?? mates.at(-1) ?? from.index;
+  });
+  const first = rows.indexOf(row);
+  const made = result.controllers.filter((_, at) => rows[at] === row);
+  const at = first + sameKind(from.result.controllers[from.index]!, made);
+  return { path, request, result, index: at, origin, cost: costOf(made), whole: true };
+}
+
+/** What is asked of POST /v1/evaluate; null where there is no plant. */
+export function handQuestion(from: Turnable, hand: Controller, today: Controller | null): Record<string, unknown> | null {
+  const subject = callSubject(from.request, from.result);
+  return subject && evaluateBody(from.request, subject, [hand, ...(today ? [today] : [])]);
+}
+
+/** What settings by hand show: the job's others stay, and nothing is said over all of them. */
+export function handShown(from: Turnable, point: Point, body: unknown, [entry, today]: Entry[]): Shown {
+  const { request_hash: _hash, verdict: _verdict, ranking: _ranking, ranking_by: _by, ...kept } = from.result;
+  const controllers = kept.controllers.map((other, at) =>
+    at === from.index
+      ? byHand(entry!, from.result.controllers[from.index]!, point)
+      : other.method === "baseline" && today
+        ? { ...other, ...today, method: "baseline" }
+        : other,
+  );
+  const origin = [...controllers.keys()];
+  const result = { ...kept, controllers };
+  return { path: "v1/evaluate", request: body, result, index: from.index, origin, cost: costOf([entry!]), whole: true };
+}
+
+/** Settings by hand keep the name of what they were moved from, and its limits to be drawn. */
+function byHand(entry: Entry, from: Entry, { tune }: Point): Entry {
+  const limits = Object.entries(tune ?? {}).filter(([name]) => name === "Ms" || name === "Mt");
+  return { ...entry, method: from.method, options: Object.fromEntries(limits), title: `${from.title ?? from.method}, by hand` };
+}
+
+/** How long the row that is turned took to compute, ms. */
+const costOf = (entries: readonly Entry[]): number =>
+  entries.reduce((sum, entry) => sum + (entry.method === "baseline" ? 0 : (entry.compute_ms ?? 0)), 0);
+
+export const costOfRow = (from: Turnable): number =>
+  costOf(rowMates(from).map((index) => from.result.controllers[index]!));

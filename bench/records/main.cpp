@@ -34,7 +34,7 @@ bool unstable(const Judgement& j) { return j.designed && !j.Ms_true; }
 /// Counts of one line of the table.
 struct Line {
     int records = 0, refused = 0, silent = 0, designed = 0, above = 0, unstable = 0, comparable = 0, covered = 0;
-    std::vector<double> K_error, response_error, response_ratio, IAE_ratio;
+    std::vector<double> K_error, response_error, response_ratio, IAE_ratio, width;
 
     void add(const Judgement& j) {
         ++records;
@@ -48,6 +48,7 @@ struct Line {
             ++comparable;
             covered += j.covered();
             K_error.push_back(j.K_error());
+            if (const auto ratio = j.width()) width.push_back(*ratio);
         }
         if (!j.designed) return;
         if (j.IAE_ratio) IAE_ratio.push_back(*j.IAE_ratio);
@@ -65,12 +66,13 @@ double quantile(std::vector<double> values, double share) {
 
 void print(const std::string& name, const Line& line) {
     const double percent = 100.0 / std::max(1, line.records), of_designs = 100.0 / std::max(1, line.designed);
-    std::printf("%-22s %6d %7.1f %7.2f %9.2f %9.2f %8.1f %8.2f %8.2f %8.2f %8.2f %8.2f %8.2f\n", name.c_str(),
-                line.records, line.refused * percent, line.silent * percent, line.above * of_designs,
+    std::printf("%-22s %6d %7.1f %7.2f %9.2f %9.2f %8.1f %8.2f %8.2f %8.2f %8.2f %8.2f %8.2f %8.2f %8.2f\n",
+                name.c_str(), line.records, line.refused * percent, line.silent * percent, line.above * of_designs,
                 line.unstable * of_designs, 100.0 * line.covered / std::max(1, line.comparable),
                 100 * quantile(line.K_error, 0.5), 100 * quantile(line.K_error, 0.95),
                 100 * quantile(line.response_error, 0.95), quantile(line.response_ratio, 0.95),
-                quantile(line.IAE_ratio, 0.5), quantile(line.IAE_ratio, 0.95));
+                quantile(line.IAE_ratio, 0.5), quantile(line.IAE_ratio, 0.95), quantile(line.width, 0.5),
+                quantile(line.width, 0.95));
 }
 
 bool shown(const std::string& kind, const Judgement& j) {
@@ -148,9 +150,9 @@ int run(const Options& options) {
         for (const std::string& code : reported) ++codes[code];
         if (!options.show.empty() && shown(options.show, row->judgement)) show(*row);
     }
-    std::printf("\n%-22s %6s %7s %7s %9s %9s %8s %8s %8s %8s %8s %8s %8s\n", "% of records", "number", "refused",
-                "silent", "Ms > 1.25", "unstable", "covered", "K median", "K 95 %", "G 95 %", "G/std 95", "IAE",
-                "IAE 95 %");
+    std::printf("\n%-22s %6s %7s %7s %9s %9s %8s %8s %8s %8s %8s %8s %8s %8s %8s\n", "% of records", "number",
+                "refused", "silent", "Ms > 1.25", "unstable", "covered", "K median", "K 95 %", "G 95 %", "G/std 95",
+                "IAE", "IAE 95 %", "width", "width 95");
     for (const auto& [family, line] : by[0]) print(name_of(static_cast<Family>(family)), line);
     for (const auto& [test, line] : by[1]) print(name_of(static_cast<Test>(test)), line);
     for (const auto& [noise, line] : by[2]) print(name_of(static_cast<Noise>(noise)), line);

@@ -55,6 +55,13 @@ void judge_gain(const MadeRecord& made, const IdentifiedModel& model, Judgement&
     if (const auto at = model.standard_errors.find("K"); at != model.standard_errors.end()) j.K_std = at->second;
 }
 
+/// The stated error of K where the record shows when u moved; of the same structure, so that the moves alone differ.
+void judge_told(const MadeRecord& made, const IdentifiedModel& model, Judgement& j) {
+    const auto told = identify(*made.with_moves, {}, {});
+    if (!told || integrates(told->plant) != integrates(model.plant)) return;
+    if (const auto at = told->standard_errors.find("K"); at != told->standard_errors.end()) j.K_std_told = at->second;
+}
+
 /// Of the default design for the true plant.
 std::optional<double> least_load_IAE(const TruePlant& plant) {
     TuningRequest request;
@@ -98,6 +105,11 @@ bool Judgement::wrong_in_silence() const {
     return !refused && K_error() > 0.1 && (!comparable || std::abs(K - K_true) > 3 * K_std) && !gain_warned;
 }
 
+std::optional<double> Judgement::width() const {
+    if (refused || !comparable || !(K_std_told > 0)) return std::nullopt;
+    return K_std / K_std_told;
+}
+
 bool Judgement::covered() const { return comparable && std::abs(K - K_true) <= 1.96 * K_std; }
 
 Judgement judge(const MadeRecord& made) {
@@ -122,6 +134,7 @@ Judgement judge(const MadeRecord& made) {
         if (note.find("does not start at rest") != std::string::npos) j.detail += "\n      note: " + note;
     }
     judge_gain(made, *result->model, j);
+    if (made.with_moves) judge_told(made, *result->model, j);
     judge_design(made, *result, j);
     return j;
 }

@@ -15,6 +15,7 @@ struct Judgement {
     std::string refusal;
     std::string model;                    ///< type of plant and why
     double K = 0, K_true = 0, K_std = 0;  ///< static gain, or slope where the plant integrates
+    double K_std_told = 0;                ///< of the fit to a record that shows when u moved, where there is one
     bool comparable = true;               ///< found and true plant both integrate, or neither does
     bool gain_warned = false;             ///< a warning says that K, or the whole model, is not to be trusted
     bool warned_badly = false;            ///< a warning of level `bad`
@@ -29,7 +30,8 @@ struct Judgement {
 
     double K_error() const;
     bool wrong_in_silence() const;  ///< K off by more than 10 % and 3 standard errors, and no warning that names it
-    bool covered() const;           ///< K_true within the stated 95 % interval
+    std::optional<double> width() const;  ///< the interval's over that of the record that shows when u moved
+    bool covered() const;                 ///< K_true within the stated 95 % interval
 };
 
 Judgement judge(const MadeRecord& made);

@@ -11,14 +11,15 @@ namespace {
 
 constexpr int kFine = 6;  // steps of the simulation per row
 
-/// What u does: its level at a row, from what was measured there.
-using Operator = std::function<double(int row, double y)>;
+/// What u does: its level at a row, or at a step of the simulation, from what was measured there.
+using Operator = std::function<double(int place, double y)>;
 
 struct Plan {
     int rows = 0;
     double dt = 0;
     Operator u;
-    std::vector<double> r;  ///< set point, where there is one
+    std::vector<double> r;   ///< set point, where there is one
+    bool each_step = false;  ///< u is asked for at every step in place of every row
 };
 
 /// Rows at which a test without feedback moves u.
@@ -65,6 +66,7 @@ Plan open_steps(MadeRecord& made, const Scale& s, Random& random) {
             moves.push_back({row, 0});
             wait(0.8, 1.5);
             break;
+        case Test::staircase_between:
         case Test::staircase: {
             double level = 0;
             for (int k = 3 + random.below(3); k > 0; --k) {
@@ -154,9 +156,37 @@ Plan feedback(const MadeRecord& made, const Scale& s, Random& random) {
     return plan;
 }
 
+/// The test that moves u at rows, moved within them: all moves at one phase, or each at its own.
+Plan between_rows(Plan plan, Random& random) {
+    const int phase = random.chance(0.5) ? random.below(kFine) : -1;
+    std::vector<int> earlier;
+    for (int row = 0; row < plan.rows; ++row) earlier.push_back(phase >= 0 ? phase : random.below(kFine));
+    plan.u = [of_row = plan.u, earlier = std::move(earlier)](int step, double y) {
+        const int row = step / kFine, next = std::min(row + 1, static_cast<int>(earlier.size()) - 1);
+        const int left = next * kFine - step;
+        return of_row(left <= earlier[static_cast<std::size_t>(next)] ? next : row, y);
+    };
+    plan.each_step = true;
+    return plan;
+}
+
+/// The relay that looks at every step, or once a row at some phase.
+Plan relay_between_rows(Plan plan, Random& random) {
+    const int phase = random.chance(0.5) ? random.below(kFine) : -1;
+    double level = 0;
+    plan.u = [of_row = plan.u, phase, level](int step, double y) mutable {
+        if (phase < 0 || step % kFine == phase) level = of_row(step / kFine, y);
+        return level;
+    };
+    plan.each_step = true;
+    return plan;
+}
+
 Plan make_plan(MadeRecord& made, const Scale& scale, Random& random) {
     switch (made.test) {
         case Test::relay: return relay_test(made, scale, random);
+        case Test::relay_between: return relay_between_rows(relay_test(made, scale, random), random);
+        case Test::staircase_between: return between_rows(open_steps(made, scale, random), random);
         case Test::closed_setpoints:
         case Test::closed_regulation: return feedback(made, scale, random);
         default: return open_steps(made, scale, random);
@@ -198,7 +228,9 @@ Disturbance make_disturbance(const MadeRecord& made, const Plan& plan, double si
     return d;
 }
 
-Record run(const MadeRecord& made, const Plan& plan, const Disturbance& d, double size) {
+/// `moves`: each change of u between rows, in time.
+Record run(const MadeRecord& made, const Plan& plan, const Disturbance& d, double size,
+           std::vector<std::pair<double, double>>& moves) {
     RunningPlant plant(made.plant, plan.dt / kFine);
     Valve valve{made.plant.dead_band};
     Record record;
@@ -207,11 +239,16 @@ Record run(const MadeRecord& made, const Plan& plan, const Disturbance& d, doubl
     for (int row = 0; row < plan.rows; ++row) {
         double measured = y + d.on_y[static_cast<std::size_t>(row)];
         if (made.plant.grid > 0) measured = size * made.plant.grid * std::round(measured / (size * made.plant.grid));
-        const double u = plan.u(row, measured);
+        double u = plan.each_step ? plan.u(row * kFine, measured) : plan.u(row, measured);
         record.t.push_back(plan.dt * row);
         record.u.push_back(u);
         record.y.push_back(measured);
         for (int k = 0; k < kFine; ++k) {
+            if (plan.each_step && k > 0) {
+                const double now = plan.u(row * kFine + k, y + d.on_y[static_cast<std::size_t>(row)]);
+                if (now != u) moves.emplace_back(plan.dt * (row + static_cast<double>(k) / kFine), now);
+                u = now;
+            }
             double in = valve.follow(u);
             if (const int period = kFine * made.plant.switched_rows; period > 0) {
                 // The duty, -2 to 2 for all off and all on, is switched between the two ends; its mean over this step.
@@ -275,12 +312,32 @@ void log_rows(const MadeRecord& made, Record& record, double size, Random& rando
     }
 }
 
+/// The record with a row of u alone for each of the moves.
+Record told(const Record& record, const std::vector<std::pair<double, double>>& moves) {
+    Record with;
+    std::size_t j = 0;
+    for (std::size_t i = 0; i < record.t.size(); ++i) {
+        for (; j < moves.size() && moves[j].first < record.t[i]; ++j) {
+            with.t.push_back(moves[j].first);
+            with.u.push_back(moves[j].second);
+            with.y.push_back(std::numeric_limits<double>::quiet_NaN());
+        }
+        with.t.push_back(record.t[i]);
+        with.u.push_back(record.u[i]);
+        with.y.push_back(record.y[i]);
+    }
+    return with;
+}
+
 /// The user's units: a level, a slope for u, a start of time.
 void into_units(MadeRecord& made, double u_level, double u_step, double y_level, double t_start) {
-    for (double& u : made.record.u) u = u_level + u_step * u;
-    for (double& y : made.record.y) y += y_level;
-    for (double& r : made.record.r) r += y_level;
-    for (double& t : made.record.t) t += t_start;
+    for (Record* record : {&made.record, made.with_moves ? &*made.with_moves : nullptr}) {
+        if (record == nullptr) continue;
+        for (double& u : record->u) u = u_level + u_step * u;
+        for (double& y : record->y) y += y_level;
+        for (double& r : record->r) r += y_level;
+        for (double& t : record->t) t += t_start;
+    }
     made.plant.K /= u_step;
 }
 
@@ -288,7 +345,8 @@ void into_units(MadeRecord& made, double u_level, double u_step, double y_level,
 
 const char* name_of(Test test) {
     static constexpr const char* kNames[] = {
-        "step, little rest", "step", "bump", "staircase", "prbs", "ramp", "relay", "set points", "regulation"};
+        "step, little rest",  "step",          "bump", "staircase", "prbs", "ramp", "relay", "set points", "regulation",
+        "staircase, between", "relay, between"};
     return kNames[static_cast<int>(test)];
 }
 
@@ -321,14 +379,16 @@ MadeRecord make_record(std::uint64_t seed) {
 
 MadeRecord make_record(std::uint64_t seed, Family family, Test test, Noise noise) {
     Random random(seed);
-    MadeRecord made{make_plant(family, random), test, noise, 0, false, {}};
+    MadeRecord made{make_plant(family, random), test, noise, 0, false, {}, {}};
     if (noise != Noise::none) made.noise_std = random.spread(0.001, 0.03);
     const Scale scale = some_scale(made, random);
     const Plan plan = make_plan(made, scale, random);
     const TruePlant& plant = made.plant;
     const double size = std::abs(plant.K) * (plant.integrating ? plant.L + plant.lag_sum() : 1);
-    made.record = run(made, plan, make_disturbance(made, plan, size, random), size);
+    std::vector<std::pair<double, double>> moves;
+    made.record = run(made, plan, make_disturbance(made, plan, size, random), size, moves);
     log_rows(made, made.record, size, random);
+    if (plan.each_step) made.with_moves = told(made.record, moves);
     into_units(made, random.uniform(-50, 100), random.spread(0.1, 30), size * random.uniform(-10, 10),
                random.chance(0.5) ? 0 : random.uniform(0, 1e5));
     return made;

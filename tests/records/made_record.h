@@ -1,6 +1,7 @@
 // A record from a seed: a plant, a test, what disturbs it, and what a logger makes of it.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "engine/identification/record/record.h"
@@ -18,8 +19,10 @@ enum class Test {
     relay,
     closed_setpoints,   ///< a PI controller, set-point steps in the record
     closed_regulation,  ///< a PI controller, loads alone
+    staircase_between,  ///< moved at any time; the rows show it late
+    relay_between,      ///< acts at any time, or once a row at another instant than the logger
 };
-inline constexpr int kTests = 9;
+inline constexpr int kTests = 11;
 const char* name_of(Test test);
 
 enum class Noise { none, white, coloured, drifting_load, outliers, missing_rows, irregular_times, logged_on_change };
@@ -33,6 +36,8 @@ struct MadeRecord {
     double noise_std = 0;    ///< relative to what the test moves
     bool cut_short = false;  ///< the record ends before y rests
     Record record;
+    /// The same with rows of u alone where u moved: of tests that move u between rows.
+    std::optional<Record> with_moves;
     std::string text() const;  ///< one line
 };
 

@@ -30,7 +30,9 @@ struct TuningEntry {
     std::string title;
     std::string source;
     bool over_region = false;  ///< limits hold over the record's confidence region, not on its model alone
-    MethodOptions options;     ///< given, over the defaults
+    /// Of an entry over the region: its load IAE over that of the same method on the model alone.
+    std::optional<double> region_cost;
+    MethodOptions options;  ///< given, over the defaults
     std::optional<Plant> reduced_model;
     std::optional<double> Ms_limit;            ///< that the method was asked for
     std::optional<double> asked_Ms;            ///< the same where the request asked, or the method promises it

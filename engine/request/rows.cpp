@@ -175,6 +175,8 @@ MadeRow Rows::of(const PlannedRow& planned, const RunControl& control) {
     TuningEntry held = entry(planned, on_region, control, made.partial);
     if (!held.evaluation || made.partial) return made;
     held.over_region = true;
+    const Figure &cost = held.evaluation->performance.load.IAE, &alone = first.evaluation->performance.load.IAE;
+    if (cost && alone && *alone > 0) held.region_cost = *cost / *alone;
     held.title = with_variant(held.title, "region");
     first.title = with_variant(first.title, "model alone");
     say_choice(*held.evaluation, *first.evaluation);

@@ -219,6 +219,13 @@ const Description<TuningEntry>& entry_contract() {
             },
             "Limits hold over the record's 95 % confidence region; left out where they hold on the model alone.", {},
             [](const TuningEntry& entry) { return !entry.over_region; });
+        d.field(
+            "region_cost", {}, [](const TuningEntry& entry, Writer& out) { out.number(*entry.region_cost); },
+            [](SchemaBook&) {
+                return Json{{"type", "number"}};
+            },
+            "Beside over_region: the load IAE over that of the design on the model alone.", {},
+            [](const TuningEntry& entry) { return !entry.region_cost; });
         d.field("verdict", &TuningEntry::verdict, findings(),
                 "What the figures mean, the most important first. The first finding says what the loop is; its level "
                 "is the entry's.");

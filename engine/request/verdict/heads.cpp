@@ -108,6 +108,14 @@ Found doubtful_model(const Case& c) {
         .say(" of the record's movement.");
 }
 
+Found costly_region(const Case& c) {
+    if (!c.entry.region_cost || *c.entry.region_cost <= kMaxRegionCost) return {};
+    return Draft("costly-region", Level::warning)
+        .say("The record leaves much open: holding the limit on all of it costs ")
+        .number("region_cost", *c.entry.region_cost)
+        .say(" times the load error of a design for the model alone. A better test gains that.");
+}
+
 Found restless_as_built(const Case& c) {
     if (!c.built() || !c.robustness().stable || c.context.options.horizon || !c.has_integral()) return {};
     if (actuator_too_small(c)) return {};
@@ -150,8 +158,8 @@ Finding robust(const Case& c) {
 std::vector<Finding> heads(const Case& c) {
     std::vector<Finding> found;
     for (const auto& head : {unstable, unstable_as_built, unstable_member, not_settling, too_sharp, above_limit,
-                             actuator_too_small, little_margin, doubtful_model, oscillatory, large_overshoot,
-                             restless_as_built, not_as_built, no_integral, margin_unknown})
+                             actuator_too_small, little_margin, doubtful_model, costly_region, oscillatory,
+                             large_overshoot, restless_as_built, not_as_built, no_integral, margin_unknown})
         if (auto finding = head(c)) found.push_back(std::move(*finding));
     if (found.empty()) found.push_back(robust(c));
     std::ranges::stable_sort(found, [](const Finding& a, const Finding& b) { return a.level > b.level; });
@@ -162,8 +170,8 @@ bool is_head(const Finding& finding) {
     static const std::set<std::string> codes{
         "unstable",      "unstable-as-built", "unstable-member", "model-too-uncertain", "not-settling",
         "short-horizon", "too-sharp",         "above-limit",     "actuator-too-small",  "little-margin",
-        "oscillatory",   "doubtful-model",    "overshoot",       "restless-as-built",   "not-as-built",
-        "no-integral",   "margin-unknown"};
+        "oscillatory",   "doubtful-model",    "costly-region",   "overshoot",           "restless-as-built",
+        "not-as-built",  "no-integral",       "margin-unknown"};
     return finding.level >= Level::warning && codes.contains(finding.code);
 }
 

@@ -17,6 +17,10 @@ inline constexpr double kReached = 2e-3, kHeldOnWorst = 1e-2;
 inline constexpr double kLittleMarginMs = 1.7, kTooSharpMs = 2;
 /// The response rings as a second-order loop with a damping of 0.26 does.
 inline constexpr double kOscillatoryMt = 2;
+
+/// Load IAE of a design over a record's region, in times that of the one for the model alone, above which the record's
+/// doubt sets the speed and not the plant.
+inline constexpr double kMaxRegionCost = 5;
 /// A gain margin beyond it is as good as none.
 inline constexpr double kAnyGain = 100;
 /// Of the loop as built over the ideal one, before it is a warning: beyond what an identified gain is known to.

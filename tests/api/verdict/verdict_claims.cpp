@@ -65,6 +65,7 @@ const std::map<std::string, std::vector<std::string>>& places() {
         {"excess_percent", {"/optimum_at_Ms/excess_percent"}},
         {"asked_percent", {"/options/setpoint/overshoot"}},
         {"Tf", {"/controller/filter/Tf"}},
+        {"region_cost", {"/region_cost"}},
         {"Ms_limit", {"/options/Ms", "/options/limit"}},
         {"Mt_limit", {"/options/Mt"}},
         {"Mks_limit", {"/options/Mks"}},

@@ -208,6 +208,8 @@ export interface Entry extends Reports {
   error?: Problem;
   /** Limits hold over the record's confidence region, not on its model alone. */
   over_region?: boolean;
+  /** Its load IAE over that of the design on the model alone. */
+  region_cost?: number;
   reduced_model?: Plant;
   controller?: Controller;
   equivalents?: { parallel?: Equivalent | null; series?: Equivalent | null; why_null?: WhyNull };

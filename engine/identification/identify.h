@@ -37,6 +37,9 @@ struct Candidate {
 struct ParameterCovariance {
     std::vector<std::string> names;
     std::vector<std::vector<double>> matrix;
+    /// Shares of the ends of the 95 % ellipsoid (PlantRegion::ends) that the record leaves possible, 0 to 1; empty: all
+    /// of it (fit/region_reach.h).
+    std::vector<double> reach = {};
 };
 
 /// The chosen model beside the record: for the plot.
@@ -138,7 +141,7 @@ struct IdentifiedModel {
 /// - `model` automatic fits every structure and keeps the least information criterion, the simpler one where they are
 ///   equal within noise. `fopdt` may come out with T < 0 (K is negative then too for 1/(s - 1)) from a record in which
 ///   u changes more than twice.
-/// - Rows that are not small beside the dead time show moves of u late (fit/between_rows.h): noted, and counted in the
+/// - Rows that are not small beside the dead time show moves of u late (fit/move_times.h): noted, and counted in the
 ///   standard error of L.
 /// - A drift and a lasting load are fitted with the model where the record shows them, and reported as warnings.
 /// - A relay test also gives `limit_cycle`, `frequency_points`; where no structure fits it, the model is held to the

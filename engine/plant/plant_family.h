@@ -31,6 +31,10 @@ public:
     static Expected<PlantRegion> of_covariance(const Plant& plant, const std::vector<std::string>& names,
                                                const std::vector<std::vector<double>>& covariance);
 
+    /// Moves each of ends() to this share, 0 to 1, of its distance from the centre, one for each; directions between
+    /// them by inverse distance (Shepard 1968). For what is known of the plants beside a covariance.
+    void cut(std::vector<double> shares);
+
     int dimension() const { return static_cast<int>(axes_.size()); }
     const Plant& nominal() const { return plant_; }
 
@@ -46,6 +50,10 @@ private:
     std::vector<std::string> names_;
     std::vector<double> centre_;
     std::vector<std::vector<double>> axes_;  ///< column k: what z_k moves
+    std::vector<Point> cut_ends_;            ///< of length 1; empty: nothing is cut
+    std::vector<double> shares_;             ///< of the same
+
+    double share_towards(const Point& z) const;
 };
 
 /// A parameter of a plant by its name, as PlantRegion names them; 0 for a name that the type does not have.

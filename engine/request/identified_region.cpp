@@ -58,6 +58,7 @@ void warn_of_band(Evaluation& evaluation, const std::optional<ExcitedBand>& band
 Expected<PlantFamily> identified_region(const IdentifiedModel& model) {
     auto region = PlantRegion::of_covariance(model.plant, model.covariance.names, model.covariance.matrix);
     if (!region) return region.error();
+    if (!model.covariance.reach.empty()) region->cut(model.covariance.reach);
     PlantFamily family{{std::move(*region)}};
     for (const Plant& other : model.alternatives) family.regions.push_back(PlantRegion::of_ranges(other));
     return family;

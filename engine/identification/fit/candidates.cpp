@@ -271,6 +271,28 @@ bool as_good(const Fit& simple, const Fit& best, double lead, double points, dou
     return more > 0 && lead < (unusual ? kStrong : kSimpler) && points < kPoint + std::min(kMaxByNoise, taken_up);
 }
 
+bool shows_load(const CleanRecord& r) { return r.changes() > 1; }
+
+bool shows_drift(const CleanRecord& r) {
+    constexpr int kEnoughBefore = 15;
+    const auto before = std::lower_bound(r.t.begin(), r.t.end(), r.v_time.front()) - r.t.begin();
+    return r.changes() > 1 || before >= kEnoughBefore;
+}
+
+bool plausible_load(const CleanRecord& r, const Fit& fit) {
+    constexpr double kLargest = 3, kSame = 0.4;  // ranges of u; of a move, that the load may differ from it
+    if (!fit.form.load) return true;
+    const double load = fit.linear[fit.form.load_index()] / fit.linear[0];
+    if (!(std::abs(load) <= kLargest)) return false;
+    const double time = fit.shape.load_time(), row = usual_spacing(r);
+    for (int j = 0; j < r.changes(); ++j) {
+        const double move = r.v_level[j] - (j > 0 ? r.v_level[j - 1] : 0);
+        const bool before_answer = time > r.v_time[j] - row && time < r.v_time[j] + fit.shape.L() + row;
+        if (before_answer && std::abs(load + move) < kSame * std::abs(move)) return false;
+    }
+    return true;
+}
+
 std::string why_chosen(const std::vector<Fit>& fits, const std::vector<double>& criteria,
                        const std::vector<double>& percents, int chosen, double independent_samples) {
     const auto at = [](int i) { return static_cast<std::size_t>(i); };

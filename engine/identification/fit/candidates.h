@@ -67,6 +67,15 @@ bool leaves_a_pattern(const FitContext& context, const Fit& fit);
 /// lies below `least_variance`, where that is known of the noise.
 double information_criterion(const Fit& fit, double independent_samples, double least_variance = 0);
 
+/// Whether a late load, or a drift, can be distinguished from the response: where u moves again; a drift also by what y
+/// does before u moves.
+bool shows_load(const CleanRecord& record);
+bool shows_drift(const CleanRecord& record);
+
+/// A load far beyond all that u did stands in for the plant's own response, and so does one that takes back a move of u
+/// before the plant has answered it: then the move and its answer belong to different moves. True without a load.
+bool plausible_load(const CleanRecord& record, const Fit& fit);
+
 struct StructureChoice {
     int index = -1;  ///< into the fits; -1: none is determined
     std::string reason;

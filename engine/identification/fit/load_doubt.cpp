@@ -60,10 +60,17 @@ Strengths likeliest(const Eigen::VectorXd& z, const Eigen::VectorXd& s, double r
 }
 
 Strengths likeliest(const FittedRows& rows, const Eigen::MatrixXd& G, double a) {
-    const Eigen::MatrixXd J = whitened(rows.J, a);
-    const Eigen::Index n = J.rows(), m = J.cols();
-    Eigen::MatrixXd both(n, kSteps + 1);
-    both << whitened(G, a), whitened(rows.residual, a);
+    const Eigen::Index samples = rows.J.rows(), k = rows.nuisance.cols(), n = samples + k, m = rows.J.cols() + k;
+    Eigen::MatrixXd J = Eigen::MatrixXd::Zero(n, m), both = Eigen::MatrixXd::Zero(n, kSteps + 1);
+    J.topLeftCorner(samples, rows.J.cols()) = whitened(rows.J, a);
+    both.topLeftCorner(samples, kSteps) = whitened(G, a);
+    both.topRightCorner(samples, 1) = whitened(rows.residual, a);
+    if (k > 0) {
+        J.topRightCorner(samples, k) = whitened(rows.nuisance, a);
+        J.bottomLeftCorner(k, rows.J.cols()) = rows.known_J;
+        J.bottomRightCorner(k, k) = rows.known_weight.asDiagonal();
+        both.bottomRightCorner(k, 1) = rows.known_rest;
+    }
     const Reflected turned = reflected(J, both);
     const Eigen::MatrixXd seen = turned.B.bottomLeftCorner(n - m, kSteps);
     const Eigen::VectorXd e = turned.B.col(kSteps).tail(n - m);

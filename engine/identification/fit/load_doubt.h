@@ -15,6 +15,10 @@ struct FittedRows {
     Eigen::VectorXd weight;    ///< n: root of the number of samples
     Eigen::VectorXd residual;  ///< n
     Eigen::MatrixXd J;         ///< n x m: the columns fitted
+    /// What was fitted beside them and taken out of J: its columns, n x k, and k rows of what is known of it, which
+    /// have `known_J` in J's columns, `known_weight` on the diagonal and leave `known_rest`.
+    Eigen::MatrixXd nuisance, known_J;
+    Eigen::VectorXd known_weight, known_rest;
 };
 
 /// X' R X (m x m) for the covariance R of what the residual came from, X = `rows.J`. R is that of noise of y that is a

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "engine/identification/fit/diagnosis.h"
+#include "engine/identification/fit/move_times.h"
 #include "engine/identification/fit/uncertainty.h"
 #include "engine/identification/record/data_quality.h"
 #include "engine/number_text.h"
@@ -154,11 +155,25 @@ double open_choice_variance(const FittedPlant& chosen, const std::vector<FittedP
     return std::max(its_own, sum / weights);
 }
 
+/// The other parameters follow K as the covariance says: a plant of another gain still answers u as the record shows.
 void widen_gain(FittedPlant& plant, double variance) {
     ParameterCovariance& covariance = plant.covariance;
     const auto at = static_cast<std::size_t>(std::ranges::find(covariance.names, "K") - covariance.names.begin());
-    covariance.matrix[at][at] = variance;
-    plant.standard_errors["K"] = std::sqrt(variance);
+    const double own = covariance.matrix[at][at];
+    if (!(own > 0)) return;
+    std::vector<double> along;
+    for (const double with_K : covariance.matrix[at]) along.push_back(with_K / own);
+    for (std::size_t i = 0; i < along.size(); ++i) {
+        for (std::size_t k = 0; k < along.size(); ++k)
+            covariance.matrix[i][k] += (variance - own) * along[i] * along[k];
+        plant.standard_errors[covariance.names[i]] = std::sqrt(covariance.matrix[i][i]);
+    }
+}
+
+/// They are most of what a long record's fits take.
+void forget_columns(Fit& fit) {
+    fit.J.clear();
+    fit.nuisance.clear();
 }
 
 }  // namespace
@@ -183,13 +198,16 @@ IdentifiedModel searched_model(ModelSearch search, const CleanRecord& recorded) 
         Fit& fit = search.fits[i];
         if (!fit.determined) return;
         jacobian(data, fit);
+        take_out_move_times(record, fit);
         const LoadDoubt load = may_be_answered(i) ? LoadDoubt::counted : LoadDoubt::left_out;
         plants[i] = fitted_plant(record, fit, grid, noise, load);
-        fit.J.clear();
+        if (i != chosen) forget_columns(fit);
     });
     std::erase_if(open, [&](const OpenChoice& other) { return !knows_gain(plants[other.index]); });
     for (const OpenChoice& other : open) model.alternatives.push_back(plants[other.index].plant);
     if (!open.empty()) widen_gain(plants[chosen], open_choice_variance(plants[chosen], plants, open));
+    plants[chosen].covariance.reach = region_reach(record, search.fits[chosen], plants[chosen]);
+    forget_columns(search.fits[chosen]);
     std::vector<int> order(search.fits.size());
     std::iota(order.begin(), order.end(), 0);
     std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return search.criteria[a] < search.criteria[b]; });
@@ -239,6 +257,12 @@ IdentifiedModel searched_model(ModelSearch search, const CleanRecord& recorded) 
                                   "between two rows where it explains y best, which the standard errors do not "
                                   "count. Record at least 40 rows a period."});
     }
+    if (!record.v_open.empty()) {
+        const auto moves = std::ranges::count_if(record.v_open, [](double length) { return length > 0; });
+        model.data_quality.notes.push_back(std::to_string(moves) +
+                                           " change(s) of u happened between rows: when is estimated with the model, "
+                                           "each within its row, and the standard errors count it.");
+    }
     if (record.moves_unseen > 0) {
         model.warnings.push_back(
             {"unseen-move", "u moved while nothing was recorded: rows are missing over " +
@@ -247,7 +271,7 @@ IdentifiedModel searched_model(ModelSearch search, const CleanRecord& recorded) 
                                 "the dead time may be off by half of that; its standard error says so. Repeat the test "
                                 "with the recorder running, or give the row at which u moved."});
     }
-    if (record.moved_within > 0) {
+    if (record.moved_within > 0 && record.v_open.empty()) {
         model.data_quality.notes.push_back(
             "When u moved is known only to one row (" + text(usual_spacing(record) * record.scale.t_scale, 3) +
             "), which is not small beside the dead time: if somebody moved u between two rows, L is longer by up to "

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "engine/identification/fit/between_rows.h"
+#include "engine/identification/fit/move_times.h"
 #include "engine/identification/fit/record_repair.h"
 #include "engine/identification/record/series.h"
 
@@ -154,20 +154,6 @@ void try_between_rows(ModelSearch& search, ModelChoice model, const RunControl& 
     search = std::move(other);
 }
 
-/// The rows show a move of u up to a row late.
-void allow_for_late_rows(ModelSearch& search, ModelChoice model, const RunControl& control) {
-    const auto moved = with_moves_between_rows(search.context.record, search.chosen(), control.stop);
-    if (!moved) return;
-    if (moved->v_time == search.context.record.v_time) {
-        search.context.record.moved_within = moved->moved_within;
-        return;
-    }
-    RunControl quiet = control;  // the progress of a search that was done is not told again
-    quiet.progress = {};
-    ModelSearch other = fit_all(fit_context(*moved, search.context.relay, quiet), model, search.disturbances, quiet);
-    if (usable(other)) search = std::move(other);
-}
-
 /// A change of u in a gap of the record happened at a row that is missing: at which one, the models tell. Kept where
 /// that leaves a third of the sum of squares or less.
 void try_gap_moves(ModelSearch& search, ModelChoice model, const RunControl& control) {
@@ -187,6 +173,35 @@ void try_gap_moves(ModelSearch& search, ModelChoice model, const RunControl& con
     }
     if (kMuchLess * other.chosen().sse > search.chosen().sse) return;
     search = std::move(other);
+}
+
+/// Moves of u between the rows, as y shows them.
+void try_move_times(ModelSearch& search, ModelChoice model, const RunControl& control) {
+    constexpr double kMoreThanNoise = 1.15, kNotWhite = 1.3;  // noise variances; samples of correlation time
+    constexpr double kLess = 1.01, kFarLess = 10;             // times the mean square; where a pattern remains
+    constexpr int kRounds = 2;
+    const CleanRecord record = search.context.record;
+    const double noise = search.context.noise, n = record.samples();
+    if (record.row.empty() || record.changes() < 2) return;
+    const bool pattern = search.chosen().sse > kMoreThanNoise * n * noise * noise &&
+                         correlation_time(search.chosen().residual) > kNotWhite;
+    RunControl quiet = control;  // the progress of a search that was done is not told again
+    quiet.progress = {};
+    std::optional<ModelSearch> other;
+    Fit start = search.chosen();
+    for (int round = 0; round < kRounds && !control.stop.stop_requested(); ++round) {
+        std::optional<CleanRecord> placed = with_move_times(record, start, noise, pattern, control.stop);
+        if (!placed) break;
+        ModelSearch next = fit_all(fit_context(std::move(*placed), search.context.relay, quiet), model, {}, quiet);
+        if (!usable(next) || (other && next.chosen().sse >= other->chosen().sse)) break;
+        const bool same = next.chosen().form.structure == start.form.structure;
+        start = next.chosen();
+        other = std::move(next);
+        if (same) break;
+    }
+    if (!other) return;
+    const double less = search.chosen().sse / other->chosen().sse;
+    if (less > (leaves_a_pattern(other->context, other->chosen()) ? kFarLess : kLess)) search = std::move(*other);
 }
 
 /// A relay recorded in few rows a half period: each of its switches lies within the row that shows it. Kept where that
@@ -215,16 +230,6 @@ void try_switches_between_rows(ModelSearch& search, ModelChoice model, const Run
     const auto left = [&] { return other.chosen().sse / std::max(1 - changes / rows, 0.1); };
     if (!usable(other) || kMuchLess * left() > search.chosen().sse) return;
     search = std::move(other);
-}
-
-/// A late load can be distinguished from the response only where u moves again; a drift also by what y does before u
-/// moves.
-bool shows_load(const CleanRecord& r) { return r.changes() > 1; }
-
-bool shows_drift(const CleanRecord& r) {
-    constexpr int kEnoughBefore = 15;
-    const auto before = std::lower_bound(r.t.begin(), r.t.end(), r.v_time.front()) - r.t.begin();
-    return r.changes() > 1 || before >= kEnoughBefore;
 }
 
 /// Whether another lag explains what a drift (`by_drift`, criterion with `independent` samples) would: it is then kept
@@ -280,22 +285,6 @@ void try_drift(ModelSearch& search, ModelChoice model, const RunControl& control
     ModelSearch other = fit_all(search.context, model, {true, false}, control);
     if (!usable(other) || is_integrating(other.chosen().form.structure)) return;
     search = std::move(other);
-}
-
-/// A load far beyond all that u did stands in for the plant's own response, and so does one that takes back a move of u
-/// before the plant has answered it: then the move and its answer belong to different moves.
-bool plausible_load(const CleanRecord& r, const Fit& fit) {
-    constexpr double kLargest = 3, kSame = 0.4;  // ranges of u; of a move, that the load may differ from it
-    if (!fit.form.load) return true;
-    const double load = fit.linear[fit.form.load_index()] / fit.linear[0];
-    if (!(std::abs(load) <= kLargest)) return false;
-    const double time = fit.shape.load_time(), row = usual_spacing(r);
-    for (int j = 0; j < r.changes(); ++j) {
-        const double move = r.v_level[j] - (j > 0 ? r.v_level[j - 1] : 0);
-        const bool before_answer = time > r.v_time[j] - row && time < r.v_time[j] + fit.shape.L() + row;
-        if (before_answer && std::abs(load + move) < kSame * std::abs(move)) return false;
-    }
-    return true;
 }
 
 void try_disturbances(ModelSearch& search, ModelChoice model, const RunControl& control) {
@@ -374,13 +363,17 @@ ModelSearch search_models(const CleanRecord& record, ModelChoice model, bool rel
     if (search.part < 1) return search;
     if (unexplained()) try_between_rows(search, model, control);
     if (usable(search) && !control.stop.stop_requested()) try_gap_moves(search, model, control);
-    if (relay && usable(search) && !control.stop.stop_requested()) try_switches_between_rows(search, model, control);
+    if (usable(search) && !control.stop.stop_requested()) try_move_times(search, model, control);
+    if (relay && usable(search) && search.context.record.v_open.empty() && !control.stop.stop_requested())
+        try_switches_between_rows(search, model, control);
     if (unexplained()) try_disturbances(search, model, control);
     if (usable(search) && !control.stop.stop_requested() && !search.disturbances.slope) {
         try_drift_for_slow_part(search, model, control);
         if (!search.disturbances.slope) try_drift(search, model, control);
     }
-    if (!relay && usable(search) && !control.stop.stop_requested()) allow_for_late_rows(search, model, control);
+    CleanRecord& fitted = search.context.record;
+    if (!relay && usable(search) && !control.stop.stop_requested() && fitted.v_open.empty())
+        fitted.moved_within = shown_within(fitted, search.chosen(), control.stop);
     return search;
 }
 

@@ -36,7 +36,9 @@ struct ModelSearch {
 /// - an unstable plant's free run loses its digits over a long record: in relay tests that no model explains, the
 ///   record's beginning is tried.
 ///
-/// Rows that show a few moves of u late are allowed for at the end (between_rows.h).
+/// Where the best fit leaves more than white noise and u moves more than once, the times of the moves within their rows
+/// are estimated with it (move_times.h). Rows that may show a few moves of u late are allowed for at the end
+/// (move_times.h).
 ///
 /// `relay`: the record is of a relay test. Nothing is chosen (choice.index < 0) where the record determines no
 /// structure. When control.stop asks for it the search ends early with what it has; the caller looks at the token.

@@ -61,7 +61,13 @@ struct Fit {
     /// Columns d model/d searched, then d model/d linear; rows as in the least-squares problem: n_samples, one for
     /// y_rest if there is one, then the anchors'. Empty until `jacobian`.
     std::vector<std::vector<double>> J;
-    bool determined = false;  ///< the gain's column is independent of the others
+    /// Columns for what was estimated beside the parameters and taken out of J (move_times.h), n_samples each.
+    std::vector<std::vector<double>> nuisance;
+    /// What is known of each of them beforehand, as one row of the least-squares problem: its weight, and what the
+    /// estimate leaves of it. J's last rows are these.
+    std::vector<double> nuisance_weight, nuisance_rest;
+    double nuisance_freedom = 0;  ///< degrees of freedom that they took from the residual
+    bool determined = false;      ///< the gain's column is independent of the others
     int iterations = 0;
     /// Changes of (searched, linear), one standard deviation long each, that make up the covariance where another
     /// estimator than least squares knows it. Empty: J determines it.

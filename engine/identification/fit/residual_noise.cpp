@@ -11,6 +11,8 @@ namespace {
 
 constexpr std::size_t kBlocks = 80;  ///< enough means for a first-order model, few enough to be slow
 
+constexpr std::size_t kMeansForEach = 4;  ///< parameter: what it takes of slow noise can then be put back
+
 constexpr double kLeastVariance = 1e-150;  ///< keeps the logarithm of what may be 0 finite
 constexpr std::size_t kLongest = 20;       ///< times the series: so far an answer near the unit circle is followed
 constexpr std::size_t kLeastAnswer = 8;    ///< steps of an impulse response before it may count as faded
@@ -131,9 +133,15 @@ Eigen::MatrixXd Autoregression::weighed(const Eigen::MatrixXd& X) const {
     return variance * product;
 }
 
+double innovation_variance(std::span<const double> series) {
+    const double deviation = autoregression(series, 3).innovation;
+    return deviation * deviation;
+}
+
 ResidualNoise::ResidualNoise(std::span<const double> residual, int parameters, double least) {
     const std::size_t n = residual.size();
-    block_ = static_cast<Eigen::Index>(std::max<std::size_t>(1, n / kBlocks));
+    const std::size_t blocks = std::max(kBlocks, kMeansForEach * static_cast<std::size_t>(parameters));
+    block_ = static_cast<Eigen::Index>(std::max<std::size_t>(1, n / blocks));
     const Eigen::MatrixXd e = Eigen::Map<const Eigen::VectorXd>(residual.data(), static_cast<Eigen::Index>(n));
     const Eigen::MatrixXd means = block_means(e, block_);
     slow_ = autoregression(values(means), 1);

@@ -164,19 +164,35 @@ Fit condensed(const Fit& fit, std::vector<double>& t) {
 
 /// About a hundred rows: a load that walks is slow. J's columns are divided by `length`.
 FittedRows few_rows(const Fit& fit, std::span<const double> times, const Eigen::VectorXd& length) {
-    constexpr std::size_t kFew = 64;
-    const std::size_t n = fit.residual.size(), block = std::max<std::size_t>(1, n / kFew);
+    constexpr std::size_t kFew = 64, kForEach = 2;  // rows; more for each column beside the parameters'
+    const std::size_t n = fit.residual.size(),
+                      block = std::max<std::size_t>(1, n / (kFew + kForEach * fit.nuisance.size()));
     const auto rows = static_cast<Eigen::Index>((n + block - 1) / block);
     const auto sums = [&](std::span<const double> values) {
         const std::vector<double> blocks = block_sums(values.first(n), block);
         return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(blocks.data(), rows));
     };
-    FittedRows few{sums(times), Eigen::VectorXd::Constant(rows, std::sqrt(static_cast<double>(block))),
-                   sums(fit.residual), Eigen::MatrixXd(rows, length.size())};
+    FittedRows few{sums(times),
+                   Eigen::VectorXd::Constant(rows, std::sqrt(static_cast<double>(block))),
+                   sums(fit.residual),
+                   Eigen::MatrixXd(rows, length.size()),
+                   Eigen::MatrixXd(rows, static_cast<Eigen::Index>(fit.nuisance.size())),
+                   {},
+                   {},
+                   {}};
+    const auto beside = static_cast<Eigen::Index>(fit.nuisance.size());
+    for (Eigen::Index k = 0; k < beside; ++k) few.nuisance.col(k) = sums(fit.nuisance[static_cast<std::size_t>(k)]);
+    few.known_weight = Eigen::Map<const Eigen::VectorXd>(fit.nuisance_weight.data(), beside);
+    few.known_rest = Eigen::Map<const Eigen::VectorXd>(fit.nuisance_rest.data(), beside);
+    few.known_J.resize(beside, length.size());
     few.weight[rows - 1] = std::sqrt(static_cast<double>(n - block * static_cast<std::size_t>(rows - 1)));
     few.time.array() /= few.weight.array();
-    for (Eigen::Index k = 0; k < length.size(); ++k)
-        few.J.col(k) = sums(fit.J[static_cast<std::size_t>(k)]) / length[k];
+    for (Eigen::Index k = 0; k < length.size(); ++k) {
+        const std::vector<double>& column = fit.J[static_cast<std::size_t>(k)];
+        few.J.col(k) = sums(column) / length[k];
+        few.known_J.col(k) =
+            Eigen::Map<const Eigen::VectorXd>(column.data() + column.size() - beside, beside) / length[k];
+    }
     return few;
 }
 
@@ -242,7 +258,8 @@ Eigen::MatrixXd deviations_of(const Fit& whole, std::span<const double> times, d
     std::vector<double> t(times.begin(), times.end());
     const Fit fit = on_plateaus ? whole : condensed(whole, t);
     const int m = fit.form.parameters();
-    const ResidualNoise left(fit.residual, m, grid * grid / 12);
+    const int taken = m + static_cast<int>(std::lround(whole.nuisance_freedom));
+    const ResidualNoise left(fit.residual, taken, grid * grid / 12);
     const ScaledProblem p = scaled_problem(fit, left.long_run_variance());
     const Eigen::MatrixXd covariance =
         open_covariance(p, left, whole, times, load == LoadDoubt::counted && !on_plateaus);

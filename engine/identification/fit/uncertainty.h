@@ -36,4 +36,14 @@ enum class LoadDoubt { counted, left_out };
 FittedPlant fitted_plant(const CleanRecord& record, const Fit& fit, double quantisation, double noise,
                          LoadDoubt load = LoadDoubt::counted);
 
+/// A covariance is the region's shape near the model: lags and dead times enter y nonlinearly, and a long ellipsoid
+/// holds plants that leave far more of y than any on the record's own contour (Bates and Watts 1988, chapter 6). The
+/// shares, 0 to 1, of PlantRegion::ends() of the 95 % ellipsoid of `plant` at which the sum of squares has grown by
+/// 1.5 times what its curvature at the model says of the whole axis; 1 where it never grows so far. Offset, start,
+/// drift, load and times of moves are fitted to each plant anew.
+///
+/// Empty where nothing is cut, and where all standard errors are so small that the record is linear in the parameters.
+/// `fit` has J's nuisance columns, of the samples of `record`. Cost: some hundred free runs over 600 samples at most.
+std::vector<double> region_reach(const CleanRecord& record, const Fit& fit, const FittedPlant& plant);
+
 }  // namespace tunewright

@@ -93,13 +93,14 @@ void scale_rows(const RecordRows& rows, CleanRecord& clean) {
 
 /// A record of the same input and facts, without samples: of a long one those are nearly all of it.
 CleanRecord without_all_samples(const CleanRecord& record) {
-    return {record, {}, {}, {}, record.v_time, record.v_level};
+    return {record, {}, {}, {}, record.v_time, record.v_level, record.v_open};
 }
 
 /// The mean of v over `blocks` blocks of equal length.
 void average_input(const CleanRecord& from, int blocks, CleanRecord& to) {
     to.v_time.clear();
     to.v_level.clear();
+    to.v_open.clear();
     std::size_t j = 0;
     double v = 0;
     for (int b = 0; b < blocks; ++b) {
@@ -241,7 +242,7 @@ CleanRecord every_few(const CleanRecord& record, int most) {
 }
 
 CleanRecord first_part(const CleanRecord& record, double fraction) {
-    CleanRecord part{record, {}, {}, {}, {}, {}};
+    CleanRecord part{record, {}, {}, {}, {}, {}, {}};
     part.scale.t_scale *= fraction;
     const auto take = [&](const std::vector<double>& times, const std::vector<double>& values, auto& to, auto& of) {
         const auto kept = std::upper_bound(times.begin(), times.end(), fraction) - times.begin();

@@ -56,7 +56,7 @@ struct RecordFacts {
     /// No change of u was recorded: each was put into the middle of the missing rows before it, so long at least.
     double moves_unseen = 0;
     /// The rows may show the changes of u late: together they may lie anywhere within this length about where they
-    /// stand (fit/between_rows.h).
+    /// stand (fit/move_times.h).
     double moved_within = 0;
 };
 
@@ -67,6 +67,9 @@ struct CleanRecord : RecordFacts {
     std::vector<double> t, y;
     std::vector<int> row;  ///< of each sample, as Cleaning numbers them; empty where samples were chosen or averaged
     std::vector<double> v_time, v_level;
+    /// Of each change of u, the length of time within which it was estimated (fit/move_times.h); 0: its time is known.
+    /// Empty: all are known.
+    std::vector<double> v_open = {};
 
     int samples() const { return static_cast<int>(t.size()); }
     int changes() const { return static_cast<int>(v_time.size()); }

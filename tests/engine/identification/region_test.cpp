@@ -7,6 +7,7 @@
 
 #include "engine/evaluation/evaluate.h"
 #include "engine/identification/fit/excited_band.h"
+#include "engine/request/identified_region.h"
 #include "engine/request/tune.h"
 
 namespace tunewright {
@@ -101,9 +102,9 @@ TEST(IdentifiedRegion, RobustHoldsItsLimitOnAllOfItWhereAsked) {
     EXPECT_FALSE(std::ranges::any_of(safe.warnings, coded));
     EXPECT_EQ(*plain.model->region->worst_Ms, *nominal.region->worst_Ms);
     // Points of its own inside the ellipsoid.
-    const auto region =
-        PlantRegion::of_covariance(held.model->plant, held.model->covariance.names, held.model->covariance.matrix);
-    ASSERT_TRUE(region.has_value());
+    const auto family = identified_region(*held.model);
+    ASSERT_TRUE(family.has_value());
+    const PlantRegion* region = family->regions.data();
     EvaluateOptions without_traces;
     without_traces.points = 0;
     for (auto z : region->spread(100)) {
@@ -119,6 +120,72 @@ TEST(IdentifiedRegion, ACrossoverBeyondTheExcitedBandIsWarnedOf) {
     EXPECT_FALSE(std::ranges::any_of(quiet.controllers[0].evaluation->warnings, coded));
     EXPECT_TRUE(std::ranges::any_of(loud.controllers[0].evaluation->warnings, coded))
         << loud.model->excited_band->omega_high << " " << *loud.controllers[0].evaluation->robustness.phase_crossover;
+}
+
+/// What a first-order plant leaves of the record, the offset fitted; the step comes at t = 10.
+double left_by(const Fopdt& plant, const Record& record) {
+    std::vector<double> rest;
+    double mean = 0;
+    for (std::size_t i = 0; i < record.t.size(); ++i) {
+        const double since = record.t[i] - 10 - plant.L;
+        rest.push_back(record.y[i] - (since > 0 ? plant.K * -std::expm1(-since / plant.T) : 0));
+        mean += rest.back() / static_cast<double>(record.t.size());
+    }
+    double sum = 0;
+    for (const double e : rest) sum += (e - mean) * (e - mean);
+    return sum;
+}
+
+TEST(IdentifiedRegion, HoldsNoPlantThatTheRecordExcludes) {
+    // A step that ends before y has settled: gain and lag are open together, along a curve that no ellipse follows.
+    int excluded = 0;
+    for (unsigned seed = 0; seed < 10; ++seed) {
+        std::mt19937 random(seed);
+        std::normal_distribution<double> normal(0, 0.02);
+        Record record;
+        for (int i = 0; i < 200; ++i) {
+            const double t = 0.25 * i, since = t - 10 - 3;
+            record.t.push_back(t);
+            record.u.push_back(t < 10 ? 0 : 1);
+            record.y.push_back((since > 0 ? 2 * -std::expm1(-since / 50) : 0) + normal(random));
+        }
+        IdentifyOptions options;
+        options.model = ModelChoice::fopdt;
+        const auto model = identify(record, options, {});
+        ASSERT_TRUE(model);
+        const auto family = identified_region(*model);
+        ASSERT_TRUE(family);
+        const PlantRegion& region = family->regions.front();
+        const auto ellipsoid =
+            PlantRegion::of_covariance(model->plant, model->covariance.names, model->covariance.matrix);
+        const double least = left_by(std::get<Fopdt>(model->plant), record);
+        const auto growth = [&](const PlantRegion& in, PlantRegion::Point z, double share) {
+            for (double& x : z) x *= share;
+            return left_by(std::get<Fopdt>(in.at(z)), record) - least;
+        };
+        for (const auto& z : region.ends()) {
+            // The curvature of the sum of squares, which the covariance means.
+            const double curvature = 0.5 * (growth(*ellipsoid, z, 0.02) + growth(*ellipsoid, z, -0.02)) / (0.02 * 0.02);
+            EXPECT_LT(growth(region, z, 1), 1.7 * curvature + 1e-3 * least) << seed;
+            excluded += growth(*ellipsoid, z, 1) > 1.7 * curvature;
+        }
+    }
+    EXPECT_GT(excluded, 0) << "no ellipsoid here needs a cut";
+}
+
+TEST(PlantRegions, ACutMovesEachEndToItsShare) {
+    auto region = PlantRegion::of_covariance(Fopdt{.K = 2, .T = 10, .L = 3}, {"K", "T"}, {{0.04, 0}, {0, 1}});
+    ASSERT_TRUE(region);
+    const auto ends = region->ends();
+    std::vector<double> shares, K;
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+        shares.push_back(1 - 0.1 * static_cast<double>(i));
+        K.push_back(parameter(region->at(ends[i]), "K"));
+    }
+    region->cut(shares);
+    for (std::size_t i = 0; i < ends.size(); ++i)
+        EXPECT_NEAR(parameter(region->at(ends[i]), "K") - 2, shares[i] * (K[i] - 2), 1e-6);
+    EXPECT_EQ(parameter(region->at({0, 0}), "K"), 2);
 }
 
 }  // namespace

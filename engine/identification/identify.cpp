@@ -5,10 +5,12 @@
 
 #include "engine/identification/closed_loop/closed_loop.h"
 #include "engine/identification/closed_loop/loop_parts.h"
+#include "engine/identification/closed_loop/outside_excitation.h"
 #include "engine/identification/fit/diagnosis.h"
 #include "engine/identification/fit/model_answer.h"
 #include "engine/identification/fit/model_search.h"
 #include "engine/identification/fit/record_repair.h"
+#include "engine/identification/further_inputs/further_inputs.h"
 #include "engine/identification/record/data_quality.h"
 #include "engine/identification/record/record_kind.h"
 #include "engine/identification/record/series.h"
@@ -168,7 +170,7 @@ ModelSearch searched(CleanRecord& record, ModelChoice model, const RunControl& c
     constexpr int kEnough = 20'000, kMaxFitted = 100'000;  // more samples add time, and no digits that count
     constexpr double kBlocks = 10;                         // in the quickest lag
     const auto search_of = [&](int most) {
-        return search_models(block_means(record, most), model, kind_of(record) == RecordKind::relay, control);
+        return search_with_further(block_means(record, most), model, kind_of(record) == RecordKind::relay, control);
     };
     ModelSearch search = search_of(kEnough);
     const bool quick = search.choice.index < 0 || quickest_lag(search.chosen()) * kEnough < kBlocks;
@@ -302,6 +304,33 @@ std::optional<IdentifiedModel> by_manual_rows(const Record& record, const Looked
     return std::move(*model);
 }
 
+void add_figures(const CleanRecord& record, IdentifiedModel& model) {
+    add_excited_band(record, model);
+    add_ultimate_point(model);
+}
+
+/// Names the further inputs that the model does without.
+void note_further_inputs(const Record& record, IdentifiedModel& model) {
+    for (const FurtherInput& input : record.d) {
+        if (std::ranges::find(model.disturbances, input.name, &DisturbanceModel::name) != model.disturbances.end())
+            continue;
+        model.data_quality.notes.push_back("The measured disturbance \"" + input.name +
+                                           "\" explains nothing of y that u and noise do not; the model is as without "
+                                           "it.");
+    }
+}
+
+/// A loop that only the model of an open-loop test gave away.
+Expected<IdentifiedModel> in_loop_by_law(const Record& record, const CleanRecord& clean, const LoopRecord& loop,
+                                         const IdentifyOptions& options, const RunControl& control) {
+    Expected<IdentifiedModel> model = identify_in_loop(clean, loop, options.model, control);
+    if (!model) return model;
+    report_loop(loop, *model);
+    note_further_inputs(record, *model);
+    add_figures(clean, *model);
+    return model;
+}
+
 }  // namespace
 
 Expected<IdentifiedModel> identify(const Record& record, const IdentifyOptions& options, const RunControl& control) {
@@ -316,16 +345,25 @@ Expected<IdentifiedModel> identify(const Record& record, const IdentifyOptions& 
                                       : options.method == IdentifyMethod::two_point ? by_two_points(clean, options)
                                       : loop ? identify_in_loop(clean, *loop, options.model, control)
                                              : by_fitting(record, clean, options, control);
+    if (model && !loop && !by_formula && options.method != IdentifyMethod::two_point) {
+        const double left = 1 - model->fit_percent / 100;
+        const Expected<std::optional<LoopRecord>> by_law = find_loop(clean, record, left * left);
+        if (by_law && *by_law) return in_loop_by_law(record, clean, **by_law, options, control);
+    }
     if (!model && loop && model.error().kind == ErrorKind::not_identifiable) {
         if (auto manual = by_manual_rows(record, *looked, options, control)) return std::move(*manual);
     }
     if (!model) return model;
     if (rest)
         model->data_quality.notes.push_back(
-            "Before the set point first moves the loop is at rest: u0 = " + text(*rest) + " is the mean of u there.");
+            "Before the set point first moves, or the controller is switched on, the loop is at rest: u0 = " +
+            text(*rest) + " is the mean of u there.");
+    note_further_inputs(record, *model);
+    if (!loop && set_point_is_input(clean, record))
+        model->data_quality.notes.emplace_back(
+            "Column r is u itself, or a straight line over it: it is taken for a command of u, not for a set point.");
     loop ? report_loop(*loop, *model) : doubt_open_loop(clean, *model);
-    add_excited_band(clean, *model);
-    add_ultimate_point(*model);
+    add_figures(clean, *model);
     if (control.progress) control.progress({1, "identify", "model found", std::nullopt});
     return model;
 }

@@ -74,7 +74,7 @@ struct FalseReadings {
 };
 
 /// What else than feedback moved u in a loop's record, and was used.
-enum class LoopExcitation { set_point, outside_moves, none };
+enum class LoopExcitation { set_point, switched_on, outside_moves, none };
 
 /// A controller moved u in answer to y.
 struct ClosedLoop {
@@ -111,14 +111,23 @@ struct DataQuality {
     std::vector<std::string> notes;
 };
 
+/// What a further measured input (Record::d) does to y: for feedforward.
+struct DisturbanceModel {
+    std::string name;
+    Plant plant;  ///< a lag and a dead time (Fopdt); with 1/s (Ipdt) where the plant of u integrates
+    std::map<std::string, double> standard_errors;  ///< K, T, L
+    double share = 0;  ///< of the variances of what u and the further inputs do to y, 0 to 1
+};
+
 struct IdentifiedModel {
     Plant plant;
     double fit_percent = 0;
     std::vector<Candidate> candidates;
     std::map<std::string, double> standard_errors;
     ParameterCovariance covariance;
-    std::vector<Plant> alternatives;        ///< fits of other structures, less than 4 above it by Akaike's criterion
-    std::optional<LimitCycle> limit_cycle;  ///< of a relay test
+    std::vector<Plant> alternatives;  ///< fits of other structures, less than 4 above it by Akaike's criterion
+    std::vector<DisturbanceModel> disturbances;  ///< the further measured inputs that matter
+    std::optional<LimitCycle> limit_cycle;       ///< of a relay test
     std::vector<FrequencyPoint> frequency_points;
     std::optional<UltimatePoint> ultimate_point;  ///< of the plant; empty where no P gain makes it oscillate
     std::string choice_reason;                    ///< why this structure, one sentence
@@ -144,6 +153,8 @@ struct IdentifiedModel {
 /// - Rows that are not small beside the dead time show moves of u late (fit/move_times.h): noted, and counted in the
 ///   standard error of L.
 /// - A drift and a lasting load are fitted with the model where the record shows them, and reported as warnings.
+/// - Further measured inputs (Record::d) are identified with the plant, each with a gain, a lag and a dead time of its
+///   own (further_inputs/further_inputs.h); one that explains nothing is left out, and a note names it.
 /// - A relay test also gives `limit_cycle`, `frequency_points`; where no structure fits it, the model is held to the
 ///   measured response at the oscillation (and to the static gain of a biased test), and a warning says so.
 /// - `method` relay_fourier: Liu and Gao's formulas alone; two_point: the construction from one settled step. Neither

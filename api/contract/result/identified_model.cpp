@@ -78,12 +78,13 @@ const Description<ClosedLoop>& closed_loop_contract() {
     static const auto description = [] {
         Description<ClosedLoop> d("ClosedLoop", "A controller moved u in answer to y; there only where it did.");
         d.field("evidence", &ClosedLoop::evidence, sentence(), "What shows it, with its figures.")
-            .field(
-                "used", &ClosedLoop::used,
-                only_answered(choice<LoopExcitation>({{"set_point", LoopExcitation::set_point},
-                                                      {"outside_moves", LoopExcitation::outside_moves},
-                                                      {"none", LoopExcitation::none}})),
-                "What the model rests on: moves of the set point (r), moves of u that y does not explain, or neither.")
+            .field("used", &ClosedLoop::used,
+                   only_answered(choice<LoopExcitation>({{"set_point", LoopExcitation::set_point},
+                                                         {"switched_on", LoopExcitation::switched_on},
+                                                         {"outside_moves", LoopExcitation::outside_moves},
+                                                         {"none", LoopExcitation::none}})),
+                   "What the model rests on: moves of the set point (r), switching the controller on (or the set "
+                   "point's move before the first row), moves of u that y does not explain, or none of these.")
             .field("share", &ClosedLoop::share, size(), "Of u's variance that these moves explain, 0 to 1.")
             .field("set_point_moves", &ClosedLoop::set_point_moves, maybe(count()),
                    "Moves of the recorded set point, a ramp counted once.");

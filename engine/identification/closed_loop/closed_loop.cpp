@@ -2,109 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <string>
 
+#include "engine/identification/closed_loop/controller_law.h"
 #include "engine/identification/closed_loop/feedback.h"
 #include "engine/identification/closed_loop/instrument_fit.h"
-#include "engine/identification/closed_loop/loop_parts.h"
 #include "engine/identification/fit/diagnosis.h"
 #include "engine/identification/fit/model_answer.h"
 #include "engine/identification/fit/model_search.h"
-#include "engine/identification/record/record_kind.h"
-#include "engine/identification/record/series.h"
+#include "engine/identification/further_inputs/further_inputs.h"
 #include "engine/number_text.h"
 #include "engine/numerics/matrix/dense.h"
+#include "engine/numerics/statistics.h"
 
 namespace tunewright {
 namespace {
-
-constexpr int kMaxSeen = 20'000;    ///< rows
-constexpr int kMaxFitted = 10'000;  ///< samples: an instrumental fit costs several times a plain one
-
-/// Whether r is y, as many controllers write it in manual: of this row or the one before, and rounded, in some rows.
-bool tracks(const std::vector<double>& r, const std::vector<double>& y) {
-    constexpr double kSame = 1e-3, kFine = 0.1;       // of y's range; more is a level of r, not a figure's rounding
-    constexpr double kMostMoves = 0.8, kOften = 0.1;  // of the moves of r; of the rows: a set point moves in fewer
-    const double grid = quantisation_step(r), same = kSame + (grid < kFine ? 0.5 * grid : 0);
-    int moves = 0, tracking = 0;
-    for (std::size_t i = 1; i < r.size(); ++i) {
-        if (r[i] == r[i - 1]) continue;
-        ++moves;
-        tracking += std::min(std::abs(r[i] - y[i]), std::abs(r[i] - y[i - 1])) < same ? 1 : 0;
-    }
-    return moves > kOften * static_cast<double>(r.size()) && tracking > kMostMoves * moves;
-}
-
-/// r at the record's samples, dimensionless as y; empty where the record has none, or it only tracks y.
-std::vector<double> set_point_at_samples(const CleanRecord& clean, const Record& record) {
-    std::vector<std::pair<double, double>> known;
-    for (std::size_t i = 0; i < record.r.size(); ++i) {
-        if (std::isfinite(record.t[i]) && std::isfinite(record.r[i])) known.emplace_back(record.t[i], record.r[i]);
-    }
-    if (known.empty()) return {};
-    std::stable_sort(known.begin(), known.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-    const RecordScale& s = clean.scale;
-    constexpr double kRounding = 1e-9;  // of the record's length
-    std::vector<double> r;
-    std::size_t next = 0;
-    double now = known.front().second;
-    for (int i = 0; i < clean.samples(); ++i) {
-        const double t = s.t_origin + s.t_scale * (clean.t[i] + kRounding);
-        for (; next < known.size() && known[next].first <= t; ++next) now = known[next].second;
-        r.push_back((now - s.y_origin) / s.y_scale);
-    }
-    return tracks(r, clean.y) ? std::vector<double>{} : r;
-}
-
-/// Steps of a set point at the samples: changes below 2 % of its range are none, and a ramp is one.
-int moves_of(const std::vector<double>& r) {
-    constexpr double kJitter = 0.02;
-    const auto [low, high] = std::ranges::minmax(r);
-    int moves = 0;
-    double last = 0;
-    for (std::size_t i = 1; i < r.size(); ++i) {
-        const double change = r[i] - r[i - 1];
-        const bool moved = std::abs(change) > kJitter * (high - low);
-        if (moved && change * last <= 0) ++moves;
-        last = moved ? change : 0;
-    }
-    return moves;
-}
-
-/// Feedback shows from row to row: of a long record the beginning is looked at, and means over blocks are fitted.
-CleanRecord beginning(const CleanRecord& record) {
-    return record.samples() <= kMaxSeen ? record : first_part(record, record.t[static_cast<std::size_t>(kMaxSeen - 1)]);
-}
-
-/// A set point that is known only by its moves; `length` is that of the part of the record in which they were seen.
-std::vector<double> steps_at_samples(const std::vector<OutsideMove>& moves, double length, const CleanRecord& record) {
-    std::vector<double> w(static_cast<std::size_t>(record.samples()), 0.0);
-    for (const OutsideMove& move : moves) {
-        const auto from = std::lower_bound(record.t.begin(), record.t.end(), move.time * length) - record.t.begin();
-        for (auto i = static_cast<std::size_t>(from); i < w.size(); ++i) w[i] += move.size;
-    }
-    return w;
-}
-
-std::string evidence_of(const std::optional<Feedback>& feedback, const SetPointPart* part, const RecordScale& scale) {
-    if (feedback) {
-        return "y, " + std::string(feedback->at_once ? "of the same and earlier rows" : "of earlier rows") +
-               ", predicts the moves of u within " + text(feedback->by_y * scale.u_scale, 3) +
-               " where u's own past leaves " + text(feedback->by_u * scale.u_scale, 3) + ".";
-    }
-    return "u follows the set point: its moves explain " + text(100 * part->share, 3) + " % of u's variance.";
-}
-
-Error nothing_outside(const CleanRecord& r, const LoopRecord& loop, const std::string& why) {
-    const auto [low, high] = std::minmax_element(r.v_level.begin(), r.v_level.end());
-    const double u_range = (std::max(*high, 0.0) - std::min(*low, 0.0)) * r.scale.u_scale;
-    return {ErrorKind::not_identifiable, "record",
-            "The record is of a closed loop (" + loop.found.evidence.substr(0, loop.found.evidence.size() - 1) + "), " +
-                why +
-                ": the plant cannot be distinguished from the controller. Put the controller in manual and step u by " +
-                text(u_range, 2) + " or so, or step the set point by " + text(2 * r.scale.y_scale, 2) +
-                " or so (twice what y moves here) and record it as column r."};
-}
 
 /// A search's structures by instrumental variables, with what each leaves.
 struct Refined {
@@ -143,14 +56,16 @@ std::optional<Refined> refined(ModelSearch search, const CleanRecord& record, co
                                const std::stop_token& stop) {
     const SetPointPart& part = *loop.part;
     if (search.choice.index < 0) return std::nullopt;
+    std::vector<FurtherSteps> further = std::move(search.context.record.d);
     search.context.record = record;
+    search.context.record.d = std::move(further);
     Refined out{std::move(search), {}, {}, {}};
     const double done = by_set_point(record.y, part);
     for (std::size_t i = 0; i < out.search.fits.size(); ++i) {
         Fit& fit = out.search.fits[i];
         out.mismatch.push_back(0), out.gain_error.push_back(1), out.left.push_back(1);
         if (!fit.determined) continue;
-        std::optional<InstrumentFit> better = fit_by_instrument(record, part, fit, stop);
+        std::optional<InstrumentFit> better = fit_by_instrument(out.search.context.record, part, fit, stop);
         fit.determined = better.has_value();
         if (!better) continue;
         fit = std::move(better->fit);
@@ -222,54 +137,42 @@ bool answers_at_once(const IdentifiedModel& model) {
     });
 }
 
-}  // namespace
-
-Expected<std::optional<LoopRecord>> find_loop(const CleanRecord& full, const Record& as_given) {
-    constexpr double kFollows = 0.05, kPlain = 10;  // share of u's variance; F ratio
-    if (!as_given.r.empty() && as_given.r.size() != as_given.t.size()) {
-        return Error{ErrorKind::invalid_argument, "record/r",
-                     "r has " + std::to_string(as_given.r.size()) + " values and t " +
-                         std::to_string(as_given.t.size()) + "; give columns of equal length."};
-    }
-    const RecordKind kind = full.kind == RecordKind::automatic ? found_kind(full) : full.kind;
-    if (kind == RecordKind::relay) return std::optional<LoopRecord>{};
-    const CleanRecord seen = beginning(full), record = condensed(full, kMaxFitted);
-    const std::optional<Feedback> feedback = find_feedback(seen);
-    const std::vector<double> r = set_point_at_samples(record, as_given);
-    LoopRecord loop;
-    std::vector<double> moves = r;
-    if (!r.empty()) {
-        loop.found.used = LoopExcitation::set_point;
-        loop.found.set_point_moves = moves_of(r);
-    } else if (feedback && !feedback->outside.empty()) {
-        moves = steps_at_samples(feedback->outside, seen.scale.t_scale / full.scale.t_scale, record);
-        loop.found.used = LoopExcitation::outside_moves;
-    }
-    if (!moves.empty()) loop.part = set_point_part(input_at_samples(record), moves);
-    const bool follows = loop.part && loop.part->share > kFollows && loop.part->strength > kPlain;
-    if (!feedback && !follows) return std::optional<LoopRecord>{};
-    loop.found.evidence = evidence_of(feedback, loop.part ? &*loop.part : nullptr, record.scale);
-    if (loop.part) loop.found.share = loop.part->share;
-    if (!loop.part) loop.found.used = LoopExcitation::none;
-    if (feedback) loop.gain = feedback->gain;
-    if (loop.part && !full.u0_given) loop.u_rest = level_before_set_point(record, moves);
-    return std::optional<LoopRecord>(std::move(loop));
+/// What a straight line over y, of the same row or the next, leaves of u.
+double left_by_line(std::span<const double> y, std::span<const double> u) {
+    return deviation(residuals(straight_line(y, u), y, u));
 }
+
+/// As the inverse of a proportional controller whose law u keeps to.
+bool is_inverse_of_law(const CleanRecord& record, const IdentifiedModel& model) {
+    constexpr double kSame = 0.1;
+    if (!may_be_controlled(record) || !answers_at_once(model)) return false;
+    const std::vector<double> u = input_at_samples(record);
+    const std::span all_u(u), all_y(record.y);
+    // A plant that is quick beside the rows shows u a row later.
+    if (left_by_line(all_y.last(u.size() - 1), all_u.first(u.size() - 1)) < left_by_line(all_y, all_u)) return false;
+    const std::optional<ControllerLaw> law = controller_law(record, u, {});
+    const auto* lag = std::get_if<Fopdt>(&model.plant);
+    const double unit = record.scale.y_scale / record.scale.u_scale;
+    return law && lag != nullptr && std::abs(law->gain * lag->K / unit - 1) < kSame;
+}
+
+}  // namespace
 
 Expected<IdentifiedModel> identify_in_loop(const CleanRecord& full, const LoopRecord& loop, ModelChoice model,
                                            const RunControl& control) {
     constexpr double kWeak = 4, kPlainlyLess = 10;  // F ratio; difference of mismatch
-    if (!loop.part) return nothing_outside(full, loop, "and nothing but feedback moves u");
+    if (!loop.part) return no_plant_in_loop(full, loop, "and nothing but feedback moves u");
     if (loop.part->strength < kWeak)
-        return nothing_outside(
+        return no_plant_in_loop(
             full, loop,
             "and moves of the set point explain too little of u (" + text(100 * loop.part->share, 2) + " %)");
-    const CleanRecord record = condensed(full, kMaxFitted);
+    CleanRecord record = condensed(full, kMaxLoopSamples);
+    record.moved_at_first_row = loop.moved_at_first_row && !full.u0_given;
     const auto cancelled = [] { return Error{ErrorKind::cancelled, "", "The identification was cancelled."}; };
-    auto direct = refined(search_models(record, model, false, control), record, loop, control.stop);
+    auto direct = refined(search_with_further(record, model, false, control), record, loop, control.stop);
     if (control.stop.stop_requested()) return cancelled();
     auto two_stage =
-        refined(search_models(driven_by(*loop.part, record), model, false, control), record, loop, control.stop);
+        refined(search_with_further(driven_by(*loop.part, record), model, false, control), record, loop, control.stop);
     if (control.stop.stop_requested()) return cancelled();
     for (std::optional<Refined>* one : {&direct, &two_stage}) {
         if (*one) choose_again(**one);
@@ -281,36 +184,48 @@ Expected<IdentifiedModel> identify_in_loop(const CleanRecord& full, const LoopRe
     std::optional<Refined>& best = two_stage && (!direct || better(*two_stage, *direct)) ? two_stage : direct;
     const bool follows = best && best->search.chosen().determined &&
                          (best->mismatch[best->chosen()] < kMismatch || responds(full, best->search.chosen()));
-    if (!follows) return nothing_outside(full, loop, "and y does not plainly follow the moves from outside the loop");
+    if (!follows) return no_plant_in_loop(full, loop, "and y does not plainly follow the moves from outside the loop");
     if (driven_away(loop, best->search.chosen()))
-        return nothing_outside(full, loop,
-                               "and the gain that the moves from outside the loop give has the sign with which this "
-                               "controller would have driven y away");
+        return no_plant_in_loop(full, loop,
+                                "and the gain that the moves from outside the loop give has the sign with which this "
+                                "controller would have driven y away");
     constexpr double kHalf = 0.5;  // of what the set point did to y
     if (best->left[best->chosen()] > kHalf)
-        return nothing_outside(full, loop, "and no structure explains what the moves from outside the loop did to y");
+        return no_plant_in_loop(full, loop, "and no structure explains what the moves from outside the loop did to y");
     const double error = best->gain_error[best->chosen()];
     if (!(error < kUnknownGain)) {
-        return nothing_outside(full, loop,
-                               "and the moves from outside the loop leave the gain unknown (its standard error is " +
-                                   text(100 * error, 2) + " % of it)");
+        return no_plant_in_loop(full, loop,
+                                "and the moves from outside the loop leave the gain unknown (its standard error is " +
+                                    text(100 * error, 2) + " % of it)");
     }
-    return searched_model(std::move(best->search), full);
+    if (loop.found.used == LoopExcitation::switched_on) {
+        // One move has nothing to be compared with: what is slow in the residual may be the plant's.
+        for (Fit& fit : best->search.fits) fit.as_open_as_least_squares = true;
+    }
+    IdentifiedModel answer = searched_model(std::move(best->search), full);
+    if (loop.found.used == LoopExcitation::switched_on && !(gain_error(answer) < kUnknownGain)) {
+        return no_plant_in_loop(full, loop,
+                                "and its start leaves the gain unknown (its standard error is " +
+                                    text(100 * gain_error(answer), 2) + " % of it)");
+    }
+    return answer;
 }
 
 void doubt_open_loop(const CleanRecord& full, IdentifiedModel& model) {
     constexpr double kHardly = 0.005, kSomewhat = 0.05, kPlainly = 0.15;  // restlessness
     constexpr double kUnknown = 0.33;                                     // standard error over the gain
     constexpr double kLess = 0.8, kNearly = 0.95;  // what the law leaves of u over what the model leaves of y
-    const double restless = restlessness(beginning(full));
-    if (restless < kHardly) return;
-    const CleanRecord record = condensed(full, kMaxFitted);
-    const std::optional<SetPointPart> law = set_point_part(input_at_samples(record), record.y);
+    const double restless = restlessness(looked_at_for_feedback(full));
+    const CleanRecord record = condensed(full, kMaxLoopSamples);
+    const bool inverse = is_inverse_of_law(record, model);
+    if (restless < kHardly && !inverse) return;
+    const std::optional<SetPointPart> law = set_point_part(input_at_samples(record), record.y, record.y.front());
     const double left = 1 - model.fit_percent / 100, unexplained = left * left;
     if (!law) return;
     const double by_law = (1 - law->share) / unexplained, error = gain_error(model);
     const bool at_once = by_law < kNearly && restless > kSomewhat && answers_at_once(model);
-    const bool in_doubt = (error > kUnknown && by_law < kLess) || (restless > kPlainly && by_law < 1) || at_once;
+    const bool in_doubt =
+        (error > kUnknown && by_law < kLess) || (restless > kPlainly && by_law < 1) || at_once || inverse;
     if (!in_doubt) return;
     LoopRecord loop;
     loop.found.evidence = "u moves restlessly, and filters of y explain " + text(100 * law->share, 3) +
@@ -332,6 +247,11 @@ void report_loop(const LoopRecord& loop, IdentifiedModel& model) {
             detail +=
                 " The model rests on what the moves of the set point did alone; disturbances that the controller "
                 "answered count as noise in its standard errors.";
+            break;
+        case LoopExcitation::switched_on:
+            detail +=
+                " The model rests on what switching the controller on, or the set point's move before the first row, "
+                "did; disturbances that the controller answered count as noise in its standard errors.";
             break;
         case LoopExcitation::outside_moves:
             detail +=

@@ -1,29 +1,20 @@
 // Records of closed loops: what may be learned of the plant where a controller moves u in answer to y.
 #pragma once
 
-#include <optional>
-
 #include "engine/expected.h"
-#include "engine/identification/closed_loop/set_point_part.h"
+#include "engine/identification/closed_loop/loop_record.h"
 #include "engine/identification/identify.h"
 #include "engine/progress.h"
 
 namespace tunewright {
 
-/// A record in which u answers y. Least squares of y on u would take the controller's answers to disturbances for the
-/// plant's cause, and end between the plant and -1/C (Ljung 1999, section 13.4).
-struct LoopRecord {
-    ClosedLoop found;
-    std::optional<SetPointPart> part;  ///< empty: nothing but feedback moves u
-    double gain = 0;                   ///< Feedback::gain
-    std::optional<double> u_rest;      ///< where the plant rests before the set point moves, in the record's units
-};
-
-/// Feedback by feedback.h, or a set point whose moves u follows. Error: r not as long as the other columns.
-Expected<std::optional<LoopRecord>> find_loop(const CleanRecord& record, const Record& as_given);
-
-/// The structure is searched for with the recorded u and with the set point's part of u alone; both ends are refined by
-/// instrumental variables (instrument_fit.h), and the one stays whose residual the set point explains less. Errors:
+/// 1. The structure is searched for with the recorded u, and with the set point's part of u alone.
+/// 2. Both ends are refined by instrumental variables (instrument_fit.h), and the one stays whose residual the set
+/// point
+///    explains less.
+/// 3. Where the loop was switched on once, the standard errors are at least those of least squares.
+///
+/// Errors:
 /// not_identifiable where nothing but feedback moves u, or too little to know the gain within a half of itself, or
 /// where the gain that comes out is of the sign with which that controller drives its plant away; cancelled.
 Expected<IdentifiedModel> identify_in_loop(const CleanRecord& record, const LoopRecord& loop, ModelChoice model,

@@ -338,6 +338,8 @@ std::vector<double> input_at_samples(const CleanRecord& r) {
     return u;
 }
 
+bool may_be_controlled(const CleanRecord& r) { return possible_moves(r, input_at_samples(r)).has_value(); }
+
 double restlessness(const CleanRecord& r) {
     constexpr double kOften = 0.1;  // of the rows: tests move u in fewer
     const std::vector<double> u = input_at_samples(r);

@@ -38,6 +38,10 @@ std::vector<double> input_at_samples(const CleanRecord& record);
 /// sines).
 std::optional<Feedback> find_feedback(const CleanRecord& record);
 
+/// Whether u moves as a controller may move it: 12 times and more, on more than three levels, neither as a relay nor on
+/// ramps.
+bool may_be_controlled(const CleanRecord& record);
+
 /// How restlessly u moves: the error of predicting its moves from its own past over u's standard deviation. 0 where u
 /// moves as tests do: in fewer than a tenth of the rows, on ramps, on two or three levels, as a relay; or where y
 /// follows u of the same row as a lag does.

@@ -155,7 +155,7 @@ double allowed_part(const Fit& fit, const std::vector<Index>& free, const Vector
     for (std::size_t k = 0; k < free.size(); ++k) {
         const auto which = static_cast<std::size_t>(free[k]);
         if (which >= places.size()) continue;
-        const double most = places[which] == 0 || places[which] == kLoadTime ? kDeadTime : kLogarithm;
+        const double most = is_time(places[which]) ? kDeadTime : kLogarithm;
         const double size = std::abs(step[static_cast<Index>(k)]);
         if (size > most) part = std::min(part, most / size);
     }

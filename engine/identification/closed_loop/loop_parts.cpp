@@ -63,11 +63,13 @@ Record between(const Record& record, double from, double to) {
     Record part;
     part.kind = record.kind;
     part.u_limits = record.u_limits;
+    for (const FurtherInput& input : record.d) part.d.push_back({input.name, {}});
     for (std::size_t i = 0; i < record.t.size(); ++i) {
         if (!(record.t[i] >= from && record.t[i] <= to)) continue;
         part.t.push_back(record.t[i]);
         part.u.push_back(record.u[i]);
         part.y.push_back(record.y[i]);
+        for (std::size_t k = 0; k < part.d.size(); ++k) part.d[k].values.push_back(record.d[k].values[i]);
         if (!record.line.empty()) part.line.push_back(record.line[i]);
     }
     return part;
@@ -89,6 +91,31 @@ std::optional<double> level_before_set_point(const CleanRecord& record, const st
     const std::span t(record.t.data(), n), y(record.y.data(), n);
     if (moves_at_first(t, y) || moves_at_first(t, u)) return std::nullopt;
     return record.scale.u_rest + record.scale.u_scale * mean(u);
+}
+
+std::optional<SwitchOn> switched_on(const CleanRecord& record, const std::vector<double>& r) {
+    constexpr double kFar = 0.05;               // of y's range
+    constexpr int kJustBefore = 10, kNear = 2;  // rows
+    constexpr double kWider = 0.5;              // noise goes beyond what ten rows show of its range
+    const std::vector<Run> runs = quiet_runs(record);
+    if (runs.size() < 2 || runs.front().from != 0 || runs.front().to >= record.samples()) return std::nullopt;
+    if (runs.front().last > runs.front().first) return std::nullopt;  // a test by hand, which has its own answer
+    const int row = runs.front().to;
+    if (row < kRestRows) return std::nullopt;
+    const int from = std::max(0, row - kJustBefore);
+    const std::span<const double> y(record.y);
+    const auto just_before = y.subspan(static_cast<std::size_t>(from), static_cast<std::size_t>(row - from));
+    const auto [low, high] = std::ranges::minmax(just_before);
+    const double wider = kWider * (high - low), now = y[static_cast<std::size_t>(row)];
+    if (now < low - wider || now > high + wider) return std::nullopt;
+    const SwitchOn on{row, mean(just_before)};
+    if (r.empty()) return on;
+    for (int i = std::max(1, row - kNear); i <= std::min(row + kNear, record.samples() - 1); ++i) {
+        const auto at = static_cast<std::size_t>(i);
+        if (r[at] != r[at - 1] && r[at - 1] == r[static_cast<std::size_t>(from)]) return std::nullopt;
+    }
+    if (std::abs(r[static_cast<std::size_t>(row)] - on.y_before) < kFar) return std::nullopt;
+    return on;
 }
 
 std::optional<Stretch> manual_stretch(const CleanRecord& r) {

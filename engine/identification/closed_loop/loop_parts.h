@@ -14,6 +14,18 @@ namespace tunewright {
 /// `r` is the set point at the record's samples, or its moves, in any unit.
 std::optional<double> level_before_set_point(const CleanRecord& record, const std::vector<double>& r);
 
+/// Where a controller took over: before that row u stands still.
+struct SwitchOn {
+    int row = 0;          ///< index of the first sample at which the controller moves u
+    double y_before = 0;  ///< mean of y over the rows just before, dimensionless
+};
+
+/// The row at which the first five rows of stillness, or more, end and u moves on and on. Empty where
+/// - the set point `r` (at the samples, as y; may be empty) moves within two rows of it, which is a move of its own, or
+///   is within a twentieth of y's range of y there: nothing is then to be moved;
+/// - y has left what it was in the rows before: then y moves u, and not somebody.
+std::optional<SwitchOn> switched_on(const CleanRecord& record, const std::vector<double>& r);
+
 /// First and last time, in the record's units.
 struct Stretch {
     double from = 0, to = 0;

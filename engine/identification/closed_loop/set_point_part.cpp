@@ -30,13 +30,13 @@ Eigen::VectorXd all_pass(const Eigen::VectorXd& w, double pole) {
     return x;
 }
 
-/// 1, w, its moves, and the filters.
+/// 1, w, its moves, and the filters; w is 0 before the first row.
 Eigen::MatrixXd regressors(const Eigen::VectorXd& w, double pole) {
     const Eigen::Index n = w.size();
     Eigen::MatrixXd X(n, kFilters + 3);
     X.col(0).setOnes();
     X.col(1) = w;
-    X(0, 2) = 0;
+    X(0, 2) = w[0];
     X.col(2).tail(n - 1) = w.tail(n - 1) - w.head(n - 1);
     Eigen::VectorXd x = low_pass(w, pole);
     for (int k = 0; k < kFilters; ++k) {
@@ -48,10 +48,10 @@ Eigen::MatrixXd regressors(const Eigen::VectorXd& w, double pole) {
 
 }  // namespace
 
-std::optional<SetPointPart> set_point_part(const std::vector<double>& u, const std::vector<double>& w) {
+std::optional<SetPointPart> set_point_part(const std::vector<double>& u, const std::vector<double>& w, double before) {
     const auto n = static_cast<Eigen::Index>(u.size());
     const Eigen::VectorXd target = Eigen::Map<const Eigen::VectorXd>(u.data(), n);
-    Eigen::VectorXd moved = Eigen::Map<const Eigen::VectorXd>(w.data(), n).array() - w.front();
+    Eigen::VectorXd moved = Eigen::Map<const Eigen::VectorXd>(w.data(), n).array() - before;
     const double size = moved.cwiseAbs().maxCoeff();
     if (!(size > 0) || n < 4 * kFilters) return std::nullopt;
     moved /= size;

@@ -18,10 +18,10 @@ struct SetPointPart {
     double strength = 0;                        ///< F ratio, the rest counted as the independent samples it is worth
 };
 
-/// `u` is the input at the samples, dimensionless; `w` is the set point at the samples, in any unit. The lengths are
-/// equal. Empty where w never moves, or for fewer than 32 samples. Cost: nine least-squares problems of 11 columns and
-/// as many rows as there are samples.
-std::optional<SetPointPart> set_point_part(const std::vector<double>& u, const std::vector<double>& w);
+/// `u` is the input at the samples, dimensionless; `w` is the set point at the samples, in any unit, and `before` what
+/// it was before the first. The lengths are equal. Empty where w never moves, or for fewer than 32 samples. Cost: nine
+/// least-squares problems of 11 columns and as many rows as there are samples.
+std::optional<SetPointPart> set_point_part(const std::vector<double>& u, const std::vector<double>& w, double before);
 
 /// The record with that part in place of u, as changes at the sample times; of samples at one time the last counts.
 /// `part` is of the record's samples.

@@ -153,7 +153,8 @@ Fit fit_structure(const FitContext& context, Structure structure, const Disturba
     const auto fopdt =
         std::find_if(simpler.begin(), simpler.end(), [](const Fit& f) { return f.form.structure == Structure::fopdt; });
     const bool known_start = fopdt != simpler.end() && fopdt->form.other_level && !is_integrating(structure);
-    if (known_start || (starts_in_relay(context) && !is_integrating(structure))) {
+    const bool left_rest = starts_in_relay(context) || record.moved_at_first_row;
+    if (known_start || (left_rest && !is_integrating(structure))) {
         ModelForm left = form;
         left.other_level = true;
         Fit fit = fit_form(context, left, simpler);

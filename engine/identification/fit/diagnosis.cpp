@@ -34,7 +34,9 @@ double remaining_movement(const CleanRecord& r, const Fit& fit) {
     if (fit.form.slope) offset += fit.linear[fit.form.slope_index()] * r.t.back();
     double moved = 0;
     for (double y : fit.model) moved = std::max(moved, std::abs(y - offset));
-    const double final_value = fit.linear[0] * r.v_level.back() + offset;
+    double final_value = fit.linear[0] * r.v_level.back() + offset;
+    for (int k = 0; k < fit.form.further; ++k)
+        final_value += fit.linear[fit.form.further_index() + k] * r.d[static_cast<std::size_t>(k)].level.back();
     return std::abs(final_value - fit.model.back()) / std::max(moved, kTinyDivisor);
 }
 

@@ -110,6 +110,15 @@ void warn_disturbances(const CleanRecord& r, const Fit& fit, std::vector<Warning
     }
 }
 
+void note_disturbances(IdentifiedModel& model) {
+    for (const DisturbanceModel& one : model.disturbances) {
+        model.data_quality.notes.push_back("The measured disturbance \"" + one.name + "\" makes " +
+                                           text(100 * one.share, 2) +
+                                           " % of what is explained of y: it was identified together with u, and its "
+                                           "own model stands in disturbances.");
+    }
+}
+
 /// A structure that Akaike's criterion does not tell from the chosen one.
 struct OpenChoice {
     std::size_t index = 0;  ///< into the fits
@@ -224,11 +233,13 @@ IdentifiedModel searched_model(ModelSearch search, const CleanRecord& recorded) 
         model.fit_percent = search.percents[i];
         model.standard_errors = std::move(fitted.standard_errors);
         model.covariance = std::move(fitted.covariance);
+        model.disturbances = std::move(fitted.disturbances);
         model.choice_reason = search.choice.reason;
         model.fit = std::move(trace);
         model.data_quality.settled = diagnosis.settled;
         model.warnings = std::move(diagnosis.warnings);
         warn_disturbances(record, fit, model.warnings);
+        note_disturbances(model);
         warn_slow_or_integrating(search, model.warnings);
         warn_slow_part(record, fit, model.warnings);
         add_record_warnings(recorded, model);

@@ -377,16 +377,17 @@ ModelSearch search_models(const CleanRecord& record, ModelChoice model, bool rel
     return search;
 }
 
+ModelSearch ranked_anew(const ModelSearch& search, FitContext context, std::vector<Fit> fits, ModelChoice model) {
+    return ranked(std::move(context), std::move(fits), plan_for(model, search.context.record), search.disturbances);
+}
+
 void constrain(ModelSearch& search, std::vector<FrequencyConstraint> anchors, ModelChoice model,
                const RunControl& control) {
-    const Plan plan = plan_for(model, search.context.record);
     FitContext context = search.context;
     context.anchors = std::move(anchors);
-    std::vector<Fit> fits;
-    for (const Fit& fit : search.fits) {
-        fits.push_back(fit.determined ? fit_shape(context.some(), fit.form, fit.shape, {}, control.stop) : fit);
-    }
-    search = ranked(std::move(context), std::move(fits), plan, search.disturbances);
+    for (Fit& fit : search.fits)
+        if (fit.determined) fit = fit_shape(context.some(), fit.form, fit.shape, {}, control.stop);
+    search = ranked_anew(search, std::move(context), search.fits, model);
 }
 
 }  // namespace tunewright

@@ -44,6 +44,9 @@ struct ModelSearch {
 /// structure. When control.stop asks for it the search ends early with what it has; the caller looks at the token.
 ModelSearch search_models(const CleanRecord& record, ModelChoice model, bool relay, const RunControl& control);
 
+/// The search with other fits of its structures in place of its own, on `context`, and the choice made again.
+ModelSearch ranked_anew(const ModelSearch& search, FitContext context, std::vector<Fit> fits, ModelChoice model);
+
 /// Fits the same structures once more, held to `anchors`, measured values of the frequency response.
 void constrain(ModelSearch& search, std::vector<FrequencyConstraint> anchors, ModelChoice model,
                const RunControl& control);

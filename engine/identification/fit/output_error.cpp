@@ -53,6 +53,10 @@ public:
         fill(0, now_, zero);
         if (form_.other_level) fill(form_.level_index(), level_, zero);
         if (form_.load) fill(form_.load_index(), load_, zero);
+        for (int k = 0; k < form_.further; ++k) {
+            respond_to_further(k, shape, 0);
+            columns_.col(form_.further_index() + k).head(n_) = column(further_.x);
+        }
         int row = first_anchor_;
         for (const FrequencyConstraint& anchor : anchors_) {
             const std::complex<double> s(0, anchor.omega), g = anchor.weight * unit_transfer(shape, s);
@@ -82,14 +86,17 @@ public:
         respond(shape, zero ? 2 : 1);
         add_slopes(0, 0, now_, -1, linear);
         if (form_.other_level) add_slopes(0, form_.level_index(), level_, -1, linear);
-        if (form_.load) add_slopes(static_cast<int>(places.size()) - 1, form_.load_index(), load_, -1, linear);
+        if (form_.load) add_slopes(shape_size(form_.structure), form_.load_index(), load_, -1, linear);
         add_anchor_slopes(shape, linear);
-        for (std::size_t k = 1; k < places.size(); ++k) {
-            if (places[k] == kLoadTime) continue;
+        const int first_further = static_cast<int>(places.size()) - 2 * form_.further;
+        for (int k = 0; k < form_.further; ++k)
+            add_further_slopes(first_further + 2 * k, k, shape, linear[form_.further_index() + k]);
+        for (int k = 1; k < first_further; ++k) {
+            if (places[static_cast<std::size_t>(k)] == kLoadTime) continue;
             for (const double sign : {1.0, -1.0}) {
                 ModelShape moved = shape;
-                moved.p[places[k]] += sign * kStep;
-                add_model(static_cast<int>(k), moved, linear, sign / (2 * kStep));
+                moved.p[places[static_cast<std::size_t>(k)]] += sign * kStep;
+                add_model(k, moved, linear, sign / (2 * kStep));
             }
         }
         return D_;
@@ -122,6 +129,23 @@ private:
         undelayed.p[0] = 0;
         const double when[] = {shape.load_time()};
         unit_response(record_.t, {when, kUnit}, undelayed, derivatives, load_);
+    }
+
+    void respond_to_further(int k, const ModelShape& shape, int derivatives) {
+        const FurtherSteps& input = record_.d[static_cast<std::size_t>(k)];
+        unit_response(record_.t, {input.time, input.level}, further_shape(shape, k), derivatives, further_);
+    }
+
+    /// d model/d (L, ln T) of further input `k`, into columns `place` and the next.
+    void add_further_slopes(int place, int k, const ModelShape& shape, double gain) {
+        respond_to_further(k, shape, 1);
+        D_.col(place).head(n_) -= gain * column(further_.x1);
+        for (const double sign : {1.0, -1.0}) {
+            ModelShape moved = shape;
+            moved.p[further_lag(k)] += sign * kStep;
+            respond_to_further(k, moved, 0);
+            D_.col(place + 1).head(n_) += sign * gain / (2 * kStep) * column(further_.x);
+        }
     }
 
     void fill(int k, const UnitResponse& response, bool zero) {
@@ -182,7 +206,7 @@ private:
     Eigen::VectorXd y_;
     double y_square_ = 0;
     Eigen::MatrixXd columns_, D_;
-    UnitResponse now_, level_, load_;
+    UnitResponse now_, level_, load_, further_;
 };
 
 ModelShape clamped(ModelShape shape, const ShapeBounds& bounds) {
@@ -244,6 +268,10 @@ double distance(const ModelShape& a, const ModelShape& b) {
 std::vector<int> ModelForm::searched() const {
     std::vector<int> places = shape_places(structure);
     if (load) places.push_back(kLoadTime);
+    for (int k = 0; k < further; ++k) {
+        places.push_back(further_dead_time(k));
+        places.push_back(further_lag(k));
+    }
     return places;
 }
 
@@ -254,6 +282,10 @@ ShapeBounds shape_bounds(const CleanRecord& record, Structure structure) {
     bounds.low = {0, shortest, std::log(1e-4), 0, shortest};
     bounds.high = {std::max(0.0, record.response_time()), std::log(100.0), std::log(2500.0), 1 - 3 * spacing,
                    std::log(100.0)};
+    for (int k = 0; k < kMaxFurtherInputs; ++k) {
+        bounds.low[further_lag(k)] = shortest, bounds.high[further_lag(k)] = std::log(10.0);
+        bounds.high[further_dead_time(k)] = 0.5;
+    }
     if (structure == Structure::ipdt_second) bounds.high[1] = std::log(10.0);
     if (structure == Structure::ipdt_lag) bounds.high[1] = std::log(10.0);
     if (structure == Structure::unstable) bounds.low[1] = kMinUnstable, bounds.high[1] = std::log(10.0);

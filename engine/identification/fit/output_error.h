@@ -12,27 +12,30 @@ namespace tunewright {
 
 /// What the model of a structure is made of beside its shape. The linear coefficients are, in this order: the gain,
 /// gain times b (sopdt_zero), the offset, and those of what else moved y, where it is looked for: the size of the
-/// unseen first step (times the gain, and times gain b), the slope, the load (as the unseen step).
+/// unseen first step (times the gain, and times gain b), the slope, the load (as the unseen step), and the gains of the
+/// further inputs.
 struct ModelForm {
     Structure structure = Structure::fopdt;
     bool other_level = false;  ///< at rest at an unknown level, which u left for its first value at the first sample
     bool slope = false;        ///< y drifts; integrating structures: the level of rest is unknown
     bool load = false;  ///< a lasting step of unknown size is added to u from ModelShape::load_time on, without L
+    int further = 0;    ///< inputs beside u: the first so many of CleanRecord::d
 
     int gains() const { return structure == Structure::sopdt_zero ? 2 : 1; }
     int offset_index() const { return gains(); }
     int level_index() const { return gains() + 1; }
     int slope_index() const { return level_index() + (other_level ? gains() : 0); }
     int load_index() const { return slope_index() + (slope ? 1 : 0); }
-    int linear_size() const { return load_index() + (load ? gains() : 0); }
+    int further_index() const { return load_index() + (load ? gains() : 0); }
+    int linear_size() const { return further_index() + further; }
     /// Places in ModelShape::p that are searched for.
     std::vector<int> searched() const;
-    int parameters() const { return shape_size(structure) + (load ? 1 : 0) + linear_size(); }
+    int parameters() const { return shape_size(structure) + (load ? 1 : 0) + 2 * further + linear_size(); }
 };
 
 /// Bounds of the search, dimensionless, from the record's sampling and length.
 struct ShapeBounds {
-    std::array<double, 5> low{}, high{};
+    std::array<double, 5 + 2 * kMaxFurtherInputs> low{}, high{};
 };
 /// ln of the least time constant of an unstable model: a free run over more than 20 of them leaves no digits.
 inline constexpr double kMinUnstable = -2.995732273553991;
@@ -72,6 +75,8 @@ struct Fit {
     /// Changes of (searched, linear), one standard deviation long each, that make up the covariance where another
     /// estimator than least squares knows it. Empty: J determines it.
     std::vector<std::vector<double>> deviations;
+    /// Beside them least squares' own errors count, whichever is the larger of each parameter.
+    bool as_open_as_least_squares = false;
 };
 
 /// The data of a least-squares problem. The referred record and anchors must outlive it.

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <numeric>
 
+#include "engine/identification/further_inputs/further_inputs.h"
 #include "engine/identification/record/series.h"
 #include "engine/numerics/statistics.h"
 
@@ -70,6 +71,9 @@ double least_miss(const CleanRecord& whole, const std::vector<std::size_t>& left
     const int derivatives = form.gains() - 1;
     unit_response(times, {whole.v_time, whole.v_level}, there.shape, derivatives, response);
     unit_response(times, {kAtOnce, kUnit}, there.shape, derivatives, level);
+    CleanRecord unseen{found.context.record, times, {}, {}, {}, {}, found.context.record.d};
+    std::vector<std::vector<double>> further;
+    for (int j = 0; j < form.further; ++j) further.push_back(further_part(unseen, there, j));
     double least = HUGE_VAL;
     for (std::size_t k = 0; k < times.size(); ++k) {
         double y = there.linear[static_cast<std::size_t>(form.offset_index())];
@@ -80,6 +84,7 @@ double least_miss(const CleanRecord& whole, const std::vector<std::size_t>& left
         add(0, response);
         if (form.other_level) add(form.level_index(), level);
         if (form.slope) y += there.linear[static_cast<std::size_t>(form.slope_index())] * times[k];
+        for (const std::vector<double>& part : further) y += part[k];
         least = std::min(least, std::abs(whole.y[left_out[k]] - y));
     }
     return least;
@@ -151,7 +156,7 @@ ModelSearch without_false_readings(ModelSearch search, CleanRecord& record, Mode
     const std::vector<std::size_t> doubtful = doubtful_samples(record, search.chosen());
     if (doubtful.empty()) return search;
     CleanRecord rest = without_samples(record, doubtful);
-    ModelSearch again = search_models(rest, model, search.context.relay, control);
+    ModelSearch again = search_with_further(rest, model, search.context.relay, control);
     if (again.choice.index < 0 || control.stop.stop_requested()) return search;
     const Fit& fit = again.chosen();
     const double rms = std::sqrt(fit.sse / static_cast<double>(fit.residual.size()));

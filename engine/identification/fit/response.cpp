@@ -96,6 +96,14 @@ std::vector<int> shape_places(Structure structure) {
     return {};
 }
 
+ModelShape further_shape(const ModelShape& shape, int k) {
+    ModelShape further;
+    further.structure = is_integrating(shape.structure) ? Structure::ipdt_lag : Structure::fopdt;
+    further.p[0] = shape.p[further_dead_time(k)];
+    further.p[1] = shape.p[further_lag(k)];
+    return further;
+}
+
 int shape_size(Structure structure) { return static_cast<int>(shape_places(structure).size()); }
 
 bool is_integrating(Structure structure) {

@@ -23,10 +23,11 @@ enum class Structure {
 
 /// What the response depends on nonlinearly, dimensionless: [L], then ln T, or ln a1 and ln rho with rho = a2/a1^2. Two
 /// equal lags are rho = 1/4, an oscillation is above, and rho -> 0 is one lag, so that the structures are nested
-/// smoothly. Then the time at which an unseen load reaches the plant, where one is looked for, and ln T3.
+/// smoothly. Then the time at which an unseen load reaches the plant, where one is looked for, and ln T3; then L and ln
+/// T of each further input.
 struct ModelShape {
     Structure structure = Structure::fopdt;
-    std::array<double, 5> p{};
+    std::array<double, 5 + 2 * kMaxFurtherInputs> p{};
 
     double L() const { return p[0]; }
     double load_time() const { return p[3]; }
@@ -48,6 +49,18 @@ bool has_quadratic(Structure structure);
 const char* name_of(Structure structure);
 
 inline constexpr int kLoadTime = 3, kThirdLag = 4;  ///< their places in ModelShape::p
+
+/// The places in ModelShape::p of the dead time and the lag of further input `k`, from 0.
+constexpr int further_dead_time(int k) { return kThirdLag + 1 + 2 * k; }
+constexpr int further_lag(int k) { return further_dead_time(k) + 1; }
+/// Whether a place holds a time itself, in place of a logarithm.
+constexpr bool is_time(int place) {
+    return place == 0 || place == kLoadTime || (place > kThirdLag && (place - kThirdLag) % 2 == 1);
+}
+
+/// What further input `k` does to y, of unit gain: e^(-Ls)/(T s + 1), with 1/s beside it where the structure
+/// integrates.
+ModelShape further_shape(const ModelShape& shape, int k);
 
 /// x(t_i), dx/dt and d2x/dt2 (from the right) of the unit-gain response without zero; one entry a sample time.
 struct UnitResponse {

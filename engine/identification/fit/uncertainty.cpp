@@ -7,6 +7,7 @@
 
 #include "engine/identification/fit/load_doubt.h"
 #include "engine/identification/fit/residual_noise.h"
+#include "engine/identification/further_inputs/further_inputs.h"
 #include "engine/identification/record/series.h"
 #include "engine/numerics/matrix/dense.h"
 
@@ -221,7 +222,7 @@ ScaledProblem scaled_problem(const Fit& fit, double variance) {
     for (int k = 0; k < m; ++k) {
         p.J.col(k).head(data) = Eigen::Map<const Eigen::VectorXd>(fit.J[k].data(), data);
         // What no sample shows is still no longer than the record, and no lag is thousands of times another.
-        if (k < p.shape) p.J(data + k, k) = std::sqrt(variance) / (fit.form.searched()[k] == 0 ? 1.0 : 4.0);
+        if (k < p.shape) p.J(data + k, k) = std::sqrt(variance) / (is_time(fit.form.searched()[k]) ? 1.0 : 4.0);
         p.length[k] = std::max(p.J.col(k).norm(), kNoLength);
         p.J.col(k) /= p.length[k];
     }
@@ -300,11 +301,34 @@ Plant plant_in_units(const RecordScale& scale, const Fit& fit) {
     return plant_of(fit.form, parameters_of(scale, fit.form, fit.shape, fit.linear, lags), lags);
 }
 
+namespace {
+
+/// Each parameter's error at least that of `other`, the correlations as they are.
+void widen_to(const FittedPlant& other, FittedPlant& plant) {
+    const std::size_t size = plant.covariance.names.size();
+    std::vector<double> factor(size, 1);
+    for (std::size_t i = 0; i < size; ++i) {
+        double& error = plant.standard_errors.at(plant.covariance.names[i]);
+        const double least = other.standard_errors.at(plant.covariance.names[i]);
+        if (!(least > error)) continue;
+        if (error > 0) factor[i] = least / error;
+        error = least;
+    }
+    for (std::size_t i = 0; i < size; ++i) {
+        for (std::size_t j = 0; j < size; ++j) plant.covariance.matrix[i][j] *= factor[i] * factor[j];
+        plant.covariance.matrix[i][i] = std::pow(plant.standard_errors.at(plant.covariance.names[i]), 2);
+    }
+}
+
+}  // namespace
+
 FittedPlant fitted_plant(const CleanRecord& record, const Fit& fit, double quantisation, double noise, LoadDoubt load) {
     constexpr double kLargest = 1e150;  // its square, the variance, is still finite
     const bool lags = has_two_lags(fit.shape);
     const Parameters best = parameters_of(record.scale, fit.form, fit.shape, fit.linear, lags);
-    FittedPlant result{plant_of(fit.form, best, lags), best, {}, {}};
+    const std::vector<double> further = further_parameters(record, fit.form, fit.shape, fit.linear);
+    std::vector<double> further_variances(further.size(), 0);
+    FittedPlant result{plant_of(fit.form, best, lags), best, {}, {}, {}};
     ParameterCovariance& covariance = result.covariance;
     for (const auto& [name, value] : best) covariance.names.push_back(name);
     covariance.matrix.assign(best.size(), std::vector<double>(best.size(), 0));
@@ -324,6 +348,7 @@ FittedPlant fitted_plant(const CleanRecord& record, const Fit& fit, double quant
         const double reach = deviations.row(axis).head(size).cwiseAbs().maxCoeff();
         const double part = reach > 1 ? 1 / reach : 1;
         Parameters side[2];
+        std::vector<double> further_side[2];
         for (int k = 0; k < 2; ++k) {
             const double sign = k == 0 ? part : -part;
             ModelShape shape = fit.shape;
@@ -333,6 +358,11 @@ FittedPlant fitted_plant(const CleanRecord& record, const Fit& fit, double quant
                 linear[i] += sign * deviations(axis, size + static_cast<int>(i));
             if (linear[0] == 0) linear = fit.linear;
             side[k] = parameters_of(record.scale, fit.form, shape, linear, lags);
+            further_side[k] = further_parameters(record, fit.form, shape, linear);
+        }
+        for (std::size_t i = 0; i < further.size(); ++i) {
+            const double half = 0.5 * (further_side[0][i] - further_side[1][i]) / part;
+            further_variances[i] += std::pow(std::clamp(half, -kLargest, kLargest), 2);
         }
         std::vector<double> half;
         for (const auto& [name, value] : side[0])
@@ -345,6 +375,12 @@ FittedPlant fitted_plant(const CleanRecord& record, const Fit& fit, double quant
     covariance.matrix[gain][gain] += std::pow(kLinearity * best.at("K"), 2);
     for (std::size_t i = 0; i < best.size(); ++i)
         result.standard_errors[covariance.names[i]] = std::sqrt(covariance.matrix[i][i]);
+    result.disturbances = disturbances_of(record, fit, further, further_variances);
+    if (!fit.deviations.empty() && fit.as_open_as_least_squares) {
+        Fit by_least_squares = fit;
+        by_least_squares.deviations.clear();
+        widen_to(fitted_plant(record, by_least_squares, quantisation, noise, load), result);
+    }
     return result;
 }
 

@@ -18,6 +18,7 @@ struct FittedPlant {
     std::map<std::string, double> values;           ///< K, L and T, or T1, T2, or T, zeta, or a1, a2, b
     std::map<std::string, double> standard_errors;  ///< of the same; all finite and >= 0
     ParameterCovariance covariance;
+    std::vector<DisturbanceModel> disturbances;
 };
 
 /// The plant alone.

@@ -23,6 +23,17 @@ std::optional<Error> check_columns(const Record& r) {
                      "t, u and y have " + std::to_string(r.t.size()) + ", " + std::to_string(r.u.size()) + " and " +
                          std::to_string(r.y.size()) + " values; give columns of equal length."};
     }
+    if (r.d.size() > static_cast<std::size_t>(kMaxFurtherInputs)) {
+        return Error{ErrorKind::invalid_argument, "record/d",
+                     "d has " + std::to_string(r.d.size()) + " further inputs; at most " +
+                         std::to_string(kMaxFurtherInputs) + " are identified together. Leave some out."};
+    }
+    for (const FurtherInput& input : r.d) {
+        if (input.values.size() == r.t.size()) continue;
+        return Error{ErrorKind::invalid_argument, "record/d",
+                     "The further input \"" + input.name + "\" has " + std::to_string(input.values.size()) +
+                         " values and t " + std::to_string(r.t.size()) + "; give columns of equal length."};
+    }
     if (r.u0 && !std::isfinite(*r.u0))
         return Error{ErrorKind::invalid_argument, "record/u0", "u0 must be a finite number."};
     if (r.y0 && !std::isfinite(*r.y0))
@@ -91,9 +102,37 @@ void scale_rows(const RecordRows& rows, CleanRecord& clean) {
     }
 }
 
+/// Empty where the input never moves.
+std::optional<FurtherSteps> further_steps(const std::vector<double>& t, const FurtherInput& input,
+                                          const RecordScale& s) {
+    std::vector<std::pair<double, double>> known;
+    for (std::size_t i = 0; i < t.size(); ++i) {
+        if (std::isfinite(t[i]) && std::isfinite(input.values[i])) known.emplace_back(t[i], input.values[i]);
+    }
+    if (known.empty()) return std::nullopt;
+    std::stable_sort(known.begin(), known.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    const double rest = known.front().second;
+    FurtherSteps steps{input.name, {}, {}, 0};
+    for (const auto& [time, value] : known) steps.scale = std::max(steps.scale, std::abs(value - rest));
+    if (!(steps.scale > 0) || !std::isfinite(steps.scale)) return std::nullopt;
+    double now = 0;
+    for (const auto& [time, value] : known) {
+        const double at = std::max(0.0, (time - s.t_origin) / s.t_scale), level = (value - rest) / steps.scale;
+        if (level == now) continue;
+        now = level;
+        if (!steps.time.empty() && !(at > steps.time.back())) {
+            steps.level.back() = level;
+            continue;
+        }
+        steps.time.push_back(at);
+        steps.level.push_back(level);
+    }
+    return steps;
+}
+
 /// A record of the same input and facts, without samples: of a long one those are nearly all of it.
 CleanRecord without_all_samples(const CleanRecord& record) {
-    return {record, {}, {}, {}, record.v_time, record.v_level, record.v_open};
+    return {record, {}, {}, {}, record.v_time, record.v_level, record.v_open, record.d};
 }
 
 /// The mean of v over `blocks` blocks of equal length.
@@ -160,6 +199,9 @@ Expected<CleanRecord> clean_record(const Record& record) {
     }
     clean.kind = record.kind;
     clean.u0_given = record.u0.has_value();
+    for (const FurtherInput& input : record.d) {
+        if (auto steps = further_steps(record.t, input, s)) clean.d.push_back(std::move(*steps));
+    }
     if (record.y0) clean.y_rest = (*record.y0 - s.y_origin) / s.y_scale;
     return clean;
 }
@@ -242,7 +284,7 @@ CleanRecord every_few(const CleanRecord& record, int most) {
 }
 
 CleanRecord first_part(const CleanRecord& record, double fraction) {
-    CleanRecord part{record, {}, {}, {}, {}, {}, {}};
+    CleanRecord part{record, {}, {}, {}, {}, {}, {}, record.d};
     part.scale.t_scale *= fraction;
     const auto take = [&](const std::vector<double>& times, const std::vector<double>& values, auto& to, auto& of) {
         const auto kept = std::upper_bound(times.begin(), times.end(), fraction) - times.begin();
@@ -252,6 +294,8 @@ CleanRecord first_part(const CleanRecord& record, double fraction) {
     };
     take(record.t, record.y, part.t, part.y);
     take(record.v_time, record.v_level, part.v_time, part.v_level);
+    for (std::size_t k = 0; k < record.d.size(); ++k)
+        take(record.d[k].time, record.d[k].level, part.d[k].time, part.d[k].level);
     return part;
 }
 

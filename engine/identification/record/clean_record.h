@@ -44,6 +44,7 @@ std::string row_text(const Cleaning& cleaning, int row);
 struct RecordFacts {
     std::optional<double> y_rest;             ///< y0 where the user gave it
     bool u0_given = false;                    ///< then the level of rest is known, also for integrating plants
+    bool moved_at_first_row = false;          ///< a controller was switched on there: the first u is no level of rest
     RecordKind kind = RecordKind::automatic;  ///< as given
     RecordScale scale;
     Cleaning cleaning;
@@ -60,6 +61,14 @@ struct RecordFacts {
     double moved_within = 0;
 };
 
+/// A further measured input as changes, dimensionless: at rest at 0, level[j] from time[j] on; |level| <= 1. Times
+/// ascend strictly from 0.
+struct FurtherSteps {
+    std::string name;
+    std::vector<double> time, level;
+    double scale = 1;  ///< of a level, in the input's unit
+};
+
 /// Dimensionless samples and input. The input v is 0 before the first sample and v_level[j] from v_time[j] on; v_time
 /// ascends strictly, from 0. Sample times ascend from 0, equal times may repeat (each row's y is data). |v| <= 1, y
 /// spans 1, the record lasts 1.
@@ -70,6 +79,7 @@ struct CleanRecord : RecordFacts {
     /// Of each change of u, the length of time within which it was estimated (fit/move_times.h); 0: its time is known.
     /// Empty: all are known.
     std::vector<double> v_open = {};
+    std::vector<FurtherSteps> d = {};  ///< those that move
 
     int samples() const { return static_cast<int>(t.size()); }
     int changes() const { return static_cast<int>(v_time.size()); }

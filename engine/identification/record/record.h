@@ -12,6 +12,15 @@ namespace tunewright {
 /// fewer than 20 changes of u that are no relay's.
 enum class RecordKind { automatic, step, several_steps, relay, general };
 
+/// Another measured input beside u that moves y: another heater, a measured disturbance. values[i] holds from t[i]
+/// until t[i+1], as u does (NaN: as before); as many as t has.
+struct FurtherInput {
+    std::string name;
+    std::vector<double> values;
+};
+
+inline constexpr int kMaxFurtherInputs = 4;
+
 /// Samples in time order as exported (NaN where a number is missing); u[i] holds from t[i] until t[i+1] (zero-order
 /// hold). t, u and y have equal lengths; r and line are empty or as long.
 struct Record {
@@ -24,6 +33,8 @@ struct Record {
 
     /// low < high: the actuator goes no further, whatever u says.
     std::optional<std::array<double, 2>> u_limits = {};
+
+    std::vector<FurtherInput> d = {};  ///< at most kMaxFurtherInputs
 
     std::vector<int> line = {};  ///< of each sample in the file that it comes from, for sentences; empty: no file
 

@@ -201,6 +201,7 @@ bool moves_at_first(std::span<const double> t, std::span<const double> values) {
 }
 
 RecordStart start_of(const CleanRecord& r, bool relay, double noise) {
+    if (r.moved_at_first_row) return RecordStart::moving;
     if (r.u0_given) return RecordStart::at_rest;
     const auto n = static_cast<std::size_t>(std::lower_bound(r.t.begin(), r.t.end(), r.v_time.front()) - r.t.begin());
     if (n < kRestRows || r.t[n - 1] <= r.t[0]) return r.changes() == 1 ? RecordStart::at_rest : RecordStart::unseen;

@@ -44,7 +44,7 @@ enum class RecordStart {
     at_rest,  ///< y rests there, u0 is given, or u moves only once and nothing else is seen
     unseen,   ///< too few rows to tell in a record in which u moves more than once, or a relay at work from the first
               ///< row
-    moving,   ///< y moves there
+    moving,   ///< y moves there, or a controller was switched on with the first row
 };
 
 /// So many rows tell a slope from its error.

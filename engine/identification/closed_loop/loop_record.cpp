@@ -1,0 +1,145 @@
+#include "engine/identification/closed_loop/loop_record.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "engine/identification/closed_loop/controller_law.h"
+#include "engine/identification/closed_loop/feedback.h"
+#include "engine/identification/closed_loop/loop_parts.h"
+#include "engine/identification/closed_loop/outside_excitation.h"
+#include "engine/identification/record/record_kind.h"
+#include "engine/number_text.h"
+
+namespace tunewright {
+namespace {
+
+constexpr int kMaxSeen = 20'000;                ///< rows
+constexpr double kFollows = 0.05, kPlain = 10;  ///< share of u's variance; F ratio
+
+std::string by_news(const Feedback& feedback, const RecordScale& scale) {
+    return "y, " + std::string(feedback.at_once ? "of the same and earlier rows" : "of earlier rows") +
+           ", predicts the moves of u within " + text(feedback.by_y * scale.u_scale, 3) +
+           " where u's own past leaves " + text(feedback.by_u * scale.u_scale, 3) + ".";
+}
+
+/// Steps of a set point at the samples: changes below 2 % of its range are none, and a ramp is one.
+int moves_of(const std::vector<double>& r) {
+    constexpr double kJitter = 0.02;
+    const auto [low, high] = std::ranges::minmax(r);
+    int moves = 0;
+    double last = 0;
+    for (std::size_t i = 1; i < r.size(); ++i) {
+        const double change = r[i] - r[i - 1];
+        const bool moved = std::abs(change) > kJitter * (high - low);
+        if (moved && change * last <= 0) ++moves;
+        last = moved ? change : 0;
+    }
+    return moves;
+}
+
+/// A law that leaves far less of u than u leaves of y.
+struct PlainLaw {
+    double gain = 0;
+    std::string evidence;
+};
+
+std::optional<PlainLaw> plain_law(const CleanRecord& record, const SetPoint& set_point,
+                                  const std::optional<double>& left_by_model) {
+    constexpr double kOfFreePlant = 0.25, kOfModel = 0.5;
+    const std::vector<double> u = input_at_samples(record);
+    const std::optional<ControllerLaw> law = controller_law(record, u, set_point.at_samples);
+    // u over y alone is also how a plant that is quick beside its input looks.
+    if (!law || law->integral == 0) return std::nullopt;
+    const double left_of_y = left_by_model ? *left_by_model : left_by_free_plant(record, u);
+    if (!(law->left < (left_by_model ? kOfModel : kOfFreePlant) * left_of_y)) return std::nullopt;
+    return PlainLaw{law->gain, "the law of a controller, from y and its integral, leaves " + text(100 * law->left, 2) +
+                                   " % of u's variance, where u leaves " + text(100 * left_of_y, 2) + " % of y's."};
+}
+
+std::string by_set_point(const SetPointPart& part) {
+    return "u follows the set point: its moves explain " + text(100 * part.share, 3) + " % of u's variance.";
+}
+
+/// Kicks that were seen in the record's beginning, `length` of it.
+std::vector<OutsideMove> of_whole_record(std::vector<OutsideMove> kicks, double length) {
+    for (OutsideMove& kick : kicks) kick.time *= length;
+    return kicks;
+}
+
+/// Of what may have moved u, the first that explains u plainly; else the one that explains most.
+void choose_excitation(const CleanRecord& record, const SetPoint& set_point, const std::vector<OutsideMove>& kicks,
+                       bool u0_given, LoopRecord& loop) {
+    const std::vector<double> u = input_at_samples(record);
+    double strongest = 0;
+    for (const OutsideExcitation& outside : outside_excitations(record, set_point, kicks)) {
+        std::optional<SetPointPart> part = set_point_part(u, outside.w, outside.before);
+        if (!part || (loop.part && part->strength <= strongest)) continue;
+        strongest = part->strength;
+        loop.found.used = outside.kind;
+        loop.found.share = part->share;
+        loop.moved_at_first_row = outside.at_first_row;
+        loop.part = std::move(part);
+        loop.u_rest.reset();
+        if (!u0_given) loop.u_rest = level_before_set_point(record, outside.w);
+        if (loop.part->share > kFollows && loop.part->strength > kPlain) return;
+    }
+}
+
+double u_span(const CleanRecord& r) {
+    const auto [low, high] = std::ranges::minmax(r.v_level);
+    return (std::max(high, 0.0) - std::min(low, 0.0)) * r.scale.u_scale;
+}
+
+}  // namespace
+
+CleanRecord looked_at_for_feedback(const CleanRecord& record) {
+    return record.samples() <= kMaxSeen ? record : first_part(record, record.t[static_cast<std::size_t>(kMaxSeen - 1)]);
+}
+
+Expected<std::optional<LoopRecord>> find_loop(const CleanRecord& full, const Record& as_given,
+                                              std::optional<double> left_by_model) {
+    if (!as_given.r.empty() && as_given.r.size() != as_given.t.size()) {
+        return Error{ErrorKind::invalid_argument, "record/r",
+                     "r has " + std::to_string(as_given.r.size()) + " values and t " +
+                         std::to_string(as_given.t.size()) + "; give columns of equal length."};
+    }
+    const RecordKind kind = full.kind == RecordKind::automatic ? found_kind(full) : full.kind;
+    if (kind == RecordKind::relay) return std::optional<LoopRecord>{};
+    const CleanRecord seen = looked_at_for_feedback(full), record = condensed(full, kMaxLoopSamples);
+    const std::optional<Feedback> feedback = find_feedback(seen);
+    const SetPoint set_point = set_point_of(record, as_given);
+    LoopRecord loop;
+    if (!set_point.at_samples.empty()) loop.found.set_point_moves = moves_of(set_point.at_samples);
+    std::vector<OutsideMove> kicks;
+    if (feedback) kicks = of_whole_record(feedback->outside, seen.scale.t_scale / full.scale.t_scale);
+    choose_excitation(record, set_point, kicks, full.u0_given, loop);
+    const bool follows = set_point.moves && loop.found.used == LoopExcitation::set_point && loop.part &&
+                         loop.part->share > kFollows && loop.part->strength > kPlain;
+    if (feedback) {
+        loop.found.evidence = by_news(*feedback, record.scale);
+        loop.gain = feedback->gain;
+    } else if (follows) {
+        loop.found.evidence = by_set_point(*loop.part);
+    } else if (may_be_controlled(seen)) {
+        const std::optional<PlainLaw> law = plain_law(record, set_point, left_by_model);
+        if (!law) return std::optional<LoopRecord>{};
+        loop.found.evidence = law->evidence;
+        loop.gain = law->gain;
+    } else {
+        return std::optional<LoopRecord>{};
+    }
+    return std::optional<LoopRecord>(std::move(loop));
+}
+
+Error no_plant_in_loop(const CleanRecord& r, const LoopRecord& loop, const std::string& why) {
+    const double y_span = r.scale.y_scale;
+    const std::string cure = "Put the controller in manual and step u by up to " + text(u_span(r), 2) +
+                             " (what u moves here), or step the set point up and down by up to " + text(y_span, 2) +
+                             " (what y moves here) and record it as column r.";
+    return {ErrorKind::not_identifiable, "record",
+            "The record is of a closed loop (" + loop.found.evidence.substr(0, loop.found.evidence.size() - 1) + "), " +
+                why + ": the plant cannot be distinguished from the controller. " + cure};
+}
+
+}  // namespace tunewright

@@ -1,0 +1,140 @@
+#include "engine/identification/closed_loop/outside_excitation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <span>
+
+#include "engine/identification/closed_loop/loop_parts.h"
+#include "engine/identification/record/series.h"
+#include "engine/numerics/statistics.h"
+
+namespace tunewright {
+namespace {
+
+/// Whether r is y, as many controllers write it in manual: of this row or the one before, and rounded, in some rows.
+bool tracks(std::span<const double> r, std::span<const double> y) {
+    constexpr double kSame = 1e-3, kFine = 0.1;       // of y's range; more is a level of r, not a figure's rounding
+    constexpr double kMostMoves = 0.8, kOften = 0.1;  // of the moves of r; of the rows: a set point moves in fewer
+    const double grid = quantisation_step(r), same = kSame + (grid < kFine ? 0.5 * grid : 0);
+    int moves = 0, tracking = 0;
+    for (std::size_t i = 1; i < r.size(); ++i) {
+        if (r[i] == r[i - 1]) continue;
+        ++moves;
+        tracking += std::min(std::abs(r[i] - y[i]), std::abs(r[i] - y[i - 1])) < same ? 1 : 0;
+    }
+    return moves > kOften * static_cast<double>(r.size()) && tracking > kMostMoves * moves;
+}
+
+/// Whether u is a straight line over r, of the same row or the one before, but for rounding.
+bool commands(std::span<const double> r, std::span<const double> u) {
+    constexpr double kSame = 1e-3;  // of u's deviation
+    const double spread = deviation(u), grid = quantisation_step(u);
+    if (!(spread > 0) || !(deviation(r) > 0)) return false;
+    const double most = std::max(kSame * spread, grid < spread ? grid : 0.0);
+    for (const std::size_t late : {0U, 1U}) {
+        const auto from = r.first(r.size() - late), to = u.last(u.size() - late);
+        const std::vector<double> left = residuals(straight_line(from, to), from, to);
+        if (std::ranges::all_of(left, [&](double e) { return std::abs(e) <= most; })) return true;
+    }
+    return false;
+}
+
+std::vector<double> column_at_samples(const CleanRecord& clean, const Record& record) {
+    std::vector<std::pair<double, double>> known;
+    for (std::size_t i = 0; i < record.r.size(); ++i) {
+        if (std::isfinite(record.t[i]) && std::isfinite(record.r[i])) known.emplace_back(record.t[i], record.r[i]);
+    }
+    if (known.empty()) return {};
+    std::stable_sort(known.begin(), known.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    const RecordScale& s = clean.scale;
+    constexpr double kRounding = 1e-9;  // of the record's length
+    std::vector<double> r;
+    std::size_t next = 0;
+    double now = known.front().second;
+    for (int i = 0; i < clean.samples(); ++i) {
+        const double t = s.t_origin + s.t_scale * (clean.t[i] + kRounding);
+        for (; next < known.size() && known[next].first <= t; ++next) now = known[next].second;
+        r.push_back((now - s.y_origin) / s.y_scale);
+    }
+    return r;
+}
+
+/// A set point that is known only by its moves.
+std::vector<double> steps_at_samples(const std::vector<OutsideMove>& moves, const CleanRecord& record) {
+    std::vector<double> w(static_cast<std::size_t>(record.samples()), 0.0);
+    for (const OutsideMove& move : moves) {
+        const auto from = std::lower_bound(record.t.begin(), record.t.end(), move.time) - record.t.begin();
+        for (auto i = static_cast<std::size_t>(from); i < w.size(); ++i) w[i] += move.size;
+    }
+    return w;
+}
+
+/// From where y rests before, so far as a unit step where no set point is known.
+std::vector<double> stepped_from(double y_before, const std::vector<double>& r, std::size_t from, std::size_t rows) {
+    std::vector<double> w(rows, y_before);
+    for (std::size_t i = from; i < rows; ++i) w[i] = r.empty() ? y_before + 1 : r[i];
+    return w;
+}
+
+/// Where y is at rest with the first rows and goes far from there: the mean of its first rows.
+std::optional<double> rest_at_first_row(const CleanRecord& record, const std::vector<double>& r) {
+    constexpr double kFar = 0.5, kAway = 0.02;  // of y's range
+    constexpr double kNoise = 3;                // deviations that noise may take y the other way
+    constexpr std::size_t kFew = 3;             // rows that may all lie within the dead time
+    const std::span<const double> y(record.y);
+    if (y.size() < static_cast<std::size_t>(10 * kRestRows)) return std::nullopt;
+    // A u that stands still in the first rows shows them at rest: nobody has moved it yet.
+    const std::vector<double> u = input_at_samples(record);
+    if (std::all_of(u.begin(), u.begin() + kRestRows, [&](double value) { return value == u.front(); }))
+        return std::nullopt;
+    const double first = mean(y.first(kFew)), end = r.empty() ? mean(y.last(y.size() / 5)) : r.front();
+    if (std::abs(end - first) < kFar) return std::nullopt;
+    const double sign = end > first ? 1 : -1, most = kAway + kNoise * noise_std(y) + quantisation_step(y);
+    const auto back = [&](double value) { return sign * (value - y.front()) < -most; };
+    return std::ranges::any_of(y, back) ? std::nullopt : std::optional(first);
+}
+
+}  // namespace
+
+SetPoint set_point_of(const CleanRecord& record, const Record& as_given) {
+    SetPoint out;
+    out.at_samples = column_at_samples(record, as_given);
+    if (out.at_samples.empty()) return out;
+    const std::span<const double> r(out.at_samples), y(record.y);
+    out.is_input = commands(r, input_at_samples(record));
+    const std::optional<SwitchOn> on = switched_on(record, out.at_samples);
+    const std::size_t from = on ? static_cast<std::size_t>(on->row) : 0;
+    if (out.is_input || tracks(r.subspan(from), y.subspan(from))) out.at_samples.clear();
+    for (std::size_t i = from + 1; i < out.at_samples.size() && !out.moves; ++i)
+        out.moves = out.at_samples[i] != out.at_samples[i - 1];
+    return out;
+}
+
+bool set_point_is_input(const CleanRecord& record, const Record& as_given) {
+    const std::vector<double> r = column_at_samples(record, as_given);
+    return !r.empty() && commands(r, input_at_samples(record));
+}
+
+std::vector<OutsideExcitation> outside_excitations(const CleanRecord& record, const SetPoint& set_point,
+                                                   const std::vector<OutsideMove>& kicks) {
+    const std::vector<double>& r = set_point.at_samples;
+    const auto rows = static_cast<std::size_t>(record.samples());
+    const std::optional<SwitchOn> on = switched_on(record, r);
+    std::vector<OutsideExcitation> found;
+    if (on) {
+        const LoopExcitation kind = set_point.moves ? LoopExcitation::set_point : LoopExcitation::switched_on;
+        found.push_back(
+            {kind, stepped_from(on->y_before, r, static_cast<std::size_t>(on->row), rows), on->y_before, false});
+    } else if (set_point.moves) {
+        found.push_back({LoopExcitation::set_point, r, r.front(), false});
+    }
+    if (r.empty() || !set_point.moves) {
+        if (!kicks.empty()) found.push_back({LoopExcitation::outside_moves, steps_at_samples(kicks, record), 0, false});
+        if (!on && rest_at_first_row(record, r))
+            found.push_back({LoopExcitation::switched_on, std::vector<double>(rows, 1.0), 0, true});
+    }
+    return found;
+}
+
+}  // namespace tunewright

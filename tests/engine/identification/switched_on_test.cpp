@@ -1,0 +1,89 @@
+// A controller that is switched on moves u from outside the loop, once: the plant is known from it within its errors.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+
+#include "engine/identification/identify.h"
+#include "engine/plant/linear/linear_plant.h"
+#include "tests/records/switched_on_records.h"
+
+namespace tunewright {
+namespace {
+
+using testing::ColdStart;
+using testing::LoopPlant;
+using testing::random_cold_start;
+
+std::complex<double> true_response(const LoopPlant& p, double w) {
+    const std::complex<double> s(0, w);
+    return p.K * std::exp(-p.L * s) / ((1.0 + p.T1 * s) * (1.0 + p.T2 * s));
+}
+
+/// Of the response where the plant lags by about 60 degrees, relative.
+double miss(const Plant& plant, const LoopPlant& truth) {
+    const double w = 1 / (0.3 * truth.T1 + truth.T2 + truth.L);
+    const auto found = LinearPlant::make(plant)->at({0, w}), right = true_response(truth, w);
+    return std::abs(found - right) / std::abs(right);
+}
+
+/// K and L within three standard errors, and a tenth of the response besides.
+void expect_right(const Record& record, const LoopPlant& truth, const char* which) {
+    const auto model = identify(record, {}, {});
+    ASSERT_TRUE(model) << which << ": " << model.error().message;
+    ASSERT_TRUE(model->data_quality.closed_loop) << which;
+    EXPECT_EQ(model->data_quality.closed_loop->used, LoopExcitation::switched_on) << which;
+    EXPECT_LT(miss(model->plant, truth), 0.1) << which;
+    const double K = std::abs(LinearPlant::make(model->plant)->at({0, 1e-4 / truth.T1}));
+    EXPECT_NEAR(K, std::abs(truth.K), 3 * model->standard_errors.at("K") + 0.01 * std::abs(truth.K)) << which;
+}
+
+TEST(SwitchedOn, AnOvensLogTellsThePlant) {
+    ColdStart oven;
+    oven.y_grid = 0.25;
+    oven.u_grid = 1;
+    expect_right(oven.record(), oven.plant, "with its set point");
+    oven.with_r = false;
+    expect_right(oven.record(), oven.plant, "without");
+}
+
+TEST(SwitchedOn, ACoolersLogTellsANegativeGain) {
+    ColdStart cooler;
+    cooler.plant.K = -0.5, cooler.Kp = -4, cooler.y0 = 25, cooler.r = 5;
+    expect_right(cooler.record(), cooler.plant, "cooler");
+}
+
+TEST(SwitchedOn, FromTheFirstRowOnTheLevelOfRestIsEstimated) {
+    ColdStart oven;
+    oven.on_row = 0;
+    oven.Td = 10;
+    const auto model = identify(oven.record(), {}, {});
+    ASSERT_TRUE(model) << model.error().message;
+    EXPECT_LT(miss(model->plant, oven.plant), 0.1);
+}
+
+/// Right: K within a tenth or three of its errors, and the response within 15 %.
+TEST(SwitchedOn, MadeColdStartsAreRightWithinTheirErrors) {
+    int right = 0, answers = 0;
+    std::string wrong;
+    constexpr unsigned kSeeds = 40;
+    for (unsigned seed = 1; seed <= kSeeds; ++seed) {
+        const ColdStart cold = random_cold_start(seed);
+        const auto model = identify(cold.record(), {}, {});
+        if (!model) continue;
+        ++answers;
+        const double K = std::abs(LinearPlant::make(model->plant)->at({0, 1e-4 / cold.plant.T1}));
+        const double off = std::abs(K - std::abs(cold.plant.K));
+        const bool gain = off < 0.1 * std::abs(cold.plant.K) || off < 3 * model->standard_errors.at("K");
+        if (gain && miss(model->plant, cold.plant) < 0.15)
+            ++right;
+        else
+            wrong += " " + std::to_string(seed);
+    }
+    EXPECT_GE(answers, 0.9 * kSeeds);
+    EXPECT_GE(right, 0.93 * answers) << "wrong:" << wrong;
+}
+
+}  // namespace
+}  // namespace tunewright

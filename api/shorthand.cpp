@@ -33,17 +33,13 @@ std::vector<std::string> words_of(std::string_view text) {
 
 /// What says how a CSV file is read, and stands beside anything else.
 std::optional<Problem> without_csv(const CsvRequest& question) {
-    const std::pair<const char*, bool> given[] = {{"--t", !question.t.empty()},
-                                                  {"--u", !question.u.empty()},
-                                                  {"--y", !question.y.empty()},
-                                                  {"--r", !question.r.empty()},
-                                                  {"--dt", !question.dt.empty()},
-                                                  {"--kind", !question.kind.empty()},
-                                                  {"--u0", !question.u0.empty()},
-                                                  {"--y0", !question.y0.empty()},
-                                                  {"--run", !question.run.empty()},
-                                                  {"--u-step", !question.u_step.empty()},
-                                                  {"--u-limits", !question.u_limits.empty()}};
+    const std::pair<const char*, bool> given[] = {
+        {"--t", !question.t.empty()},           {"--u", !question.u.empty()},
+        {"--y", !question.y.empty()},           {"--r", !question.r.empty()},
+        {"--d", !question.d.empty()},           {"--dt", !question.dt.empty()},
+        {"--kind", !question.kind.empty()},     {"--u0", !question.u0.empty()},
+        {"--y0", !question.y0.empty()},         {"--run", !question.run.empty()},
+        {"--u-step", !question.u_step.empty()}, {"--u-limits", !question.u_limits.empty()}};
     for (const auto& [name, is] : given)
         if (is)
             return unclear(std::string(name) +
@@ -101,12 +97,16 @@ void put_methods(const TuneWords& words, Json& request) {
 
 Json record_of(const CsvRequest& question, std::string csv) {
     Json columns = Json::object();
+    const auto column_of = [](const std::string& choice) {
+        const bool number = choice.size() <= 3 && choice.find_first_not_of("0123456789") == std::string::npos;
+        return number ? Json(std::stoi(choice)) : Json(choice);
+    };
     for (const auto& [name, choice] :
          {std::pair{"t", &question.t}, {"u", &question.u}, {"y", &question.y}, {"r", &question.r}}) {
         if (choice->empty()) continue;
-        const bool number = choice->size() <= 3 && choice->find_first_not_of("0123456789") == std::string::npos;
-        columns[name] = number ? Json(std::stoi(*choice)) : Json(*choice);
+        columns[name] = column_of(*choice);
     }
+    for (const std::string& choice : question.d) columns["d"].push_back(column_of(choice));
     Json record{{"csv", std::move(csv)}};
     if (!columns.empty()) record["columns"] = std::move(columns);
     if (!question.kind.empty()) record["kind"] = question.kind;

@@ -16,6 +16,7 @@ namespace tunewright::api {
 struct CsvRequest {
     std::string t, u, y, r;  ///< headings, or numbers from 1
     std::string dt, time_unit, kind, model;
+    std::vector<std::string> d;         ///< headings or numbers of measured disturbances
     std::vector<std::string> u_limits;  ///< low and high; empty: not given
     std::vector<std::string> u_step;    ///< from and to; empty: not given
     std::string u0, y0, run;

@@ -77,7 +77,11 @@ const Description<ColumnChoices>& columns_contract() {
         d.field("t", &ColumnChoices::t, maybe(column_choice()), "Time.")
             .field("u", &ColumnChoices::u, maybe(column_choice()), "Controller output.")
             .field("y", &ColumnChoices::y, maybe(column_choice()), "Measurement.")
-            .field("r", &ColumnChoices::r, maybe(column_choice()), "Set point, where the record has one.");
+            .field("r", &ColumnChoices::r, maybe(column_choice()), "Set point, where the record has one.")
+            .field("d", &ColumnChoices::d,
+                   unless<std::vector<ColumnChoice>>(list_of(column_choice(), 1, kMaxFurtherInputs),
+                                                     [](const auto& columns) { return columns.empty(); }),
+                   "Measured disturbances: further inputs that move y, such as another heater.");
         return d;
     }();
     return description;
@@ -115,7 +119,8 @@ void check_record(const Json&, GivenRecord& record, Reader& reader) {
         for (const auto& [name, given] : {std::pair{"t", record.t.has_value()},
                                           {"u", record.u.has_value()},
                                           {"y", record.y.has_value()},
-                                          {"r", record.r.has_value()}}) {
+                                          {"r", record.r.has_value()},
+                                          {"d", record.d.has_value()}}) {
             if (given) reader.fault_at(name, std::string(name) + " is given beside csv; give one of them.");
         }
         return;
@@ -145,6 +150,10 @@ void check_record(const Json&, GivenRecord& record, Reader& reader) {
     if (record.u) length("u", *record.u);
     if (record.t) length("t", *record.t);
     if (record.r) length("r", *record.r);
+    for (std::size_t i = 0; record.d && i < record.d->size(); ++i) {
+        const Reader::At d(reader, "d"), at(reader, i);
+        length("values", (*record.d)[i].values);
+    }
 }
 
 std::vector<double> times(double dt, std::size_t count) {
@@ -185,6 +194,7 @@ void choose_part(const GivenRecord& given, ReadRecord& read, Reader& reader) {
     keep(rows, record.u);
     keep(rows, record.y);
     keep(rows, record.r);
+    for (FurtherInput& input : record.d) keep(rows, input.values);
     keep(rows, record.line);
     read.notes.push_back("Of " + std::to_string(all) + " samples, the " + std::to_string(rows.size()) + " from " +
                          tunewright::text(record.t.front()) + " to " + tunewright::text(record.t.back()) +
@@ -207,6 +217,18 @@ const Description<Units>& units_contract() {
     return description;
 }
 
+static const Description<FurtherInput>& further_input_contract() {
+    static const auto description = [] {
+        Description<FurtherInput> d("MeasuredDisturbance", "A further measured input that moves y beside u.");
+        d.field("name", &FurtherInput::name, text(kMaxHeadingLength), "What it is called in the answer.",
+                {.required = true})
+            .field("values", &FurtherInput::values, numbers(2, kMaxSamples), "A number for each sample, held as u is.",
+                   {.required = true});
+        return d;
+    }();
+    return description;
+}
+
 const Description<GivenRecord>& record_contract() {
     static const auto description = [] {
         Description<GivenRecord> d("Record",
@@ -223,6 +245,9 @@ const Description<GivenRecord>& record_contract() {
             .field("u", &GivenRecord::u, column(), "Controller output.", {.unit = "u"})
             .field("y", &GivenRecord::y, column(), "Measurement.", {.unit = "y"})
             .field("r", &GivenRecord::r, column(), "Set point, where the record has one.", {.unit = "y"})
+            .field("d", &GivenRecord::d, maybe(list_of(object(further_input_contract()), 1, kMaxFurtherInputs)),
+                   "Measured disturbances: further inputs that move y, such as another heater. They are identified "
+                   "together with u.")
             .field("csv", &GivenRecord::csv, maybe(text(kMaxCsvLength)),
                    "CSV text instead of the arrays: separated by , ; tab | or blanks, decimal point or comma, times as "
                    "numbers "
@@ -298,6 +323,7 @@ ReadRecord resolve(GivenRecord given, const Units& units, Reader& reader) {
         out.record.u = std::move(*given.u);
         out.record.y = std::move(*given.y);
         if (given.r) out.record.r = std::move(*given.r);
+        if (given.d) out.record.d = std::move(*given.d);
         choose_part(given, out, reader);
         return out;
     }
@@ -329,6 +355,7 @@ ReadRecord resolve(GivenRecord given, const Units& units, Reader& reader) {
     out.record.u = std::move(record.u);
     out.record.y = std::move(record.y);
     out.record.r = std::move(record.r);
+    out.record.d = std::move(record.d);
     out.record.line = std::move(record.lines);
     out.record.u_full_scale = record.u_full_scale;
     out.dropped = record.dropped;

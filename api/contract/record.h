@@ -26,6 +26,7 @@ inline verdict::Labels labels_of(const std::optional<Units>& units) {
 /// A record as sent.
 struct GivenRecord {
     std::optional<std::vector<double>> t, u, y, r;
+    std::optional<std::vector<FurtherInput>> d;
     std::optional<double> dt;
     std::optional<std::string> csv;
     std::optional<ColumnChoices> columns;

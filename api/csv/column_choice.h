@@ -13,6 +13,7 @@ using ColumnChoice = std::variant<std::string, int>;
 
 struct ColumnChoices {
     std::optional<ColumnChoice> t, u, y, r = {};
+    std::vector<ColumnChoice> d = {};  ///< measured disturbances, at most kMaxFurtherInputs
 };
 
 /// Those that are chosen by their headings.
@@ -20,6 +21,8 @@ inline std::vector<std::string> chosen_names(const ColumnChoices& chosen) {
     std::vector<std::string> names;
     for (const auto* choice : {&chosen.t, &chosen.u, &chosen.y, &chosen.r})
         if (*choice && std::holds_alternative<std::string>(**choice)) names.push_back(std::get<std::string>(**choice));
+    for (const ColumnChoice& choice : chosen.d)
+        if (std::holds_alternative<std::string>(choice)) names.push_back(std::get<std::string>(choice));
     return names;
 }
 

@@ -162,10 +162,12 @@ private:
             record_.u[kept] = u;
             record_.y[kept] = record_.y[i];
             if (!record_.r.empty()) record_.r[kept] = record_.r[i];
+            for (FurtherInput& input : record_.d) input.values[kept] = input.values[i];
             record_.lines[kept++] = record_.lines[i];
         }
         for (auto* column : {&record_.t, &record_.u, &record_.y}) column->resize(kept);
         if (!record_.r.empty()) record_.r.resize(kept);
+        for (FurtherInput& input : record_.d) input.values.resize(kept);
         record_.lines.resize(kept);
     }
 
@@ -186,6 +188,7 @@ private:
         const std::size_t most = std::min(options_.most_samples, text_.size() / typical + 1);
         for (auto* column : {&record_.t, &record_.u, &record_.y}) column->reserve(most);
         if (columns_.at[kReferenceRole]) record_.r.reserve(most);
+        for (const std::size_t column : columns_.d) record_.d.push_back({heading_of(column, "d"), {}});
         record_.lines.reserve(most);
     }
 
@@ -221,7 +224,7 @@ private:
         double u = 0, y = 0, r = std::numeric_limits<double>::quiet_NaN();
         if (options_.u_step) u = (*options_.u_step)[1];
         if ((columns_.at[kInputRole] && !read_value(line, kInputRole, u)) || !read_value(line, kOutputRole, y)) return;
-        if (columns_.at[kReferenceRole]) r = read_reference(line);
+        if (columns_.at[kReferenceRole]) r = read_optional(line, *columns_.at[kReferenceRole]);
         if (std::isnan(y) && (std::isnan(u) || options_.u_step)) {
             if (layout_.pivoted) return;
             ++record_.dropped;
@@ -232,6 +235,8 @@ private:
         record_.u.push_back(u);
         record_.y.push_back(y);
         if (columns_.at[kReferenceRole]) record_.r.push_back(r);
+        for (std::size_t k = 0; k < columns_.d.size(); ++k)
+            record_.d[k].values.push_back(read_optional(line, columns_.d[k]));
         record_.lines.push_back(line.number);
     }
 
@@ -260,9 +265,8 @@ private:
         return true;
     }
 
-    // Whatever stands for "none" in a set point: nothing depends on it.
-    double read_reference(const CsvLine& line) const {
-        const std::size_t column = *columns_.at[kReferenceRole];
+    // Whatever stands for "none" in a set point or a disturbance: the value before holds.
+    double read_optional(const CsvLine& line, std::size_t column) const {
         double value = 0;
         const bool number = read_cell_number(cell(line, column), value, layout_.sign, profiles_[column].suffix);
         return number && std::abs(value) <= kLargest ? value : std::numeric_limits<double>::quiet_NaN();
@@ -278,11 +282,14 @@ private:
         return true;
     }
 
+    std::string heading_of(std::size_t column, const std::string& without) const {
+        return column < layout_.headings.size() && !layout_.headings[column].empty() ? layout_.headings[column]
+                                                                                     : without;
+    }
+
     std::string column_name(Role role) const {
-        const std::size_t column = *columns_.at[role];
-        return column < layout_.headings.size() && !layout_.headings[column].empty()
-                   ? in_quotes(layout_.headings[column])
-                   : role_name(role);
+        const std::string heading = heading_of(*columns_.at[role], "");
+        return heading.empty() ? role_name(role) : in_quotes(heading);
     }
 
     void report_cell(const CsvLine& line, Role role, std::string_view text, bool stamps) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "api/csv/column_choice.h"
+#include "engine/identification/record/record.h"
 
 namespace tunewright::api {
 
@@ -42,6 +43,7 @@ struct CsvRun {
 struct CsvRecord {
     std::vector<double> t, u, y;         ///< u and y are NaN where a cell is blank, "Bad", ...; never both
     std::vector<double> r;               ///< set point, a number in each sample; empty: the file has none
+    std::vector<FurtherInput> d;         ///< measured disturbances; NaN where a cell holds no number
     std::vector<int> lines;              ///< of each sample in the file, from 1
     int dropped = 0;                     ///< lines left out: unreadable, without a time, or with neither u nor y
     std::string unread;                  ///< a sentence about the lines that could not be read; "" if there are none

@@ -22,6 +22,11 @@ void add_record_options(CLI::App& app, api::CsvRequest& question) {
     app.add_option("--y", question.y, "CSV: heading or number of the measurement")->type_name("COLUMN");
     app.add_option("--r", question.r, "CSV: heading or number of the set point, where there is one")
         ->type_name("COLUMN");
+    app.add_option("--d", question.d, "CSV: heading or number of a measured disturbance; may be repeated")
+        ->type_name("COLUMN")
+        ->take_all()
+        ->expected(1)
+        ->allow_extra_args(false);
     app.add_option("--dt", question.dt, "CSV without times: their spacing")->type_name("TIME");
     app.add_option("--kind", question.kind, "CSV: auto, step, relay or general")->type_name("WORD");
     app.add_option("--model", question.model, "CSV: auto, fopdt, sopdt, sopdt_zero, ipdt or ipdt_lag")

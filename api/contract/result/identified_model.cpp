@@ -239,6 +239,20 @@ void check_region(const IdentifiedModel& model, Reader& reader) {
                         "answer had it, or leave it out.");
 }
 
+const Description<DisturbanceModel>& disturbance_contract() {
+    static const auto description = [] {
+        Description<DisturbanceModel> d("Disturbance", "What a measured disturbance does to y.");
+        d.field("name", &DisturbanceModel::name, words(), "Its heading, or the name that was given.")
+            .field("plant", &DisturbanceModel::plant, only_answered(one_of(plant_contract())),
+                   "A gain, a lag and a dead time of its own; with an integrator where the plant of u has one.")
+            .field("standard_errors", &DisturbanceModel::standard_errors, standard_errors(), "Of K, T and L.")
+            .field("share", &DisturbanceModel::share, size(),
+                   "Of the variances of what u and the disturbances do to y, 0 to 1.");
+        return d;
+    }();
+    return description;
+}
+
 }  // namespace
 
 const Description<IdentifiedModel>& model_contract() {
@@ -267,6 +281,10 @@ const Description<IdentifiedModel>& model_contract() {
                    "Best fits of other structures that the record does not distinguish from the model: the 95 % "
                    "confidence region has them too.",
                    {.required = true})
+            .field("disturbances", &M::disturbances,
+                   unless<std::vector<DisturbanceModel>>(list_of(answer(disturbance_contract())),
+                                                         [](const auto& models) { return models.empty(); }),
+                   "Models of the measured disturbances that matter (record.d), identified together with the plant.")
             .field("limit_cycle", &M::limit_cycle, maybe(object(limit_cycle_contract())), "Of a relay test.")
             .field("frequency_points", &M::frequency_points,
                    unless<std::vector<FrequencyPoint>>(list_of(answer(frequency_point_contract())),

@@ -22,6 +22,7 @@ public:
         for (const Role role : kRoles) {
             if (*choices[role]) found_.at[role] = chosen_column(facts_, role, **choices[role], faults_);
         }
+        found_.d = chosen_disturbances(facts_, options_.columns.d, found_.at, faults_);
         if (!faults_.empty()) return found_;
         chosen_ = found_.at;
         find_terms();
@@ -54,7 +55,8 @@ private:
     }
 
     bool taken(std::size_t column) const {
-        return found_.clock == column || std::find(found_.at.begin(), found_.at.end(), column) != found_.at.end();
+        return found_.clock == column || std::ranges::find(found_.d, column) != found_.d.end() ||
+               std::find(found_.at.begin(), found_.at.end(), column) != found_.at.end();
     }
 
     bool is_term(std::size_t column) const { return std::find(terms_.begin(), terms_.end(), column) != terms_.end(); }

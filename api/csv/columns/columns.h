@@ -33,6 +33,7 @@ struct FoundColumns {
     std::optional<std::size_t> clock;    ///< a second column of times of day, where at[kTimeRole] holds dates alone
     std::optional<std::size_t> spacing;  ///< instead of times: a column that holds the samples' spacing
     std::optional<FileSpacing> head_spacing;  ///< where neither: what stands above the data
+    std::vector<std::size_t> d;               ///< measured disturbances, as chosen
     std::vector<std::string> notes;
 };
 

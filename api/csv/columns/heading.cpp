@@ -70,13 +70,13 @@ std::optional<NameMatch> reference_match(const Heading& heading) {
 }  // namespace
 
 std::string role_name(Role role) {
-    constexpr std::array<const char*, kRoleCount> kNames = {"t", "u", "y", "r"};
+    constexpr std::array<const char*, kRoleCount + 1> kNames = {"t", "u", "y", "r", "d"};
     return kNames.at(role);
 }
 
 std::string role_meaning(Role role) {
-    constexpr std::array<const char*, kRoleCount> kMeanings = {"time", "the controller output", "the measurement",
-                                                               "the set point"};
+    constexpr std::array<const char*, kRoleCount + 1> kMeanings = {"time", "the controller output", "the measurement",
+                                                                   "the set point", "a measured disturbance"};
     return kMeanings.at(role);
 }
 

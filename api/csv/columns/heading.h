@@ -11,9 +11,11 @@ namespace tunewright::api {
 
 /// The columns of a record. The values are the indices of arrays that hold something for each role.
 enum Role : std::size_t { kTimeRole, kInputRole, kOutputRole, kReferenceRole, kRoleCount };
+/// Of any number of columns, none of which is found by itself.
+inline constexpr Role kDisturbanceRole = kRoleCount;
 constexpr std::array<Role, kRoleCount> kRoles = {kTimeRole, kInputRole, kOutputRole, kReferenceRole};
 
-std::string role_name(Role role);     ///< "t", "u", "y" or "r"
+std::string role_name(Role role);     ///< "t", "u", "y", "r" or "d"
 std::string role_meaning(Role role);  ///< "time", "the controller output", "the measurement" or "the set point"
 
 struct Heading {

@@ -56,6 +56,24 @@ std::optional<std::size_t> chosen_column(const ColumnFacts& facts, Role role, co
     return loosely(facts, role, text, faults);
 }
 
+std::vector<std::size_t> chosen_disturbances(const ColumnFacts& facts, const std::vector<ColumnChoice>& choices,
+                                             const std::array<std::optional<std::size_t>, kRoleCount>& at,
+                                             std::vector<CsvFault>& faults) {
+    std::vector<std::size_t> found;
+    for (const ColumnChoice& choice : choices) {
+        const auto column = chosen_column(facts, kDisturbanceRole, choice, faults);
+        if (!column) continue;
+        for (const Role role : kRoles) {
+            if (at[role] == column) faults.push_back(equal_columns(kDisturbanceRole, role));
+        }
+        if (std::find(found.begin(), found.end(), *column) != found.end())
+            faults.push_back(column_fault(kDisturbanceRole,
+                                          "d names column " + facts.shown(*column) + " twice; name each column once."));
+        found.push_back(*column);
+    }
+    return found;
+}
+
 NameFits fits_by_name(const ColumnFacts& facts, Role role, const std::function<bool(std::size_t)>& free) {
     std::optional<NameMatch> best;
     NameFits fits;

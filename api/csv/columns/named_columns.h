@@ -2,6 +2,7 @@
 // move, and whose names go together, narrows the latter down.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <optional>
@@ -19,6 +20,11 @@ namespace tunewright::api {
 /// and a fault is added that says so.
 std::optional<std::size_t> chosen_column(const ColumnFacts& facts, Role role, const ColumnChoice& choice,
                                          std::vector<CsvFault>& faults);
+
+/// The same for the measured disturbances. One that has a role in `at` already, or is named twice, is a fault.
+std::vector<std::size_t> chosen_disturbances(const ColumnFacts& facts, const std::vector<ColumnChoice>& choices,
+                                             const std::array<std::optional<std::size_t>, kRoleCount>& at,
+                                             std::vector<CsvFault>& faults);
 
 struct NameFits {
     std::vector<std::size_t> best;    ///< columns that name the role most plainly, all equally so

@@ -22,9 +22,11 @@ export interface RecordedTest {
   y?: number[];
   /** Set point, where the record has one. */
   r?: number[];
+  /** Measured disturbances. */
+  d?: { name: string; values: number[] }[];
   csv?: string;
   /** Headings, or numbers from 1. */
-  columns?: { t?: string | number; u?: string | number; y?: string | number; r?: string | number };
+  columns?: { t?: string | number; u?: string | number; y?: string | number; r?: string | number; d?: (string | number)[] };
   /** Of the times in the csv, where it does not say or says it wrongly. */
   time_unit?: string;
   kind?: string;

@@ -21,13 +21,14 @@ export interface RecordFields {
   askUnit(): void;
 }
 
-type ColumnName = "t" | "u" | "y" | "r";
+type ColumnName = "t" | "u" | "y" | "r" | "d";
 
 const COLUMN_LABELS: Record<ColumnName, string> = {
   t: "Time",
   u: "Controller output (u)",
   y: "Measurement (y)",
   r: "Set point",
+  d: "Measured disturbance",
 };
 
 const TIME_UNITS = [
@@ -80,7 +81,9 @@ const METHODS = [
 ] as const;
 
 const FOUND = "found by itself";
-const COLUMN_NAMES = ["t", "u", "y", "r"] as const;
+const COLUMN_NAMES = ["t", "u", "y", "r", "d"] as const;
+/** What an unchosen column stands for where nothing was found. */
+const UNCHOSEN: Partial<Record<ColumnName, string>> = { r: "none, or found by itself", d: "none" };
 
 const known = (choices: readonly (readonly [string, string])[], value: unknown): string =>
   typeof value === "string" && choices.some(([id]) => id === value) ? value : "auto";
@@ -89,7 +92,7 @@ const known = (choices: readonly (readonly [string, string])[], value: unknown):
 export function recordFields(errors: FormErrors, all: boolean): RecordFields {
   const column = (name: ColumnName): Field<HTMLSelectElement> =>
     choiceField(
-      { label: COLUMN_LABELS[name], choices: [["", FOUND]], pointer: () => `/record/columns/${name}` },
+      { label: COLUMN_LABELS[name], choices: [["", UNCHOSEN[name] ?? FOUND]], pointer: () => `/record/columns/${name}` },
       errors,
     );
   const optional = (label: string, hint: string, pointer: string): Field<HTMLInputElement> =>
@@ -99,6 +102,7 @@ export function recordFields(errors: FormErrors, all: boolean): RecordFields {
     u: column("u"),
     y: column("y"),
     r: column("r"),
+    d: column("d"),
   };
   const timeUnit = choiceField(
     { label: "Times are in", choices: TIME_UNITS, pointer: () => "/record/time_unit" },
@@ -123,6 +127,11 @@ export function recordFields(errors: FormErrors, all: boolean): RecordFields {
     : { dt };
   // Parts of a loaded request that have no field here: sent back as they came.
   let rest: { record: Partial<RecordedTest>; identify: Identify } = { record: {}, identify: {} };
+  let moreDisturbances: (string | number)[] = [];
+
+  /** A record may have several disturbances: the field is the first, those of a loaded request follow it. */
+  const asChosen = (name: string, value: string | number): string | number | (string | number)[] =>
+    name === "d" ? [value, ...moreDisturbances] : value;
 
   return {
     elements: [
@@ -151,7 +160,7 @@ export function recordFields(errors: FormErrors, all: boolean): RecordFields {
       const identify: Identify = { ...rest.identify, model: model.input.value };
       const faults: FieldError[] = [];
       const named = Object.entries(columns).flatMap(([name, field]) =>
-        field.input.value ? [[name, columnOf(field.input.value)] as const] : [],
+        field.input.value ? [[name, asChosen(name, columnOf(field.input.value))] as const] : [],
       );
       if (named.length > 0) record.columns = Object.fromEntries(named);
       if (run.input.value) record.run = Number(run.input.value);
@@ -175,7 +184,8 @@ export function recordFields(errors: FormErrors, all: boolean): RecordFields {
       return { record, identify, errors: faults };
     },
     load(record, identify = {}) {
-      for (const name of COLUMN_NAMES) choose(columns[name].input, String(record.columns?.[name] ?? ""));
+      for (const name of COLUMN_NAMES) choose(columns[name].input, String([record.columns?.[name] ?? ""].flat()[0]));
+      moreDisturbances = record.columns?.d?.slice(1) ?? [];
       choose(timeUnit.input, record.time_unit ?? "");
       choose(run.input, record.run === undefined ? "" : String(record.run));
       run.element.hidden = record.run === undefined;
@@ -212,7 +222,7 @@ export function recordFields(errors: FormErrors, all: boolean): RecordFields {
         const { input } = columns[name];
         const now = input.value;
         const at = preview.columns.findIndex((found) => found.guess === name);
-        const found = now === "" && at >= 0 ? `${FOUND}: ${choices[at]![1]}` : name === "r" ? "none, or found by itself" : FOUND;
+        const found = now === "" && at >= 0 ? `${FOUND}: ${choices[at]![1]}` : (UNCHOSEN[name] ?? FOUND);
         input.replaceChildren(
           h("option", { value: "" }, found),
           ...choices.map(([value, text]) => h("option", { value }, text)),

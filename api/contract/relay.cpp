@@ -8,6 +8,21 @@
 
 namespace tunewright::api {
 
+const Description<UltimateTest>& ultimate_contract() {
+    static const auto description = [] {
+        using U = UltimateTest;
+        Description<U> d("UltimateTest", "What an experiment with a proportional controller shows, and nothing else.");
+        d.field("Ku", &U::Ku, number({.not_zero = true}),
+                "Gain at which the loop oscillates; negative for a plant of negative gain.",
+                {.required = true, .unit = "u/y"})
+            .field("Pu", &U::Pu, number({.exclusive_minimum = 0}), "Period of that oscillation.",
+                   {.required = true, .unit = "time"})
+            .field("K", &U::K, maybe(number({.not_zero = true})), "Static gain, where it is known.", {.unit = "y/u"});
+        return d;
+    }();
+    return description;
+}
+
 const Description<UltimatePoint>& ultimate_point_contract() {
     static const auto description = [] {
         Description<UltimatePoint> d("UltimatePoint", "A gain, and the period at which the loop oscillates with it.");

@@ -6,12 +6,15 @@
 
 #include "api/contract/record.h"
 #include "api/describe/description.h"
+#include "engine/request/tune.h"
 #include "engine/simulation/relay/limit_cycle.h"
 #include "engine/simulation/relay/relay.h"
 
 namespace tunewright::api {
 
 const Description<UltimatePoint>& ultimate_point_contract();
+/// In place of a plant or a record: Ku != 0 [u/y], Pu > 0 [time], and the static gain K != 0 [y/u] where it is known.
+const Description<UltimateTest>& ultimate_contract();
 const Description<LimitCycle>& limit_cycle_contract();
 const Description<FrequencyPoint>& frequency_point_contract();
 

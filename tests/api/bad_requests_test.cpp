@@ -59,7 +59,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadRequest{"MemberTwice", R"({"timeout_s": 1, "timeout_s": 2})", 422, "/timeout_s", "given twice"},
         BadRequest{"TooDeep", std::string(40, '[') + std::string(40, ']'), 422, nullptr, "nested more than 32"},
         BadRequest{"AnArray", "[1, 2]", 422, "", "the request is an array; it must be an object"},
-        BadRequest{"NothingInIt", "{}", 422, "", "plant or record is missing"}),
+        BadRequest{"NothingInIt", "{}", 422, "", "plant, record or ultimate is missing"}),
     case_name);
 
 INSTANTIATE_TEST_SUITE_P(

@@ -71,7 +71,7 @@ double least_miss(const CleanRecord& whole, const std::vector<std::size_t>& left
     const int derivatives = form.gains() - 1;
     unit_response(times, {whole.v_time, whole.v_level}, there.shape, derivatives, response);
     unit_response(times, {kAtOnce, kUnit}, there.shape, derivatives, level);
-    CleanRecord unseen{found.context.record, times, {}, {}, {}, {}, found.context.record.d};
+    CleanRecord unseen{found.context.record, times, {}, {}, {}, {}, {}, found.context.record.d};
     std::vector<std::vector<double>> further;
     for (int j = 0; j < form.further; ++j) further.push_back(further_part(unseen, there, j));
     double least = HUGE_VAL;

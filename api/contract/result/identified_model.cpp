@@ -187,11 +187,15 @@ void check_matrix(const ParameterCovariance& covariance, Reader& reader) {
 const Description<ParameterCovariance>& covariance_contract() {
     static const auto description = [] {
         Description<ParameterCovariance> d("Covariance", "How the errors of the model's parameters belong together.");
-        constexpr std::size_t kMaxName = 10, kMaxParameters = 8;
+        constexpr std::size_t kMaxName = 10, kMaxParameters = 8, kMaxEnds = 1000;
         d.field("names", &ParameterCovariance::names, list_of(text(kMaxName), 1, kMaxParameters),
                 "Order of rows and columns.", {.required = true})
             .field("matrix", &ParameterCovariance::matrix, list_of(numbers(1, kMaxParameters), 1, kMaxParameters),
                    "Symmetric.", {.required = true})
+            .field("reach", &ParameterCovariance::reach,
+                   unless<std::vector<double>>(numbers(1, kMaxEnds), [](const auto& reach) { return reach.empty(); }),
+                   "How far the 95 % ellipsoid reaches in each direction before the record excludes its plants, 0 to 1 "
+                   "of it; left out where all of it is possible.")
             .check(
                 [](const Json&, ParameterCovariance& covariance, Reader& reader) { check_matrix(covariance, reader); });
         return d;
@@ -230,13 +234,18 @@ const Description<FitTrace>& fit_contract() {
 void check_region(const IdentifiedModel& model, Reader& reader) {
     if (const auto plant = LinearPlant::make(model.plant); !plant)
         return reader.fault_below(plant.error().where, 0, plant.error().message);
-    const auto& [names, matrix] = model.covariance;
+    const auto& [names, matrix, reach] = model.covariance;
     if (names.empty()) return;
     const auto region = PlantRegion::of_covariance(model.plant, names, matrix);
     if (!region)
-        reader.fault_at("covariance",
-                        "covariance is no covariance of the plant's parameters. Send it as the "
-                        "answer had it, or leave it out.");
+        return reader.fault_at("covariance",
+                               "covariance is not a covariance of the plant's parameters. Send it as the answer had "
+                               "it, or leave it out.");
+    const bool shares = std::ranges::all_of(reach, [](double share) { return share >= 0 && share <= 1; });
+    if (!reach.empty() && (reach.size() != region->ends().size() || !shares))
+        reader.fault_at("covariance", "covariance has a reach that does not fit it: it takes " +
+                                          std::to_string(region->ends().size()) +
+                                          " numbers from 0 to 1. Send it as the answer had it, or leave it out.");
 }
 
 const Description<DisturbanceModel>& disturbance_contract() {

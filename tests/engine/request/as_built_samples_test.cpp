@@ -14,8 +14,7 @@ namespace {
 
 using namespace test;
 
-constexpr double kWorse = 1.01;  // than what trying finds
-constexpr int kNet = 7, kRounds = 4, kPlants = 60;
+constexpr int kPlants = 60;
 
 struct Task {
     Case plant;

@@ -9,9 +9,6 @@ namespace {
 
 using namespace test;
 
-constexpr double kWorse = 1.01;  // than what trying finds
-constexpr int kNet = 7, kRounds = 4;
-
 BruteForce brute_force(const std::string& product, const Case& c, const built::Fitted& fitted, double Ms, double Mt) {
     const double Ts = fitted.law.Ts;
     const Typed typed = typed_of(fitted, c, Ts);

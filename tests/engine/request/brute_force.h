@@ -8,6 +8,9 @@
 
 namespace tunewright::test {
 
+inline constexpr double kWorse = 1.01;       // than what trying finds
+inline constexpr int kNet = 7, kRounds = 4;  // of the net that is tried, and how often it is made finer
+
 /// One plant behind its hold, at frequencies from far below its corners to half the sampling frequency.
 class Judge {
 public:

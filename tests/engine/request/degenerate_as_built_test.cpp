@@ -20,7 +20,7 @@ bool warns(const TuningEntry& entry) {
 // said.
 TEST(DegenerateAsBuilt, EveryTypedDesignWithoutAProportionalPartSaysSo) {
     int degenerate = 0, ordinary = 0;
-    for (const std::string& product : {"marlin", "esphome_pid", "simple_pid", "klipper"})
+    for (const std::string product : {"marlin", "esphome_pid", "simple_pid", "klipper"})
         for (const auto& [zeta, L, M] :
              {std::tuple{0.1, 20.0, 1.4}, {0.05, 10.0, 2.0}, {0.4, 3.0, 1.4}, {1.2, 6.0, 1.4}}) {
             const Case c{product, OscillatorySopdt{.K = 1, .T = 10, .zeta = zeta, .L = L}, 10, {0, 100, 0, 1}};

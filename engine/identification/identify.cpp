@@ -296,7 +296,8 @@ std::optional<IdentifiedModel> by_manual_rows(const Record& record, const Looked
     if (options.method == IdentifyMethod::relay_fourier || options.method == IdentifyMethod::two_point)
         return std::nullopt;
     const std::optional<Stretch> manual = manual_stretch(looked.clean);
-    if (!manual || (!looked.loop && !feedback_outside(record, *manual))) return std::nullopt;
+    if (!manual || (!looked.loop && (manual->one_step_to_end || !feedback_outside(record, *manual))))
+        return std::nullopt;
     Expected<IdentifiedModel> model = identify(rows_of(record, *manual), options, control);
     if (!model) return std::nullopt;
     model->data_quality.notes.push_back("Only the rows from t = " + text(manual->from) + " to " + text(manual->to) +

@@ -128,7 +128,10 @@ std::optional<Stretch> manual_stretch(const CleanRecord& r) {
     }
     if (!longest) return std::nullopt;
     const auto time = [&](int row) { return r.scale.t_origin + r.scale.t_scale * r.t[static_cast<std::size_t>(row)]; };
-    return Stretch{time(longest->from), time(longest->to - 1), longest->from == 0};
+    const auto [low, high] = std::ranges::minmax(r.v_level);
+    const double level = r.v_level[static_cast<std::size_t>(std::max(0, longest->last - 1))];
+    const bool one_step_to_end = longest->last - longest->first == 1 && (level == low || level == high);
+    return Stretch{time(longest->from), time(longest->to - 1), longest->from == 0, one_step_to_end};
 }
 
 Record rows_of(const Record& record, const Stretch& stretch) {

@@ -29,7 +29,8 @@ std::optional<SwitchOn> switched_on(const CleanRecord& record, const std::vector
 /// First and last time, in the record's units.
 struct Stretch {
     double from = 0, to = 0;
-    bool whole_start = false;  ///< it begins with the record
+    bool whole_start = false;      ///< it begins with the record
+    bool one_step_to_end = false;  ///< u steps once, to an end of its range: a controller may have been switched on
 };
 
 /// Of the rows in manual, where somebody stepped u or left it alone, the longest stretch: changes of u are ten rows

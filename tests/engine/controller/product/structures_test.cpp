@@ -83,7 +83,9 @@ TEST(ChosenStructure, WithFreeWeightsHasTheDesignsOwn) {
             const auto converted = to_settings(product, design, kContext, false);
             ASSERT_TRUE(converted) << product.id << ": " << converted.error().message;
             EXPECT_EQ(converted->realised.b, design.b) << product.id;
-            if (design.Td > 0) EXPECT_EQ(converted->realised.c, design.c) << product.id;
+            if (design.Td > 0) {
+                EXPECT_EQ(converted->realised.c, design.c) << product.id;
+            }
         }
     }
     EXPECT_GE(products, 3);

@@ -124,7 +124,8 @@ TEST(Design, OfARecordIsEvaluatedOnItsModelWithTheRegion) {
                       {}))["controllers"][0];
     for (const char* member : {"controller", "robustness", "performance", "region", "warnings"})
         EXPECT_EQ(evaluated[member], baseline[member]) << member;
-    EXPECT_EQ(evaluated["verdict"][0], baseline["verdict"][0]);
+    for (const char* member : {"code", "level"})  // the sentence names today's settings
+        EXPECT_EQ(evaluated["verdict"][0][member], baseline["verdict"][0][member]) << member;
 }
 
 TEST(Design, IsAboutOneThing) {

@@ -207,9 +207,8 @@ void try_move_times(ModelSearch& search, ModelChoice model, const RunControl& co
 /// A relay recorded in few rows a half period: each of its switches lies within the row that shows it. Kept where that
 /// leaves two thirds of the sum of squares or less.
 void try_switches_between_rows(ModelSearch& search, ModelChoice model, const RunControl& control) {
-    constexpr double kMuchLess = 1.5, kWorthLooking = 95;  // per cent: few rows hide a pattern
-    constexpr int kFewRows = 40, kRounds = 4;              // rows for each change of u
-    constexpr double kMostWork = 60'000;                   // changes times rows: each is tried at some places
+    constexpr double kMuchLess = 1.5, kWorthLooking = 95, kMostWork = 60'000;  // times; per cent; changes times rows
+    constexpr int kFewRows = 40, kRounds = 4;                                  // rows for each change of u
     if (search.percents[static_cast<std::size_t>(search.choice.index)] > kWorthLooking) return;
     const CleanRecord& record = search.context.record;
     const double rows = record.samples(), changes = record.changes();
@@ -227,8 +226,8 @@ void try_switches_between_rows(ModelSearch& search, ModelChoice model, const Run
     if (!usable(other)) return;
     other = fitted(with_switches_placed(record, other.chosen(), control.stop), model);
     // Each place is a parameter more.
-    const auto left = [&] { return other.chosen().sse / std::max(1 - changes / rows, 0.1); };
-    if (!usable(other) || kMuchLess * left() > search.chosen().sse) return;
+    const double freedom = std::max(1 - changes / rows, 0.1);
+    if (!usable(other) || kMuchLess * other.chosen().sse > search.chosen().sse * freedom) return;
     search = std::move(other);
 }
 
@@ -285,6 +284,16 @@ void try_drift(ModelSearch& search, ModelChoice model, const RunControl& control
     ModelSearch other = fit_all(search.context, model, {true, false}, control);
     if (!usable(other) || is_integrating(other.chosen().form.structure)) return;
     search = std::move(other);
+}
+
+/// Moves of u within their rows: each time estimated with the model, or a relay's switches put where they explain y
+/// best, whichever leaves less. From few rows a half period the joint estimate may end in another valley.
+void try_moves(ModelSearch& search, ModelChoice model, bool relay, const RunControl& control) {
+    ModelSearch placed = search;
+    try_move_times(search, model, control);
+    if (!relay || control.stop.stop_requested()) return;
+    try_switches_between_rows(placed, model, control);
+    if (search.context.record.v_open.empty() || placed.chosen().sse < search.chosen().sse) search = std::move(placed);
 }
 
 void try_disturbances(ModelSearch& search, ModelChoice model, const RunControl& control) {
@@ -353,8 +362,8 @@ double unexplained_share(const FitContext& context, const Fit& fit) {
 }
 
 ModelSearch search_models(const CleanRecord& record, ModelChoice model, bool relay, const RunControl& control) {
-    const std::optional<CleanRecord> unseen = with_unseen_moves(record);
-    ModelSearch search = fit_all(fit_context(unseen.value_or(record), relay, control), model, {}, control);
+    ModelSearch search =
+        fit_all(fit_context(with_unseen_moves(record).value_or(record), relay, control), model, {}, control);
     auto unexplained = [&] {
         return usable(search) && !control.stop.stop_requested() && leaves_a_pattern(search.context, search.chosen());
     };
@@ -363,9 +372,7 @@ ModelSearch search_models(const CleanRecord& record, ModelChoice model, bool rel
     if (search.part < 1) return search;
     if (unexplained()) try_between_rows(search, model, control);
     if (usable(search) && !control.stop.stop_requested()) try_gap_moves(search, model, control);
-    if (usable(search) && !control.stop.stop_requested()) try_move_times(search, model, control);
-    if (relay && usable(search) && search.context.record.v_open.empty() && !control.stop.stop_requested())
-        try_switches_between_rows(search, model, control);
+    if (usable(search) && !control.stop.stop_requested()) try_moves(search, model, relay, control);
     if (unexplained()) try_disturbances(search, model, control);
     if (usable(search) && !control.stop.stop_requested() && !search.disturbances.slope) {
         try_drift_for_slow_part(search, model, control);

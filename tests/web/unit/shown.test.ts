@@ -1,0 +1,89 @@
+import assert from "node:assert/strict";
+import test from "node:test";
+import { designBody } from "../../../web/src/api/live.ts";
+import type { Entry, Result, TuneEntry, TuningRequest } from "../../../web/src/api/types.ts";
+import { proposedEntry } from "../../../web/src/charts/drawn.ts";
+import { rowsOf, tuneEntryOf, withTune } from "../../../web/src/form/tuning_request.ts";
+import { designShown, questionOf } from "../../../web/src/live/shown.ts";
+import { keptOtherwise } from "../../../web/src/words/kept.ts";
+
+const controller = { form: "ideal", Kp: 2, Ti: 10, Td: 2 };
+const entry = (method: string, more: Partial<Entry> = {}): Entry => ({ method, controller, ...more });
+const region = entry("robust", { over_region: true, title: "Robust optimum (region)" });
+const alone = entry("robust", { title: "Robust optimum (model alone)" });
+const tune: TuneEntry[] = [{ method: "simc" }, { method: "robust", Ms: 1.5 }, { method: "robust", Ms: 1.7 }];
+const request: TuningRequest = { record: { csv: "t,u,y" }, tune, timeout_s: 9, identify: { model: "fopdt" } };
+const today = entry("baseline");
+const result: Result = {
+  controllers: [entry("simc"), region, alone, entry("robust"), today],
+  verdict: [{ code: "take", level: "good", text: "", figures: { entry: 3 } }],
+  ranking: [3, 1, 2, 0],
+  request_hash: "abc",
+};
+
+test("both entries of a row that holds on the region belong to that row", () => {
+  assert.deepEqual(rowsOf(request, result), [0, 1, 1, 2, -1]);
+  for (const index of [1, 2]) assert.deepEqual(tuneEntryOf(request, result, index), tune[1]);
+  assert.equal(tuneEntryOf(request, result, 4), null);
+  assert.deepEqual(withTune(request, result, 2, { method: "robust", Ms: 2 }).tune, [tune[0], { method: "robust", Ms: 2 }, tune[2]]);
+  const all = { ...request, tune: "all" };
+  assert.equal((withTune(all, result, 3, { method: "robust" }).tune as TuneEntry[]).length, 3, "the pair is one row");
+});
+
+test("a job that was stopped early has entries of the rows that it came to", () => {
+  const partial = { ...result, controllers: [region, alone, today] };
+  assert.deepEqual(rowsOf(request, partial), [1, 1, -1]);
+});
+
+test("a record's model is sent in its place, where the answer tells all of its region", () => {
+  const model = { plant: { type: "fopdt", K: 2 }, fit_percent: 97, alternatives: [], candidates: [] };
+  assert.deepEqual(designBody(request, { ...result, model }), {
+    tune,
+    model: { plant: model.plant, fit_percent: 97, alternatives: [] },
+  });
+  const { alternatives: _of, ...older } = model;
+  assert.deepEqual(designBody(request, { ...result, model: older }), { record: request.record, identify: request.identify, tune });
+});
+
+test("a frame asks for the turned row alone, and the hand's letting go for the whole request", () => {
+  const from = { request, result, index: 2 };
+  const turned = { method: "robust", Ms: 1.6 };
+  assert.deepEqual(questionOf(from, turned, true)["tune"], [turned]);
+  assert.deepEqual(questionOf(from, turned, false)["tune"], [tune[0], turned, tune[2]]);
+});
+
+test("an answer of the row alone stands among the others, whose common verdict waits", () => {
+  const from = { request, result, index: 2 };
+  const answer = { controllers: [{ ...region, title: "new" }, { ...alone, title: "new" }, { ...today, title: "new" }] };
+  const shown = designShown(from, { method: "robust", Ms: 1.6 }, answer, true);
+  assert.deepEqual(shown.result.controllers.map(({ title }) => title === "new"), [false, true, true, false, true]);
+  assert.deepEqual([shown.index, shown.origin, shown.whole], [2, [0, 1, 2, 3, 4], false]);
+  const { verdict, ranking, request_hash } = shown.result;
+  assert.deepEqual([verdict, ranking, request_hash], [undefined, undefined, undefined]);
+});
+
+test("one entry in the place of two, and two in the place of one, are found again", () => {
+  const one = designShown({ request, result, index: 1 }, { method: "robust", Ms: 1.1 }, { controllers: [alone, today] }, true);
+  assert.deepEqual([one.index, one.origin], [1, [0, 1, 3, 4]]);
+  const two = designShown({ request, result, index: 3 }, { method: "robust", Ms: 2 }, { controllers: [region, alone, today] }, true);
+  assert.deepEqual([two.index, two.origin], [4, [0, 1, 2, 3, 3, 4]]);
+  const whole = { controllers: [entry("simc"), alone, entry("robust"), today], verdict: [], ranking: [1] };
+  const letGo = designShown({ request, result, index: 1 }, { method: "robust", Ms: 1.1 }, whole, false);
+  assert.deepEqual([letGo.index, letGo.origin, letGo.whole, letGo.result.ranking], [1, [0, 1, 3, 4], true, [1]]);
+});
+
+test("the entry to take is shown first; where none is told, the first with a controller", () => {
+  assert.equal(proposedEntry(result), 3);
+  const { verdict: _told, ...silent } = result;
+  const failed: Entry = { method: "robust", error: { title: "no" } };
+  assert.equal(proposedEntry({ ...silent, controllers: [failed, today] }), 1);
+  assert.equal(proposedEntry({ ...result, controllers: [entry("simc"), alone, alone, failed] }), 0);
+});
+
+test("what is kept otherwise than it was shown is named", () => {
+  const job = (Kp: number, partial = false) =>
+    ({ id: "j", status: "succeeded" as const, result: { controllers: [{ method: "robust", controller: { ...controller, Kp } }], partial } });
+  assert.equal(keptOtherwise(entry("robust"), job(2), 0), "");
+  assert.match(keptOtherwise(entry("robust"), job(2.5), 0), /Kp 2 is now 2\.5; the service/);
+  assert.match(keptOtherwise(entry("robust"), job(2.5, true), 0), /stopped before its end/);
+});

@@ -93,14 +93,39 @@ std::optional<double> level_before_set_point(const CleanRecord& record, const st
     return record.scale.u_rest + record.scale.u_scale * mean(u);
 }
 
+namespace {
+
+/// The first row that a change of u comes with.
+int first_row_of(const CleanRecord& record, int change) {
+    const double time = record.v_time[static_cast<std::size_t>(change)];
+    return static_cast<int>(std::ranges::lower_bound(record.t, time) - record.t.begin());
+}
+
+/// Whether u steps once in `run`, to an end of what it does in the record, and leaves it while y is on its way: a
+/// controller that is switched on far from its set point does that. By hand one waits for y to come to rest.
+bool one_step_to_end(const CleanRecord& record, const Run& run) {
+    constexpr double kLastPart = 0.25,
+                     kStillMoves = 0.1;  // of the rows after the step; of y's movement over all of them
+    if (run.last - run.first != 1) return false;
+    const auto [low, high] = std::ranges::minmax(record.v_level);
+    const double level = record.v_level[static_cast<std::size_t>(run.first)];
+    if (level != low && level != high) return false;
+    const int from = first_row_of(record, run.first), late = run.to - static_cast<int>(kLastPart * (run.to - from));
+    const auto y = [&](int row) { return record.y[static_cast<std::size_t>(row)]; };
+    return late < run.to && std::abs(y(run.to - 1) - y(late - 1)) > kStillMoves * std::abs(y(run.to - 1) - y(from));
+}
+
+}  // namespace
+
 std::optional<SwitchOn> switched_on(const CleanRecord& record, const std::vector<double>& r) {
     constexpr double kFar = 0.05;               // of y's range
     constexpr int kJustBefore = 10, kNear = 2;  // rows
     constexpr double kWider = 0.5;              // noise goes beyond what ten rows show of its range
     const std::vector<Run> runs = quiet_runs(record);
     if (runs.size() < 2 || runs.front().from != 0 || runs.front().to >= record.samples()) return std::nullopt;
-    if (runs.front().last > runs.front().first) return std::nullopt;  // a test by hand, which has its own answer
-    const int row = runs.front().to;
+    const bool held = one_step_to_end(record, runs.front());
+    if (runs.front().last > runs.front().first && !held) return std::nullopt;  // a test by hand has its own answer
+    const int row = held ? first_row_of(record, runs.front().first) : runs.front().to;
     if (row < kRestRows) return std::nullopt;
     const int from = std::max(0, row - kJustBefore);
     const std::span<const double> y(record.y);
@@ -128,10 +153,7 @@ std::optional<Stretch> manual_stretch(const CleanRecord& r) {
     }
     if (!longest) return std::nullopt;
     const auto time = [&](int row) { return r.scale.t_origin + r.scale.t_scale * r.t[static_cast<std::size_t>(row)]; };
-    const auto [low, high] = std::ranges::minmax(r.v_level);
-    const double level = r.v_level[static_cast<std::size_t>(std::max(0, longest->last - 1))];
-    const bool one_step_to_end = longest->last - longest->first == 1 && (level == low || level == high);
-    return Stretch{time(longest->from), time(longest->to - 1), longest->from == 0, one_step_to_end};
+    return Stretch{time(longest->from), time(longest->to - 1), longest->from == 0, one_step_to_end(r, *longest)};
 }
 
 Record rows_of(const Record& record, const Stretch& stretch) {

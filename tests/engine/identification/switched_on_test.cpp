@@ -43,7 +43,6 @@ void expect_right(const Record& record, const LoopPlant& truth, const char* whic
 
 TEST(SwitchedOn, AnOvensLogTellsThePlant) {
     ColdStart oven;
-    oven.Kp = 1.5;  // u stays below its end
     oven.y_grid = 0.25;
     oven.u_grid = 1;
     expect_right(oven.record(), oven.plant, "with its set point");

@@ -333,6 +333,7 @@ test("settings that are tried by hand are followed by what to type", async () =>
     await page.locator(".examples details summary").click();
     await page.getByRole("button", { name: `Tune: ${title}`, exact: true }).click();
     await designShown(page);
+    await page.getByRole("button", { name: "emulation", exact: true }).click();
     await choose(page, "labview", "NI LabVIEW PID / LabWindows PID toolkit");
     await typed(page).waitFor();
     const before = await rowsOf(page);

@@ -3,7 +3,7 @@ import { notConnected, sentenceOf, whenBack } from "./api/client.ts";
 import { getJob, getRecentJobs, postJob } from "./api/jobs.ts";
 import { isRangeRequest } from "./api/range.ts";
 import type { Batch } from "./api/job_lists.ts";
-import type { FieldError, IdentifyRequest, TuningRequest, Units } from "./api/types.ts";
+import type { FieldError, IdentifyRequest, Job, TuningRequest, Units } from "./api/types.ts";
 import { h } from "./dom.ts";
 import type { TuneSubject } from "./form/tuning_request.ts";
 import type { JobFlow } from "./job_flow.ts";
@@ -12,12 +12,9 @@ import { addressOfJob, formatRoute, parseRoute, rewriteAddress, showsJob, showsS
 import type { JobRoute, Route } from "./routes.ts";
 import type { Store } from "./store.ts";
 import type { CandidateChoice } from "./views/cards/candidates_card.ts";
-import { batchView } from "./views/batch.ts";
 import { compareView } from "./views/compare.ts";
 import { designView } from "./views/design.ts";
 import { identifyView, noRecordView } from "./views/identify.ts";
-import { jobsView } from "./views/jobs.ts";
-import { methodsView } from "./views/methods.ts";
 import { relayView } from "./views/relay.ts";
 import type { RelayView } from "./views/relay.ts";
 import { startView } from "./views/start.ts";
@@ -30,8 +27,8 @@ export interface Screens {
 }
 
 /** A screen whose part of the page could not be fetched. */
-function awayView(): View {
-  const heading = h("h1", { tabindex: -1 }, "Range");
+function awayView(title: string): View {
+  const heading = h("h1", { tabindex: -1 }, title);
   const trouble = h("p", { class: "trouble", role: "status" }, sentenceOf(notConnected()));
   return { element: h("main", { id: "main" }, heading, trouble), heading, dispose: () => undefined };
 }
@@ -102,11 +99,18 @@ export function screens(
     return relay;
   }
 
-  /** Kept as well, with the design that it shows; a file of its own, which most visits do not need. */
+  /** A screen in a file of its own, which most visits do not need; null where another is shown by now, or it cannot be had. */
+  async function later<Part>(load: Promise<Part>, route: Route, title: string, focus: boolean): Promise<Part | null> {
+    const part = await load.catch(() => null);
+    if (store.get().route !== route) return null;
+    if (!part) mount(awayView(title), `${title} · Tunewright`, focus);
+    return part;
+  }
+
+  /** Kept as well, with the design that it shows. */
   async function openRange(route: Extract<Route, { screen: "range" }>, focus: boolean): Promise<void> {
-    const part = await import("./range/view.ts").catch(() => null);
-    if (store.get().route !== route) return;
-    if (!part) return mount(awayView(), "Range · Tunewright", focus);
+    const part = await later(import("./range/view.ts"), route, "Range", focus);
+    if (!part) return;
     const { rangeView } = part;
     range ??= rangeView(store, announce, {
       onExample(id) {
@@ -233,15 +237,27 @@ export function screens(
   }
 
   /** What is typed or sorted there goes into the address, but is no step of its own. */
-  function listScreen(route: Extract<Route, { screen: "jobs" | "batch" }>): View {
+  async function openList(route: Extract<Route, { screen: "jobs" | "batch" }>, focus: boolean): Promise<void> {
     const rename = (next: Route): void => rewriteAddress(route, next);
     const onBatch = (batch: Batch): void => {
       location.hash = formatRoute({ screen: "batch", id: batch.id, sort: "" });
     };
-    if (route.screen === "batch")
-      return batchView(route.id, route.sort, announce, { onBatch, onSort: (sort) => rename({ ...route, sort }) });
+    if (route.screen === "batch") {
+      const part = await later(import("./views/batch.ts"), route, "Jobs", focus);
+      if (!part) return;
+      const onSort = (sort: string): void => rename({ ...route, sort });
+      return mount(part.batchView(route.id, route.sort, announce, { onBatch, onSort }), "Jobs · Tunewright", focus);
+    }
+    const part = await later(import("./views/jobs.ts"), route, "Jobs", focus);
+    if (!part) return;
     const onSearch = (text: string): void => rename({ ...route, text });
-    return jobsView(store, route.text, announce, { onBatch, onSearch, onJob: (job) => flow.open(job) });
+    const onJob = (job: Job): void => flow.open(job);
+    mount(part.jobsView(store, route.text, announce, { onBatch, onSearch, onJob }), "Jobs · Tunewright", focus);
+  }
+
+  async function openMethods(route: Extract<Route, { screen: "methods" }>, focus: boolean): Promise<void> {
+    const part = await later(import("./views/methods.ts"), route, "Methods", focus);
+    if (part) mount(part.methodsView(store, route.id), "Methods · Tunewright", focus);
   }
 
   function openJobScreen(route: JobRoute, focus: boolean): void {
@@ -290,11 +306,8 @@ export function screens(
       screen.open(route.plant, route.values);
       return;
     }
-    if (route.screen === "methods") {
-      mount(methodsView(store, route.id), "Methods · Tunewright", !first);
-      return;
-    }
-    if (route.screen === "jobs" || route.screen === "batch") return mount(listScreen(route), "Jobs · Tunewright", !first);
+    if (route.screen === "methods") return void openMethods(route, !first);
+    if (route.screen === "jobs" || route.screen === "batch") return void openList(route, !first);
     mount(startScreen(), "Tunewright", !first);
     void loadForm(route);
     void refreshRecent();

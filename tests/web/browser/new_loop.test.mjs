@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import { browserTests, dropFile } from "../harness.mjs";
-import { stepTest } from "../step_record.mjs";
+import { disturbedTest, stepTest } from "../step_record.mjs";
 
 const tests = browserTests();
 const { withPage, post } = tests;
@@ -14,7 +14,7 @@ const press = (page, name) => page.getByRole("button", { name, exact: true }).cl
 const EARLIER = {
   name: "TIC-EARLIER",
   units: { time: "min", u: "bar", y: "K" },
-  record: { csv: stepTest, u0: 0 },
+  record: { csv: disturbedTest, u0: 0, from: 0, to: 240 },
   identify: { model: "fopdt" },
   uncertainty: "identified",
   tune: [{ method: "lambda", lambda: 9 }],
@@ -60,9 +60,13 @@ const FLOWS = {
   },
   async "a relay test"(page) {
     await page.getByRole("navigation", { name: "Screens" }).getByRole("link", { name: "Relay test" }).click();
-    await page.getByLabel("Model in one line").fill("K=1 T=10 L=2");
+    const read = page.waitForResponse((response) => response.url().endsWith("/v1/plants/parse"));
+    await page.getByLabel("Model in one line").fill("2 e^(-2s)/(10s+1)");
     await page.getByLabel("Model in one line").blur();
+    await read;
+    const simulated = page.waitForResponse((response) => response.url().endsWith("/v1/experiments/relay"));
     await press(page, "Simulate");
+    await simulated;
     await press(page, "Identify this record");
     await press(page, "Use and tune");
   },

@@ -85,6 +85,8 @@ export function designView(store: Store, announce: (sentence: string) => void, e
   const linearNote = h("p", { class: "hint", hidden: true }, BESIDE_LINEAR);
   let finished: { job: Job; result: Result } | null = null;
   let screen: OnScreen | null = null;
+  /** The job that the cards are of. */
+  let screenOf = "";
   const turned = turnedDesign(store, announce, {
     onAnswer: showTurned,
     onLate: (late) => {
@@ -177,6 +179,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
 
   function showResult(job: Job, whole: Result, workspace: Workspace): void {
     const selected = selectedEntry(whole, workspace);
+    screenOf = job.id;
     turned.show(job, whole, selected);
     if (!main.isConnected) element.append(...bodyParts);
     const drawn = showMoving(job, whole, workspace, false);
@@ -236,6 +239,8 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     range.element.hidden = !job.result?.range;
     finished = null;
     if (!isFinal(job.status)) {
+      // What stands here of the job before is not this one's.
+      if (screenOf !== job.id) for (const part of bodyParts) part.remove();
       progress.show(job);
     } else if (job.result?.range) {
       showRangeVerdict(verdict, job.result.range);

@@ -220,7 +220,8 @@ export function relayView(announce: (sentence: string) => void, events: RelayEve
 
   form.addEventListener("submit", (event) => {
     event.preventDefault();
-    simulate();
+    // The service may still be reading the line that was typed.
+    void plant.settled().then(simulate);
   });
 
   return {

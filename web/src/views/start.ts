@@ -286,7 +286,7 @@ export function startView(store: Store, events: StartEvents): StartView {
     base = request;
     loop = kindOf(request);
     status.hidden = true;
-    showMine(mineOfRequest(request.implement, inUnits(mine, unitNames(request.units))));
+    showMine(mineOfRequest(request.implement, inUnits(store.get().mine, unitNames(request.units))));
     today.load(request.units, request.baseline, request.name);
     methods.load(request.tune);
     if (request.record) record.load(request.record, request.identify);

@@ -20,7 +20,7 @@ export function ultimateCard(errors: FormErrors, onTune: () => void): UltimateCa
   const fields = {
     Ku: field("Ku", "Ku", "gain at which the loop oscillates"),
     Pu: field("Pu", "Pu", "period of that oscillation"),
-    K: field("K", "K", "static gain, if it is known"),
+    K: field("Static gain K", "K", "if it is known"),
   };
   const element = h(
     "form",

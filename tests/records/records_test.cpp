@@ -57,10 +57,10 @@ TEST(MadeRecords, OfEveryFamilyTestAndNoiseOnce) {
         ++designed;
         unstable += !j.Ms_true;
         above += j.Ms_true && *j.Ms_true > 1.25 * j.Ms_asked;
-        // A relay between rows far apart shows one frequency and little of when it switched: one design in 300 may fail.
-        EXPECT_TRUE(j.Ms_true || made.test == records::Test::relay_between)
-            << seed << " " << made.text() << "\n"
-            << j.detail;
+        // A relay between rows far apart shows one frequency and little of when it switched: one design in 300 may
+        // fail.
+        EXPECT_TRUE(j.Ms_true || made.test == records::Test::relay_between) << seed << " " << made.text() << "\n"
+                                                                            << j.detail;
     }
     EXPECT_LE(unstable, 0.003 * designed);
     EXPECT_EQ(records, 503);

@@ -108,7 +108,7 @@ export function recordFields(errors: FormErrors, all: boolean): RecordFields {
     { label: "Times are in", choices: TIME_UNITS, pointer: () => "/record/time_unit" },
     errors,
   );
-  const run = choiceField({ label: "Run", choices: [["", FOUND]], pointer: () => "/record/run" }, errors);
+  const run = choiceField({ label: "Run of the file", choices: [["", FOUND]], pointer: () => "/record/run" }, errors);
   run.element.hidden = true;
   const uStep = optional("u stepped from, to", "where the file has no u: 0 50", "/record/u_step");
   const kind = choiceField({ label: "Kind of test", choices: KINDS, pointer: () => "/record/kind" }, errors);

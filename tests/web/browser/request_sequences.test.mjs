@@ -17,6 +17,8 @@ function random(seed) {
   return () => (state = (16807 * state) % 2147483647) / 2147483647;
 }
 
+/** A search for a product over a region of plants takes tens of seconds on a busy machine. */
+const LONG_SEARCH = 120_000;
 const onDesign = (page) => page.locator(".settings tbody tr").first();
 const start = (page) => page.getByRole("navigation", { name: "Screens" }).getByRole("link", { name: "Start" }).click();
 const sliders = (page) => page.locator(".controls .field.slider:not([hidden])");
@@ -35,14 +37,14 @@ const ACTIONS = {
     if ((await button.count()) === 0) return false;
     if (!(await button.first().isVisible())) await page.locator(".examples summary").first().click();
     await button.first().click();
-    await onDesign(page).waitFor();
+    await onDesign(page).waitFor({ timeout: LONG_SEARCH });
     return true;
   },
   async record(page, draw) {
     await start(page);
     await dropFile(page, ".drop", "record.csv", draw(2) ? heater : stepTest);
     await page.getByRole("button", { name: "Use and tune" }).click();
-    await onDesign(page).waitFor();
+    await onDesign(page).waitFor({ timeout: LONG_SEARCH });
     return true;
   },
   async slider(page, draw) {

@@ -174,10 +174,10 @@ TEST(Tune, RefusesRequestsThatAreNoneWithAPlace) {
 
     request = request_for(kPlant, {method("simc")});
     request.record = Record{};
-    EXPECT_THAT(tune(request, {}).error().message, HasSubstr("Both plant and record"));
+    EXPECT_THAT(tune(request, {}).error().message, HasSubstr("More than one of plant, record and model"));
     request.subject.reset();
     request.record.reset();
-    EXPECT_THAT(tune(request, {}).error().message, HasSubstr("Neither plant nor record"));
+    EXPECT_THAT(tune(request, {}).error().message, HasSubstr("Neither plant, record nor model"));
 }
 
 TEST(Tune, MethodWarningsComeBeforeThoseOfTheEvaluation) {

@@ -26,7 +26,7 @@ constexpr std::array<Member, 14> kMembers = {{{"kp", "Kp"},
                                               {"u low", "u_span/0"},
                                               {"u high", "u_span/1"}}};
 
-/// Of "today", "today's" or "today:" and the blanks behind it; 0: there is none.
+/// Length of "today", "today's" or "today:" with the blanks after it; 0: there is none.
 std::size_t length_of_mark(std::string_view name) {
     for (const std::string_view mark : {"today's", "today:", "today"})
         if (name.starts_with(mark)) return std::min(name.size(), name.find_first_not_of(" _", mark.size()));

@@ -109,7 +109,7 @@ void check_job(const Json&, JobRequest& request, Reader& reader) {
     check_loops(*request.subject, *request.baseline, reader);
 }
 
-/// Of a model that was read without a fault.
+/// For a model that was read without a fault.
 std::optional<Subject> made_of(const IdentifiedModel& model, Reader& reader) {
     auto made = subject_of(model);
     if (made) return std::move(*made);
@@ -143,7 +143,7 @@ void add_judged(Description<Request>& d) {
 constexpr const char* kModelSentence =
     "What an answer has as `model` for a record, sent back in the record's place: the record is not identified again.";
 
-// What a job asks, and a design at once.
+// The requests of a job and of a design at once.
 template <class Request>
 void add_question(Description<Request>& d) {
     d.field("identify", &Request::identify, object(identify_contract()), "How the record becomes a model.")

@@ -262,7 +262,7 @@ struct PairFamily {
     }
 };
 
-/// What the lines of a text show, the first ones and of the rest a part.
+/// Facts from the first lines of a text and a sample of the rest.
 class PairFamilies {
 public:
     void look_at(std::string_view content) {

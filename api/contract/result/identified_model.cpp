@@ -230,7 +230,7 @@ const Description<FitTrace>& fit_contract() {
     return description;
 }
 
-/// What a model that is sent back is computed with.
+/// Checks the plant and the region of a model that is sent back.
 void check_region(const IdentifiedModel& model, Reader& reader) {
     if (const auto plant = LinearPlant::make(model.plant); !plant)
         return reader.fault_below(plant.error().where, 0, plant.error().message);

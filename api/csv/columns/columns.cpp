@@ -99,7 +99,7 @@ private:
         faults_.push_back(several_columns(facts_, role, fits.best));
     }
 
-    // What is measured beside a process, such as humidity, is y where nothing else is.
+    // A quantity next to the process, such as humidity, is y only where nothing else is.
     NameFits output_fits() const {
         const auto free = [&](std::size_t column) { return may_be(column, kOutputRole); };
         NameFits all = fits_by_name(facts_, kOutputRole, free);

@@ -11,7 +11,7 @@ namespace tunewright::api {
 
 /// The columns of a record. The values are the indices of arrays that hold something for each role.
 enum Role : std::size_t { kTimeRole, kInputRole, kOutputRole, kReferenceRole, kRoleCount };
-/// Of any number of columns, none of which is found by itself.
+/// For any number of columns; none is found by itself.
 inline constexpr Role kDisturbanceRole = kRoleCount;
 constexpr std::array<Role, kRoleCount> kRoles = {kTimeRole, kInputRole, kOutputRole, kReferenceRole};
 

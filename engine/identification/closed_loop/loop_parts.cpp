@@ -20,11 +20,16 @@ struct Run {
     int from = 0, to = 0, first = 0, last = 0;
 };
 
+/// The first row that a change of u comes with.
+int first_row_of(const CleanRecord& record, int change) {
+    const double time = record.v_time[static_cast<std::size_t>(change)];
+    return static_cast<int>(std::ranges::lower_bound(record.t, time) - record.t.begin());
+}
+
 /// Stretches between changes that are too near to one another.
 std::vector<Run> quiet_runs(const CleanRecord& r) {
-    std::vector<int> row;  // of each change
-    for (const double time : r.v_time)
-        row.push_back(static_cast<int>(std::lower_bound(r.t.begin(), r.t.end(), time) - r.t.begin()));
+    std::vector<int> row;
+    for (int change = 0; change < r.changes(); ++change) row.push_back(first_row_of(r, change));
     std::vector<Run> runs;
     const auto near = [&](int j) { return j > 0 && row[j] - row[j - 1] < kApart; };
     for (int j = 0; j <= r.changes(); ++j) {
@@ -94,12 +99,6 @@ std::optional<double> level_before_set_point(const CleanRecord& record, const st
 }
 
 namespace {
-
-/// The first row that a change of u comes with.
-int first_row_of(const CleanRecord& record, int change) {
-    const double time = record.v_time[static_cast<std::size_t>(change)];
-    return static_cast<int>(std::ranges::lower_bound(record.t, time) - record.t.begin());
-}
 
 /// Whether u steps once in `run`, to an end of what it does in the record, and leaves it while y is on its way: a
 /// controller that is switched on far from its set point does that. By hand one waits for y to come to rest.

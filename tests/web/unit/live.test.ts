@@ -33,6 +33,32 @@ test("a robust design is turned by its limits, its noise and its set point", () 
   assert.deepEqual([Ms!.lo, Ms!.hi, Ms!.step, Ms!.value], [1.1, 2.5, 0.01, 1.4]);
 });
 
+test("a slider asks for the overshoot that was asked for, or for none; what is reached is the loop's that runs", () => {
+  const knob = (tune: TuneEntry, more: Partial<Entry> = {}) =>
+    optionKnobs(tune, entryOf("robust", more), robust, units).find(({ id }) => id === "setpoint.overshoot")!;
+  const resolved = { options: { setpoint: { overshoot: 5 } } };
+  assert.equal(knob({ method: "robust" }, resolved).value, 5);
+  assert.equal(knob({ method: "robust", setpoint: { overshoot: 12 } }, resolved).value, 12);
+  assert.equal(knob({ method: "robust", setpoint: { best: "iae" } }, { options: { setpoint: { best: "iae" } } }).value, null);
+  assert.equal(knob({ method: "robust", objective: "setpoint_iae" }).value, null);
+  const over = (percent: number | null) => ({ setpoint: { overshoot_percent: percent } });
+  const { reached } = knob({ method: "robust" });
+  const ideal = entryOf("robust", { performance: over(4.9) });
+  assert.equal(reached!(ideal), 4.9);
+  assert.equal(reached!({ ...ideal, implemented: { performance: over(31) } } as Entry), 31);
+  assert.equal(reached!(entryOf("robust", { performance: over(null) })), null);
+  assert.equal(reached!(entryOf("robust")), null);
+});
+
+test("of the filter's ratio the one asked for is turned, and the design's own is what is reached", () => {
+  const entry = entryOf("robust");
+  const ratio = optionKnobs({ method: "robust", filter: { Tf_over_Td: 0.3 } }, entry, robust, units)[1]!;
+  assert.deepEqual([ratio.id, ratio.value, ratio.reached!(entry)], ["filter.Tf_over_Td", 0.3, 0.1]);
+  assert.equal(ratio.reached!(entryOf("robust", { controller: { ...controller, Td: 0 } })), null);
+  const time = optionKnobs({ method: "robust", filter: { Tf: 0.5 } }, entry, robust, units)[1]!;
+  assert.deepEqual([time.id, time.value, time.reached!(entry)], ["filter.Tf", 0.5, 0.2]);
+});
+
 test("other methods are turned by their numbers: between their ends, about their value, or about the loop's time", () => {
   const method: Method = {
     id: "m",

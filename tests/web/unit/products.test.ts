@@ -171,12 +171,26 @@ test("the loop as built stands beside the ideal one; beyond 2 % it is marked, in
   );
 });
 
+test("the overshoot as built stands beside the ideal loop's, in percent of the step; more than 2 of them are marked and said", () => {
+  const over = (percent: number | null) => ({ setpoint: { overshoot_percent: percent } });
+  const loop = (percent: number | null) => ({ ...built(0, 0), performance: over(percent) });
+  const row = (before: number | null, after: number | null) => builtRows({ performance: over(before) }, loop(after))[2];
+  assert.deepEqual(row(4.998, 29.83), { label: "Overshoot (%)", ideal: "5.00", built: "29.8", difference: "+24.8", far: true });
+  assert.deepEqual(row(5, 3.1), { label: "Overshoot (%)", ideal: "5.00", built: "3.10", difference: "−1.9", far: false });
+  assert.deepEqual([row(null, 3), row(5, null)], [undefined, undefined], "what settles nowhere has none");
+  assert.equal(
+    differenceSentence({ performance: over(4.998) }, loop(29.83)),
+    "As built it is another loop: the overshoot 24.8 percentage points higher than the ideal one's.",
+  );
+  assert.equal(differenceSentence({ performance: over(5) }, loop(6.9)), "");
+});
+
 test("what differs by more than 2 % is said, and what leaves nothing to compare is handed on", () => {
   assert.equal(
-    differenceSentence(built(5.91, -2.05)),
+    differenceSentence({}, built(5.91, -2.05)),
     "As built it is another loop: Ms 5.9 % higher, the load IAE 2.0 % lower than the ideal one's.",
   );
-  assert.equal(differenceSentence(built(1.99, null)), "");
+  assert.equal(differenceSentence({}, built(1.99, null)), "");
   const warning = (code: string) => ({ code, detail: code });
   const entry = { warnings: ["differs-as-built", "far-from-linear", "unstable-as-built"].map(warning) };
   assert.deepEqual(

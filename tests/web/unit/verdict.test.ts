@@ -3,6 +3,7 @@ import test from "node:test";
 import type { Entry } from "../../../web/src/api/types.ts";
 import { figureGroups } from "../../../web/src/words/figures.ts";
 import type { FigureRow } from "../../../web/src/words/figures.ts";
+import { leagueColumns } from "../../../web/src/words/league.ts";
 import { formatNumber, formatSetting, formatShare, unitNames, withMinus } from "../../../web/src/words/numbers.ts";
 import { settingsOf, settingsText } from "../../../web/src/views/cards/settings_card.ts";
 import type { Setting } from "../../../web/src/views/cards/settings_card.ts";
@@ -86,6 +87,27 @@ test("a figure that is null carries the service's reason", () => {
     const value = row.value(entry());
     assert.ok(value.text !== "" || value.why !== "", row.label);
   }
+});
+
+test("what was asked of the overshoot stands beside it, on Design and in the table, where the verdict says that there is more", () => {
+  const figures = figureGroups(unitNames(undefined)).flatMap((group) => group.rows);
+  const columns = leagueColumns(unitNames(undefined));
+  const texts = (percent: number | null, asked?: number): string[] => {
+    const said = asked === undefined ? {} : { asked_percent: asked };
+    const made: Entry = {
+      ...entry(),
+      performance: { setpoint: { overshoot_percent: percent } },
+      verdict: [{ code: "overshoot", level: "note", text: "", figures: { overshoot_percent: percent, ...said } }],
+    };
+    return [
+      figures.find((row) => row.label === "Overshoot (%)")!.value(made).text,
+      columns.find((column) => column.id === "overshoot")!.figure(made).text,
+    ];
+  };
+  assert.deepEqual(texts(31.4, 5), ["31.4 (asked 5.00)", "31.4 (asked 5.00)"]);
+  assert.deepEqual(texts(31.4, 0), ["31.4 (asked 0)", "31.4 (asked 0)"]);
+  assert.deepEqual(texts(31.4), ["31.4", "31.4"]);
+  assert.deepEqual(texts(null, 5), ["", ""]);
 });
 
 test("settings are given in each form that exists, else the reason", () => {

@@ -308,6 +308,8 @@ export interface Model {
   covariance?: { names: string[]; matrix: number[][] };
   /** Of other structures, which the region has too. Older results do not tell. */
   alternatives?: Plant[];
+  /** What the measured disturbances do to y. */
+  disturbances?: { name: string; plant: Plant; share: number | null }[];
   excited_band?: { omega_low: number; omega_high: number };
   data_quality?: Record<string, unknown>;
   warnings?: Notice[];

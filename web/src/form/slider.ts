@@ -41,6 +41,8 @@ export interface Slider {
   near(most?: number): Iterable<number>;
   /** Writes again what is spoken: it depends on more than the value. */
   speak(): void;
+  /** What was reached of it, under its field; "" for as much as is asked. `missed`: a limit that does not hold. */
+  setReached(text: string, missed: boolean): void;
 }
 
 const STEPS = 1000;
@@ -59,6 +61,9 @@ export function slider(options: SliderOptions, errors: FormErrors): Slider {
     const [low, high] = options.ends;
     range.after(h("span", { class: "ends", "aria-hidden": "true" }, h("span", {}, low), h("span", {}, high)));
   }
+  const reached = h("span", { class: "reached", id: `${field.input.id}-reached`, hidden: true });
+  field.input.setAttribute("aria-describedby", `${field.input.getAttribute("aria-describedby")} ${reached.id}`);
+  field.element.append(reached);
   field.element.classList.add("slider");
 
   const share = (at: number): number =>
@@ -73,9 +78,11 @@ export function slider(options: SliderOptions, errors: FormErrors): Slider {
   /** Rounding leaves no limit behind: beyond one a method may have no answer. */
   const within = (rounded: number): number => Math.min(Math.max(lo, hi), Math.max(Math.min(lo, hi), rounded));
 
+  const fourDigits = (exact: number): number => Number(exact.toPrecision(4));
+
   /** No more digits than a hand can set: those of the slider's step, at its ends the ends themselves. */
   function reachable(wanted: number): number {
-    if (options.log) return within(Number(wanted.toPrecision(4)));
+    if (options.log) return within(fourDigits(wanted));
     const near = (end: number): boolean => Math.abs(wanted - end) < (hi - lo) / (2 * steps());
     if (near(lo)) return lo;
     if (near(hi)) return hi;
@@ -87,7 +94,8 @@ export function slider(options: SliderOptions, errors: FormErrors): Slider {
     range.max = String(steps());
     range.value = String(Math.round(steps() * share(value)));
     speak();
-    if (texts) field.input.value = String(reachable(value));
+    // A limit that was computed has all its digits; nobody types them.
+    if (texts) field.input.value = String(options.log ? fourDigits(value) : reachable(value));
   }
 
   const speak = (): void => range.setAttribute("aria-valuetext", options.spoken(value));
@@ -169,6 +177,11 @@ export function slider(options: SliderOptions, errors: FormErrors): Slider {
     value: () => value,
     near,
     speak,
+    setReached(text, missed) {
+      reached.textContent = text;
+      reached.className = missed ? "reached missed" : "reached";
+      reached.hidden = text === "";
+    },
     set(next) {
       if (next === null) {
         take(valueAt(0.5));

@@ -20,6 +20,8 @@ export interface Knob {
   value: number | null;
   /** What the method says of the option's values. */
   schema?: Schema;
+  /** Of the same quantity, what a design came to: less or more than was asked for. */
+  reached?(entry: Entry): number | null;
 }
 
 export type HandName = "Kp" | "Ti" | "Td" | "Tf";
@@ -28,6 +30,7 @@ export const HAND: readonly HandName[] = ["Kp", "Ti", "Td", "Tf"];
 const MS_RANGE = { lo: 1.1, hi: 2.5, step: 0.01, log: false };
 export const DEFAULT_LIMIT = 1.4;
 const SPREAD = 5;
+export const OVERSHOOT = "setpoint.overshoot";
 
 /** Why a typed value cannot be asked for; "" where it can. */
 export function wrongValue({ label, schema }: Knob, value: number): string {
@@ -118,7 +121,7 @@ function robustKnobs(tune: TuneEntry, entry: Entry, method: Method | undefined, 
     limit("Ms", "Robustness Ms"),
     ...(isTied(tune) ? [] : [limit("Mt", "Robustness Mt")]),
     noiseKnob(tune, entry, units),
-    ...setpointKnob(tune, method),
+    ...setpointKnob(tune, entry, method),
   ].map((knob) => ({ ...knob, ...schemaAt(method, knob.id) }));
 }
 
@@ -142,19 +145,32 @@ function noiseKnob(tune: TuneEntry, entry: Entry, units: UnitNames): Knob {
     };
   }
   const fixed = numberAt(tune, "filter.Tf");
-  return fixed === null
-    ? { id: "filter.Tf_over_Td", label: "Noise filter Tf/Td", unit: "", lo: 0.02, hi: 1, log: true, ends, value: filter / Td }
-    : { id: "filter.Tf", label: "Noise filter Tf", unit: units.time, lo: fixed / SPREAD, hi: fixed * SPREAD, log: true, ends, value: fixed };
+  if (fixed !== null) {
+    const about = { unit: units.time, lo: fixed / SPREAD, hi: fixed * SPREAD, value: fixed };
+    return { id: "filter.Tf", label: "Noise filter Tf", log: true, ends, ...about, reached: filterTime };
+  }
+  const ratio = (made: Entry): number | null => {
+    const Tf = filterTime(made);
+    return Tf === null || !made.controller?.Td ? null : Tf / made.controller.Td;
+  };
+  const value = numberAt(tune, "filter.Tf_over_Td") ?? filter / Td;
+  return { id: "filter.Tf_over_Td", label: "Noise filter Tf/Td", unit: "", lo: 0.02, hi: 1, log: true, ends, value, reached: ratio };
 }
 
+const filterTime = ({ controller }: Entry): number | null => controller?.filter?.Tf ?? null;
+
+/** Of the loop that runs: in the user's own controller where the request names one. */
+const overshootReached = ({ implemented, performance }: Entry): number | null =>
+  given((implemented?.performance ?? performance)?.setpoint?.["overshoot_percent"]);
+
 /** Sharpness of set-point steps, where the service has the option. */
-function setpointKnob(tune: TuneEntry, method: Method | undefined): Knob[] {
+function setpointKnob(tune: TuneEntry, { options }: Entry, method: Method | undefined): Knob[] {
   if (!method?.options?.properties?.["setpoint"]) return [];
   const weight = numberAt(tune, "setpoint.weight");
   return weight === null
     ? [
         {
-          id: "setpoint.overshoot",
+          id: OVERSHOOT,
           label: "Set-point overshoot",
           unit: "%",
           lo: 0,
@@ -162,7 +178,8 @@ function setpointKnob(tune: TuneEntry, method: Method | undefined): Knob[] {
           step: 0.5,
           log: false,
           ends: ["soft", "sharp"],
-          value: numberAt(tune, "setpoint.overshoot") ?? 5,
+          value: numberAt(tune, OVERSHOOT) ?? numberAt({ method: "", ...options }, OVERSHOOT),
+          reached: overshootReached,
         },
       ]
     : [

@@ -59,8 +59,8 @@ export function identifyView(
   let whole: Samples | null = null;
   let samples = samplesOf(given.record);
   const givenText = csvOf(given.record);
-  /** What the extent that can be chosen from is of. */
-  let askedText = givenText;
+  /** What the extent that can be chosen from is of; null before anything was asked. */
+  let askedExtent: string | null = null;
   let plot: Plot | null = null;
   let plotTitle = "";
   const beginLook = newest();
@@ -182,12 +182,20 @@ export function identifyView(
     },
   });
 
-  /** Another record has another extent: what was chosen of the one before means nothing in it. */
+  /** The record and what decides its times. */
+  function extentKey(): string {
+    const { run, columns, time_unit, dt } = fields.read().record;
+    return JSON.stringify([text.read(), run, columns?.t, time_unit, dt]);
+  }
+
+  /** Another record, or run, has another extent: what was chosen of the one before means nothing in it. */
   function forgetPart(): void {
-    if (text.read() === askedText) return;
-    askedText = text.read();
-    whole = null;
-    part.clear();
+    const key = extentKey();
+    if (askedExtent !== null && key !== askedExtent) {
+      whole = null;
+      part.clear();
+    }
+    askedExtent = key;
   }
 
   function ask(): void {

@@ -38,22 +38,20 @@ function numeric(part: Part, name: string, absent: string): FigureValue {
 
 const NOT_GIVEN = "The service gave no figure.";
 
-/** "12.5 (asked 5)" where the design has more than was asked of it. */
+/** "12.5 (asked 5.00)" where the design has more than was asked of it. */
 function overshoot(entry: Entry): FigureValue {
   const reached = numeric(entry.performance?.["setpoint"], "overshoot_percent", NOT_GIVEN);
-  const asked = askedOvershoot(entry);
-  const value = entry.performance?.["setpoint"]?.["overshoot_percent"];
-  const missed = asked !== null && typeof value === "number" && value > asked + SAME_PERCENT;
-  return missed ? { ...reached, text: `${reached.text} (asked ${formatNumber(asked)})` } : reached;
+  return { ...reached, text: reached.text && reached.text + besideAsked(entry) };
 }
 
-/** Rounding and grids explain so much. */
-const SAME_PERCENT = 0.05;
+/** The overshoot that was asked for, in percent, where the verdict says that the loop has more; else null. */
+export const missedOvershoot = (entry: Entry): number | null =>
+  entry.verdict?.find(({ code }) => code === "overshoot")?.figures?.["asked_percent"] ?? null;
 
-/** The overshoot that the design was to keep, in percent; null: none was asked for. */
-export function askedOvershoot(entry: Entry): number | null {
-  const asked = (entry.options?.["setpoint"] as { overshoot?: unknown } | undefined)?.overshoot;
-  return typeof asked === "number" ? asked : null;
+/** " (asked 5.00)" after an overshoot that is larger than that; else "". */
+export function besideAsked(entry: Entry): string {
+  const asked = missedOvershoot(entry);
+  return asked === null ? "" : ` (asked ${formatNumber(asked)})`;
 }
 
 export function filterWords(type: string | undefined): string {

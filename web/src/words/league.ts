@@ -1,5 +1,6 @@
 // The league table of a comparison as data: its rows in order, its columns with their figures. No DOM.
 import type { Entry, Result, WhyNull } from "../api/types.ts";
+import { besideAsked } from "./figures.ts";
 import { formatNumber, formatPercent, product, quotient, withUnit } from "./numbers.ts";
 import type { UnitNames } from "./numbers.ts";
 
@@ -130,9 +131,12 @@ export function leagueColumns(units: UnitNames): LeagueColumn[] {
     column(
       "overshoot",
       "Overshoot (%)",
-      "of the set-point step",
+      "of the set-point step; in brackets what was asked for",
       true,
-      of(setpoint, "overshoot_percent", NOT_GIVEN, formatPercent),
+      (entry) => {
+        const reached = of(setpoint, "overshoot_percent", NOT_GIVEN, formatPercent)(entry);
+        return { ...reached, text: reached.text && reached.text + besideAsked(entry) };
+      },
     ),
     column(
       "settling",

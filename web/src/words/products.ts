@@ -1,7 +1,7 @@
 // Controllers as they are built, in words: what a search finds, the rows to type, the loop beside the ideal one, evidence.
 import type { AsEntered, Evidence, Implemented, Need, Product, ProductSummary } from "../api/products.ts";
 import type { Entry, Notice } from "../api/types.ts";
-import { DASH, formatNumber, formatParameter } from "./numbers.ts";
+import { DASH, formatNumber, formatParameter, formatPercent } from "./numbers.ts";
 
 /** Lower case, without what separates words in names. */
 const plain = (text: string): string => text.toLowerCase().replaceAll(/[^a-z0-9]+/g, " ");
@@ -98,21 +98,43 @@ export interface BuiltRow {
   far: boolean;
 }
 
-/** Ms and load IAE of the loop as built beside the ideal one's. */
+/** Ms, load IAE and overshoot of the loop as built beside the ideal one's. */
 export function builtRows(ideal: Pick<Entry, "robustness" | "performance">, built: Implemented): BuiltRow[] {
   const row = (label: string, before: unknown, after: unknown, percent: number | null): BuiltRow => ({
     label,
     ideal: formatNumber(before as number | null),
     built: formatNumber(after as number | null),
     difference: percent === null ? DASH : `${signed(percent)} %`,
-    far: percent !== null && Math.abs(percent) > WORTH_SAYING_PERCENT,
+    far: worthSaying(percent),
   });
   const { Ms_percent, load_IAE_percent } = built.difference;
   return [
     row("Ms", ideal.robustness?.Ms, built.robustness.Ms, Ms_percent),
     row("Load IAE", ideal.performance?.load?.["IAE"], built.performance.load?.["IAE"], load_IAE_percent),
+    ...overshootRow(ideal, built),
   ];
 }
+
+const overshootOf = ({ performance }: Pick<Entry, "performance">): number | null => {
+  const percent = performance?.setpoint?.["overshoot_percent"];
+  return typeof percent === "number" ? percent : null;
+};
+
+/** How much more of the step the loop as built overshoots, in percent of the step; null where one of both is unknown. */
+function moreOvershoot(ideal: Pick<Entry, "performance">, built: Implemented): number | null {
+  const [before, after] = [overshootOf(ideal), overshootOf(built)];
+  return before === null || after === null ? null : after - before;
+}
+
+/** A block without the design's set-point weight or filter may overshoot by far more, at the same Ms. */
+function overshootRow(ideal: Pick<Entry, "performance">, built: Implemented): BuiltRow[] {
+  const more = moreOvershoot(ideal, built);
+  if (more === null) return [];
+  const text = (of: Pick<Entry, "performance">): string => formatPercent(overshootOf(of)!);
+  return [{ label: "Overshoot (%)", ideal: text(ideal), built: text(built), difference: signed(more), far: worthSaying(more) }];
+}
+
+const worthSaying = (percent: number | null): boolean => percent !== null && Math.abs(percent) > WORTH_SAYING_PERCENT;
 
 /** "+2.9", "−0.4", "0.0": tenths of a percent are as much as anybody wants to know. */
 function signed(percent: number): string {
@@ -121,14 +143,15 @@ function signed(percent: number): string {
 }
 
 /** How far the loop as built lies from the ideal one, where that is worth saying; "" where it is not. */
-export function differenceSentence({ difference }: Implemented): string {
-  const parts = [
-    ["Ms", difference.Ms_percent],
-    ["the load IAE", difference.load_IAE_percent],
-  ].flatMap(([name, percent]) =>
-    typeof percent === "number" && Math.abs(percent) > WORTH_SAYING_PERCENT
-      ? [`${name} ${Math.abs(percent).toFixed(1)} % ${percent > 0 ? "higher" : "lower"}`]
-      : [],
+export function differenceSentence(ideal: Pick<Entry, "performance">, built: Implemented): string {
+  const { Ms_percent, load_IAE_percent } = built.difference;
+  const differences: [name: string, percent: number | null, unit: string][] = [
+    ["Ms", Ms_percent, "%"],
+    ["the load IAE", load_IAE_percent, "%"],
+    ["the overshoot", moreOvershoot(ideal, built), "percentage points"],
+  ];
+  const parts = differences.flatMap(([name, percent, unit]) =>
+    worthSaying(percent) ? [`${name} ${Math.abs(percent!).toFixed(1)} ${unit} ${percent! > 0 ? "higher" : "lower"}`] : [],
   );
   return parts.length === 0 ? "" : `As built it is another loop: ${parts.join(", ")} than the ideal one's.`;
 }

@@ -1,7 +1,8 @@
 // "Was the test good enough?": what the service found in the record, in words. Figures that the page does not know are shown by their names.
-import type { Model, Notice } from "../api/types.ts";
+import type { Model, Notice, Plant } from "../api/types.ts";
 import { formatNumber, formatParameter, withUnit } from "./numbers.ts";
 import type { UnitNames } from "./numbers.ts";
+import { plantWords } from "./plant.ts";
 
 export type Level = "good" | "warn" | "bad";
 
@@ -75,6 +76,7 @@ function rowsOf(model: Model, units: UnitNames): [string, string][] {
   if (test !== "") rows.unshift(["Test", test]);
   if (steps !== null) rows.push(["Moves of u", String(steps)]);
   if (typeof quality["settled"] === "boolean") rows.push(["y came to rest", quality["settled"] ? "yes" : "no"]);
+  for (const { name, plant, share } of model.disturbances ?? []) rows.push([name, disturbanceWords(plant, share, units)]);
   const known = new Set([
     "samples",
     "samples_dropped",
@@ -91,6 +93,12 @@ function rowsOf(model: Model, units: UnitNames): [string, string][] {
   ]);
   for (const [name, value] of Object.entries(quality)) if (!known.has(name)) rows.push(...otherRows(name, value));
   return rows;
+}
+
+/** "K 1.5, T 25 s, L 8 s; 49 % of what moves y": its own unit is not known. */
+function disturbanceWords(plant: Plant, share: number | null, units: UnitNames): string {
+  const part = share === null ? "" : `; ${formatNumber(100 * share, 2)} % of what moves y`;
+  return `${plantWords(plant, { ...units, u: "", y: "" })}${part}`;
 }
 
 function noiseWords(noise: number, model: Model): string {

@@ -186,6 +186,15 @@ TEST(ProductConversions, AFilterOfTheMeasurementIsRunWhereTheBlockHasOne) {
     EXPECT_THAT(note(siemens.notes, "filter"), HasSubstr("Filter the measurement before the block"));
 }
 
+TEST(ProductConversions, ASlopeOfOneSampleIsThePlainDifferenceAndIsNoFilter) {
+    IdealPid pid = kDesign;
+    pid.filter = {};
+    for (const char* id : {"esphome_pid", "ha_smart_thermostat", "klipper"})
+        EXPECT_FALSE(has_note(converted(id, pid, kContext, true).notes, "filter")) << id;
+    pid.filter = {FilterType::derivative, 2};
+    EXPECT_THAT(note(converted("esphome_pid", pid, kContext, true).notes, "filter"), HasSubstr("slope over several samples"));
+}
+
 TEST(ProductConversions, SampledLawsFollowTheBlocksRules) {
     const auto law = [](const char* id, double Ts) {
         return sampled_law(product_of(id), converted(id, kDesign).settings, kContext, Ts);

@@ -5,11 +5,12 @@ import { h, passFocus, uniqueId } from "../../dom.ts";
 import { FormErrors } from "../../form/errors.ts";
 import { slider } from "../../form/slider.ts";
 import type { Slider } from "../../form/slider.ts";
-import { DEFAULT_LIMIT, HAND, handKnobs, handValue, optionKnobs, withHand, withOption, wrongValue } from "../../live/knobs.ts";
+import { DEFAULT_LIMIT, HAND, OVERSHOOT, handKnobs, handValue, optionKnobs, withHand, withOption, wrongValue } from "../../live/knobs.ts";
 import type { HandName, Knob } from "../../live/knobs.ts";
 import type { Live } from "../../live/live.ts";
 import { tiedAt } from "../../live/point.ts";
 import type { Point } from "../../live/point.ts";
+import { missedOvershoot } from "../../words/figures.ts";
 import { formatNumber } from "../../words/numbers.ts";
 import type { UnitNames } from "../../words/numbers.ts";
 
@@ -119,7 +120,33 @@ export function controlsCard(live: Live): ControlsCard {
     const IAE = (followed ?? shown?.entry)?.performance?.load?.["IAE"];
     const name = knob.label.replace(/^(Robustness|Noise filter|Noise limit|Set-point) /, "");
     const unit = knob.unit ? ` ${knob.unit}` : "";
-    return `${name} ${formatNumber(value)}${unit}${typeof IAE === "number" ? `, load IAE ${formatNumber(IAE)}` : ""}`;
+    const load = typeof IAE === "number" ? `, load IAE ${formatNumber(IAE)}` : "";
+    const reached = reachedText(knob, value);
+    return `${name} ${formatNumber(value)}${unit}${reached ? `, ${reached}` : ""}${load}`;
+  }
+
+  /** "reached 12.5 %" where the design on the screen has another value than is asked for; else "". */
+  function reachedText({ reached, unit }: Knob, asked: number | null): string {
+    const entry = followed ?? shown?.entry;
+    if (!reached || !entry) return "";
+    const text = formatNumber(reached(entry));
+    return asked !== null && text === formatNumber(asked) ? "" : `reached ${text}${unit ? ` ${unit}` : ""}`;
+  }
+
+  /** What is asked of every option, and beside it what the design on the screen has. */
+  function sayReached(): void {
+    const entry = followed ?? shown?.entry;
+    for (const { knob, slider: made } of options) {
+      const missed = knob.id === OVERSHOOT && entry !== undefined && missedOvershoot(entry) !== null;
+      made.setReached(reachedText(knob, askedOf(knob, now())), missed);
+      made.speak();
+    }
+  }
+
+  /** Null: nobody asked, and the method does not tell its choice. */
+  function askedOf(knob: Knob, { tune }: Point): number | null {
+    const value = knob.id.split(".").reduce<unknown>((at, part) => (at as Record<string, unknown> | undefined)?.[part], tune ?? {});
+    return typeof value === "number" ? value : knob.value;
   }
 
   function homeOption(knob: Knob): void {
@@ -138,6 +165,7 @@ export function controlsCard(live: Live): ControlsCard {
     optionRows.replaceChildren(...options.map((item) => item.slider.element));
     if (tune?.method === "robust") options[0]?.slider.element.append(tieLabel);
     limitMs();
+    sayReached();
   }
 
   function limitMs(): void {
@@ -172,10 +200,10 @@ export function controlsCard(live: Live): ControlsCard {
   /** Sliders where the point is; the one that is being moved stands there already. */
   function place(point: Point): void {
     for (const { knob, slider: made } of options) {
-      const value = knob.id.split(".").reduce<unknown>((at, part) => (at as Record<string, unknown> | undefined)?.[part], point.tune ?? {});
-      const at = typeof value === "number" ? value : knob.value;
-      if (at !== null && at !== made.value()) made.set(at);
+      const at = askedOf(knob, point);
+      if (at !== made.value()) made.set(at);
     }
+    sayReached();
   }
 
   const firstSlider = (): HTMLElement | null => element.querySelector<HTMLElement>("input[type=range]");
@@ -242,7 +270,7 @@ export function controlsCard(live: Live): ControlsCard {
         const value = entry.controller ? handValue(entry.controller, knob.id as HandName) : null;
         if (value !== null && HAND.includes(knob.id as HandName)) made.set(value);
       }
-      for (const { slider: made } of options) made.speak();
+      sayReached();
     },
     dispose: leave,
   };

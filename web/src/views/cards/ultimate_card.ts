@@ -5,7 +5,7 @@ import { h } from "../../dom.ts";
 import { textField } from "../../form/controls.ts";
 import type { FormErrors } from "../../form/errors.ts";
 import { parseNumber } from "../../form/number.ts";
-import { formatSetting } from "../../words/numbers.ts";
+import { formatSetting, quotient, withUnit } from "../../words/numbers.ts";
 import type { UnitNames } from "../../words/numbers.ts";
 
 export interface UltimateCard {
@@ -74,22 +74,23 @@ export const isOfUltimate = (request: TuningRequest | undefined): boolean => req
 
 /** The settings of every rule in a table, and above it what cannot be known. */
 export function showUltimate(verdict: HTMLElement, result: Result, units: UnitNames): void {
-  const heads = ["Rule", "Kp", `Ti (${units.time})`, `Td (${units.time})`];
+  const heads = ["Rule", withUnit("Kp", quotient(units.u, units.y)), ...["Ti", "Td", "Tf"].map((name) => withUnit(name, units.time))];
   const cell = (value: unknown): string => (typeof value === "number" ? formatSetting(value) : "–");
   const rows = result.controllers.flatMap((entry) => {
-    const controller = entry.controller as Record<string, unknown> | undefined;
-    if (!controller) return [h("tr", {}, h("th", { scope: "row" }, entry.title ?? entry.method), h("td", { colspan: 3 }, entry.error?.detail ?? ""))];
-    const { Kp, Ti, Td } = controller;
-    return [h("tr", {}, h("th", { scope: "row" }, entry.title ?? entry.method), [Kp, Ti, Td].map((value) => h("td", {}, cell(value))))];
+    const { controller } = entry;
+    if (!controller) return [h("tr", {}, h("th", { scope: "row" }, entry.title ?? entry.method), h("td", { colspan: 4 }, entry.error?.detail ?? ""))];
+    const { Kp, Ti, Td, filter } = controller;
+    return [h("tr", {}, h("th", { scope: "row" }, entry.title ?? entry.method), [Kp, Ti, Td, filter?.Tf].map((value) => h("td", {}, cell(value))))];
   });
   verdict.className = "verdict warn";
+  const table = h(
+    "table",
+    { class: "figures" },
+    h("thead", {}, h("tr", {}, heads.map((head) => h("th", { scope: "col" }, head)))),
+    h("tbody", {}, rows),
+  );
   verdict.replaceChildren(
     h("h2", {}, result.verdict?.[0]?.text ?? ""),
-    h(
-      "table",
-      { class: "figures" },
-      h("thead", {}, h("tr", {}, heads.map((head) => h("th", { scope: "col" }, head)))),
-      h("tbody", {}, rows),
-    ),
+    h("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": "Settings of every rule" }, table),
   );
 }

@@ -200,11 +200,14 @@ export function browserTests(options = []) {
           body: JSON.stringify(body),
         })
       ).json(),
-    /** The answer of the API for the job that the page's address names. */
+    /** The answer of the API for the job that the page's address names, once the job has ended: the page shows it before. */
     async jobOf(page) {
       const id = /#\/jobs\/([^/]+)\/(?:design|compare)/.exec(page.url())?.[1];
       if (!id) throw new Error(`There is no job in ${page.url()}.`);
-      return (await fetch(`${shared.service.base}/v1/jobs/${id}`)).json();
+      for (const until = Date.now() + 120_000; ; await page.waitForTimeout(200)) {
+        const job = await (await fetch(`${shared.service.base}/v1/jobs/${id}`)).json();
+        if (!["queued", "running"].includes(job.status) || Date.now() > until) return job;
+      }
     },
   };
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include "api/contract/range/range_request.h"
+#include "api/contract/request.h"
 #include "api/csv/shape/shapes.h"
 #include "api/csv/text.h"
 
@@ -93,6 +95,24 @@ void put_methods(const TuneWords& words, Json& request) {
     }
 }
 
+/// Whether the text is an object that is about a plant, a record, an ultimate point or a model, also in each of its
+/// `points`, and whose arrays are members of a request: a record may name its plant, too.
+bool holds_request(std::string_view text) {
+    const auto parsed = parse(text);
+    const Json* value = std::get_if<Json>(&parsed);
+    if (value == nullptr || !value->is_object()) return false;
+    const auto has_source = [](const Json& object) {
+        return object.is_object() && std::ranges::any_of(request_sources(), [&](const std::string& source) {
+                   return object.contains(source);
+               });
+    };
+    for (const auto& [name, member] : value->items())
+        if (member.is_array() && !is_request_member(name)) return false;
+    if (has_source(*value)) return true;
+    const auto points = value->find("points");
+    return points != value->end() && points->is_array() && std::ranges::all_of(*points, has_source);
+}
+
 }  // namespace
 
 Json record_of(const CsvRequest& question, std::string csv) {
@@ -125,8 +145,7 @@ std::optional<std::string> request_text(const std::string& file) {
     const std::size_t first = text.find_first_not_of(kBlank);
     if (first == text.npos || text[first] != '{') return std::nullopt;
     // A record may be one JSON object, too: of samples, or of columns.
-    const bool may_be_record = text.find("\"record\"") == text.npos && text.find("\"plant\"") == text.npos;
-    if (may_be_record && json_rows(text)) return std::nullopt;
+    if (!holds_request(text) && json_rows(text)) return std::nullopt;
     const std::size_t end = text.find('\n', first);
     if (end == text.npos) return std::string(text);
     const std::size_t last = text.find_last_not_of(kBlank, end), next = text.find_first_not_of(kBlank, end);

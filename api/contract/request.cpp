@@ -1,9 +1,12 @@
 #include "api/contract/request.h"
 
+#include <set>
+
 #include "api/contract/controller.h"
 #include "api/contract/methods.h"
 #include "api/contract/plant/typed.h"
 #include "api/contract/product/product.h"
+#include "api/contract/range/range_request.h"
 #include "api/contract/relay.h"
 #include "api/contract/result/identified_model.h"
 #include "engine/evaluation/evaluate.h"
@@ -32,6 +35,9 @@ void check_ultimate(const Json& value, JobRequest& request, Reader& reader) {
             reader.fault_at(judged, std::string(judged) + " needs a plant or a record: leave it out next to ultimate.");
     if (!value.contains("tune")) request.tune = {MethodRequest{"all", {}}};
 }
+
+const std::vector<std::string> kJobSources = {"plant", "record", "ultimate"},
+                               kDesignSources = {"plant", "record", "model"}, kEvaluateSources = {"plant", "model"};
 
 /// A request is about one of `sources`, members that exclude each other; `others`: how those beside a plant are asked
 /// for.
@@ -193,8 +199,7 @@ const Description<JobRequest>& job_contract() {
             .field("notify", &JobRequest::notify, maybe(object(notify_contract())),
                    "Whom to tell when the job has ended.")
             .check_presence([](const Json& value, JobRequest& request, Reader& reader) {
-                check_source(value, {"plant", "record", "ultimate"},
-                             "a recorded test, or an ultimate gain and period alone", reader);
+                check_source(value, kJobSources, "a recorded test, or an ultimate gain and period alone", reader);
                 check_ultimate(value, request, reader);
             })
             .example({{"name", "TIC-101"},
@@ -221,7 +226,7 @@ const Description<DesignRequest>& design_request_contract() {
              "start", &D::start, maybe(one_of(controller_contract())),
              "A design nearby, such as the last answer: a hint. The whole search is made, so no answer depends on it.")
             .check_presence([](const Json& value, D&, Reader& reader) {
-                check_source(value, {"plant", "record", "model"}, "a recorded test, or the model of one", reader);
+                check_source(value, kDesignSources, "a recorded test, or the model of one", reader);
             })
             .example({{"plant", {{"type", "fopdt"}, {"K", 2}, {"T", 10}, {"L", 3}}},
                       {"tune", Json::array({Json{{"method", default_method()}, {"Ms", 1.6}, {"Mt", 1.6}}})}});
@@ -246,7 +251,7 @@ const Description<EvaluateRequest>& evaluate_request_contract() {
             .field("implement", &EvaluateRequest::implement, maybe(object(implement_contract())),
                    "The user's own controller, on which they are judged too.")
             .check_presence([](const Json& value, EvaluateRequest&, Reader& reader) {
-                check_source(value, {"plant", "model"}, "or the model of a record", reader);
+                check_source(value, kEvaluateSources, "or the model of a record", reader);
             })
             .check(check_controllers)
             .check([](const Json&, EvaluateRequest& request, Reader& reader) { resolve_build(request, reader); })
@@ -269,6 +274,21 @@ const Description<IdentifyRequest>& identify_request_contract() {
         return d;
     }();
     return description;
+}
+
+const std::vector<std::string>& request_sources() {
+    static const std::vector<std::string> sources = [] {
+        std::set<std::string> all;
+        for (const auto* some : {&kJobSources, &kDesignSources, &kEvaluateSources})
+            all.insert(some->begin(), some->end());
+        return std::vector<std::string>(all.begin(), all.end());
+    }();
+    return sources;
+}
+
+bool is_request_member(std::string_view name) {
+    return job_contract().has(name) || design_request_contract().has(name) || evaluate_request_contract().has(name) ||
+           identify_request_contract().has(name) || range_request_contract().has(name);
 }
 
 TuningRequest to_engine(JobRequest request) {

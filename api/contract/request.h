@@ -66,6 +66,11 @@ const Description<IdentifyRequest>& identify_request_contract();
 
 const Description<EvaluateOptions>& evaluate_options_contract();
 
+/// The members that say what a request is about, one of them in each.
+const std::vector<std::string>& request_sources();
+/// Whether a request of any kind has a member of that name.
+bool is_request_member(std::string_view name);
+
 /// The plant in the form in which it is computed with; empty after a fault, which the reader then has.
 std::optional<Subject> subject_of(const PlantModel& plant, Reader& reader);
 

@@ -78,6 +78,7 @@ public:
 
     const std::string& name() const { return members_.name(); }
     const std::string& tag_value() const { return members_.tag_value(); }
+    bool has(std::string_view name) const { return members_.has(name); }  ///< a member of that name
 
     void read(const Json& value, T& target, Reader& reader) const {
         const std::size_t before = reader.count();

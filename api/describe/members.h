@@ -2,6 +2,7 @@
 // types is compiled once.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <string>
@@ -84,6 +85,7 @@ public:
 
     const std::string& name() const { return name_; }
     const std::string& tag_value() const { return tag_value_; }
+    bool has(std::string_view name) const { return std::ranges::find(names_, name) != names_.end(); }
 
     /// Reads what is given of the members; false: the value is no object, which is reported.
     bool read(const Json& value, void* object, Reader& reader) const;

@@ -56,6 +56,23 @@ TEST(Shorthand, ATestInAFileBecomesTheRecord) {
     EXPECT_FALSE(request_of({}, "{\n\"plant\": \"1/(s+1)\"}").contains("record"));
 }
 
+// Both may hold arrays of objects, and the words plant and record.
+TEST(Shorthand, AnObjectIsARequestByItsMembersAndARecordByItsRows) {
+    for (const char* file :
+         {R"({"ultimate": {"Ku": 2, "Pu": 10}, "tune": [{"method": "simc"}, {"method": "amigo"}]})",
+          R"({"plant": {"K": "x"}, "tune": [{"method": "robust", "Ms": 1}, {"method": "robust", "Ms": 2}]})",
+          R"({"record": {"t": [0, 1], "u": [1, 2], "y": [3, 4]}})",
+          R"x({"points": [{"plant": "1/(s+1)", "at": 1}, {"plant": "2/(s+1)", "at": 2}]})x",
+          R"({"model": {"plant": {}}, "tune": [{"method": "simc"}, {"method": "amigo"}]})"})
+        EXPECT_EQ(request_of({}, file), Json::parse(file)) << file;
+    for (const char* file : {R"({"plant": "Tank 3", "data": [{"t": 0, "u": 1, "y": 2}, {"t": 1, "u": 1, "y": 3}]})",
+                             R"({"record": "17", "t": [0, 1], "u": [1, 1], "y": [2, 3]})",
+                             R"({"points": [{"t": 0, "u": 1, "y": 2}, {"t": 1, "u": 1, "y": 3}]})",
+                             R"({"model": "PT100", "rows": [[0, 1, 2], [1, 1, 3]]})"}) {
+        EXPECT_EQ(request_of({}, file), (Json{{"record", {{"csv", file}}}})) << file;
+    }
+}
+
 TEST(Shorthand, WhatSaysHowACsvFileIsReadIsRefusedWithoutOne) {
     TuneWords words;
     words.record.dt = "0.5";

@@ -7,6 +7,7 @@
 #include "api/json/json.h"
 #include "api/json/writer.h"
 #include "api/service.h"
+#include "engine/request/verdict/findings.h"
 
 namespace tunewright::api {
 namespace {
@@ -40,9 +41,9 @@ void write_figure(const char* name, const Figure& figure, Writer& out) {
     figure ? out.number(*figure) : out.null();
 }
 
-void write_figures(const Evaluation& evaluation, Writer& out) {
-    write_figure("Ms", evaluation.robustness.Ms, out);
-    write_figure("load_IAE", evaluation.performance.load.IAE, out);
+void write_figures(const TuningEntry& entry, Writer& out) {
+    write_figure("Ms", entry.evaluation->robustness.Ms, out);
+    write_figure("load_IAE", verdict::performance_of(entry).load.IAE, out);
 }
 
 /// What to enter: the controller, and the texts to type where it is for a product.
@@ -66,7 +67,7 @@ void write_best(const TuningEntry& best, Writer& out) {
     out.key("method");
     out.text(best.method);
     write_settings(best, out);
-    write_figures(*best.evaluation, out);
+    write_figures(best, out);
     if (best.evaluation->region) write_figure("worst_Ms", best.evaluation->region->worst_Ms, out);
     if (best.optimum_at_Ms) write_figure("excess_percent", best.optimum_at_Ms->excess_percent, out);
 }
@@ -104,7 +105,7 @@ std::string Outline::of(const TuningResult& result) const {
     if (today != result.controllers.end() && today->evaluation) {
         out.key("today");
         out.begin_object();
-        write_figures(*today->evaluation, out);
+        write_figures(*today, out);
         out.end_object();
     }
     out.end_object();

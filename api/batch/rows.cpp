@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "api/contract/record.h"
 #include "api/csv/writer.h"
 #include "api/json/json.h"
 #include "api/json/writer.h"
@@ -60,23 +61,36 @@ std::string to_type(const Json& entry) {
     return out;
 }
 
-/// The load IAE of today's settings; null where the result has none.
+/// The load IAE of the loop that runs, which is what verdicts compare: as implemented where that is known.
+const Json* load_of(const Json& entry) {
+    return at(entry, entry.contains("implemented") ? "/implemented/performance/load/IAE" : "/performance/load/IAE");
+}
+
+/// The same of today's settings; null where the result has none.
 const Json* todays_load(const Json& result) {
     const Json* entries = at(result, "/controllers");
     if (entries == nullptr) return nullptr;
     for (const Json& entry : *entries)
-        if (entry.value("method", "") == "baseline") return at(entry, "/performance/load/IAE");
+        if (entry.value("method", "") == "baseline") return load_of(entry);
     return nullptr;
 }
 
+void add_time_unit(const Json& result, CsvWriter& out) {
+    const Json* unit = at(result, "/units/time");
+    if (result.is_object() && unit == nullptr)
+        out.text(Units{}.time_or_default());
+    else
+        add_text(result, "/units/time", out);
+}
+
 void add_later(const Json& result, const Json& entry, CsvWriter& out) {
-    add_text(result, "/units/time", out);
+    add_time_unit(result, out);
     add_text(entry, "/controller/filter/type", out);
     const Json* lag = at(entry, "/controller/setpoint_filter/T");
     lag != nullptr && lag->is_number() ? out.number(lag->get<double>()) : out.empty();
     const std::string typed = to_type(entry);
     typed.empty() ? out.empty() : out.text(typed);
-    const Json *today = todays_load(result), *load = at(entry, "/performance/load/IAE");
+    const Json *today = todays_load(result), *load = load_of(entry);
     const bool known = today != nullptr && today->is_number();
     known ? out.number(today->get<double>()) : out.empty();
     const bool compared = known && load != nullptr && load->is_number() && today->get<double>() > 0 &&

@@ -77,7 +77,9 @@ std::optional<TodaysColumn> todays_column(const Heading& heading) {
     if (known == kMembers.end() && (mark == 0 || name.empty())) return std::nullopt;
     // Names of settings are the product's own: with capitals, and with what looks like a unit ("Td_min").
     std::string written = heading.text.substr(mark);
-    if (written.ends_with(']') || written.ends_with(')')) written.erase(written.find_last_of("[("));
+    if (const std::size_t unit = written.find_last_of("[(");
+        unit != written.npos && (written.ends_with(']') || written.ends_with(')')))
+        written.erase(unit);
     while (written.ends_with(' ')) written.pop_back();
     return TodaysColumn{.name = written, .member = known == kMembers.end() ? "" : known->second, .unit = heading.unit};
 }

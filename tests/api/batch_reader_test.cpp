@@ -281,6 +281,15 @@ TEST(BatchReader, TodaysSettingsMayBeAProductsOwn) {
                 HasSubstr("\"fKp\" is no column of loops"));
 }
 
+TEST(BatchReader, AHeadingMayHoldHalfAUnit) {
+    for (const char* heading :
+         {"today GAIN]", "today GAIN)", "today GAIN[", "today ]", "today's )(", "Kp]", "today Kp)"}) {
+        const Outcome out =
+            read(loops(), "K,T,L,product," + std::string(heading) + "\n2,100,30,emerson_deltav_standard,4\n");
+        EXPECT_TRUE(out.problem || out.entries.size() == 1) << heading;
+    }
+}
+
 TEST(BatchReader, TheUsersControllerIsSaidOnceForAllLoops) {
     const Outcome out = read(loops({{"implement/product", "emerson_deltav_standard"},
                                     {"implement/y_span", "[0, 200]"},

@@ -139,8 +139,8 @@ std::string method_label(const JobRequest& request) {
 
 /// What a request comes to, with what reading its record has found.
 Expected<TuningResult> tuned(JobRequest request, const RunControl& control) {
-    const ReadRecord read{
-        {}, request.read.dropped, request.read.notes, request.read.unread, request.read.time_unit_known};
+    ReadRecord read = request.read;
+    read.record = {};
     const IdentifyQuestion question = request.identify;
     const bool recorded = request.record.has_value();
     auto result = tune(to_engine(std::move(request)), control);

@@ -34,6 +34,7 @@ void add_reading(const ReadRecord& read, IdentifiedModel& model) {
     quality.time_unit_assumed = !read.time_unit_known;
     if (!read.time_unit_known) ask_for_unit(model);
     if (!read.unread.empty()) model.warnings.push_back({"lines-left-out", read.unread});
+    if (!read.unread_column.empty()) model.warnings.push_back({"column-left-out", read.unread_column});
     quality.samples_dropped += read.dropped;
     quality.notes.insert(quality.notes.begin(), read.notes.begin(), read.notes.end());
     if (read.dropped > 0)

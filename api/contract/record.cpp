@@ -1,16 +1,14 @@
 #include "api/contract/record.h"
 
 #include <algorithm>
-#include <limits>
 
+#include "api/csv/shape/runs.h"
 #include "api/csv/time_stamp.h"
 #include "engine/number_text.h"
 
 namespace tunewright::api {
 namespace {
 
-constexpr int kMaxColumns = 1000;
-constexpr int kMaxRuns = 1'000'000;
 constexpr std::size_t kMaxHeadingLength = 200;
 
 Codec<ColumnChoice> column_choice() {
@@ -93,7 +91,7 @@ Codec<std::array<double, 2>> u_step() {
     });
 }
 
-Codec<int> run_number() { return integer(1, kMaxRuns); }
+Codec<int> run_number() { return integer(1, kMaxFileRuns); }
 
 Codec<std::string> file_time_unit() {
     Codec<std::string> codec = text(20);
@@ -153,6 +151,11 @@ void check_record(const Json&, GivenRecord& record, Reader& reader) {
     for (std::size_t i = 0; record.d && i < record.d->size(); ++i) {
         const Reader::At d(reader, "d"), at(reader, i);
         length("values", (*record.d)[i].values);
+        for (std::size_t k = 0; k < i; ++k)
+            if ((*record.d)[k].name == (*record.d)[i].name)
+                reader.fault_at("name", "name is \"" + (*record.d)[i].name +
+                                            "\", which another one has; the names of " +
+                                            "measured disturbances must be different.");
     }
 }
 
@@ -160,45 +163,6 @@ std::vector<double> times(double dt, std::size_t count) {
     std::vector<double> out(count);
     for (std::size_t i = 0; i < count; ++i) out[i] = static_cast<double>(i) * dt;
     return out;
-}
-
-// `rows` ascend. A column that the record does not have stays empty.
-template <class T>
-void keep(const std::vector<std::size_t>& rows, std::vector<T>& column) {
-    if (column.empty()) return;
-    for (std::size_t k = 0; k < rows.size(); ++k) column[k] = column[rows[k]];
-    column.resize(rows.size());
-}
-
-// The samples of the chosen part; all of them where none is chosen.
-void choose_part(const GivenRecord& given, ReadRecord& read, Reader& reader) {
-    if (!given.from && !given.to) return;
-    constexpr double kUnlimited = std::numeric_limits<double>::infinity();
-    const double from = given.from.value_or(-kUnlimited), to = given.to.value_or(kUnlimited);
-    std::vector<std::size_t> rows;
-    for (std::size_t i = 0; i < read.record.t.size(); ++i) {
-        if (const double t = read.record.t[i]; t >= from && t <= to) rows.push_back(i);
-    }
-    if (rows.size() < 2) {
-        const auto [first, last] = std::minmax_element(read.record.t.begin(), read.record.t.end());
-        const std::string extent = read.record.t.empty() ? ""
-                                                         : " It runs from " + tunewright::text(*first) + " to " +
-                                                               tunewright::text(*last) + ".";
-        reader.fault_at(given.from ? "from" : "to", "fewer than 2 samples of the record lie in the part that is used." +
-                                                        extent + " Choose a wider part.");
-        return;
-    }
-    Record& record = read.record;
-    const std::size_t all = record.t.size();
-    keep(rows, record.t);
-    keep(rows, record.u);
-    keep(rows, record.y);
-    keep(rows, record.r);
-    for (FurtherInput& input : record.d) keep(rows, input.values);
-    keep(rows, record.line);
-    read.notes.push_back("Of " + std::to_string(all) + " samples, the " + std::to_string(rows.size()) + " from " +
-                         tunewright::text(record.t.front()) + " to " + tunewright::text(record.t.back()) +
-                         " were used, as asked.");
 }
 
 }  // namespace
@@ -268,7 +232,8 @@ const Description<GivenRecord>& record_contract() {
             .field("u_limits", &GivenRecord::u_limits, maybe(limits()),
                    "The ends of the actuator, [low, high]: u beyond them did not reach the plant.", {.unit = "u"})
             .field("u_step", &GivenRecord::u_step, maybe(u_step()),
-                   "Of a record without u: u stepped at the first sample, [from, to], and stays.", {.unit = "u"})
+                   "Of a record without u: u stepped at its first sample, [from, to], and stays; from leaves none out.",
+                   {.unit = "u"})
             .field(
                 "run", &GivenRecord::run, maybe(run_number()),
                 "Of a csv whose times begin again: which of its runs, from 1. Default: the longest in which y answers "
@@ -325,6 +290,7 @@ ReadRecord resolve(GivenRecord given, const Units& units, Reader& reader) {
         if (given.r) out.record.r = std::move(*given.r);
         if (given.d) out.record.d = std::move(*given.d);
         choose_part(given, out, reader);
+        check_disturbances(out.record, false, reader);
         return out;
     }
     CsvOptions options;
@@ -340,14 +306,7 @@ ReadRecord resolve(GivenRecord given, const Units& units, Reader& reader) {
     options.most_samples = kMaxSamples;
     auto read = read_csv_record(*given.csv, options);
     if (const auto* faults = std::get_if<std::vector<CsvFault>>(&read)) {
-        for (const CsvFault& fault : *faults) {
-            if (const std::size_t slash = fault.where.find('/'); slash != std::string::npos) {
-                const Reader::At at(reader, "columns");
-                reader.fault_at(fault.where.substr(slash + 1), fault.message);
-            } else {
-                reader.fault_at(fault.where, fault.message);
-            }
-        }
+        for (const CsvFault& fault : *faults) reader.fault_below(fault.where, 0, fault.message);
         return out;
     }
     auto& record = std::get<CsvRecord>(read);
@@ -360,9 +319,11 @@ ReadRecord resolve(GivenRecord given, const Units& units, Reader& reader) {
     out.record.u_full_scale = record.u_full_scale;
     out.dropped = record.dropped;
     out.unread = std::move(record.unread);
+    out.unread_column = std::move(record.unread_column);
     out.time_unit_known = record.time_unit_known;
     out.notes = std::move(record.notes);
     choose_part(given, out, reader);
+    check_disturbances(out.record, true, reader);
     return out;
 }
 

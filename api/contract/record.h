@@ -49,7 +49,7 @@ struct ReadRecord {
     Record record;
     int dropped = 0;
     std::vector<std::string> notes;
-    std::string unread = {};      ///< as in CsvRecord
+    std::string unread = {}, unread_column = {};  ///< as in CsvRecord
     bool time_unit_known = true;  ///< else the file does not say in which unit its times are, nor does the request
 };
 
@@ -63,6 +63,13 @@ const Description<IdentifyQuestion>& identify_contract();
 
 /// Reports to the reader, which stands at the record.
 ReadRecord resolve(GivenRecord given, const Units& units, Reader& reader);
+
+/// Keeps the samples from `from` to `to`; all of them where neither is given. u and the disturbances hold from the rows
+/// before. Reports where fewer than 2 are left, and where `from` leaves out the row before which u_step or u0 is meant.
+void choose_part(const GivenRecord& given, ReadRecord& read, Reader& reader);
+
+/// Reports at d, or at columns/d, each measured disturbance that moves only as u, y or another one does.
+void check_disturbances(const Record& record, bool from_csv, Reader& reader);
 
 /// What reading the CSV has found belongs to the data's quality too.
 void add_reading(const ReadRecord& read, IdentifiedModel& model);

@@ -1,12 +1,16 @@
 // Which columns of a file a request names.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
 namespace tunewright::api {
+
+/// Of a file; wider ones are refused.
+inline constexpr std::size_t kMaxColumns = 4000;
 
 /// A heading, or the column's number from 1.
 using ColumnChoice = std::variant<std::string, int>;

@@ -163,7 +163,8 @@ CsvPreview preview_csv(std::string_view bytes, const CsvOptions& options) {
     preview.runs = std::move(record.runs);
     if (!preview.runs.empty()) preview.run = record.run;
     preview.notes = std::move(record.notes);
-    if (!record.unread.empty()) preview.notes.push_back(std::move(record.unread));
+    for (std::string* warning : {&record.unread, &record.unread_column})
+        if (!warning->empty()) preview.notes.push_back(std::move(*warning));
     return preview;
 }
 

@@ -4,9 +4,11 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <utility>
 
 #include "api/csv/columns/columns.h"
 #include "api/csv/record_notes.h"
+#include "api/csv/shape/held_values.h"
 #include "api/csv/shape/runs.h"
 #include "api/csv/shape/shape.h"
 #include "api/csv/text.h"
@@ -19,6 +21,7 @@ namespace {
 
 constexpr std::size_t kMaxFaults = 10;
 constexpr double kLargest = 1e30;  // as in every number of the contract
+constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
 // Lines that cannot be read are left out where they are this rare: a total at the end, half a line of a serial port.
 constexpr std::size_t kEnoughRows = 20, kRare = 50;
@@ -30,7 +33,7 @@ public:
 
     std::variant<CsvRecord, std::vector<CsvFault>> read() {
         if (!source_.fault().empty())
-            fault("csv", source_.fault());
+            fault(source_.fault_at(), source_.fault());
         else
             check_layout();
         if (faults_.empty()) {
@@ -62,7 +65,7 @@ private:
     }
 
     void choose_run() {
-        if (auto sentence = take_run(record_, options_.run)) fault("run", *std::move(sentence));
+        if (auto wrong = take_run(record_, options_.run)) faults_.push_back(*std::move(wrong));
     }
 
     std::string_view first_line() const {
@@ -70,19 +73,10 @@ private:
         return text.substr(0, text.find_first_of("\r\n"));
     }
 
-    // Times of a file that has none: from the spacing that is given, or that a column holds.
-    double spacing() const {
-        if (options_.dt) return *options_.dt;
-        if (columns_.head_spacing) return spacing_of(*columns_.head_spacing, options_.time_unit);
-        if (!columns_.spacing) return 1;
-        const std::size_t column = *columns_.spacing;
-        const Heading heading = split_heading(layout_.headings[column]);
-        return spacing_of({is_frequency(heading), profiles_[column].first, heading.unit}, options_.time_unit);
-    }
-
     void read_lines() {
         skip_head();
-        spacing_ = spacing();
+        if (options_.dt || columns_.spacing)
+            spacing_ = options_.dt ? *options_.dt : spacing_of(*columns_.spacing, options_);
         std::optional<TimeColumn> times;
         if (columns_.at[kTimeRole])
             times.emplace(text_, layout_, columns_, profiles_[*columns_.at[kTimeRole]], options_, faults_);
@@ -107,10 +101,11 @@ private:
         if (unread_ > 0 && (record_.t.size() < kEnoughRows || (unread_ - 1) * kRare >= record_.t.size()))
             return void(faults_ = std::move(unread_faults_));
         record_.dropped += static_cast<int>(unread_);
-        record_.time_unit_known =
-            options_.dt || columns_.spacing || columns_.head_spacing || !times || times->unit_known();
-        hold_reference();
-        if (layout_.pivoted) hold_input();
+        record_.time_unit_known = options_.dt || (columns_.spacing ? unit_is_known(*columns_.spacing, options_)
+                                                                   : !times || times->unit_known());
+        if (columns_.at[kReferenceRole] && !hold_reference(record_.r))
+            columns_.notes.emplace_back("The column of the set point holds no number; there is none in the record.");
+        if (layout_.pivoted) hold_input(record_);
         write_notes(times);
     }
 
@@ -149,46 +144,15 @@ private:
         skip(line.number, std::move(reason));
     }
 
-    // u of a time that has only y is that of the time before; a time that has only u says nothing where u stays.
-    void hold_input() {
-        double last = std::numeric_limits<double>::quiet_NaN();
-        std::size_t kept = 0;
-        for (std::size_t i = 0; i < record_.t.size(); ++i) {
-            const double u = std::isnan(record_.u[i]) ? last : record_.u[i];
-            const bool moved = !(u == last);
-            last = u;
-            if (std::isnan(record_.y[i]) && !moved) continue;
-            record_.t[kept] = record_.t[i];
-            record_.u[kept] = u;
-            record_.y[kept] = record_.y[i];
-            if (!record_.r.empty()) record_.r[kept] = record_.r[i];
-            for (FurtherInput& input : record_.d) input.values[kept] = input.values[i];
-            record_.lines[kept++] = record_.lines[i];
-        }
-        for (auto* column : {&record_.t, &record_.u, &record_.y}) column->resize(kept);
-        if (!record_.r.empty()) record_.r.resize(kept);
-        for (FurtherInput& input : record_.d) input.values.resize(kept);
-        record_.lines.resize(kept);
-    }
-
-    // A set point that is written where it changes holds until the next one; the first one holds from the beginning.
-    void hold_reference() {
-        std::vector<double>& r = record_.r;
-        const auto known = std::find_if(r.begin(), r.end(), [](double value) { return !std::isnan(value); });
-        if (known == r.end() && !r.empty())
-            columns_.notes.emplace_back("The column of the set point holds no number; there is none in the record.");
-        if (known == r.end()) return r.clear();
-        double last = *known;
-        for (double& value : r) last = value = std::isnan(value) ? last : value;
-    }
-
     void reserve() {
         constexpr std::size_t kMinLineLength = 6;
         const std::size_t typical = layout_.width * 4 + kMinLineLength;
         const std::size_t most = std::min(options_.most_samples, text_.size() / typical + 1);
         for (auto* column : {&record_.t, &record_.u, &record_.y}) column->reserve(most);
         if (columns_.at[kReferenceRole]) record_.r.reserve(most);
-        for (const std::size_t column : columns_.d) record_.d.push_back({heading_of(column, "d"), {}});
+        for (const std::size_t column : columns_.d) record_.d.push_back({disturbance_name(column), {}});
+        d_.assign(columns_.d.size(), kNoNumber);
+        last_d_ = d_;
         record_.lines.reserve(most);
     }
 
@@ -221,23 +185,55 @@ private:
             const std::string_view clock = columns_.clock ? cell(line, *columns_.clock) : std::string_view();
             if (!times->read(text, clock, line.number, t)) return report_cell(line, kTimeRole, text, times->stamps());
         }
-        double u = 0, y = 0, r = std::numeric_limits<double>::quiet_NaN();
+        double u = 0, y = 0;
         if (options_.u_step) u = (*options_.u_step)[1];
         if ((columns_.at[kInputRole] && !read_value(line, kInputRole, u)) || !read_value(line, kOutputRole, y)) return;
-        if (columns_.at[kReferenceRole]) r = read_optional(line, *columns_.at[kReferenceRole]);
-        if (std::isnan(y) && (std::isnan(u) || options_.u_step)) {
-            if (layout_.pivoted) return;
-            ++record_.dropped;
-            return skip(line.number, "neither u nor y");
+        const bool others = read_others(line);
+        // The step of a file without u is at its first row, whatever y is there.
+        const bool stepped = options_.u_step && (layout_.pivoted || !record_.t.empty());
+        if (std::isnan(y) && (std::isnan(u) || stepped)) {
+            if (!others && !layout_.pivoted) {
+                ++record_.dropped;
+                skip(line.number, "neither u nor y");
+            }
+            if (!disturbance_moved()) return;
+            u = last_u_;
         }
         if (std::abs(t) > kLargest) return report_size(line, kTimeRole);
+        push(t, u, y, line.number);
+    }
+
+    void push(double t, double u, double y, int line) {
         record_.t.push_back(t);
         record_.u.push_back(u);
         record_.y.push_back(y);
-        if (columns_.at[kReferenceRole]) record_.r.push_back(r);
-        for (std::size_t k = 0; k < columns_.d.size(); ++k)
-            record_.d[k].values.push_back(read_optional(line, columns_.d[k]));
-        record_.lines.push_back(line.number);
+        if (!std::isnan(u)) last_u_ = u;
+        if (columns_.at[kReferenceRole]) record_.r.push_back(std::exchange(r_, kNoNumber));
+        for (std::size_t k = 0; k < d_.size(); ++k) {
+            if (!std::isnan(d_[k])) last_d_[k] = d_[k];
+            record_.d[k].values.push_back(std::exchange(d_[k], kNoNumber));
+        }
+        record_.lines.push_back(line);
+    }
+
+    // Set point and disturbances, which stay until the next row that counts: a line may hold one of them alone.
+    bool read_others(const CsvLine& line) {
+        bool any = false;
+        const auto take = [&](std::size_t column, double& target) {
+            const double value = read_optional(line, column);
+            if (std::isnan(value)) return;
+            target = value;
+            any = true;
+        };
+        if (columns_.at[kReferenceRole]) take(*columns_.at[kReferenceRole], r_);
+        for (std::size_t k = 0; k < d_.size(); ++k) take(columns_.d[k], d_[k]);
+        return any;
+    }
+
+    bool disturbance_moved() const {
+        for (std::size_t k = 0; k < d_.size(); ++k)
+            if (!std::isnan(d_[k]) && d_[k] != last_d_[k]) return !std::isnan(last_u_);
+        return false;
     }
 
     // u of words such as ON and OFF.
@@ -261,7 +257,7 @@ private:
             return false;
         }
         if (!text.empty() && missing_word_.empty()) missing_word_ = std::string(text);
-        value = std::numeric_limits<double>::quiet_NaN();
+        value = kNoNumber;
         return true;
     }
 
@@ -269,7 +265,7 @@ private:
     double read_optional(const CsvLine& line, std::size_t column) const {
         double value = 0;
         const bool number = read_cell_number(cell(line, column), value, layout_.sign, profiles_[column].suffix);
-        return number && std::abs(value) <= kLargest ? value : std::numeric_limits<double>::quiet_NaN();
+        return number && std::abs(value) <= kLargest ? value : kNoNumber;
     }
 
     // Words of u are its two levels; numbers among them are damaged cells.
@@ -285,6 +281,14 @@ private:
     std::string heading_of(std::size_t column, const std::string& without) const {
         return column < layout_.headings.size() && !layout_.headings[column].empty() ? layout_.headings[column]
                                                                                      : without;
+    }
+
+    // Headings may be missing, or there twice.
+    std::string disturbance_name(std::size_t column) const {
+        const std::string name = heading_of(column, "d");
+        const auto same =
+            std::ranges::count_if(columns_.d, [&](std::size_t other) { return heading_of(other, "d") == name; });
+        return same > 1 ? name + " (column " + std::to_string(column + 1) + ")" : name;
     }
 
     std::string column_name(Role role) const {
@@ -325,17 +329,12 @@ private:
     void write_notes(std::optional<TimeColumn>& times) {
         auto& notes = record_.notes;
         notes = source_.notes();
+        record_.unread_column = std::move(columns_.unread);
         std::ranges::move(columns_.notes, std::back_inserter(notes));
         if (times) {
             for (std::string& note : times->take_notes()) notes.push_back(std::move(note));
         }
-        if (columns_.spacing)
-            notes.emplace_back("Times are made from column " + in_quotes(layout_.headings[*columns_.spacing]) +
-                               ", the spacing: " + tunewright::text(spacing_) + " " + options_.time_unit + ".");
-        if (columns_.head_spacing)
-            notes.emplace_back("Times are made from " + in_quotes(columns_.head_spacing->text) +
-                               " above the data: rows every " + tunewright::text(spacing_) + " " + options_.time_unit +
-                               ".");
+        if (columns_.spacing) notes.push_back(spacing_note(*columns_.spacing, options_));
         if (options_.u_step)
             notes.emplace_back("u steps from " + tunewright::text((*options_.u_step)[0]) + " to " +
                                tunewright::text((*options_.u_step)[1]) + " at the first row, as given.");
@@ -373,6 +372,8 @@ private:
     std::size_t index_ = 0, unread_ = 0;
     std::vector<CsvFault> unread_faults_;
     double spacing_ = 1;
+    double r_ = kNoNumber, last_u_ = kNoNumber;  // r_, d_: read, and not yet in a row of the record
+    std::vector<double> d_, last_d_;
     std::string missing_word_, low_word_, high_word_;
     CsvRecord record_;
     std::vector<CsvFault> faults_;

@@ -47,6 +47,7 @@ struct CsvRecord {
     std::vector<int> lines;              ///< of each sample in the file, from 1
     int dropped = 0;                     ///< lines left out: unreadable, without a time, or with neither u nor y
     std::string unread;                  ///< a sentence about the lines that could not be read; "" if there are none
+    std::string unread_column;           ///< FoundColumns::unread
     std::vector<CsvSkip> skipped;        ///< the first kMostSkips of them, and what stands above the rows
     std::vector<CsvRun> runs;            ///< where the times begin again; empty: one run
     int run = 1;                         ///< the one that is read, from 1

@@ -211,7 +211,9 @@ CsvLayout table_layout(std::string_view text) {
         if (head.comment) continue;
         lines.push_back({head.number, {}});
         split_line(head.content, layout.separator, lines.back().cells, layout.unquoted);
+        layout.width = std::max(layout.width, lines.back().cells.size());
     }
+    if (layout.width > kMaxColumns) return layout;
     layout.lines_of_text = static_cast<int>(lines.size());
     const std::size_t usual = layout.width = usual_width(lines);
     widen_to_headings(lines, layout);
@@ -274,6 +276,7 @@ bool is_comment(std::string_view content) {
 
 CsvLayout find_layout(std::string_view text, const ColumnChoices& chosen) {
     CsvLayout table = table_layout(text);
+    if (table.width > kMaxColumns) return table;
     const std::vector<std::string_view> headings(table.headings.begin(), table.headings.end());
     // A remark such as "Kp=1 Ki=2" in the rows of a table makes them no log of pairs.
     if (table.data_line > 0 && roles_named(headings) > 1) return table;

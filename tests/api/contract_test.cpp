@@ -251,5 +251,18 @@ TEST(PreparedJobs, KeepTheRequestAsSentAndHashItsMeaning) {
     EXPECT_NE(one.request_hash, other.request_hash);
 }
 
+// The rows before the part say what u and a disturbance are where its first cells are blank.
+TEST(Contract, APartOfARecordKeepsWhatHoldsAtItsStart) {
+    const auto read =
+        decode<IdentifyRequest>(identify_request_contract(), R"({"record": {"from": 2, "columns": {"d": ["q"]},
+        "csv": "t,u,y,q\n0,3,0,8\n1,,0,\n2,,1,\n3,4,1,\n4,,2,9\n5,,3,\n"}})");
+    ASSERT_TRUE(read.faults.empty()) << read.faults.front().detail;
+    const Record& record = read.value.read.record;
+    EXPECT_EQ(record.t.front(), 2);
+    EXPECT_EQ(record.u.front(), 3);
+    EXPECT_EQ(record.d[0].values.front(), 8);
+    EXPECT_EQ(record.u[1], 4);
+}
+
 }  // namespace
 }  // namespace tunewright::api

@@ -64,6 +64,16 @@ CsvFault equal_columns(Role role, Role other) {
     return column_fault(role, role_name(role) + " and " + role_name(other) + " are the same column; choose another.");
 }
 
+CsvFault step_beside_column(const ColumnFacts& facts, const std::vector<std::size_t>& columns) {
+    return {"u_step", "u_step is for a file without u, and the file has " + facts.shown(columns) +
+                          ". Remove u_step; if that is another quantity, rename the column."};
+}
+
+std::string columns_unread(const ColumnFacts& facts, const std::vector<std::size_t>& columns) {
+    return facts.shown(columns) + " may be u and " + (columns.size() == 1 ? "was" : "were") +
+           " not read, because u_step says what u was. If the file has u, remove u_step and choose its column.";
+}
+
 std::string surplus_note(const CsvLayout& layout) {
     return surplus_counted(layout) + ": they are read as those of the first " + std::to_string(layout.headings.size()) +
            " headings, and " + listed(quoted_all(layout.surplus), "and") +

@@ -30,6 +30,12 @@ CsvFault missing_column(const ColumnFacts& facts, Role role);
 /// One column has both roles.
 CsvFault equal_columns(Role role, Role other);
 
+/// A step of u is given, and the file has u in `columns`.
+CsvFault step_beside_column(const ColumnFacts& facts, const std::vector<std::size_t>& columns);
+
+/// A step of u is given, and `columns` may be u: they are not read.
+std::string columns_unread(const ColumnFacts& facts, const std::vector<std::size_t>& columns);
+
 /// What is said where the first headings are believed to be those of the values, and where they are not.
 std::string surplus_note(const CsvLayout& layout);
 CsvFault surplus_fault(const CsvLayout& layout);

@@ -36,7 +36,7 @@ public:
         if (!faults_.empty()) return found_;
         join_date_and_clock();
         if (wanted(kTimeRole)) time_by_content();
-        if (wanted(kTimeRole)) found_.head_spacing = spacing_above(facts_.text(), layout_);
+        if (wanted(kTimeRole)) found_.spacing = spacing_above(facts_.text(), layout_);
         rest_by_content();
         find_reference();
         for (const Role role : {kTimeRole, kInputRole, kOutputRole}) {
@@ -50,7 +50,7 @@ public:
 
 private:
     bool wanted(Role role) const {
-        if (role == kTimeRole && (options_.dt || found_.spacing || found_.head_spacing)) return false;
+        if (role == kTimeRole && (options_.dt || found_.spacing)) return false;
         return !found_.at[role] && !(role == kInputRole && options_.u_step);
     }
 
@@ -62,7 +62,7 @@ private:
     bool is_term(std::size_t column) const { return std::find(terms_.begin(), terms_.end(), column) != terms_.end(); }
 
     bool may_be(std::size_t column, Role role) const {
-        if (taken(column) || found_.spacing == column) return false;
+        if (taken(column) || found_.spacing_column == column) return false;
         const ColumnProfile& p = profiles_[column];
         if (role == kTimeRole) return facts_.may_be_time(column);
         const bool numeric = p.numbers + p.missing > 0 && rare(p.stamps, p) && rare(p.switches, p) &&
@@ -215,18 +215,16 @@ private:
                                "; they are passed over.");
     }
 
-    // "Ts" with one number, or always the same one.
     void find_spacing() {
         if (!wanted(kTimeRole)) return;
         for (std::size_t i = 0; i < facts_.size(); ++i) {
-            const ColumnProfile& p = profiles_[i];
-            const bool constant = p.numbers != 2 && p.changes == 0;
-            const bool names = is_spacing(facts_.heading(i)) || is_frequency(facts_.heading(i));
-            if (taken(i) || !names || !constant || !(p.first > 0) || p.texts > 0) continue;
+            auto spacing = taken(i) ? std::nullopt : spacing_in_column(facts_, i);
+            if (!spacing) continue;
             for (std::size_t k = 0; k < facts_.size(); ++k) {
                 if (k != i && may_be(k, kTimeRole) && match(facts_.heading(k), kTimeRole)) return;
             }
-            found_.spacing = i;
+            found_.spacing_column = i;
+            found_.spacing = std::move(spacing);
             return;
         }
     }
@@ -251,10 +249,18 @@ private:
                                "; none is read. Choose one if it matters.");
     }
 
+    // A step that is given in place of a u that the file has would be at another time than the real one.
     void refuse_step_beside_column() {
-        if (options_.u_step && chosen_[kInputRole])
-            faults_.push_back(
+        if (!options_.u_step) return;
+        if (chosen_[kInputRole])
+            return faults_.push_back(
                 {"u_step", "u_step is for a file without u, and columns.u names a column. Remove one of them."});
+        NameFits u = fits(kInputRole);
+        std::erase_if(u.best, [&](std::size_t column) { return profiles_[column].changes == 0; });
+        if (u.best.empty()) return;
+        const auto level = match(facts_.heading(u.best.front()), kInputRole)->level;
+        if (level == 1) return faults_.push_back(step_beside_column(facts_, u.best));
+        found_.unread = columns_unread(facts_, u.best);
     }
 
     // "cmd" is what was sent to the plant, where nothing else is.

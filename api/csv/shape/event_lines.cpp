@@ -59,8 +59,13 @@ std::optional<ShapedText> event_lines(std::string_view text) {
         if (!line) break;
         const std::string_view content = trimmed(*line);
         if (content.empty() || is_comment(content)) continue;
-        if (const auto event = event_of(content))
-            pivot.add(event->time, event->name.empty() ? "temp" : event->name, event->value, number);
+        const auto event = event_of(content);
+        if (!event || pivot.add(event->time, event->name.empty() ? "temp" : event->name, event->value, number))
+            continue;
+        ShapedText out;
+        out.fault = "csv has lines that begin with a name, of more than " + std::to_string(Pivot::kMaxTags) +
+                    " names. Leave out those that are neither u nor y.";
+        return out;
     }
     ShapedText out = pivot.table("time");
     out.notes.emplace_back(

@@ -11,8 +11,6 @@
 namespace tunewright::api {
 namespace {
 
-constexpr std::size_t kMaxJsonColumns = 1000;
-
 std::string cell_of(const Json& value) {
     if (value.is_string()) return value.get<std::string>();
     if (value.is_null()) return {};
@@ -22,19 +20,18 @@ std::string cell_of(const Json& value) {
 class JsonTable {
 public:
     void add(const Json& row) {
-        cells_.assign(headings_.size(), {});
+        cells_.clear();
         flatten(row, "");
-        if (cells_.empty()) return;
-        rows_.push_back(std::move(cells_));
+        if (!cells_.empty()) rows_.push_back(std::move(cells_));
     }
 
     ShapedText table(bool with_headings) const {
         ShapedText out;
         std::vector<std::string_view> line(headings_.begin(), headings_.end());
         if (with_headings) add_line(out, line, 1);
-        for (std::size_t i = 0; i < rows_.size(); ++i) {
+        for (std::size_t i = 0; i < rows_.size() && out.fault.empty(); ++i) {
             line.assign(headings_.size(), {});
-            std::copy(rows_[i].begin(), rows_[i].end(), line.begin());
+            for (const auto& [column, cell] : rows_[i]) line[column] = cell;
             add_line(out, line, static_cast<int>(i) + 1);
         }
         return out;
@@ -51,26 +48,22 @@ private:
         } else if (value.is_array() && name.empty()) {
             for (std::size_t i = 0; i < value.size(); ++i) flatten(value[i], std::to_string(i + 1));
         } else if (!value.is_array()) {
-            const std::size_t column = column_of(name);
-            if (column < cells_.size()) cells_[column] = cell_of(value);
+            cells_.emplace_back(column_of(name), cell_of(value));
         }
     }
 
     std::size_t column_of(const std::string& name) {
         const auto [at, added] = places_.emplace(name, headings_.size());
-        if (!added) return at->second;
-        if (headings_.size() == kMaxJsonColumns) {
-            places_.erase(at);
-            return kMaxJsonColumns;
-        }
-        headings_.push_back(name);
-        cells_.emplace_back();
-        return headings_.size() - 1;
+        if (added) headings_.push_back(name);
+        return at->second;
     }
 
-    std::vector<std::string> headings_, cells_;
+    using Cells = std::vector<std::pair<std::size_t, std::string>>;  ///< column and value, of those that a row has
+
+    std::vector<std::string> headings_;
     std::unordered_map<std::string, std::size_t> places_;
-    std::vector<std::vector<std::string>> rows_;
+    Cells cells_;
+    std::vector<Cells> rows_;
 };
 
 bool holds_rows(const Json& value) {
@@ -97,6 +90,11 @@ std::optional<ShapedText> from_rows(const Json& rows) {
         for (const Json& inner : row) table.add(inner);
     }
     if (table.columns() < 2 || table.rows() < 2) return std::nullopt;
+    if (table.columns() > kMaxColumns) {
+        ShapedText out;
+        out.fault = too_many_columns(table.columns());
+        return out;
+    }
     return table.table(of_lists || rows.front().is_object());
 }
 
@@ -118,7 +116,7 @@ std::optional<ShapedText> from_columns(const Json& object, int depth = 0) {
     std::vector<std::string_view> line;
     for (const auto& [name, values] : columns) line.emplace_back(name);
     add_line(out, line, 1);
-    for (std::size_t i = 0; i < length; ++i) {
+    for (std::size_t i = 0; i < length && out.fault.empty(); ++i) {
         for (std::size_t k = 0; k < columns.size(); ++k) cells[k] = cell_of((*columns[k].second)[i]);
         add_line(out, {cells.begin(), cells.end()}, static_cast<int>(i) + 1);
     }

@@ -27,8 +27,6 @@ constexpr std::string_view kValueNames[] = {"value",   "varvalue", "wert",  "vva
 constexpr std::string_view kFirstTime[] = {"_time", "last_changed", "last_updated"};
 constexpr std::string_view kMilliseconds[] = {"millitm", "millisecond", "milliseconds", "msec"};
 
-constexpr std::size_t kMostTags = 500;
-
 /// The columns of a long table; `clock` and `millis` where the time is in several.
 struct LongColumns {
     std::size_t time = 0, value = 0;
@@ -203,11 +201,10 @@ std::optional<ShapedText> long_table(std::string_view text, const CsvLayout& lay
         if (is_one_of(split_heading(layout.headings.empty() ? "" : layout.headings[tags.front()]).name,
                       {"tagindex", "tagid"}))
             tag.insert(0, "Tag ");
-        pivot.add(time_of(line, *at), tag, line.cells[at->value], line.number);
-        if (pivot.tags().size() > kMostTags) {
+        if (!pivot.add(time_of(line, *at), tag, line.cells[at->value], line.number)) {
             ShapedText out;
-            out.fault = "csv has one line for each tag and time, of more than " + std::to_string(kMostTags) +
-                        " tags. Export only those of u and y.";
+            out.fault = "csv has one line for each tag and time, of more than " + std::to_string(Pivot::kMaxTags) +
+                        " tags. Export only those of u, y and the set point.";
             return out;
         }
     }

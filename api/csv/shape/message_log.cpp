@@ -1,6 +1,8 @@
 #include "api/csv/shape/shapes.h"
 
 #include <algorithm>
+#include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -21,35 +23,29 @@ struct MessageKind {
 
 constexpr std::size_t kDefinedFrom = 5, kNamed = 3;  // cells of an FMT line
 constexpr int kFewRows = 8;
+// A kind's number is a byte of the binary log, and its columns are a text of 64 bytes.
+constexpr std::size_t kMaxKinds = 256, kMaxKindColumns = 64;
 
 class MessageLog {
 public:
     explicit MessageLog(std::string_view text) : text_(text) {
         each_line([&](const std::vector<std::string_view>& cells, int) {
             if (cells.front() == "FMT") return define(cells);
-            if (MessageKind* kind = kind_of(cells.front())) ++kind->rows;
+            if (const auto kind = kind_of(cells.front())) ++kinds_[*kind].rows;
         });
         std::erase_if(kinds_, [](const MessageKind& kind) {
             return kind.rows < kFewRows || kind.columns.size() < 2 || !is_time(kind.columns.front());
         });
+        places_.clear();
+        for (std::size_t i = 0; i < kinds_.size(); ++i) places_.emplace(kinds_[i].name, i);
     }
 
     bool empty() const { return kinds_.empty(); }
 
     ShapedText table(const ColumnChoices& chosen) {
         ShapedText out;
-        for (const auto* choice : {&chosen.u, &chosen.y, &chosen.r}) {
-            if (!*choice || !std::holds_alternative<std::string>(**choice)) continue;
-            const auto& name = std::get<std::string>(**choice);
-            chosen_names_.push_back(name);
-            const auto owners = owners_of(name);
-            if (owners.size() == 1) owners.front()->taken = true;
-            if (owners.size() == 1) continue;
-            out.fault = "\"" + name + "\" is " + (owners.empty() ? "in no kind" : "in several kinds") +
-                        " of the log's messages. Name the column with its kind, such as " + example() + ". " +
-                        listed_kinds();
-            return out;
-        }
+        take_chosen(chosen, out);
+        if (!out.fault.empty()) return out;
         if (!chosen.u && !chosen.y && kinds_.size() == 1) kinds_.front().taken = true;
         if (std::ranges::none_of(kinds_, &MessageKind::taken)) {
             out.fault =
@@ -61,6 +57,34 @@ public:
     }
 
 private:
+    /// Takes the kinds that hold the chosen columns, or says why there is none.
+    void take_chosen(const ColumnChoices& chosen, ShapedText& out) {
+        const auto take = [&](const std::string& role, const ColumnChoice& choice) {
+            if (!out.fault.empty()) return;
+            out.fault_at = "columns/" + role;
+            const auto* name = std::get_if<std::string>(&choice);
+            if (name == nullptr) {
+                out.fault = role + " is column " + std::to_string(std::get<int>(choice)) +
+                            "; in a log of messages each kind has columns of its own. Name the column with its kind, "
+                            "such as " +
+                            example() + ". " + listed_kinds();
+                return;
+            }
+            chosen_names_.push_back(*name);
+            const auto owners = owners_of(*name);
+            if (owners.size() == 1) owners.front()->taken = true;
+            // The kinds' common clock is read anyway.
+            if (owners.size() == 1 || (role == "t" && !owners.empty())) return;
+            out.fault = "\"" + *name + "\" is " + (owners.empty() ? "in no kind" : "in several kinds") +
+                        " of the log's messages. Name the column with its kind, such as " + example() + ". " +
+                        listed_kinds();
+        };
+        for (const auto& [role, choice] :
+             {std::pair{"t", &chosen.t}, {"u", &chosen.u}, {"y", &chosen.y}, {"r", &chosen.r}})
+            if (*choice) take(role, **choice);
+        for (std::size_t i = 0; i < chosen.d.size(); ++i) take("d/" + std::to_string(i), chosen.d[i]);
+    }
+
     static bool is_time(std::string_view name) { return name.starts_with("Time"); }
 
     template <class Use>
@@ -77,15 +101,18 @@ private:
         }
     }
 
-    MessageKind* kind_of(std::string_view name) {
-        const auto found = std::ranges::find(kinds_, name, &MessageKind::name);
-        return found == kinds_.end() ? nullptr : &*found;
+    std::optional<std::size_t> kind_of(std::string_view name) const {
+        const auto found = places_.find(name);
+        return found == places_.end() ? std::nullopt : std::optional(found->second);
     }
 
     void define(const std::vector<std::string_view>& cells) {
-        if (cells.size() <= kDefinedFrom || cells[kNamed] == "FMT" || kind_of(cells[kNamed])) return;
+        if (cells.size() <= kDefinedFrom || cells.size() > kDefinedFrom + kMaxKindColumns || kinds_.size() == kMaxKinds)
+            return;
+        if (cells[kNamed] == "FMT" || kind_of(cells[kNamed])) return;
         MessageKind kind{std::string(cells[kNamed]), {}};
         for (std::size_t i = kDefinedFrom; i < cells.size(); ++i) kind.columns.emplace_back(cells[i]);
+        places_.emplace(kind.name, kinds_.size());
         kinds_.push_back(std::move(kind));
     }
 
@@ -132,12 +159,13 @@ private:
         add_line(out, {headings.begin(), headings.end()}, 1);
         std::vector<std::string_view> row;
         each_line([&](const std::vector<std::string_view>& cells, int number) {
-            const MessageKind* kind = kind_of(cells.front());
-            if (kind == nullptr || !kind->taken || cells.size() < 2) return;
+            const auto found = kind_of(cells.front());
+            if (!found || !kinds_[*found].taken || cells.size() < 2) return;
+            const MessageKind& kind = kinds_[*found];
             row.assign(headings.size(), {});
             row[0] = cells[1];
-            const std::size_t at = from[static_cast<std::size_t>(kind - kinds_.data())];
-            for (std::size_t i = 2; i < std::min(cells.size(), kind->columns.size() + 1); ++i)
+            const std::size_t at = from[*found];
+            for (std::size_t i = 2; i < std::min(cells.size(), kind.columns.size() + 1); ++i)
                 row[at + i - 2] = cells[i];
             add_line(out, row, number);
         });
@@ -150,6 +178,7 @@ private:
 
     std::string_view text_;
     std::vector<MessageKind> kinds_;
+    std::map<std::string, std::size_t, std::less<>> places_;  ///< of kinds_, by name
     std::vector<std::string> chosen_names_;
 };
 

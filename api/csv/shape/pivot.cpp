@@ -5,12 +5,31 @@
 #include <numeric>
 
 #include "api/csv/cell.h"
+#include "api/csv/column_choice.h"
 
 namespace tunewright::api {
 
+std::string too_many_columns(std::size_t columns) {
+    return "csv has " + std::to_string(columns) + " columns; at most " + std::to_string(kMaxColumns) +
+           " are read. Export only those of time, u, y and the set point.";
+}
+
 void add_line(ShapedText& table, const std::vector<std::string_view>& cells, int line) {
+    if (!table.fault.empty()) return;
+    table.cells += cells.size();
+    if (table.cells > kMaxTableCells) {
+        table.fault = "csv has " + std::to_string(cells.size()) +
+                      " names of values, and rows for a table of more than " +
+                      std::to_string(kMaxTableCells / 1'000'000) +
+                      " million cells. Export only the values of u, y and the set point, or a shorter part.";
+        table.text.clear();
+        return;
+    }
     for (std::size_t i = 0; i < cells.size(); ++i) {
-        table.text += i > 0 ? ",\"" : "\"";
+        if (i > 0) table.text += ',';
+        // Alone in its line it must be seen.
+        if (cells[i].empty() && cells.size() > 1) continue;
+        table.text += '"';
         for (const char c : cells[i]) {
             if (c == '"') table.text += '"';
             table.text += c == '\n' || c == '\r' ? ' ' : c;
@@ -21,16 +40,18 @@ void add_line(ShapedText& table, const std::vector<std::string_view>& cells, int
     table.lines.push_back(line);
 }
 
-std::size_t Pivot::tag_index(std::string_view tag) {
-    // Few tags, and mostly the one of the entry before.
+std::optional<std::size_t> Pivot::tag_index(std::string_view tag) {
+    // Mostly the one of the entry before.
     if (!entries_.empty() && tags_[entries_.back().tag] == tag) return entries_.back().tag;
-    const auto known = std::ranges::find(tags_, tag);
-    if (known != tags_.end()) return static_cast<std::size_t>(known - tags_.begin());
+    const auto known = places_.find(std::string(tag));
+    if (known != places_.end()) return known->second;
+    if (tags_.size() == kMaxTags) return std::nullopt;
     tags_.emplace_back(tag);
+    places_.emplace(tag, tags_.size() - 1);
     return tags_.size() - 1;
 }
 
-void Pivot::add(std::string_view time, std::string_view tag, std::string_view value, int line) {
+bool Pivot::add(std::string_view time, std::string_view tag, std::string_view value, int line) {
     Entry entry{{}, std::string(time), std::string(value), 0, line};
     const auto day = read_time_stamp(time, DateOrder::day_first);
     if (double number = 0; (!day || is_compact_stamp(time)) && !day && read_cell_number(time, number)) {
@@ -40,10 +61,13 @@ void Pivot::add(std::string_view time, std::string_view tag, std::string_view va
         entry.key[0] = day->seconds;
         entry.key[1] = month ? month->seconds : day->seconds;
     } else {
-        return;
+        return true;
     }
-    entry.tag = tag_index(tag);
+    const auto index = tag_index(tag);
+    if (!index) return false;
+    entry.tag = *index;
     entries_.push_back(std::move(entry));
+    return true;
 }
 
 ShapedText Pivot::table(std::string_view time_heading) const {
@@ -61,7 +85,7 @@ ShapedText Pivot::table(std::string_view time_heading) const {
     std::vector<std::string_view> cells = {time_heading};
     cells.insert(cells.end(), tags_.begin(), tags_.end());
     add_line(out, cells, 1);
-    for (std::size_t i = 0; i < by_time.size();) {
+    for (std::size_t i = 0; i < by_time.size() && out.fault.empty();) {
         const Entry& first = entries_[by_time[i]];
         cells.assign(tags_.size() + 1, {});
         cells[0] = first.time;

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <cstddef>
-#include <deque>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "api/csv/time_stamp.h"
@@ -19,16 +19,27 @@ struct ShapedText {
     bool pivoted = false;            ///< blank cells are values that other times have
     std::vector<std::string> notes;  ///< what was found, one sentence each
     std::string fault = {};          ///< why the file cannot be made into a table; then there is no text
+    std::string fault_at = "csv";    ///< as CsvFault::where
+    std::size_t cells = 0;
 };
 
-/// Adds a line to the table, each cell in quotes.
+/// Of a table that is made from a file: the columns of a few values grow with every name in it, and so do all rows.
+inline constexpr std::size_t kMaxTableCells = 50'000'000;
+
+/// Adds a line to the table, each cell with a value in quotes. A table of more than kMaxTableCells has a fault, and no
+/// line is added any more.
 void add_line(ShapedText& table, const std::vector<std::string_view>& cells, int line);
+
+/// The sentence that refuses a file of so many, above kMaxColumns.
+std::string too_many_columns(std::size_t columns);
 
 class Pivot {
 public:
+    static constexpr std::size_t kMaxTags = 500;
+
     /// Values arrive in the order of the file. A time is a number or a stamp (time_stamp.h); a value without one is
-    /// left out.
-    void add(std::string_view time, std::string_view tag, std::string_view value, int line);
+    /// left out. False where there would be more than kMaxTags tags: the value is left out.
+    bool add(std::string_view time, std::string_view tag, std::string_view value, int line);
 
     const std::vector<std::string>& tags() const { return tags_; }
 
@@ -44,9 +55,10 @@ private:
         int line;
     };
 
-    std::size_t tag_index(std::string_view tag);
+    std::optional<std::size_t> tag_index(std::string_view tag);
 
     std::vector<std::string> tags_;
+    std::unordered_map<std::string, std::size_t> places_;  ///< of tags_
     std::vector<Entry> entries_;
 };
 

@@ -34,12 +34,10 @@ std::size_t falling(const std::vector<double>& t, std::size_t i) {
     return end - i;
 }
 
-/// Whether the times begin again at row i of a run that began at `first`: they fall by half of what it has covered and
-/// go on from there, and the row before is not the false one.
-bool begins_again(const std::vector<double>& t, std::size_t first, std::size_t i) {
+/// Whether the times begin again at row i of a run that began at `first` and has come to `latest`: they fall by half of
+/// what it has covered and go on from there, and the row before is not the false one.
+bool begins_again(const std::vector<double>& t, std::size_t first, std::size_t i, double latest) {
     if (i - first < 2) return false;
-    const double latest =
-        *std::max_element(t.begin() + static_cast<std::ptrdiff_t>(first), t.begin() + static_cast<std::ptrdiff_t>(i));
     const double covered = latest - t[first];
     if (!(latest - t[i] > 0.5 * covered)) return false;
     // A row far ahead of its neighbours is a false time.
@@ -51,20 +49,24 @@ bool begins_again(const std::vector<double>& t, std::size_t first, std::size_t i
 std::vector<RowRun> runs_of(const std::vector<double>& t) {
     std::vector<RowRun> runs;
     RowRun run;
+    std::size_t first = 0;  // row from which the run's times count up
+    double latest = 0;
     const auto start = [&](std::size_t i) {
         run = {i, i, falling(t, i)};
         if (run.countdown < kShortest) run.countdown = 0;
-        return std::max<std::size_t>(run.countdown, 1);
+        first = i + (run.countdown > 0 ? run.countdown - 1 : 0);
+        latest = t[first];
+        return first + 1;
     };
     std::size_t i = start(0);
     while (i < t.size()) {
-        if (t[i] < t[i - 1] && begins_again(t, run.first + (run.countdown > 0 ? run.countdown - 1 : 0), i)) {
+        if (t[i] < t[i - 1] && begins_again(t, first, i, latest)) {
             run.end = i;
             runs.push_back(run);
-            i += start(i);
+            i = start(i);
             continue;
         }
-        ++i;
+        latest = std::max(latest, t[i++]);
     }
     run.end = t.size();
     runs.push_back(run);
@@ -92,19 +94,40 @@ bool contiguous(const std::vector<double>& t, const RowRun& run) {
     return next >= 0 && next <= kSpacings * step;
 }
 
-/// Whether u moves in the run and y then moves too: by a twentieth of what it does in the whole file.
-bool tests_something(const CsvRecord& record, const RowRun& run) {
+/// A countdown that does not lead to a test is a run of its own.
+std::vector<RowRun> parted(const std::vector<double>& t, const std::vector<RowRun>& runs) {
+    std::vector<RowRun> out;
+    for (const RowRun& run : runs) {
+        if (contiguous(t, run)) {
+            out.push_back(run);
+            continue;
+        }
+        const std::size_t up = run.first + run.countdown;
+        out.push_back({run.first, up, run.countdown});
+        out.push_back({up, run.end, 0});
+    }
+    return out;
+}
+
+/// Largest less smallest number; negative where there is none.
+double range_of(const std::vector<double>& values) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const double value : values) {
+        if (std::isnan(value)) continue;
+        low = std::min(low, value);
+        high = std::max(high, value);
+    }
+    return high - low;
+}
+
+/// Whether u moves in the run and y then moves too: by a twentieth of `range_y`, what it does in the whole file.
+bool tests_something(const CsvRecord& record, const RowRun& run, double range_y) {
     constexpr std::size_t kFewRows = 8;
     constexpr double kAnswer = 0.05;
     if (run.rows() < kFewRows) return false;
-    double low = std::numeric_limits<double>::infinity(), high = -low, all_low = low, all_high = high;
+    double low = std::numeric_limits<double>::infinity(), high = -low;
     bool moved = record.u_stepped;
     double u = std::nan("");
-    for (std::size_t i = 0; i < record.t.size(); ++i) {
-        if (std::isnan(record.y[i])) continue;
-        all_low = std::min(all_low, record.y[i]);
-        all_high = std::max(all_high, record.y[i]);
-    }
     for (std::size_t i = run.first; i < run.end; ++i) {
         if (!std::isnan(record.u[i])) {
             moved = moved || (!std::isnan(u) && record.u[i] != u);
@@ -114,7 +137,7 @@ bool tests_something(const CsvRecord& record, const RowRun& run) {
         low = std::min(low, record.y[i]);
         high = std::max(high, record.y[i]);
     }
-    return moved && high - low > kAnswer * (all_high - all_low);
+    return moved && high - low > kAnswer * range_y;
 }
 
 void keep_rows(CsvRecord& record, const RowRun& run) {
@@ -160,31 +183,31 @@ void note_runs(CsvRecord& record, int taken, bool chosen) {
 
 }  // namespace
 
-std::optional<std::string> take_run(CsvRecord& record, std::optional<int> chosen) {
+std::optional<CsvFault> take_run(CsvRecord& record, std::optional<int> chosen) {
     if (record.t.size() < 2) return std::nullopt;
-    std::vector<RowRun> runs =
-        newest_first(record.t) ? std::vector<RowRun>{{0, record.t.size(), 0}} : runs_of(record.t);
-    // A countdown that does not lead to a test is a run of its own.
-    for (std::size_t k = 0; k < runs.size(); ++k) {
-        if (contiguous(record.t, runs[k])) continue;
-        const RowRun rest{runs[k].first + runs[k].countdown, runs[k].end, 0};
-        runs[k].end = rest.first;
-        runs.insert(runs.begin() + static_cast<std::ptrdiff_t>(k) + 1, rest);
-    }
+    const std::vector<RowRun> runs =
+        newest_first(record.t) ? std::vector<RowRun>{{0, record.t.size(), 0}} : parted(record.t, runs_of(record.t));
+    if (runs.size() > kMaxFileRuns)
+        return CsvFault{"csv", "The times begin again " + std::to_string(runs.size() - 1) + " times; at most " +
+                                   std::to_string(kMaxFileRuns) +
+                                   " runs in one file are read. Sort the rows by time, choose another column of "
+                                   "times, or export one test alone."};
     if (chosen && (*chosen < 1 || static_cast<std::size_t>(*chosen) > runs.size()))
-        return "run is " + std::to_string(*chosen) + "; the file holds " +
-               (runs.size() == 1 ? "one run, its times never begin again. Leave run out."
-                                 : std::to_string(runs.size()) + " runs, counted from 1.");
+        return CsvFault{"run", "run is " + std::to_string(*chosen) + "; the file holds " +
+                                   (runs.size() == 1 ? "one run, its times never begin again. Leave run out."
+                                                     : std::to_string(runs.size()) + " runs, counted from 1.")};
     if (runs.size() == 1) {
         turn_countdown(record, runs.front());
         return std::nullopt;
     }
     std::size_t taken = 0;
+    const double range_y = range_of(record.y);
     for (std::size_t k = 0; k < runs.size(); ++k) {
         const auto [low, high] = std::minmax_element(record.t.begin() + static_cast<std::ptrdiff_t>(runs[k].first),
                                                      record.t.begin() + static_cast<std::ptrdiff_t>(runs[k].end));
         record.runs.push_back({record.lines[runs[k].first], record.lines[runs[k].end - 1],
-                               static_cast<int>(runs[k].rows()), *low, *high, tests_something(record, runs[k])});
+                               static_cast<int>(runs[k].rows()), *low, *high,
+                               tests_something(record, runs[k], range_y)});
         const CsvRun &best = record.runs[taken], &now = record.runs[k];
         if (now.tests > best.tests || (now.tests == best.tests && now.rows > best.rows)) taken = k;
     }

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <optional>
-#include <string>
 
 #include "api/csv/record.h"
 
 namespace tunewright::api {
+
+/// A file whose times begin again more often is not in the order of its times, and is refused.
+inline constexpr int kMaxFileRuns = 1000;
 
 /// Keeps the rows of one run in `record`:
 ///
@@ -26,7 +28,8 @@ namespace tunewright::api {
 ///     1,5,20
 ///
 /// Fills record.runs (with the times as the file counts them) and record.run where there are several, and says so: in
-/// record.unread where nobody chose, else in the notes. Returns a sentence where there is no run `chosen`.
-std::optional<std::string> take_run(CsvRecord& record, std::optional<int> chosen);
+/// record.unread where nobody chose, else in the notes. Returns a fault where there is no run `chosen`, or where there
+/// are too many.
+std::optional<CsvFault> take_run(CsvRecord& record, std::optional<int> chosen);
 
 }  // namespace tunewright::api

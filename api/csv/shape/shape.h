@@ -22,16 +22,18 @@ public:
     std::string_view file_text() const { return file_; }  ///< UTF-8, of the file
     const CsvLayout& layout() const { return layout_; }
     const std::vector<std::string>& notes() const { return notes_; }
-    const std::string& fault() const { return fault_; }  ///< "" where the file can be read as a table
+    const std::string& fault() const { return fault_; }        ///< "" where the file can be read as a table
+    const std::string& fault_at() const { return fault_at_; }  ///< as CsvFault::where
 
 private:
     void take(struct ShapedText shaped);
+    void refuse_width();
 
     std::string utf8_, shaped_;
     std::string_view file_, text_;
     CsvLayout layout_;
     std::vector<std::string> notes_;
-    std::string fault_;
+    std::string fault_, fault_at_ = "csv";
 };
 
 }  // namespace tunewright::api

@@ -112,7 +112,8 @@ const std::vector<Log> kLogs = {
              return text.replace(text.find(",,"), 2, ",1,");
          }(),
      1, 20, kUnwritten, "The file holds a second pair, \"uVal\" and \"yVal\"; choose its columns to use that one."},
-    {"spacing_in_every_row", "dt,u,y\n" + written("1,{u},{y}"), 1, 20, kUnwritten, "Times are made from column \"dt\""},
+    {"spacing_in_every_row", "dt,u,y\n" + written("1,{u},{y}"), 1, 20, kUnwritten,
+     "Column \"dt\" gives the sample time: a row every 1 s."},
     {"german_letters", with_commas("Zeit;W;X;Y\n" + written("{t};40;{y};{u}")), 1, 20, 40, "as in DIN 19226"},
     {"german_words", "Datum;Uhrzeit;Sollwert;Istwert;Stellwert\n" + written("21/11/2026;{clock};40;{y};{u}"), 1, 20,
      40},

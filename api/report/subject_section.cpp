@@ -95,24 +95,9 @@ Html parameters_of(const Place& model, const ReportSubject& s) {
     return table("Identified parameters", {"", "Value", "Standard error"}, rows);
 }
 
-/// What was moved: "one step of the set point, in automatic".
-std::string test_words(const Place& quality) {
-    const auto steps = [](const Json& count, const std::string& signal) {
-        const int n = count.is_number() ? count.get<int>() : 0;
-        return n == 1 ? "one step of " + signal : std::to_string(n) + " steps of " + signal;
-    };
-    const Place loop = quality.at("closed_loop");
-    const std::string kind = text_at(quality.at("kind"));
-    if (loop.at("set_point_moves").exists() && text_at(loop.at("used")) == "set_point")
-        return steps(loop.at("set_point_moves").value(), "the set point") + ", in automatic";
-    if (loop.exists()) return "a record in automatic";
-    if (kind == "relay") return "a relay test";
-    if (kind == "general") return "any moves of u";
-    return steps(quality.at("steps").value(), "u");
-}
-
 /// Figures of the record in words, in their order; others by their names.
-constexpr std::pair<const char*, const char*> kQuality[] = {{"samples", "Samples"},
+constexpr std::pair<const char*, const char*> kQuality[] = {{"test", "Test"},
+                                                            {"samples", "Samples"},
                                                             {"samples_dropped", "Rows left out"},
                                                             {"sample_time", "Time between samples"},
                                                             {"irregular", "Irregular times"},
@@ -135,7 +120,7 @@ std::string quality_label(const std::string& name) {
 }
 
 Html quality_of(const Place& quality) {
-    std::vector<Row> rows = {{"Test", test_words(quality)}};
+    std::vector<Row> rows;
     for (const auto& [name, value] : quality.value().items()) {
         if (name == "kind") continue;
         const std::string label = quality_label(name);

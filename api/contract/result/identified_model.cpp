@@ -93,6 +93,20 @@ const Description<ClosedLoop>& closed_loop_contract() {
     return description;
 }
 
+/// What was moved in the test: "one step of the set point, in automatic".
+std::string test_words(const DataQuality& quality) {
+    const auto steps = [](int count, const std::string& signal) {
+        return count == 1 ? "one step of " + signal : std::to_string(count) + " steps of " + signal;
+    };
+    if (const auto& loop = quality.closed_loop) {
+        const bool by_set_point = loop->used == LoopExcitation::set_point && loop->set_point_moves;
+        return by_set_point ? steps(*loop->set_point_moves, "the set point") + ", in automatic"
+                            : "a record in automatic";
+    }
+    if (quality.kind == RecordKind::relay) return "a relay test";
+    return quality.kind == RecordKind::general ? "any moves of u" : steps(quality.steps, "u");
+}
+
 const Description<DataQuality>& quality_contract() {
     static const auto description = [] {
         using Q = DataQuality;
@@ -103,6 +117,9 @@ const Description<DataQuality>& quality_contract() {
                                                   {"relay", RecordKind::relay},
                                                   {"general", RecordKind::general}})),
                 "What the test was, as given or found.")
+            .field(
+                "test", {}, [](const Q& quality, Writer& out) { out.text(test_words(quality)); }, words().schema,
+                "The same in words, with what was moved: one step of the set point, in automatic.")
             .field("samples", &Q::samples, count(), "Samples used.")
             .field("samples_dropped", &Q::samples_dropped, count(),
                    "Rows of which no y is used: blank cells, backward times, false readings.")

@@ -134,6 +134,7 @@ test("a record in automatic is named by what was stepped in it", () => {
   const data_quality = {
     ...model.data_quality,
     kind: "several_steps",
+    test: "one step of the set point, in automatic",
     steps: 19,
     closed_loop: { evidence: "", used: "set_point", share: 0.9, set_point_moves: 1 },
   };

@@ -85,6 +85,7 @@ function rowsOf(model: Model, units: UnitNames): [string, string][] {
     "noise_std",
     "quantisation",
     "kind",
+    "test",
     "steps",
     "settled",
     "notes",
@@ -127,17 +128,7 @@ function otherRows(name: string, value: unknown): [string, string][] {
 }
 
 /** What was moved: "one step of the set point, in automatic". */
-function testWords(model: Model): string {
-  const quality = model.data_quality ?? {};
-  const loop = quality["closed_loop"] as { used?: string; set_point_moves?: number } | undefined;
-  const steps = (count: unknown, signal: string): string =>
-    typeof count !== "number" ? "" : count === 1 ? `one step of ${signal}` : `${count} steps of ${signal}`;
-  if (loop?.used === "set_point" && loop.set_point_moves !== undefined)
-    return `${steps(loop.set_point_moves, "the set point")}, in automatic`;
-  if (loop) return "a record in automatic";
-  if (quality["kind"] === "relay") return "a relay test";
-  return quality["kind"] === "general" ? "any moves of u" : steps(quality["steps"], "u");
-}
+const testWords = (model: Model): string => String(model.data_quality?.["test"] ?? "");
 
 /** "u steps once, at 120 s, from 30 to 35 %." */
 function inputWords(model: Model, units: UnitNames): string {

@@ -70,6 +70,32 @@ test("an outage that is over is not told on Start any more", async () => {
   );
 });
 
+for (const [what, address] of [["a typed line", ""], ["fields of an address", "#/new/fopdt?K=2.5&T=40&L=8"]]) {
+  test(`Start that opens during an outage reads its lists and its model when it is over: ${what}`, async () => {
+    await withPage(
+      address,
+      {},
+      async (page) => {
+        const said = page.getByText("Not connected to the service.");
+        let lost = true;
+        await page.route(/\/(v1\/|healthz)/, (route) => (lost ? route.abort() : route.continue()));
+        await page.reload();
+        await said.waitFor();
+        if (address === "") {
+          await page.getByLabel("Model in one line").fill("3 e^(-2s)/(10s+1)");
+          await page.getByLabel("Model in one line").blur();
+        }
+        lost = false;
+        await said.waitFor({ state: "hidden" });
+        await page.locator(".formula math").first().waitFor();
+        await page.getByText("could not be read; the default method is used").waitFor({ state: "hidden" });
+        assert.equal(await page.getByLabel("K", { exact: true }).inputValue(), address === "" ? "3" : "2.5");
+      },
+      ["Failed to load resource"],
+    );
+  });
+}
+
 test("a product's law is seen whole on a desktop", async () => {
   await withPage("#/new/fopdt?K=1.25&T=40&L=8", {}, async (page) => {
     await page.getByRole("button", { name: "Tune this model" }).click();

@@ -1,6 +1,6 @@
 // A plant to enter: in one line as people write it, or by its kind and parameters; each shows what the other says. The
 // service reads the line and writes the formula. On Start and on the relay test's screen.
-import { ApiError } from "../api/client.ts";
+import { ApiError, whenBack } from "../api/client.ts";
 import { latest } from "../api/latest.ts";
 import { parsePlant } from "../api/plants.ts";
 import type { PlantAnswer, PlantQuestion } from "../api/plants.ts";
@@ -94,6 +94,13 @@ export function plantFields(errors: FormErrors, active: () => boolean, onChange:
       const sentence = error instanceof ApiError ? error.message : String(error);
       if (question.text !== undefined) fault = sentence;
       say(sentence);
+      // Asked again while nothing else was: what stands there may be another text by then.
+      const said = formula.firstChild;
+      void whenBack(error, () => {
+        if (formula.firstChild !== said) return;
+        if (fromLine) askText();
+        else askFields();
+      });
     },
   });
 

@@ -89,7 +89,7 @@ test("from a record to the settings of three products, each read back as the con
       const spans = { ...(y ? { y_span: y } : {}), ...(u ? { u_span: u } : {}) };
       assert.deepEqual(job.request.implement, { product: id, ...spans, sample_time: 1 });
       const [entry] = job.result.controllers;
-      await page.waitForFunction((text) => document.querySelector(".typed-card h2").textContent === text, `Type into ${title}`);
+      await page.waitForFunction((text) => document.querySelector(".typed-card h2")?.textContent === text, `Type into ${title}`);
       await page.waitForFunction(
         (text) => document.querySelector("table.typed .value")?.textContent === text,
         Object.values(entry.as_entered.as_typed)[0],

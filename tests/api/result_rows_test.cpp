@@ -130,9 +130,12 @@ TEST(ResultRows, AsCsvHoldUnitsAndWhatIsToBeTyped) {
 
 // What runs is far from the ideal loop here: a slow program on a quick plant.
 TEST(ResultRows, TheGainOverTodayIsThatOfTheVerdict) {
-    const Json value = Json::parse(result_of(
-        R"("tune": [{"method": "simc"}], "evaluate": {"points": 0}, "baseline": {"form": "ideal", "Kp": 0.5, "Ti": 12},
-           "implement": {"sample_time": 4})"));
+    const JobOutcome outcome = run_job(StoredRequest{request_with(
+                                                         R"("tune": [{"method": "simc"}], "evaluate": {"points": 0},
+                             "baseline": {"form": "ideal", "Kp": 0.5, "Ti": 12}, "implement": {"sample_time": 4})"),
+                                                     {}},
+                                       {});
+    const Json value = Json::parse(outcome.result_json), outline = Json::parse(outcome.outline_json);
     std::string out;
     append_csv({0, "id", "TIC-101", "succeeded", value.dump(), ""}, out);
     const std::string line = split_lines(out).front();
@@ -144,6 +147,8 @@ TEST(ResultRows, TheGainOverTodayIsThatOfTheVerdict) {
     const Json& figures = (*against)["figures"];
     EXPECT_EQ(std::stod(under("today_load_IAE", line)), figures["load_IAE_today"].get<double>());
     EXPECT_NEAR(std::stod(under("gain_over_today_percent", line)), 100 * (1 - figures["ratio"].get<double>()), 1e-9);
+    EXPECT_EQ(outline["load_IAE"], figures["load_IAE"]);
+    EXPECT_EQ(outline["today"]["load_IAE"], figures["load_IAE_today"]);
     EXPECT_GT(figures["load_IAE"].get<double>(), 1.001 * entry["performance"]["load"]["IAE"].get<double>());
 }
 

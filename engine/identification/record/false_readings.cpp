@@ -117,17 +117,21 @@ public:
 
     std::vector<HeldRun> find() const {
         constexpr std::size_t kShare = 4;  // of the samples: a quarter
-        std::vector<HeldRun> found;
-        std::size_t count = 0;
+        std::vector<HeldRun> jumping;
         for (std::size_t i = 1; i < y_.size();) {
             const HeldRun run = run_at(i);
             i = run.end;
-            if (known_[run.first] || !jumps(run)) continue;
-            found.push_back(run);
+            if (!known_[run.first] && jumps(run)) jumping.push_back(run);
+        }
+        const auto [low, high] = range_without(jumping);
+        std::vector<HeldRun> faults;
+        std::size_t count = 0;
+        for (const HeldRun& run : jumping) {
+            if (!is_fault(run, low, high)) continue;
+            faults.push_back(run);
             count += run.end - run.first;
         }
-        std::erase_if(found, [&](const HeldRun& run) { return !is_fault(run, found); });
-        return kShare * count > y_.size() ? std::vector<HeldRun>{} : found;
+        return kShare * count > y_.size() ? std::vector<HeldRun>{} : faults;
     }
 
 private:
@@ -158,15 +162,21 @@ private:
         return move != rows_.change_time.end() && *move <= rows_.t[row];
     }
 
-    bool is_fault(const HeldRun& run, const std::vector<HeldRun>& all) const {
+    /// The least and the greatest y outside these runs, which are in ascending order.
+    std::pair<double, double> range_without(const std::vector<HeldRun>& runs) const {
         double low = std::numeric_limits<double>::infinity(), high = -low;
         std::size_t next = 0;
         for (std::size_t i = 0; i < y_.size(); ++i) {
-            while (next < all.size() && all[next].end <= i) ++next;
-            if (known_[i] || (next < all.size() && i >= all[next].first)) continue;
+            while (next < runs.size() && runs[next].end <= i) ++next;
+            if (known_[i] || (next < runs.size() && i >= runs[next].first)) continue;
             low = std::min(low, y_[i]);
             high = std::max(high, y_[i]);
         }
+        return {low, high};
+    }
+
+    /// `low` and `high`: the range of the readings that do not jump.
+    bool is_fault(const HeldRun& run, double low, double high) const {
         constexpr double kOfRange = 0.1, kBeyond = 1, kLongest = 0.1;
         const double range = high - low, entry = std::abs(run.value - y_[run.first - 1]);
         if (!(range > 0)) return false;

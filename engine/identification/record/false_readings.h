@@ -13,7 +13,7 @@ namespace tunewright {
 ///   away, and it makes up less than half of the samples (-9999, 1e9, 0 of a sensor that reads 20 to 21); then the same
 ///   of the samples that are left, three times at most;
 /// - values by which sensors report a fault (85 and -127 of a DS18B20, 850 and 1820 of thermocouple amplifiers, -999,
-///   32767, ...), once or several in a row, if y jumps there and back by a tenth of the range of the other samples and
+///   999, ...), once or several in a row, if y jumps there and back by a tenth of the range of the other samples and
 ///   ten times its usual move, and the samples on either side agree; at the end of the record, if it jumps there. They
 ///   make up a quarter of the samples at most. A y that passes through such a value on its way keeps it;
 /// - spikes of one or two samples that lie a quarter of the range away from the median of five, and ten times farther

@@ -148,6 +148,29 @@ TEST(FalseReadings, WhatSensorsReportInAFaultIsFoundOnceAndInRuns) {
     EXPECT_EQ(false_readings(rows_of(with_run(-127, 390, 400))).size(), 10u);
 }
 
+/// Runs are judged one by one beside the readings that do not jump: which of them comes first is nothing to the others.
+TEST(FalseReadings, DoNotDependOnTheOrderOfTheFaults) {
+    std::vector<double> levels = {26, 27, 29, 40};  // of a y from 20 to 24: the first two are within its range of it
+    std::vector<std::size_t> faults_by_order;
+    do {
+        Record record = good_step();
+        for (std::size_t k = 0; k < levels.size(); ++k)
+            std::fill_n(record.y.begin() + static_cast<std::ptrdiff_t>(150 + 40 * k), 4, levels[k]);
+        faults_by_order.push_back(false_readings(rows_of(record)).size());
+    } while (std::ranges::next_permutation(levels).found);
+    EXPECT_THAT(faults_by_order, ::testing::Each(8));
+}
+
+/// Jumps that are no faults do not count against the quarter that faults may make up.
+TEST(FalseReadings, JumpsThatAreNoneDoNotHideTheFaults) {
+    Record record = good_step();
+    const double raised = record.y[200] + 2;
+    for (std::ptrdiff_t i = 200; i + 12 < 400; i += 12) std::fill_n(record.y.begin() + i, 10, raised);
+    std::fill_n(record.y.begin() + 120, 4, 40.0);
+    const auto found = false_readings(rows_of(record));
+    for (std::size_t i = 120; i < 124; ++i) EXPECT_THAT(found, Contains(i));
+}
+
 TEST(FalseReadings, AProcessThatGoesToSuchAValueKeepsIt) {
     // Steps of u by which a process as fast as its rows jumps to 85 and back, and one that passes 85 slowly.
     Record fast =

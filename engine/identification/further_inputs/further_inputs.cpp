@@ -79,12 +79,18 @@ void leave_out(FitContext& context, int k) {
 
 double sum_of_squares(const Fit& fit) { return fit.determined ? fit.sse : HUGE_VAL; }
 
+/// A drift or a load that was fitted before the inputs were known may have been theirs.
+Fit without_disturbances(Fit fit) {
+    fit.form.slope = fit.form.load = false;
+    return fit;
+}
+
 /// From the plant alone, and from plants of any lag: beside inputs that move y more than u does, the plant alone is no
 /// start.
 Fit first_joint(const ModelSearch& plain) {
     constexpr double kLags[] = {0.01, 0.03, 0.1, 0.3};  // of the record
     std::vector<Fit> starts;
-    if (plain.choice.index >= 0) starts.push_back(plain.chosen());
+    if (plain.choice.index >= 0) starts.push_back(without_disturbances(plain.chosen()));
     for (const double lag : kLags) {
         for (const Structure structure : {Structure::fopdt, Structure::ipdt_lag}) {
             Fit start;
@@ -110,6 +116,20 @@ ModelSearch all_structures(const ModelSearch& search, const FitContext& context,
         fits[at] = start.determined ? fit_shape(context.some(), start.form, start.shape, {}, context.stop) : start;
     });
     return ranked_anew(search, context, std::move(fits), model);
+}
+
+/// The same without drift and load, where those explain no more than chance beside the inputs; else `search`.
+ModelSearch with_needed_disturbances(ModelSearch search, const FitContext& context, ModelChoice model) {
+    constexpr double kNeeded = 10;  // of the criterion (Kass and Raftery 1995)
+    if (!(search.disturbances.slope || search.disturbances.load) || search.choice.index < 0) return search;
+    ModelSearch bare = search;
+    bare.disturbances = {};
+    for (Fit& fit : bare.fits) fit = without_disturbances(std::move(fit));
+    bare = all_structures(bare, context, with_further(context, without_disturbances(search.chosen())), model);
+    if (bare.choice.index < 0) return search;
+    const double n = search.independent;
+    const double lead = information_criterion(bare.chosen(), n) - information_criterion(search.chosen(), n);
+    return lead < kNeeded ? bare : search;
 }
 
 /// The input that matters least, if it does not matter.
@@ -210,7 +230,7 @@ ModelSearch search_with_further(const CleanRecord& record, ModelChoice model, bo
     CleanRecord shown = search.context.record;
     shown.y = plain.context.record.y;
     FitContext context = fit_context(std::move(shown), relay, control);
-    search = all_structures(search, context, joint, model);
+    search = with_needed_disturbances(all_structures(search, context, joint, model), context, model);
     while (search.choice.index >= 0 && search.chosen().form.further > 0) {
         const std::optional<int> least = least_needed(search);
         if (!least) return search;

@@ -9,11 +9,12 @@ namespace tunewright {
 /// matters; an integrating plant's integrate too.
 ///
 /// 1. The plant alone is searched for. Where the record has no further inputs, that is the answer.
-/// 2. Each input's lag and dead time start from a scan, the inputs before it held, and all are refined with the
-/// plant's.
-/// 3. What they did is taken off y, and the plant's structures are searched for in the rest; with the best, step 2 once
-///    more. Kept where it leaves less.
-/// 4. Every structure is refined together with the inputs, and the choice is made again.
+/// 2. Without the drift and the load that step 1 may have found, which may have been the inputs': each input's lag and
+///    dead time start from a scan, the inputs before it held, and all are refined with the plant's.
+/// 3. What they did is taken off y, and the plant's structures are searched for in the rest, with drift and load; with
+///    the best, step 2 once more. Kept where it leaves less.
+/// 4. Every structure is refined together with the inputs, and the choice is made again. Drift and load go again where
+///    the information criterion without them is no more than 10 above.
 /// 5. An input without which the information criterion is no more than 10 above, or that makes less than a thousandth
 ///    of y's variance, is left out. Where none remains, the answer is that of step 1.
 ///

@@ -91,6 +91,31 @@ TEST(FurtherInputs, BothModelsAreRightWithinTheirErrors) {
     }
 }
 
+/// Before the input is known its one lasting step looks like a load, or a drift: neither stays with the model.
+TEST(FurtherInputs, AStepOfOneLeavesNoLoadAndNoDrift) {
+    for (unsigned seed = 1; seed <= 10; ++seed) {
+        testing::Dice dice(seed);
+        testing::PlantRun of_u({2, 12, 0, 3, false}, 0.1), of_d({3, 20, 0, 1, false}, 0.1);
+        Record record;
+        record.d.push_back({"q", {}});
+        double y = 0;
+        for (int i = 0; i < 300; ++i) {
+            const double u = i >= 30 && i < 150 ? 5 : 0, d = i > (seed % 2 == 0 ? 100 : 200) ? 1 : 0;
+            record.t.push_back(i);
+            record.u.push_back(u);
+            record.d[0].values.push_back(d);
+            record.y.push_back(20 + y + 0.05 * dice.normal());
+            for (int k = 0; k < 10; ++k) y = of_u.advance(u) + of_d.advance(d);
+        }
+        const auto model = identify(record, {}, {});
+        ASSERT_TRUE(model) << model.error().message;
+        ASSERT_EQ(model->disturbances.size(), 1U) << "seed " << seed;
+        expect_lag(model->disturbances[0], {3, 20, 0, 1, false});
+        for (const Warning& warning : model->warnings)
+            EXPECT_TRUE(warning.code != "load-disturbance" && warning.code != "drift") << "seed " << seed;
+    }
+}
+
 TEST(FurtherInputs, OneThatDoesNothingLeavesThePlantAsItIs) {
     TwoInputs test;
     test.others[0].K = 0;

@@ -321,23 +321,12 @@ void note_further_inputs(const Record& record, IdentifiedModel& model) {
     }
 }
 
-/// A loop that only the model of an open-loop test gave away.
-Expected<IdentifiedModel> in_loop_by_law(const Record& record, const CleanRecord& clean, const LoopRecord& loop,
-                                         const IdentifyOptions& options, const RunControl& control) {
-    Expected<IdentifiedModel> model = identify_in_loop(clean, loop, options.model, control);
-    if (!model) return model;
-    report_loop(loop, *model);
-    note_further_inputs(record, *model);
-    add_figures(clean, *model);
-    return model;
-}
-
 }  // namespace
 
 Expected<IdentifiedModel> identify(const Record& record, const IdentifyOptions& options, const RunControl& control) {
-    const Expected<Looked> looked = looked_at(record);
+    Expected<Looked> looked = looked_at(record);
     if (!looked) return looked.error();
-    const auto& [clean, loop, rest] = *looked;
+    auto& [clean, loop, rest] = *looked;
     if (!loop) {
         if (auto model = by_manual_rows(record, *looked, options, control)) return std::move(*model);
     }
@@ -347,9 +336,13 @@ Expected<IdentifiedModel> identify(const Record& record, const IdentifyOptions& 
                                       : loop ? identify_in_loop(clean, *loop, options.model, control)
                                              : by_fitting(record, clean, options, control);
     if (model && !loop && !by_formula && options.method != IdentifyMethod::two_point) {
+        // A loop that only the model of an open-loop test gives away.
         const double left = 1 - model->fit_percent / 100;
-        const Expected<std::optional<LoopRecord>> by_law = find_loop(clean, record, left * left);
-        if (by_law && *by_law) return in_loop_by_law(record, clean, **by_law, options, control);
+        auto by_law = find_loop(clean, record, left * left);
+        if (by_law && *by_law) {
+            loop = std::move(*by_law);
+            model = identify_in_loop(clean, *loop, options.model, control);
+        }
     }
     if (!model && loop && model.error().kind == ErrorKind::not_identifiable) {
         if (auto manual = by_manual_rows(record, *looked, options, control)) return std::move(*manual);

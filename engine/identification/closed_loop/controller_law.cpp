@@ -106,6 +106,22 @@ bool is_sine(const CleanRecord& record, const std::vector<double>& u, const Movi
     return sine.left < kLeft && sine.coefficient[2] < 0 && std::sqrt(-sine.coefficient[2]) * length > kTwoPeriods;
 }
 
+/// What the course of u by itself leaves, as a lag that follows one step: u' = a + b u, integrated, and a straight line
+/// over it. A soft start is that; a filter of y explains it too, with y's noise.
+double left_by_lagged_step(const CleanRecord& record, const std::vector<double>& u, const MovingRows& rows) {
+    Eigen::MatrixXd X(rows.size(), 3);
+    Eigen::VectorXd z(rows.size());
+    double middle = 0, once = 0;
+    for (int i = rows.from; i < rows.to; ++i) middle += u[static_cast<std::size_t>(i)] / rows.size();
+    for (int i = rows.from; i < rows.to; ++i) {
+        const auto at = static_cast<std::size_t>(i);
+        if (i > rows.from) once += (0.5 * (u[at] + u[at - 1]) - middle) * (record.t[at] - record.t[at - 1]);
+        X.row(i - rows.from) << 1, record.t[at], once;
+        z[i - rows.from] = u[at] - middle;
+    }
+    return explain(X, z).left;
+}
+
 /// P or PI; PID only where the integral has its share, for y and its slope alone are also how a lag leads to its input.
 Explained law_of(const Eigen::MatrixXd& rows, double plain) {
     constexpr double kHasShare = 4;  // times the variance that the law leaves without its integral
@@ -138,6 +154,7 @@ std::optional<ControllerLaw> controller_law(const CleanRecord& record, const std
     if (!(law.left < kPlain)) return std::nullopt;
     const MovingRows& longest = *std::ranges::max_element(segments, {}, &MovingRows::size);
     if (is_sine(record, u, longest)) return std::nullopt;
+    if (left_by_lagged_step(record, u, longest) <= law.left) return std::nullopt;
     return ControllerLaw{law.coefficient[0], law.coefficient[1], law.left};
 }
 

@@ -19,7 +19,8 @@ struct ControllerLaw {
 /// predicted by its own past. There the law of a controller, four or five numbers for all rows, is plain.
 ///
 /// It is found where it leaves less than a hundredth of u's variance, where Kp and Ki have one sign, as those of a
-/// controller do, and where u is no sine, whose every filter explains it. Rows at the ends of u, three and more in a
+/// controller do, and where u is not a sine, whose every filter explains it, nor a lag that follows one step and by
+/// itself explains u as well as the law does: a soft start by hand. Rows at the ends of u, three and more in a
 /// row, are left out: there the actuator holds u. Between them the constant is free, as after a switch or a windup. A
 /// smooth test in manual may look so too: the law says something only beside what u explains of y.
 ///

@@ -87,6 +87,34 @@ TEST(ControllerLaw, OpenLoopTestsKeepToNone) {
     EXPECT_LE(found, kAllowed) << which;
 }
 
+/// u by hand through a lag, as a soft start, and along an S: smooth, and no controller's answer to y.
+TEST(ControllerLaw, SoftStartsByHandAreNoLoop) {
+    int tests = 0;
+    for (unsigned seed = 1; seed <= 24; ++seed) {
+        testing::Dice dice(seed);
+        const double tau = std::exp(dice.between(std::log(10), std::log(80)));
+        const testing::LoopPlant plant{dice.between(0.5, 3), dice.between(3, 30), 0, dice.between(1, 6), false};
+        const double noise = seed % 3 == 0 ? 0.05 : 0.01;
+        testing::PlantRun run(plant, 0.1);
+        Record record;
+        double y = 0;
+        for (int i = 0; i < 300; ++i) {
+            const double since = std::max(0, i - 20), s = std::min(1.0, since / (2 * tau));
+            const double u = 5 * (seed % 2 == 0 ? -std::expm1(-since / tau) : s * s * (3 - 2 * s));
+            record.t.push_back(i);
+            record.u.push_back(std::round(1000 * u) / 1000);
+            record.y.push_back(20 + y + noise * dice.normal());
+            for (int k = 0; k < 10; ++k) y = run.advance(record.u.back());
+        }
+        const auto model = identify(record, {}, {});
+        ASSERT_TRUE(model) << "seed " << seed << ": " << model.error().message;
+        EXPECT_FALSE(model->data_quality.closed_loop)
+            << "seed " << seed << ", tau " << tau << ": " << model->data_quality.closed_loop->evidence;
+        ++tests;
+    }
+    EXPECT_EQ(tests, 24);
+}
+
 /// Column r is what was sent to the actuator: u itself, a line over it, a row early.
 TEST(ControllerLaw, AColumnRThatIsUIsNoSetPoint) {
     for (const auto& [slope, offset, early] : {std::tuple{1.0, 0.0, 0}, {1.0, 0.0, 1}, {0.1, 5.0, 0}}) {

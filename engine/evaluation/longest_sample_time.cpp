@@ -3,8 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <limits>
+#include <vector>
 
+#include "engine/loop/loop.h"
+#include "engine/loop/peaks.h"
 #include "engine/loop/sampled/sampled_loop.h"
+#include "engine/number_text.h"
 #include "engine/numerics/extremum.h"
 #include "engine/numerics/fast_complex.h"
 #include "engine/numerics/sign_change.h"
@@ -12,20 +17,24 @@
 namespace tunewright {
 namespace {
 
-constexpr double kFirstSample = 0.1;   // of 1/omega_Ms: where the search starts
-constexpr double kShortest = 1e-3;     // of 1/omega_Ms
-constexpr double kLongest = 1e3;       // of 1/omega_Ms: where it ends
-constexpr double kMostInDelay = 3e4;   // sample times in the dead time: a loop is looked at once for each
-constexpr double kShorter = 0.6;       // of a sample time: a shorter one that the whole loop must bear too
-constexpr double kLightDamping = 0.5;  // of a pole
-constexpr double kNext = 1.04;         // from one sample time to the next, where they are looked at one by one
-constexpr double kNextNear = 1.01;     // the same where Ms is near its limit,
-constexpr double kNearLimit = 0.98;    // of it
-constexpr double kNextShort = 1.2;     // the same where the program is as good as continuous
-constexpr double kAsContinuous = 0.2;  // rad of the fastest swing in a sample, and
-constexpr double kFarBelowPeak = 0.1;  // of 1/omega_Ms: below both that is so
-constexpr double kSwing = 0.15;        // rad of the fastest swing, from one sample time to the next
-constexpr double kRoughly = 4e-3;      // of ln Ms: what a quick look may miss
+constexpr const char* kNone = "No sample time was found that keeps Ms within 5 % and a longer one that does not.";
+
+constexpr double kFirstSample = 0.1;       // of 1/omega_Ms: where the search starts
+constexpr double kShortest = 1e-3;         // of 1/omega_Ms
+constexpr double kLongest = 1e3;           // of 1/omega_Ms: where it ends
+constexpr double kMostInDelay = 3e4;       // sample times in the dead time: a loop is looked at once for each
+constexpr double kShorter = 0.6;           // of a sample time: a shorter one that the whole loop must bear too
+constexpr double kLightDamping = 0.5;      // of a pole
+constexpr double kNext = 1.04;             // from one sample time to the next, where they are looked at one by one
+constexpr double kNextNear = 1.01;         // the same where Ms is near its limit,
+constexpr double kNearLimit = 0.98;        // of it
+constexpr double kNextShort = 1.2;         // the same where the program is as good as continuous
+constexpr double kAsContinuous = 0.2;      // rad of the fastest swing in a sample, and
+constexpr double kFarBelowPeak = 0.1;      // of 1/omega_Ms: below both that is so
+constexpr double kSwing = 0.15;            // rad of the fastest swing, from one sample time to the next
+constexpr double kMaxUnseenExcess = 5e-3;  // relative, of |S|: what a mode may do that is not followed swing by swing
+constexpr int kMaxLooks = 5000;            // at the whole loop, one after the other: some seconds
+constexpr double kRoughly = 4e-3;          // of ln Ms: what a quick look may miss
 constexpr double kSmoothingLag = 15;  // sample times: so long a lag leaves no edge where the dead time is whole samples
 constexpr double kMostTurn = 1.5;    // rad of omega_Ms in a sample: beyond, the peak near it is not the loop's any more
 constexpr double kScanFrom = 0.1;    // of a guess: where the peak is followed from
@@ -85,13 +94,42 @@ private:
     double omega_;
 };
 
-/// The swing of the fastest lightly damped mode, rad/time; 0 without one. It is sampled well and badly in turns as the
-/// sample time grows.
-double fastest_swing(const LinearPlant& plant) {
-    double fastest = 0;
-    for (const auto pole : plant.poles())
-        if (std::abs(pole.real()) < kLightDamping * std::abs(pole)) fastest = std::max(fastest, pole.imag());
-    return fastest;
+/// A lightly damped mode of the plant: it is sampled well and badly in turns as the sample time grows.
+struct Mode {
+    double swing = 0;  ///< imaginary part of its pole, rad/time
+    double decay = 0;  ///< minus the real part, 1/time
+    double share = 0;  ///< |residue of P(s)/s at the pole| without the dead time: its part of the step response
+
+    /// A bound of what the pair adds to the pulse response on the unit circle: each pole adds
+    /// share (z0 - 1)/(z - z0), z0 = e^((-decay + j swing) Ts).
+    double gain(double Ts) const {
+        return decay > 0 ? 4 * share / -std::expm1(-decay * Ts) : std::numeric_limits<double>::infinity();
+    }
+};
+
+std::vector<Mode> light_modes(const LinearPlant& plant) {
+    std::vector<Mode> modes;
+    for (const std::complex<double> pole : plant.poles()) {
+        if (!(pole.imag() > 0) || std::abs(pole.real()) >= kLightDamping * std::abs(pole)) continue;
+        std::complex<double> residue = plant.gain() / std::pow(pole, plant.integrators() + 1);
+        for (const std::complex<double> zero : plant.zeros()) residue *= pole - zero;
+        bool itself = true;
+        for (const std::complex<double> other : plant.poles()) {
+            if (itself && other == pole)
+                itself = false;
+            else
+                residue /= pole - other;
+        }
+        const double share = std::abs(residue);  // infinite for a double pole, which is then followed
+        modes.push_back({pole.imag(), -pole.real(), std::isnan(share) ? HUGE_VAL : share});
+    }
+    return modes;
+}
+
+/// Peak of |C S| of the continuous loop.
+double noise_gain_peak(const LinearPlant& plant, const ParallelPid& gains) {
+    const auto loop = Loop::make(plant, gains);
+    return loop ? find_peaks(*loop, make_peak_grid(*loop)).CS.value : HUGE_VAL;
 }
 
 /// Without a lag much longer than the sample time, what arrives within a sample counts nearly in full or not at all at
@@ -113,16 +151,19 @@ double at_edge(const LinearPlant& plant, double Ts, double next) {
 
 class Search {
 public:
-    Search(const LinearPlant& plant, const ParallelPid& gains, double Ms, double omega_Ms, double factor)
+    Search(const LinearPlant& plant, const ParallelPid& gains, double Ms, double omega_Ms, double factor,
+           const std::stop_token& stop)
         : plant_(plant),
           gains_(gains),
           limit_(factor * Ms),
           at_0_(-std::log(factor)),
           omega_Ms_(omega_Ms),
-          swing_(fastest_swing(plant)) {}
+          stop_(stop),
+          modes_(light_modes(plant)),
+          Mks_(modes_.empty() ? 0 : noise_gain_peak(plant, gains)) {}
 
-    std::optional<double> result() {
-        if (swing_ == 0)
+    Figure result() {
+        if (modes_.empty())
             if (const auto Ts = by_peak()) return Ts;
         return by_steps();
     }
@@ -222,24 +263,39 @@ private:
     }
 
     /// The first sample time, from short ones on, that the whole loop does not bear.
-    std::optional<double> by_steps() const {
+    Figure by_steps() const {
         double low = low_.value_or(shortest());
-        if (!bears(low)) return std::nullopt;
-        while (low <= longest()) {
+        if (!bears(low)) return no_figure(kNone);
+        for (int looks = 0; low <= longest(); ++looks) {
+            if (stop_.stop_requested()) return no_figure("The search was stopped.");
+            if (looks == kMaxLooks)
+                return no_figure(
+                    "The plant oscillates so much faster than the loop that the sample times up to the "
+                    "longest one were not all looked at: up to " +
+                    text(low) + " Ms stays within 5 %.");
             const bool near = !loop(low).keeps(limit_ * kNearLimit);
             const double high = next(low, near);
             if (!bears(high)) return between(low, high);
             low = high;
         }
-        return std::nullopt;
+        return no_figure(kNone);
+    }
+
+    /// Of the fastest mode that can move Ms at this sample time; 0 where none can.
+    double fastest_swing(double Ts) const {
+        double fastest = 0;
+        for (const Mode& mode : modes_)
+            if (mode.gain(Ts) * Mks_ > kMaxUnseenExcess) fastest = std::max(fastest, mode.swing);
+        return fastest;
     }
 
     /// The next sample time to be looked at: near enough that neither a swing of the plant nor the dead time passes
     /// much of its way from sample to sample in between, and nearer where Ms is near its limit.
     double next(double Ts, bool near) const {
-        const bool as_continuous = Ts * swing_ < kAsContinuous && Ts * omega_Ms_ < kFarBelowPeak;
+        const double swing = fastest_swing(Ts);
+        const bool as_continuous = Ts * swing < kAsContinuous && Ts * omega_Ms_ < kFarBelowPeak;
         double further = Ts * (near ? kNextNear : as_continuous ? kNextShort : kNext);
-        if (!as_continuous && swing_ > 0) further = std::min(further, Ts + kSwing / swing_);
+        if (!as_continuous && swing > 0) further = std::min(further, Ts + kSwing / swing);
         return at_edge(plant_, Ts, further);
     }
 
@@ -269,24 +325,27 @@ private:
 
     const LinearPlant& plant_;
     const ParallelPid& gains_;
-    double limit_, at_0_, omega_Ms_, swing_;
+    double limit_, at_0_, omega_Ms_;
+    std::stop_token stop_;
+    std::vector<Mode> modes_;
+    double Mks_;
     std::optional<double> low_;  // where the steps start
 };
 
 }  // namespace
 
-std::optional<double> longest_sample_time(const LinearPlant& plant, const ParallelPid& gains, double Ms,
-                                          double omega_Ms, double factor) {
-    return Search(plant, gains, Ms, omega_Ms, factor).result();
+Figure longest_sample_time(const LinearPlant& plant, const ParallelPid& gains, double Ms, double omega_Ms,
+                           double factor, const std::stop_token& stop) {
+    return Search(plant, gains, Ms, omega_Ms, factor, stop).result();
 }
 
-std::optional<Figure> longest_sample_time_of(const Subject& subject, const Evaluation& evaluation) {
+std::optional<Figure> longest_sample_time_of(const Subject& subject, const Evaluation& evaluation,
+                                             const std::stop_token& stop) {
     const LinearPlant* plant = subject.linear();
     const Robustness& r = evaluation.robustness;
     if (plant == nullptr || std::holds_alternative<Npid>(evaluation.controller)) return std::nullopt;
     if (!r.stable || !r.Ms || !r.omega_Ms || !(*r.omega_Ms > 0)) return std::nullopt;
-    return Figure(longest_sample_time(*plant, gains(evaluation.controller), *r.Ms, *r.omega_Ms, kMsAsSampled),
-                  "No sample time was found that keeps Ms within 5 % and a longer one that does not.");
+    return longest_sample_time(*plant, gains(evaluation.controller), *r.Ms, *r.omega_Ms, kMsAsSampled, stop);
 }
 
 }  // namespace tunewright

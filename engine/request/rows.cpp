@@ -120,7 +120,7 @@ void Rows::add_baseline_as_built(TuningEntry& entry, const RunControl& control) 
 // What is said of a design, and of no controller that was given.
 void Rows::add_to_design(const PlannedRow& planned, const std::optional<TuningProblem>& problem,
                          const RunControl& control, TuningEntry& entry) const {
-    entry.longest_sample_time = longest_sample_time_of(subject_, *entry.evaluation);
+    entry.longest_sample_time = longest_sample_time_of(subject_, *entry.evaluation, control.stop);
     warn_of_region(*entry.evaluation, entry.Ms_limit, model_ != nullptr);
     if (model_ != nullptr) warn_of_band(*entry.evaluation, model_->excited_band);
     if (problem && !planned.of_all && !request_.implement && entry.method == "robust" &&

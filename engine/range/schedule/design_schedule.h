@@ -48,7 +48,8 @@ Expected<ScheduleDesign> steps_schedule(Places& places, OwnOptima& own, const Ra
 /// The longest sample time of a program with backward rules that keeps Ms within 5 % of the continuous loop's, at the
 /// model's points and at the rows, with each setting in use there, on the nominal plants. Empty: none was found, or the
 /// plants are known by their frequency response alone. Errors: the model's.
-Expected<std::optional<double>> longest_sample_time(const RangeModel& model, const Schedule& schedule);
+Expected<std::optional<double>> longest_sample_time(const RangeModel& model, const Schedule& schedule,
+                                                    const std::stop_token& stop = {});
 
 /// Rows in the middles of the widest parts, until there are so many; the last part ends at `high`.
 void fill_up(std::vector<double>& at, int rows, double high);

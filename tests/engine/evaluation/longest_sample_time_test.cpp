@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <random>
+#include <stop_token>
 
 #include "engine/loop/loop.h"
 #include "engine/loop/peaks.h"
@@ -82,6 +83,53 @@ TEST(LongestSampleTimeOfDeadTime, AllShorterOnesKeepItsPromise) {
                                         << loop->gains.Ki << ", Kd " << loop->gains.Kd);
         holds_below(*loop);
     }
+}
+
+/// A plant of a lag, a dead time and a mode of natural frequency `omega` in series with them.
+LinearPlant with_mode(double omega, double zeta) {
+    const double w = 1 / omega;
+    return *LinearPlant::make(
+        TransferFunction{.num = {2}, .den = {10 * w * w, w * w + 20 * zeta * w, 10 + 2 * zeta * w, 1}, .L = 3});
+}
+
+/// A mode far above the loop does not move it: the sample time is the plant's without it, and is found.
+TEST(LongestSampleTimeOfModes, OneFarBeyondTheLoopDoesNotCount) {
+    const ParallelPid gains =
+        to_parallel(IdealPid{.Kp = 0.7, .Ti = 9, .Td = 1, .filter = {FilterType::measurement_first_order, 0.3}});
+    const auto found = [&](const LinearPlant& plant) {
+        const auto loop = Loop::make(plant, gains);
+        const Peak S = find_peaks(*loop, make_peak_grid(*loop)).S;
+        return longest_sample_time(plant, gains, S.value, S.omega, kFactor);
+    };
+    const auto without = found(*LinearPlant::make(Fopdt{.K = 2, .T = 10, .L = 3}));
+    ASSERT_TRUE(without);
+    for (const double omega : {1e5, 1e6, 1e7}) {
+        const auto with = found(with_mode(omega, 0.01));
+        ASSERT_TRUE(with) << with.why;
+        EXPECT_NEAR(*with / *without, 1, 0.01) << omega;
+    }
+}
+
+/// One without damping is sampled badly again and again: the search ends, and says why.
+TEST(LongestSampleTimeOfModes, ASearchThatWouldNotEndSaysSo) {
+    const LinearPlant plant = with_mode(1e6, 0);
+    const ParallelPid gains = to_parallel(IdealPid{.Kp = 0.3, .Ti = 9});
+    const auto Ts = longest_sample_time(plant, gains, 1.6, 0.3, kFactor);
+    EXPECT_FALSE(Ts);
+    EXPECT_FALSE(Ts.why.empty());
+}
+
+TEST(LongestSampleTimeOfModes, AStoppedSearchEndsAtItsNextLook) {
+    std::stop_source source;
+    source.request_stop();
+    const LinearPlant plant = with_mode(3, 0.02);
+    const ParallelPid gains = to_parallel(IdealPid{.Kp = 0.3, .Ti = 9});
+    const auto loop = Loop::make(plant, gains);
+    const Peak S = find_peaks(*loop, make_peak_grid(*loop)).S;
+    EXPECT_TRUE(longest_sample_time(plant, gains, S.value, S.omega, kFactor));
+    const auto stopped = longest_sample_time(plant, gains, S.value, S.omega, kFactor, source.get_token());
+    EXPECT_FALSE(stopped);
+    EXPECT_NE(stopped.why.find("stopped"), std::string::npos);
 }
 
 }  // namespace

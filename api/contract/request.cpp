@@ -108,6 +108,12 @@ void check_job(const Json&, JobRequest& request, Reader& reader) {
                         "uncertainty is \"identified\", which needs a record. For a plant give the plant its own "
                         "uncertainty, such as {\"K\": [0.8, 1.2]}.");
     }
+    if (request.uncertainty == "identified" && request.model && request.model->covariance.names.empty()) {
+        const Reader::At at(reader, "model");
+        reader.fault_at("covariance",
+                        "covariance is missing, and uncertainty \"identified\" needs it. Send the model as the answer "
+                        "had it, or use uncertainty \"auto\" or \"none\".");
+    }
     if (!request.plant) return;
     request.subject = subject_of(*request.plant, reader);
     if (!request.subject || !request.baseline) return;

@@ -42,10 +42,12 @@ std::string uncertain_text(double value, double standard_error) {
     return negligible(standard_error, value) ? alone : alone + " +- " + figure_text(standard_error, 2);
 }
 
-std::string grade_words(std::string_view grade) {
+std::string grade_words(std::string_view grade, std::string_view reason) {
     if (grade == "good") return "A good model.";
     if (grade == "usable") return "A model to use with care: see its warnings.";
-    return grade == "doubtful" ? "A doubtful model." : "";
+    if (grade != "doubtful") return "";
+    if (reason == "fit") return "A doubtful model: it explains too little of its record.";
+    return reason == "warning" ? "A doubtful model: see its warnings." : "A doubtful model.";
 }
 
 bool any_has(const std::vector<Place>& places, const std::string& name) {

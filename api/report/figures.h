@@ -33,8 +33,8 @@ std::string uncertain_text(double value, double standard_error);
 /// Whether a standard error says nothing beside its value.
 bool negligible(double standard_error, double value);
 
-/// A model's grade as a sentence; "" for none that is known.
-std::string grade_words(std::string_view grade);
+/// A model's `grade` and `grade_reason` as a sentence; "" for a grade that is not known.
+std::string grade_words(std::string_view grade, std::string_view reason);
 
 /// The first cell of each row names it.
 Html table(const char* caption, const Row& heads, const std::vector<Row>& rows);

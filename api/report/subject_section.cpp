@@ -150,8 +150,9 @@ Html identified(const ReportSubject& s) {
     const Place model = s.result.at("model");
     if (!model.at("plant").exists()) return {};
     Html out = element("p", "Identified from a recorded test:") + formula(model.at("plant").value());
-    out += element("p", element("strong", grade_words(text_at(model.at("grade")))) + " Fit of the free run " +
-                            figure(model.at("fit_percent")) + " %. " + text_at(model.at("choice_reason")));
+    out += element("p", element("strong", grade_words(text_at(model.at("grade")), text_at(model.at("grade_reason")))) +
+                            " Fit of the free run " + figure(model.at("fit_percent")) + " %. " +
+                            text_at(model.at("choice_reason")));
     out += fit_of(model.at("fit"), s);
     out += element("div", parameters_of(model, s) + element("div", quality_of(model.at("data_quality"))),
                    {{"class", "tables"}});

@@ -67,7 +67,8 @@ std::string model_lines(const Json& model) {
         "Model " + words(at(model, "/plant/type")) + ", fit " + number(model.value("fit_percent", Json())) + " %";
     const std::string values = parameters(model);
     if (!values.empty()) out += ": " + values;
-    const std::string grade = grade_words(words(model.value("grade", Json())));
+    const std::string grade =
+        grade_words(words(model.value("grade", Json())), words(model.value("grade_reason", Json())));
     return out + "\n" + (grade.empty() ? "" : "  " + grade + "\n") +
            sentences(model.value("warnings", Json::array()), "message");
 }

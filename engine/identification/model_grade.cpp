@@ -10,15 +10,20 @@ bool misses_more_than_noise(const IdentifiedModel& model) {
     return std::ranges::any_of(model.warnings, [](const Warning& w) { return w.code == "structured-residuals"; });
 }
 
-}  // namespace
-
 bool explains_its_record(const IdentifiedModel& model) {
     return model.fit_percent >= (misses_more_than_noise(model) ? kMinFitPercentBiased : kMinFitPercent);
 }
 
-ModelGrade grade_of(const IdentifiedModel& model) {
+}  // namespace
+
+std::optional<DoubtReason> reason_of_doubt(const IdentifiedModel& model) {
+    if (!explains_its_record(model)) return DoubtReason::fit;
     const bool bad = std::ranges::any_of(model.warnings, [](const Warning& w) { return w.level == WarningLevel::bad; });
-    if (bad || !explains_its_record(model)) return ModelGrade::doubtful;
+    return bad ? std::optional(DoubtReason::warning) : std::nullopt;
+}
+
+ModelGrade grade_of(const IdentifiedModel& model) {
+    if (reason_of_doubt(model)) return ModelGrade::doubtful;
     return model.warnings.empty() ? ModelGrade::good : ModelGrade::usable;
 }
 
@@ -30,5 +35,7 @@ const char* name_of(ModelGrade grade) {
     }
     return "doubtful";
 }
+
+const char* name_of(DoubtReason reason) { return reason == DoubtReason::fit ? "fit" : "warning"; }
 
 }  // namespace tunewright

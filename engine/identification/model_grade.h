@@ -1,6 +1,8 @@
 // How far a model may be relied on: the one conclusion that verdicts, reports and lists show.
 #pragma once
 
+#include <optional>
+
 #include "engine/identification/identify.h"
 
 namespace tunewright {
@@ -21,10 +23,18 @@ inline constexpr double kMinFitPercentBiased = 90;
 /// noise (warning structured-residuals); or one of its warnings has the level `bad`. `usable`: it has other warnings.
 ModelGrade grade_of(const IdentifiedModel& model);
 
-/// Whether the fit alone makes it doubtful.
-bool explains_its_record(const IdentifiedModel& model);
+/// Why a model is doubtful.
+enum class DoubtReason {
+    fit,      ///< it explains too little of its record, whatever its warnings
+    warning,  ///< it explains its record; a warning of level `bad` speaks against it
+};
+
+/// Empty for a model that is not doubtful.
+std::optional<DoubtReason> reason_of_doubt(const IdentifiedModel& model);
 
 /// "good", "usable", "doubtful".
 const char* name_of(ModelGrade grade);
+/// "fit", "warning".
+const char* name_of(DoubtReason reason);
 
 }  // namespace tunewright

@@ -50,6 +50,19 @@ double scale(const TransferFunction& plant) {
     return last == plant.num.rend() ? 0 : *last;
 }
 
+bool has(TransferFunction& plant, const std::string& name) {
+    if (name == "K") return scale(plant) != 0;
+    if (name == "b") return plant.num.size() >= 2 && plant.num.back() != 0;
+    return name == "L" || denominator_coefficient(plant, name) != nullptr;
+}
+
+bool has(StateSpace&, const std::string& name) { return name == "K" || name == "L"; }
+
+template <class T>
+bool has(T& plant, const std::string& name) {
+    return member(plant, name) != nullptr;
+}
+
 double value_of(TransferFunction& plant, const std::string& name) {
     if (name == "K") return scale(plant);
     if (name == "b" && plant.num.size() >= 2) return plant.num[plant.num.size() - 2] / plant.num.back();
@@ -93,6 +106,22 @@ void set_value(T& plant, const std::string& name, double value) {
 bool keeps_sign(const std::string& name) { return name != "K" && name != "L" && name != "zeta" && name != "b"; }
 
 double length(const Point& z) { return std::sqrt(dot(z, z)); }
+
+/// Empty where they are different parameters of the plant.
+std::optional<Error> fault_of_names(const Plant& plant, const std::vector<std::string>& names) {
+    const auto fault = [](const std::string& name, const std::string& what) {
+        return Error{ErrorKind::invalid_argument, "plant",
+                     "covariance names \"" + name + "\"" + what + " Send it as the answer had it, or leave it out."};
+    };
+    Plant copy = plant;
+    for (auto name = names.begin(); name != names.end(); ++name) {
+        if (!std::visit([&](auto& p) { return has(p, *name); }, copy))
+            return fault(*name, ", which is not a parameter of this plant.");
+        if (std::find(names.begin(), name, *name) != name)
+            return fault(*name, " twice; each parameter has one row and one column.");
+    }
+    return std::nullopt;
+}
 
 /// The i-th number of the van der Corput sequence in a base.
 double radical_inverse(int i, int base) {
@@ -151,9 +180,14 @@ PlantRegion PlantRegion::of_ranges(const Plant& plant) {
 Expected<PlantRegion> PlantRegion::of_covariance(const Plant& plant, const std::vector<std::string>& names,
                                                  const std::vector<std::vector<double>>& covariance) {
     const std::size_t n = names.size();
-    const Error unusable{ErrorKind::numerical_failure, "record",
-                         "The record's covariance cannot be used as a region of plants. Use uncertainty \"none\"."};
-    if (n == 0 || n > kChiSquare95.size() || covariance.size() != n) return unusable;
+    const Error unusable{ErrorKind::numerical_failure, "plant",
+                         "The model's covariance cannot be used as a region of plants. Use uncertainty \"none\"."};
+    if (n == 0)
+        return Error{ErrorKind::unsupported, "plant",
+                     "The model has no covariance of its parameters, so it has no confidence region. Use uncertainty "
+                     "\"none\", or identify the record with method auto."};
+    if (n > kChiSquare95.size() || covariance.size() != n) return unusable;
+    if (auto fault = fault_of_names(plant, names)) return *fault;
     std::vector<double> spread;
     for (std::size_t i = 0; i < n; ++i) {
         if (covariance[i].size() != n || !(covariance[i][i] >= 0) || !std::isfinite(covariance[i][i])) return unusable;

@@ -27,7 +27,7 @@ public:
     /// The joint 95 % confidence ellipsoid (theta - theta0)' V^-1 (theta - theta0) <= chi^2_p(0.95) of p = names.size()
     /// <= 8 parameters: a ball, z along the principal axes of the correlation matrix (Draper and Smith 1998, section
     /// 5.4). L is cut off at 0. A direction that would reverse the sign of a time constant (or of a1, a2) ends where
-    /// that has fallen to a twentieth. Error: numerical_failure for a matrix that is no covariance of these names.
+    /// that has fallen to a twentieth. Errors: invalid_argument for the names, numerical_failure for the matrix.
     static Expected<PlantRegion> of_covariance(const Plant& plant, const std::vector<std::string>& names,
                                                const std::vector<std::vector<double>>& covariance);
 

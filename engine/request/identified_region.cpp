@@ -55,18 +55,27 @@ void warn_of_band(Evaluation& evaluation, const std::optional<ExcitedBand>& band
              "): there the model is a guess. Ask for less, or repeat the test with faster or larger changes of u."});
 }
 
-Expected<PlantFamily> identified_region(const IdentifiedModel& model) {
-    auto region = PlantRegion::of_covariance(model.plant, model.covariance.names, model.covariance.matrix);
-    if (!region) return region.error();
-    if (!model.covariance.reach.empty()) region->cut(model.covariance.reach);
-    PlantFamily family{{std::move(*region)}};
+namespace {
+
+PlantFamily with_alternatives(PlantRegion region, const IdentifiedModel& model) {
+    PlantFamily family{{std::move(region)}};
     for (const Plant& other : model.alternatives) family.regions.push_back(PlantRegion::of_ranges(other));
     return family;
 }
 
+}  // namespace
+
+Expected<PlantFamily> identified_region(const IdentifiedModel& model) {
+    auto region = PlantRegion::of_covariance(model.plant, model.covariance.names, model.covariance.matrix);
+    if (!region) return region.error();
+    if (!model.covariance.reach.empty()) region->cut(model.covariance.reach);
+    return with_alternatives(std::move(*region), model);
+}
+
 Expected<Subject> subject_of(const IdentifiedModel& model) {
     auto region = identified_region(model);
-    return Subject::of_family(region ? std::move(*region) : family_of(model.plant));
+    return Subject::of_family(region ? std::move(*region)
+                                     : with_alternatives(PlantRegion::of_ranges(model.plant), model));
 }
 
 }  // namespace tunewright

@@ -87,7 +87,7 @@ std::optional<Error> TuningRun::take_record() {
 std::optional<Error> TuningRun::take_model(IdentifiedModel model) {
     if (request_.identified_region == IdentifiedRegion::held) {
         auto region = identified_region(model);
-        if (!region) return region.error();
+        if (!region) return placed(request_, region.error(), "");
         held_ = std::move(*region);
     }
     auto subject = subject_of(model);

@@ -149,10 +149,49 @@ TEST(Design, IsAboutOneThing) {
     broken = model;
     broken["covariance"]["matrix"][0][0] = -1;
     EXPECT_THAT(refused({{"model", broken}}), HasSubstr("/model/covariance"));
+    for (const auto& names : {R"(["K", "X", "L"])", R"(["K", "K", "L"])", R"(["K", "T1", "L"])"}) {
+        broken = model;
+        ASSERT_EQ(broken["covariance"]["names"].size(), 3u);
+        broken["covariance"]["names"] = Json::parse(names);
+        EXPECT_THAT(refused({{"model", broken}}), HasSubstr("/model/covariance")) << names;
+    }
+    broken = model;
+    broken.erase("covariance");
+    EXPECT_THAT(refused({{"model", broken}, {"uncertainty", "identified"}}), HasSubstr("/model/covariance"));
+    broken = model;
+    std::swap(broken["excited_band"]["omega_low"], broken["excited_band"]["omega_high"]);
+    EXPECT_THAT(refused({{"model", broken}}), HasSubstr("/model/excited_band/omega_low"));
     broken = model;
     broken["plant"]["K"] = 0;
     EXPECT_THAT(refused({{"model", broken}}), HasSubstr("/model/plant/K"));
     EXPECT_EQ(prepare_job(Json{{"model", model}}.dump()).index(), 1u) << "a job keeps its record";
+}
+
+/// The asymmetry that rounding leaves is taken out; one that changes a correlation is refused.
+TEST(Design, ACovarianceIsSymmetricToRounding) {
+    Json model = design_run(Json{{"record", step_record()}}.dump())["model"];
+    Json& matrix = model["covariance"]["matrix"];
+    const double entry = matrix[0][1].get<double>();
+    const double scale = std::sqrt(matrix[0][0].get<double>() * matrix[1][1].get<double>());
+    const auto status = [&] { return design_call(Json{{"model", model}}.dump(), {}).status; };
+    for (const double share : {1e-16, -1e-15, 1e-12}) {
+        matrix[0][1] = entry + share * scale;
+        EXPECT_EQ(status(), 200) << share;
+    }
+    matrix[0][1] = entry + 1e-6 * scale;
+    EXPECT_EQ(status(), 422);
+}
+
+TEST(Design, AModelWithoutCovarianceIsHeldToItsAlternatives) {
+    Json model = design_run(Json{{"record", step_record()}}.dump())["model"];
+    model.erase("covariance");
+    model["plant"] = {{"type", "fopdt"}, {"K", 2}, {"T", 10}, {"L", 3}};
+    model["alternatives"] = Json::array({{{"type", "fopdt"}, {"K", 2}, {"T", 10}, {"L", 9}}});
+    const Json answer = Json::parse(design_call(Json{{"model", model}}.dump(), {}).body);
+    ASSERT_EQ(answer["controllers"].size(), 2u);
+    EXPECT_EQ(answer["controllers"][0]["over_region"], true);
+    EXPECT_EQ(answer["controllers"][1]["verdict"][0]["level"], "bad");
+    EXPECT_EQ(answer["controllers"][1]["verdict"][0]["code"], "model-too-uncertain");
 }
 
 TEST(Design, SaysWhyThereIsNone) {

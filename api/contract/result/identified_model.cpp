@@ -1,11 +1,13 @@
 #include "api/contract/result/identified_model.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "api/contract/plant/plant.h"
 #include "api/contract/relay.h"
 #include "api/contract/result/evaluation.h"
 #include "engine/identification/model_grade.h"
+#include "engine/number_text.h"
 #include "engine/plant/linear/linear_plant.h"
 
 namespace tunewright::api {
@@ -187,16 +189,21 @@ const Description<Candidate>& candidate_contract() {
     return description;
 }
 
-/// One row and one column for each name, equal on both sides of the diagonal.
-void check_matrix(const ParameterCovariance& covariance, Reader& reader) {
+/// One row and one column for each name, equal on both sides of the diagonal: to rounding, which is taken out.
+void check_matrix(ParameterCovariance& covariance, Reader& reader) {
+    constexpr double kMaxRelativeAsymmetry = 1e-9;  // of the two standard errors' product
     const std::size_t size = covariance.names.size();
-    const auto& rows = covariance.matrix;
+    auto& rows = covariance.matrix;
     const bool square =
         rows.size() == size && std::ranges::all_of(rows, [&](const auto& row) { return row.size() == size; });
-    bool same = square;
-    for (std::size_t i = 0; same && i < size; ++i)
-        for (std::size_t j = 0; j < i; ++j) same = same && rows[i][j] == rows[j][i];
-    if (!same)
+    bool symmetric = square;
+    for (std::size_t i = 0; symmetric && i < size; ++i)
+        for (std::size_t j = 0; j < i; ++j) {
+            const double scale = std::sqrt(std::abs(rows[i][i] * rows[j][j]));
+            symmetric = symmetric && std::abs(rows[i][j] - rows[j][i]) <= kMaxRelativeAsymmetry * scale;
+            rows[i][j] = rows[j][i] = 0.5 * (rows[i][j] + rows[j][i]);
+        }
+    if (!symmetric)
         reader.fault_at("matrix", "matrix must be symmetric, with a row and a column for each of the " +
                                       std::to_string(size) + " names. Send it as the answer had it.");
 }
@@ -228,7 +235,14 @@ const Description<ExcitedBand>& band_contract() {
         d.field("omega_low", &ExcitedBand::omega_low, number({.minimum = 0}), "2 pi over the record's length.",
                 {.required = true, .unit = "rad/time"})
             .field("omega_high", &ExcitedBand::omega_high, number({.minimum = 0}), "Upper end.",
-                   {.required = true, .unit = "rad/time"});
+                   {.required = true, .unit = "rad/time"})
+            .check([](const Json&, ExcitedBand& band, Reader& reader) {
+                if (band.omega_low > band.omega_high)
+                    reader.fault_at("omega_low", "omega_low is " + tunewright::text(band.omega_low) +
+                                                     " and omega_high " + tunewright::text(band.omega_high) +
+                                                     "; omega_low must not be above omega_high. Send the band as the "
+                                                     "answer had it, or leave it out.");
+            });
         return d;
     }();
     return description;
@@ -256,8 +270,10 @@ void check_region(const IdentifiedModel& model, Reader& reader) {
     const auto region = PlantRegion::of_covariance(model.plant, names, matrix);
     if (!region)
         return reader.fault_at("covariance",
-                               "covariance is not a covariance of the plant's parameters. Send it as the answer had "
-                               "it, or leave it out.");
+                               region.error().kind == ErrorKind::invalid_argument
+                                   ? region.error().message
+                                   : "covariance is not a covariance of the plant's parameters. Send it as the answer "
+                                     "had it, or leave it out.");
     const bool shares = std::ranges::all_of(reach, [](double share) { return share >= 0 && share <= 1; });
     if (!reach.empty() && (reach.size() != region->ends().size() || !shares))
         reader.fault_at("covariance", "covariance has a reach that does not fit it: it takes " +
@@ -298,6 +314,14 @@ const Description<IdentifiedModel>& model_contract() {
                 "How far it may be relied on. good; usable: with care, there are warnings; doubtful: it explains less "
                 "than 70 % of the record's movement, less than 90 % where what it misses is no noise, or a warning "
                 "says that it may be another plant.")
+            .field(
+                "grade_reason", {}, [](const M& model, Writer& out) { out.text(name_of(*reason_of_doubt(model))); },
+                [](SchemaBook&) {
+                    return Json{{"type", "string"}, {"enum", {"fit", "warning"}}};
+                },
+                "Why a model is doubtful: fit, it explains too little of its record; warning, it explains its record "
+                "and a warning of level bad speaks against it. Left out for the other grades.",
+                {}, [](const M& model) { return !reason_of_doubt(model); })
             .field("standard_errors", &M::standard_errors, given_errors(), "By parameter.", {.required = true})
             .field("covariance", &M::covariance,
                    unless<ParameterCovariance>(object(covariance_contract()),

@@ -173,8 +173,10 @@ void widen_gain(FittedPlant& plant, double variance) {
     std::vector<double> along;
     for (const double with_K : covariance.matrix[at]) along.push_back(with_K / own);
     for (std::size_t i = 0; i < along.size(); ++i) {
-        for (std::size_t k = 0; k < along.size(); ++k)
+        for (std::size_t k = 0; k <= i; ++k) {
             covariance.matrix[i][k] += (variance - own) * along[i] * along[k];
+            covariance.matrix[k][i] = covariance.matrix[i][k];
+        }
         plant.standard_errors[covariance.names[i]] = std::sqrt(covariance.matrix[i][i]);
     }
 }

@@ -98,8 +98,9 @@ Found oscillatory(const Case& c) {
 }
 
 Found doubtful_model(const Case& c) {
-    if (c.context.model == nullptr || grade_of(*c.context.model) != ModelGrade::doubtful) return {};
-    if (explains_its_record(*c.context.model))
+    const auto doubt = c.context.model != nullptr ? reason_of_doubt(*c.context.model) : std::nullopt;
+    if (!doubt) return {};
+    if (*doubt == DoubtReason::warning)
         return Draft("doubtful-model", Level::warning)
             .say("A doubtful model to tune on: the warnings about it say why.");
     return Draft("doubtful-model", Level::warning)

@@ -30,13 +30,20 @@ TEST(ModelGrade, WarningsMakeItUsableWithCare) {
 TEST(ModelGrade, WhatMissesMoreThanNoiseNeeds90Percent) {
     EXPECT_EQ(grade_of(model_of(90, {kStructured})), ModelGrade::usable);
     EXPECT_EQ(grade_of(model_of(89.9, {kStructured})), ModelGrade::doubtful);
-    EXPECT_FALSE(explains_its_record(model_of(89.9, {kStructured})));
     EXPECT_EQ(grade_of(model_of(89.9, {kDrift})), ModelGrade::usable);
 }
 
 TEST(ModelGrade, AWarningThatItMayBeAnotherPlantMakesItDoubtful) {
     EXPECT_EQ(grade_of(model_of(99, {kDrift, kBad})), ModelGrade::doubtful);
-    EXPECT_TRUE(explains_its_record(model_of(99, {kBad})));
+}
+
+TEST(ModelGrade, ADoubtfulModelHasAReasonAndOnlyADoubtfulOne) {
+    EXPECT_EQ(reason_of_doubt(model_of(69.9)), DoubtReason::fit);
+    EXPECT_EQ(reason_of_doubt(model_of(89.9, {kStructured})), DoubtReason::fit);
+    EXPECT_EQ(reason_of_doubt(model_of(69.9, {kBad})), DoubtReason::fit);
+    EXPECT_EQ(reason_of_doubt(model_of(99, {kBad})), DoubtReason::warning);
+    for (const IdentifiedModel& model : {model_of(70), model_of(70, {kDrift}), model_of(90, {kStructured})})
+        EXPECT_FALSE(reason_of_doubt(model));
 }
 
 }  // namespace

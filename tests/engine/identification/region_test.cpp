@@ -85,6 +85,37 @@ TuningResult tuned(double noise, bool over_region) {
     return result ? std::move(*result) : TuningResult{};
 }
 
+/// A step test of a plant and of noise drawn by `seed`.
+Record drawn_step(unsigned seed) {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> normal(0, 1);
+    std::uniform_real_distribution<> any(0, 1);
+    const double K = 0.3 + 3 * any(random), T = 3 + 27 * any(random), L = 0.5 + 6 * any(random);
+    const double noise = (0.01 + 0.1 * any(random)) * K * 5;
+    Record record;
+    for (int i = 0; i < 200; ++i) {
+        const double since = i - 20 - L;
+        record.t.push_back(i);
+        record.u.push_back(i < 20 ? 0 : 5);
+        record.y.push_back((since > 0 ? 5 * K * (1 - std::exp(-since / T)) : 0) + noise * normal(random));
+    }
+    return record;
+}
+
+/// As a client may send it back: to the last digit, also where the open choice of structure has widened it.
+TEST(IdentifiedModelCovariance, IsSymmetricToTheLastBit) {
+    int widened = 0;
+    for (unsigned seed = 1; seed <= 60; ++seed) {
+        const auto model = identify(drawn_step(seed), {}, {});
+        ASSERT_TRUE(model) << model.error().message;
+        widened += model->alternatives.empty() ? 0 : 1;
+        const auto& rows = model->covariance.matrix;
+        for (std::size_t i = 0; i < rows.size(); ++i)
+            for (std::size_t k = 0; k < i; ++k) EXPECT_EQ(rows[i][k], rows[k][i]) << "seed " << seed;
+    }
+    EXPECT_GT(widened, 5) << "else nothing is added to it";
+}
+
 TEST(IdentifiedRegion, RobustHoldsItsLimitOnAllOfItWhereAsked) {
     const auto plain = tuned(0.1, false);
     ASSERT_TRUE(plain.model);

@@ -274,8 +274,9 @@ Answer evaluate_call(std::string_view body, const RunControl& control) {
     if (const auto* problem = std::get_if<Problem>(&decoded)) return refusal(*problem);
     const auto& request = std::get<EvaluateRequest>(decoded);
 
-    const auto result = evaluate_all(*request.subject, request.controllers, request.evaluate, request.build,
-                                     labels_of(request.units), control, request.model ? &*request.model : nullptr);
+    const auto result =
+        evaluate_all(*request.subject, request.controllers, request.evaluate, request.build, labels_of(request.units),
+                     control, request.model ? &*request.model : nullptr, request.given_steps);
     if (!result) return refusal(to_problem(result.error()));
     Writer out;
     evaluate_answer_contract().write(*result, out);

@@ -17,7 +17,11 @@ const Description<UltimateTest>& ultimate_contract() {
                 {.required = true, .unit = "u/y"})
             .field("Pu", &U::Pu, number({.exclusive_minimum = 0}), "Period of that oscillation.",
                    {.required = true, .unit = "time"})
-            .field("K", &U::K, maybe(number({.not_zero = true})), "Static gain, where it is known.", {.unit = "y/u"});
+            .field("K", &U::K, maybe(number({.not_zero = true})), "Static gain, where it is known; of the sign of Ku.",
+                   {.unit = "y/u"})
+            .check([](const Json&, U& test, Reader& reader) {
+                if (const auto fault = test.fault()) reader.fault_below(fault->where, 1, fault->message);
+            });
         return d;
     }();
     return description;

@@ -39,6 +39,12 @@ void check_ultimate(const Json& value, JobRequest& request, Reader& reader) {
 const std::vector<std::string> kJobSources = {"plant", "record", "ultimate"},
                                kDesignSources = {"plant", "record", "model"}, kEvaluateSources = {"plant", "model"};
 
+verdict::GivenSteps given_steps(const Json& request) {
+    const auto evaluate = request.find("evaluate");
+    if (evaluate == request.end() || !evaluate->is_object()) return {};
+    return {evaluate->contains("setpoint_step"), evaluate->contains("load_step")};
+}
+
 /// A request is about one of `sources`, members that exclude each other; `others`: how those beside a plant are asked
 /// for.
 void check_source(const Json& value, const std::vector<std::string>& sources, const std::string& others,
@@ -102,7 +108,8 @@ void check_implement(const Json&, JobRequest& request, Reader& reader) {
     if (request.baseline_settings) check_baseline(request, time, reader);
 }
 
-void check_job(const Json&, JobRequest& request, Reader& reader) {
+void check_job(const Json& value, JobRequest& request, Reader& reader) {
+    request.given_steps = given_steps(value);
     if (request.uncertainty == "identified" && !request.record && !request.model) {
         reader.fault_at("uncertainty",
                         "uncertainty is \"identified\", which needs a record. For a plant give the plant its own "
@@ -129,7 +136,8 @@ std::optional<Subject> made_of(const IdentifiedModel& model, Reader& reader) {
     return std::nullopt;
 }
 
-void check_controllers(const Json&, EvaluateRequest& request, Reader& reader) {
+void check_controllers(const Json& value, EvaluateRequest& request, Reader& reader) {
+    request.given_steps = given_steps(value);
     request.subject = request.model ? made_of(*request.model, reader) : subject_of(*request.plant, reader);
     if (!request.subject) return;
     const Reader::At list(reader, "controllers");
@@ -310,6 +318,7 @@ TuningRequest to_engine(JobRequest request) {
     if (request.baseline_settings)
         out.baseline_settings = {*request.baseline_build, request.baseline_settings->settings};
     out.evaluate = request.evaluate;
+    out.given_steps = request.given_steps;
     out.labels = labels_of(request.units);
     out.identified_region = request.uncertainty == "identified" ? IdentifiedRegion::held
                             : request.uncertainty == "none"     ? IdentifiedRegion::unused

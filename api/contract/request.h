@@ -24,6 +24,7 @@ struct JobRequest {
     std::optional<GivenBaseline> baseline_settings;  ///< in its place: as typed on a product
     std::optional<GivenBuild> implement;
     EvaluateOptions evaluate;
+    verdict::GivenSteps given_steps;  ///< of `evaluate`
     std::string uncertainty = "auto";
     double timeout_s = 60;
     std::optional<Notify> notify;
@@ -47,6 +48,7 @@ struct EvaluateRequest {
     std::vector<Controller> controllers;
     std::optional<GivenBuild> implement;
     EvaluateOptions evaluate;
+    verdict::GivenSteps given_steps;    ///< of `evaluate`
     std::optional<built::Build> build;  ///< of `implement`
 };
 

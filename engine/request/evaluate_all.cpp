@@ -42,7 +42,7 @@ std::vector<int> by_load_IAE(const std::vector<TuningEntry>& entries) {
 Expected<EvaluationResult> evaluate_all(const Subject& subject, const std::vector<Controller>& controllers,
                                         const EvaluateOptions& options, const std::optional<built::Build>& implement,
                                         const verdict::Labels& labels, const RunControl& control,
-                                        const IdentifiedModel* model) {
+                                        const IdentifiedModel* model, const verdict::GivenSteps& given_steps) {
     const auto now = [&] { return control.now_ms ? control.now_ms() : 0; };
     EvaluationResult result;
     if (subject.equations() != nullptr) result.operating_point = operating_point(*subject.equations());
@@ -70,7 +70,8 @@ Expected<EvaluationResult> evaluate_all(const Subject& subject, const std::vecto
         evaluation->compute_ms = now() - start;
         entry.evaluation = std::move(*evaluation);
     }
-    const verdict::Context context{subject, options, labels, implement ? implement->Ts : 0, model};
+    const verdict::Context context{subject, options, labels,      implement ? implement->Ts : 0,
+                                   model,   nullptr, given_steps, control};
     draw_together(result.controllers);
     verdict::judge(result.controllers, context);
     result.verdict = verdict::of_all(result.controllers, by_load_IAE(result.controllers), context, false);

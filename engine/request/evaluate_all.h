@@ -27,9 +27,11 @@ struct EvaluationResult {
 /// Errors: those of evaluate(), `where` = "controllers/<index>/..."; timeout where it was stopped.
 /// `labels`: in which verdicts speak. `implement`: each is also settled for the user's own controller and judged on it.
 /// `model`: the one from a record that `subject` is made of; null for a plant that was given.
+/// `given_steps`: those of `options` that the user names.
 Expected<EvaluationResult> evaluate_all(const Subject& subject, const std::vector<Controller>& controllers,
                                         const EvaluateOptions& options, const std::optional<built::Build>& implement,
                                         const verdict::Labels& labels, const RunControl& control,
-                                        const IdentifiedModel* model = nullptr);
+                                        const IdentifiedModel* model = nullptr,
+                                        const verdict::GivenSteps& given_steps = {});
 
 }  // namespace tunewright

@@ -250,7 +250,9 @@ Expected<TuningResult> TuningRun::result() {
                                    request_.labels,
                                    request_.implement ? request_.implement->Ts : 0,
                                    result_.model ? &*result_.model : nullptr,
-                                   problem_ ? &*problem_ : nullptr};
+                                   problem_ ? &*problem_ : nullptr,
+                                   request_.given_steps,
+                                   control_};
     verdict::judge(result_.controllers, context);
     result_.verdict = verdict::of_all(result_.controllers, result_.ranking, context, result_.partial);
     report(1, "tune", "Done.");

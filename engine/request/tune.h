@@ -26,7 +26,11 @@ enum class IdentifiedRegion {
 struct UltimateTest {
     double Ku = 1;            ///< gain at which the loop oscillates, u/y, != 0
     double Pu = 1;            ///< period of that oscillation, > 0
-    std::optional<double> K;  ///< static gain, y/u, != 0
+    std::optional<double> K;  ///< static gain, y/u, != 0, of the sign of Ku
+
+    /// What is wrong with the signs: a proportional controller makes a plant oscillate at a gain of the plant's own
+    /// sign.
+    std::optional<Error> fault() const;
 };
 
 struct TuningRequest {
@@ -38,6 +42,7 @@ struct TuningRequest {
     std::vector<MethodRequest> tune = {MethodRequest{}};
     std::optional<Controller> baseline;
     EvaluateOptions evaluate;
+    verdict::GivenSteps given_steps;  ///< those of `evaluate` that the user names
     struct TypedSettings {
         built::Build build;
         product::Settings settings;

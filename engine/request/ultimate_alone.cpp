@@ -5,6 +5,7 @@
 
 #include "engine/number_text.h"
 #include "engine/request/plan.h"
+#include "engine/request/verdict/verdict.h"
 
 namespace tunewright {
 namespace {
@@ -56,20 +57,6 @@ Expected<TunedController> tuned(const UltimateTest& test, const PlannedRow& row)
     return test.K ? tuned_on(test, *test.K, row) : tuned_without_gain(test, row);
 }
 
-verdict::Finding robustness_unknown(const Controller& controller, const UltimateTest& test) {
-    verdict::Finding finding{"robustness-unknown",
-                             verdict::Level::warning,
-                             "How robust this loop is cannot be known from Ku and Pu alone: Ms, margins and responses "
-                             "need a model of the plant or a recorded test.",
-                             {}};
-    if (const auto* pid = std::get_if<IdealPid>(&controller)) {
-        const double share = pid->Kp / test.Ku;
-        finding.text += " Kp is " + text(share) + " of Ku, the gain at which the loop oscillates.";
-        finding.figures["Kp_over_Ku"] = share;
-    }
-    return finding;
-}
-
 TuningEntry entry_of(const UltimateTest& test, const PlannedRow& row) {
     TuningEntry entry;
     entry.method = row.method->id;
@@ -81,19 +68,25 @@ TuningEntry entry_of(const UltimateTest& test, const PlannedRow& row) {
         entry.error = found.error();
         if (!entry.error->where.starts_with("ultimate") && !entry.error->where.empty())
             entry.error->where = row.where + "/" + entry.error->where;
-        entry.verdict = {{"no-controller", verdict::Level::bad, entry.error->message, {}}};
+        entry.verdict = verdict::no_controller(*entry.error);
         return entry;
     }
     entry.unjudged = controller_of(*found);
-    entry.verdict = {robustness_unknown(*entry.unjudged, test)};
-    for (const Warning& warning : found->warnings)
-        entry.verdict.push_back({"reason", verdict::Level::note, warning.detail, {}});
+    entry.verdict = verdict::without_loop(*entry.unjudged, test.Ku, found->warnings);
     return entry;
 }
 
 }  // namespace
 
+std::optional<Error> UltimateTest::fault() const {
+    if (!K || Ku * *K > 0) return std::nullopt;
+    return Error{ErrorKind::invalid_argument, "ultimate/Ku",
+                 "Ku is " + text(Ku) + " and K is " + text(*K) +
+                     "; they must have the same sign. Give both as they were found, or leave K out."};
+}
+
 Expected<TuningResult> tune_on_ultimate(const TuningRequest& request) {
+    if (auto fault = request.ultimate->fault()) return *fault;
     auto planned = plan_rows(request.tune);
     if (!planned) return planned.error();
     std::erase_if(*planned, [](const PlannedRow& row) { return row.of_all && !takes_ultimate(*row.method); });
@@ -105,12 +98,7 @@ Expected<TuningResult> tune_on_ultimate(const TuningRequest& request) {
     }
     if (result.ranking.empty()) return all_failed(result.controllers);
     result.ranking_by = "the order of the methods; without a plant nothing ranks them";
-    result.verdict = {
-        {"robustness-unknown",
-         verdict::Level::warning,
-         "Ku and Pu alone give settings and no figure of the loop. Record the test, or give a model of the "
-         "plant, to know which of them is robust.",
-         {}}};
+    result.verdict = verdict::of_all_without_loop();
     return result;
 }
 

@@ -43,27 +43,51 @@ std::optional<ActuatorLimits> limits_of(const Case& c) {
     return system != nullptr ? limited_as(*system, c.context.options).actuator : c.context.options.actuator;
 }
 
-}  // namespace
+/// What the steps of an evaluation need of u; empty where the question makes no sense.
+struct Needs {
+    ActuatorLimits limits;
+    Need load;
+    std::optional<Need> setpoint;
 
-Found actuator_too_small(const Case& c) {
+    bool carries_load() const { return carries(limits, load.u); }
+    bool carries_setpoint() const { return !setpoint || carries(limits, setpoint->u); }
+};
+
+std::optional<Needs> needs_of(const Case& c) {
     const auto limits = limits_of(c);
     const LinearPlant* plant = c.context.subject.linear();
     if (!limits || plant == nullptr || !c.has_integral() || !c.evaluation.robustness.stable ||
         std::holds_alternative<Npid>(c.evaluation.controller))
         return {};
     const EvaluateOptions& options = c.context.options;
-    const Labels& labels = c.context.labels;
     const NonlinearSystem* system = c.context.subject.equations();
-    const Need load = of_load(*limits, options.load_step);
-    const auto setpoint =
-        system != nullptr ? of_setpoint(c, *system, *limits) : of_setpoint(*plant, *limits, options.setpoint_step);
-    const bool load_fails = !carries(*limits, load.u), setpoint_fails = setpoint && !carries(*limits, setpoint->u);
+    return Needs{
+        *limits, of_load(*limits, options.load_step),
+        system != nullptr ? of_setpoint(c, *system, *limits) : of_setpoint(*plant, *limits, options.setpoint_step)};
+}
+
+}  // namespace
+
+StepsBeyondActuator steps_beyond_actuator(const Case& c) {
+    const auto needs = needs_of(c);
+    return needs ? StepsBeyondActuator{!needs->carries_setpoint(), !needs->carries_load()} : StepsBeyondActuator{};
+}
+
+Found actuator_too_small(const Case& c) {
+    const auto needs = needs_of(c);
+    if (!needs) return {};
+    const auto& [limits, load, setpoint] = *needs;
+    const bool load_fails = !needs->carries_load(), setpoint_fails = !needs->carries_setpoint();
     if (!load_fails && !setpoint_fails) return {};
-    const bool bounded = plant->integrators() <= 0 && plant->unstable_poles() == 0;
-    Draft draft("actuator-too-small", bounded ? Level::warning : Level::bad);
-    const bool upper = (setpoint_fails ? setpoint->u : load.u) > limits->max;
+    const EvaluateOptions& options = c.context.options;
+    const Labels& labels = c.context.labels;
+    const LinearPlant& plant = *c.context.subject.linear();
+    const bool bounded = plant.integrators() <= 0 && plant.unstable_poles() == 0;
+    const bool asked = (setpoint_fails && c.context.given_steps.setpoint) || (load_fails && c.context.given_steps.load);
+    Draft draft("actuator-too-small", !asked ? Level::note : bounded ? Level::warning : Level::bad);
+    const bool upper = (setpoint_fails ? setpoint->u : load.u) > limits.max;
     draft.say(bounded ? "u rests at its limit of " : "y is unbounded, with u at its limit of ")
-        .number("u_limit", upper ? limits->max : limits->min, printed_unit(labels.u))
+        .number("u_limit", upper ? limits.max : limits.min, printed_unit(labels.u))
         .say(": ");
     if (setpoint_fails)
         draft.say("it carries a set-point step of ")
@@ -75,7 +99,7 @@ Found actuator_too_small(const Case& c) {
             .number("largest_load_step", load.carried, printed_unit(labels.u))
             .say(" and not of ")
             .number("load_step", options.load_step, printed_unit(labels.u));
-    return draft.say(". No controller changes that.");
+    return draft.say(asked ? ". No controller changes that." : ". That size was assumed: give the steps that occur.");
 }
 
 Found at_its_limits(const Case& c) {

@@ -65,22 +65,25 @@ std::optional<SetpointCure> overshoot_cure(const Case& c, double percent) {
     if (plant == nullptr || !pid || std::holds_alternative<Npid>(c.evaluation.controller)) return std::nullopt;
     // The weights of a series form are its own, and those of a product are settled by its design.
     const bool may_weigh = !product && std::holds_alternative<IdealPid>(c.evaluation.controller);
+    const auto stopped = [&] { return c.context.control.stop.stop_requested(); };
     const auto kept = [&](const SetpointCure& cure) {
-        return overshoot_with(c, *plant, cure) <= percent + kOwnTolerance;
+        return !stopped() && overshoot_with(c, *plant, cure) <= percent + kOwnTolerance;
     };
+    if (stopped()) return std::nullopt;
     auto cure = cure_overshoot(*plant, percent, *pid, may_weigh);
     if (cure && kept(*cure)) return cure;
     if (cure && cure->lag == 0) cure = cure_overshoot(*plant, percent, *pid, false);
     if (!cure) return std::nullopt;
     double low = 0;
     for (int i = 0; !kept(*cure); ++i, cure->lag *= 2) {
-        if (i == kDoublings) return std::nullopt;
+        if (i == kDoublings || stopped()) return std::nullopt;
         low = cure->lag;
     }
     for (int i = 0; low > 0 && i < kHalvings; ++i) {
         const SetpointCure middle{cure->b, 0.5 * (low + cure->lag)};
         (kept(middle) ? cure->lag : low) = middle.lag;
     }
+    if (stopped()) return std::nullopt;
     return cure;
 }
 
@@ -106,6 +109,7 @@ std::optional<double> least_load_IAE(const Case& c) {
 }
 
 std::optional<FilteredPeaks> peaks_with_filter(const Case& c, const Filter& filter) {
+    if (c.context.control.stop.stop_requested()) return std::nullopt;
     const LinearPlant* plant = only_linear(c);
     if (plant == nullptr || std::holds_alternative<Npid>(c.evaluation.controller)) return std::nullopt;
     ParallelPid other = gains(c.evaluation.controller);
@@ -132,9 +136,12 @@ std::optional<OtherDesign> designed_with_filter(const Case& c, double Tf) {
     if (problem == nullptr || problem->family || problem->nonlinear != nullptr || entry.over_region || c.built() ||
         entry.method != "robust" || entry.options.text("objective") != "load_iae")
         return std::nullopt;
-    const auto design = find_method(entry.method)->tune(*problem, with_filter_time(entry.options, Tf), {});
-    if (!design) return std::nullopt;
+    RunControl control = c.context.control;
+    control.progress = {};  // it has come to its end already
+    const auto design = find_method(entry.method)->tune(*problem, with_filter_time(entry.options, Tf), control);
+    if (!design || design->partial) return std::nullopt;
     EvaluateOptions figures = c.context.options;
+    figures.stop = control.stop;
     figures.points = 0;
     const auto evaluation = evaluate(c.context.subject, design->controller, figures);
     if (!evaluation || !evaluation->robustness.Mks) return std::nullopt;

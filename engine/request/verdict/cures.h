@@ -1,5 +1,5 @@
 // What a finding advises is done before it is advised, on the loop of the entry: no figure here is guessed. Each is
-// asked only where its finding is made.
+// asked only where its finding is made, and is empty where the request was stopped.
 #pragma once
 
 #include <optional>

@@ -26,6 +26,12 @@ struct Labels {
     std::string time = "s", u, y;
 };
 
+/// Which steps of an evaluation the request names. A step whose size is assumed is nobody's: that an actuator cannot
+/// carry it says nothing of the loop.
+struct GivenSteps {
+    bool setpoint = false, load = false;
+};
+
 /// A finding while its sentence is written.
 class Draft {
 public:

@@ -54,9 +54,6 @@ std::vector<Finding> heads(const Case& c);
 /// Of a finding of a verdict: it is one of these, and not good.
 bool is_head(const Finding& finding);
 
-/// Of an entry that has no controller: that there is none, and the reason.
-std::vector<Finding> no_controller(const Error& error);
-
 /// "Ms = 1.40 at 0.21 rad/s", "Mks = 12.0 %/degC": a limit that the design touches, and on which loop.
 struct ActiveLimit {
     std::string name;
@@ -85,8 +82,16 @@ std::optional<Level> overshoot_level(const Case& c);  ///< of that finding, know
 Found movement(const Case& c);                        ///< of u, against today's
 
 // actuator.cpp
-Found actuator_too_small(const Case& c);  ///< u rests at its limit: the steps that it carries
-Found at_its_limits(const Case& c);       ///< u reaches the actuator's ends
+/// Steps for which u has to be beyond its limits at rest, whatever the controller.
+struct StepsBeyondActuator {
+    bool setpoint = false, load = false;
+};
+StepsBeyondActuator steps_beyond_actuator(const Case& c);
+
+/// u rests at its limit: the steps that it carries. A note where the request names the size of none of those that it
+/// does not.
+Found actuator_too_small(const Case& c);
+Found at_its_limits(const Case& c);  ///< u reaches the actuator's ends
 
 // causes.cpp
 Found PI_or_PID(const Case& c);

@@ -36,14 +36,21 @@ Found unstable_member(const Case& c) {
     return Draft("unstable-member", Level::bad).say("Unstable on a part of what the plant may be.");
 }
 
+/// Whether both responses come to rest, but for steps that no controller can carry.
+bool rests(const Performance& p, const StepsBeyondActuator& beyond) {
+    return (p.setpoint.settling_time || beyond.setpoint) && (p.load.recovery_time || beyond.load);
+}
+
 /// With a horizon the responses may only have been cut off.
 Found not_settling(const Case& c) {
     const Performance& p = c.evaluation.performance;
     if (!c.evaluation.robustness.stable || c.context.subject.measured() != nullptr) return {};
     if (c.warned_of("left-domain"))
         return Draft("not-settling", Level::bad).say("A response leaves what the equations describe.");
-    const bool at_rest = p.setpoint.settling_time && p.load.recovery_time && !c.warned_of("does-not-settle");
-    if (at_rest || !c.has_integral() || actuator_too_small(c)) return {};
+    if (!c.has_integral()) return {};
+    const StepsBeyondActuator beyond = steps_beyond_actuator(c);
+    const bool excused = beyond.setpoint || beyond.load;
+    if (rests(p, beyond) && (excused || !c.warned_of("does-not-settle"))) return {};
     if (c.context.options.horizon)
         return Draft("short-horizon", Level::warning)
             .say("The responses are not at rest at the end of the time asked for.");
@@ -119,11 +126,15 @@ Found costly_region(const Case& c) {
 
 Found restless_as_built(const Case& c) {
     if (!c.built() || !c.robustness().stable || c.context.options.horizon || !c.has_integral()) return {};
-    if (actuator_too_small(c)) return {};
-    const Performance& p = c.performance();
-    if (p.setpoint.settling_time && p.load.recovery_time) return {};
+    if (rests(c.performance(), steps_beyond_actuator(c))) return {};
     return Draft("restless-as-built", Level::warning)
         .say("On your controller as it is built the response does not come to rest.");
+}
+
+/// As a note it stands behind the heads.
+Found actuator_too_small_as_asked(const Case& c) {
+    auto finding = actuator_too_small(c);
+    return finding && finding->level >= Level::warning ? finding : Found{};
 }
 
 Found large_overshoot(const Case& c) { return overshoot_level(c) == Level::warning ? overshoot(c) : Found{}; }
@@ -159,7 +170,7 @@ Finding robust(const Case& c) {
 std::vector<Finding> heads(const Case& c) {
     std::vector<Finding> found;
     for (const auto& head : {unstable, unstable_as_built, unstable_member, not_settling, too_sharp, above_limit,
-                             actuator_too_small, little_margin, doubtful_model, costly_region, oscillatory,
+                             actuator_too_small_as_asked, little_margin, doubtful_model, costly_region, oscillatory,
                              large_overshoot, restless_as_built, not_as_built, no_integral, margin_unknown})
         if (auto finding = head(c)) found.push_back(std::move(*finding));
     if (found.empty()) found.push_back(robust(c));
@@ -174,13 +185,6 @@ bool is_head(const Finding& finding) {
         "oscillatory",   "doubtful-model",    "costly-region",   "overshoot",           "restless-as-built",
         "not-as-built",  "no-integral",       "margin-unknown"};
     return finding.level >= Level::warning && codes.contains(finding.code);
-}
-
-std::vector<Finding> no_controller(const Error& error) {
-    const bool limits = error.kind == ErrorKind::no_feasible_controller;
-    return {Draft("no-controller", Level::bad)
-                .say(limits ? "No controller meets these limits." : "This method has no answer here."),
-            Draft("reason", Level::note).say(error.message)};
 }
 
 std::vector<ActiveLimit> active_limits(const Case& c) {

@@ -51,9 +51,9 @@ std::optional<double> asked_overshoot(const Case& c) {
 std::optional<Level> overshoot_level(const Case& c) {
     const Figure& percent = c.performance().setpoint.overshoot_percent;
     if (!percent) return {};
-    const double above = *percent - asked_overshoot(c).value_or(*percent);
-    if (*percent > kLargeOvershootPercent || above > kOvershootFarAbove) return Level::warning;
-    if (*percent >= kOvershootPercent || above > kOvershootAbove) return Level::note;
+    const auto asked = asked_overshoot(c);
+    if (asked ? *percent > *asked + kOvershootFarAbove : *percent > kLargeOvershootPercent) return Level::warning;
+    if (asked ? *percent > *asked + kOvershootAbove : *percent >= kOvershootPercent) return Level::note;
     return {};
 }
 
@@ -94,8 +94,7 @@ Found overshoot(const Case& c) {
     const auto asked = asked_overshoot(c);
     Draft draft("overshoot", *level);
     draft.say("A set-point step overshoots by ").number("overshoot_percent", *percent, "%");
-    if (asked && *percent > *asked + kOvershootAbove)
-        draft.say(", more than the ").number("asked_percent", *asked, "%").say(" asked for");
+    if (asked) draft.say(", more than the ").number("asked_percent", *asked, "%").say(" asked for");
     draft.say(".");
     say_cure(draft, c, asked.value_or(kDefaultOvershoot));
     return draft;

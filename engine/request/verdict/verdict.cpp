@@ -18,6 +18,12 @@ const TuningEntry* todays(const std::vector<TuningEntry>& entries) {
 /// A large one is among the heads.
 Found small_overshoot(const Case& c) { return overshoot_level(c) == Level::note ? overshoot(c) : Found{}; }
 
+/// Of steps that were asked for it is among the heads.
+Found actuator_too_small_as_assumed(const Case& c) {
+    auto finding = actuator_too_small(c);
+    return finding && finding->level == Level::note ? finding : Found{};
+}
+
 std::vector<Finding> verdict_on(const TuningEntry& entry, const TuningEntry* today, const Context& context) {
     if (!entry.evaluation) return entry.error ? no_controller(*entry.error) : std::vector<Finding>{};
     const Case c{entry, &entry == today ? nullptr : today, context};
@@ -34,9 +40,9 @@ std::vector<Finding> verdict_on(const TuningEntry& entry, const TuningEntry* tod
         for (const auto& finding : {as_built, sample_time, all_members}) add(finding(c));
         return verdict;
     }
-    for (const auto& finding :
-         {active_limit, all_members, margins, nonlinear_margins, large_errors, load_error, as_built, at_its_limits,
-          movement, noise, sample_time, small_overshoot, PI_or_PID, excess, dead_time_rules, filter_rules})
+    for (const auto& finding : {active_limit, all_members, margins, nonlinear_margins, large_errors, load_error,
+                                as_built, at_its_limits, actuator_too_small_as_assumed, movement, noise, sample_time,
+                                small_overshoot, PI_or_PID, excess, dead_time_rules, filter_rules})
         add(finding(c));
     std::stable_sort(verdict.begin() + after_heads, verdict.end(), [](const Finding& a, const Finding& b) {
         return (a.level >= Level::warning) > (b.level >= Level::warning);

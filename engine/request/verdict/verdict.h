@@ -1,11 +1,13 @@
-// The verdict on each entry and on the whole answer.
+// The verdict on each entry and on the whole answer, and where there is no loop to judge (without_loop.cpp).
 #pragma once
 
 #include <vector>
 
+#include "engine/error.h"
 #include "engine/evaluation/evaluation.h"
 #include "engine/identification/identify.h"
 #include "engine/plant/subject.h"
+#include "engine/progress.h"
 #include "engine/request/entry.h"
 #include "engine/request/verdict/finding.h"
 #include "engine/tuning/method/method.h"
@@ -20,11 +22,22 @@ struct Context {
     double sample_time = 0;                  ///< of the user's controller; 0: continuous or not known
     const IdentifiedModel* model = nullptr;  ///< of a record
     const TuningProblem* problem = nullptr;  ///< that methods work on; null: nothing is designed
+    GivenSteps given_steps = {};
+    RunControl control = {};  ///< of the request: a cure whose search is stopped is none
 };
 
 /// Writes every entry's verdict. The first finding says what the loop is, and its level is the entry's; what belongs to
 /// it follows by severity and then in the order in which an engineer reads a loop.
 void judge(std::vector<TuningEntry>& entries, const Context& context);
+
+/// The verdict on an entry that has no controller: that there is none, and the reason.
+std::vector<Finding> no_controller(const Error& error);
+
+/// The verdict on settings from Ku and Pu alone: how they stand to `Ku` (u/y), and the rule's own `remarks`.
+std::vector<Finding> without_loop(const Controller& controller, double Ku, const std::vector<Warning>& remarks);
+
+/// The verdict on all of them.
+std::vector<Finding> of_all_without_loop();
 
 /// Over all entries, which have their verdicts: which to take, against today's. `ranking`: indices of entries, best
 /// first; those left out are not taken. `partial`: somebody stopped the search. Empty without entries.

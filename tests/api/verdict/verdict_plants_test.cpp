@@ -109,7 +109,7 @@ const Loop kLoops[] = {
      "The loop itself is calm, but N = 80 passes eighty times the noise that the proportional gain does.",
      1},
     {"a valve that is too small",
-     R"({"plant": {"type": "fopdt", "K": 2, "T": 10, "L": 3}, "evaluate": {"actuator": {"min": -0.3, "max": 0.3}}})",
+     R"({"plant": {"type": "fopdt", "K": 2, "T": 10, "L": 3}, "evaluate": {"actuator": {"min": -0.3, "max": 0.3}, "setpoint_step": 1, "load_step": 1}})",
      "actuator-too-small",
      "warning",
      {"at-limits", "margins"},

@@ -80,7 +80,11 @@ double time_of(const Json& plant) {
 void add_questions(Json& request, Dice& dice, double T) {
     if (dice.one_in(3)) request["units"] = {{"time", "min"}, {"u", "%"}, {"y", "degC"}};
     Json evaluate = {{"points", 0}};
-    if (dice.one_in(6)) evaluate["actuator"] = {{"min", -dice.between(0.2, 3)}, {"max", dice.between(0.2, 3)}};
+    if (dice.one_in(6)) {
+        evaluate["actuator"] = {{"min", -dice.between(0.2, 3)}, {"max", dice.between(0.2, 3)}};
+        if (dice.one_in(2)) evaluate["load_step"] = 1;
+        if (dice.one_in(2)) evaluate["setpoint_step"] = 1;
+    }
     if (dice.one_in(6)) evaluate["noise"] = {{"std", 0.1}, {"sample_time", 0.05 * T}};
     if (dice.one_in(10)) evaluate["horizon"] = T * dice.log_between(1, 100);
     request["evaluate"] = evaluate;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 namespace tunewright {
 namespace {
@@ -59,6 +60,34 @@ TEST(UltimateAlone, AllAreTheRulesOnTheUltimatePointAndOthersSayWhatTheyNeed) {
     ASSERT_TRUE(robust->controllers[0].error);
     EXPECT_THAT(robust->controllers[0].error->message, HasSubstr("needs a model"));
     EXPECT_EQ(robust->ranking, std::vector<int>{1});
+}
+
+/// The same words as for every entry without a controller (docs/verdicts.md).
+TEST(UltimateAlone, AMethodWithoutAnAnswerHasTheVerdictOfEveryOther) {
+    const auto result = tune(known_point({{"robust", {}}, {"tyreus_luyben", {}}}), {});
+    ASSERT_TRUE(result);
+    const auto& verdict = result->controllers[0].verdict;
+    ASSERT_EQ(verdict.size(), 2u);
+    EXPECT_EQ(verdict[0].code, "no-controller");
+    EXPECT_EQ(verdict[0].level, verdict::Level::bad);
+    EXPECT_EQ(verdict[1].code, "reason");
+    EXPECT_EQ(verdict[1].text, result->controllers[0].error->message);
+    EXPECT_NE(verdict[0].text, verdict[1].text);
+}
+
+TEST(UltimateAlone, KuHasTheSignOfTheStaticGain) {
+    for (const auto& [Ku, K] : {std::pair{-2.0, 1.0}, {2.0, -1.0}}) {
+        TuningRequest request = known_point({{"all", {}}}, K);
+        request.ultimate->Ku = Ku;
+        const auto result = tune(request, {});
+        ASSERT_FALSE(result);
+        EXPECT_EQ(result.error().kind, ErrorKind::invalid_argument);
+        EXPECT_EQ(result.error().where, "ultimate/Ku");
+        EXPECT_THAT(result.error().message, HasSubstr("same sign"));
+    }
+    TuningRequest both = known_point({{"tyreus_luyben", {}}}, -4);
+    both.ultimate->Ku = -0.903;
+    EXPECT_TRUE(tune(both, {}));
 }
 
 }  // namespace

@@ -96,8 +96,26 @@ std::vector<Head> first_lines(std::string_view text) {
     return lines;
 }
 
+// The share of cells that look like numbers, with a decimal point or comma.
+double share_of_numbers(const std::vector<Head>& lines, char separator) {
+    std::deque<std::string> storage;
+    std::vector<std::string_view> cells;
+    std::size_t numbers = 0, all = 0;
+    for (const Head& line : lines) {
+        if (line.comment) continue;
+        split_line(line.content, separator, cells, storage);
+        all += cells.size();
+        numbers += static_cast<std::size_t>(std::ranges::count_if(cells, [](std::string_view cell) {
+            cell = trimmed(cell);
+            return !cell.empty() && cell.find_first_not_of("0123456789.,+-eE") == std::string_view::npos;
+        }));
+    }
+    return all > 0 ? static_cast<double>(numbers) / static_cast<double>(all) : 0;
+}
+
 // The separator that splits most lines into equally many cells, more than one; those that are never there by chance
-// come first, unless only another splits the first line so, too: "ns=2;s=Tank" holds one that separates nothing.
+// come first, unless only another splits the first line so, too, and leaves more numbers: "ns=2;s=Tank" holds one that
+// separates nothing, and "Tank 5, heater, test" has as many commas as "0;0,00;20,00".
 char find_separator(const std::vector<Head>& lines) {
     char best = ',';
     double best_share = 0;
@@ -125,7 +143,11 @@ char find_separator(const std::vector<Head>& lines) {
         const double share = all > 0 ? static_cast<double>(most) / all : 0;
         constexpr double kPlain = 0.8, kBetter = 0.05;
         constexpr std::size_t kColumns = 3;
-        if (share >= kPlain && first == usual && (!plain || (usual >= kColumns && separator != ' '))) return separator;
+        const auto better = [&](char other) {
+            return share_of_numbers(lines, separator) > share_of_numbers(lines, other);
+        };
+        if (share >= kPlain && first == usual && (!plain || (usual >= kColumns && separator != ' ' && better(*plain))))
+            return separator;
         if (share >= kPlain && !plain) plain = separator;
         if (share > best_share + kBetter) {
             best = separator;

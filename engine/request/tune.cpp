@@ -99,11 +99,6 @@ std::optional<Error> TuningRun::take_model(IdentifiedModel model) {
 }
 
 std::optional<Error> TuningRun::find_plant() {
-    const int given = request_.subject.has_value() + request_.record.has_value() + request_.model.has_value();
-    if (given != 1)
-        return Error{ErrorKind::invalid_argument, "",
-                     given > 1 ? "More than one of plant, record and model is given; give one of them."
-                               : "Neither plant, record nor model is given; give one of them."};
     if (request_.record) return take_record();
     if (request_.model) return take_model(*request_.model);
     subject_ = request_.subject;
@@ -262,7 +257,13 @@ Expected<TuningResult> TuningRun::result() {
 }  // namespace
 
 Expected<TuningResult> tune(const TuningRequest& request, const RunControl& control) {
-    if (request.ultimate && !request.subject && !request.record) return tune_on_ultimate(request);
+    const int given = request.subject.has_value() + request.record.has_value() + request.model.has_value() +
+                      request.ultimate.has_value();
+    if (given != 1)
+        return Error{ErrorKind::invalid_argument, "",
+                     given > 1 ? "More than one of plant, record, model and ultimate is given; give one of them."
+                               : "Neither plant, record, model nor ultimate is given; give one of them."};
+    if (request.ultimate) return tune_on_ultimate(request);
     return TuningRun(request, control).result();
 }
 

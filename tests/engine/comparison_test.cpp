@@ -27,7 +27,7 @@ TuningResult compare_all(const Plant& plant, MethodOptions options = {}) {
     return result ? std::move(*result) : TuningResult{};
 }
 
-const TuningEntry& entry_of(const TuningResult& result, const std::string& method) {
+const TuningEntry& entry_of(const TuningResult& result, std::string_view method) {
     const auto at = std::ranges::find(result.controllers, method, &TuningEntry::method);
     EXPECT_NE(at, result.controllers.end()) << method;
     return *at;

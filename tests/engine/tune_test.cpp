@@ -173,11 +173,11 @@ TEST(Tune, RefusesRequestsThatAreNoneWithAPlace) {
     EXPECT_EQ(refused.error().where, "tune");
 
     request = request_for(kPlant, {method("simc")});
-    request.record = Record{};
-    EXPECT_THAT(tune(request, {}).error().message, HasSubstr("More than one of plant, record and model"));
+    request.ultimate = UltimateTest{};
+    EXPECT_THAT(tune(request, {}).error().message, HasSubstr("More than one of plant, record, model and ultimate"));
     request.subject.reset();
-    request.record.reset();
-    EXPECT_THAT(tune(request, {}).error().message, HasSubstr("Neither plant, record nor model"));
+    request.ultimate.reset();
+    EXPECT_THAT(tune(request, {}).error().message, HasSubstr("Neither plant, record, model nor ultimate"));
 }
 
 TEST(Tune, MethodWarningsComeBeforeThoseOfTheEvaluation) {

@@ -141,7 +141,7 @@ private:
 };
 
 /// The columns among `tags` whose words differ from line to line.
-std::vector<std::size_t> varying(std::string_view text, const CsvLayout& layout, const std::vector<std::size_t>& tags) {
+std::vector<std::size_t> varying(std::string_view text, const CsvLayout& layout, std::vector<std::size_t> tags) {
     if (tags.size() < 2) return tags;
     CsvLines lines(text, layout);
     CsvLine line;

@@ -19,6 +19,7 @@ struct Finding {
     Level level = Level::note;
     std::string text;                       ///< one or two sentences; its numbers have three digits
     std::map<std::string, double> figures;  ///< every number of the text, in full precision
+    bool head = false;                      ///< says what the loop is: counts where one of several is chosen
 };
 
 /// The user's names of the units; empty: not known.

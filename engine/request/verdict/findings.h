@@ -51,9 +51,6 @@ const Performance& performance_of(const TuningEntry& entry);
 /// loop as it is built are stable and settle, with Ms at most 1.7 and within its limit.
 std::vector<Finding> heads(const Case& c);
 
-/// Of a finding of a verdict: it is one of these, and not good.
-bool is_head(const Finding& finding);
-
 /// "Ms = 1.40 at 0.21 rad/s", "Mks = 12.0 %/degC": a limit that the design touches, and on which loop.
 struct ActiveLimit {
     std::string name;

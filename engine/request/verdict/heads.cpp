@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <string>
 
 #include "engine/identification/model_grade.h"
@@ -174,17 +173,9 @@ std::vector<Finding> heads(const Case& c) {
                              large_overshoot, restless_as_built, not_as_built, no_integral, margin_unknown})
         if (auto finding = head(c)) found.push_back(std::move(*finding));
     if (found.empty()) found.push_back(robust(c));
+    for (Finding& finding : found) finding.head = true;
     std::ranges::stable_sort(found, [](const Finding& a, const Finding& b) { return a.level > b.level; });
     return found;
-}
-
-bool is_head(const Finding& finding) {
-    static const std::set<std::string> codes{
-        "unstable",      "unstable-as-built", "unstable-member", "model-too-uncertain", "not-settling",
-        "short-horizon", "too-sharp",         "above-limit",     "actuator-too-small",  "little-margin",
-        "oscillatory",   "doubtful-model",    "costly-region",   "overshoot",           "restless-as-built",
-        "not-as-built",  "no-integral",       "margin-unknown"};
-    return finding.level >= Level::warning && codes.contains(finding.code);
 }
 
 std::vector<ActiveLimit> active_limits(const Case& c) {

@@ -80,7 +80,7 @@ Level level_for_choice(const TuningEntry& entry, double asked_Ms) {
     const bool as_asked = Ms && *Ms <= asked_Ms * (1 + kReached);
     Level level = Level::good;
     for (const Finding& finding : entry.verdict)
-        if (is_head(finding) && !(as_asked && finding.code == "little-margin")) level = std::max(level, finding.level);
+        if (finding.head && !(as_asked && finding.code == "little-margin")) level = std::max(level, finding.level);
     return level;
 }
 

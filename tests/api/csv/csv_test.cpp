@@ -65,6 +65,19 @@ TEST(Csv, SemicolonsWithDecimalCommas) {
     EXPECT_THAT(record.y, ElementsAre(20.25, -3));
 }
 
+TEST(Csv, ATitleWithCommasHidesNoOtherSeparator) {
+    for (const std::string separator : {";", "\t"}) {
+        std::string text = "Tank 5, heater, test\nt;u;y\n";
+        for (int k = 0; k < 12; ++k)
+            text += std::to_string(k) + ";0," + (k < 5 ? "00" : "50") + ";20,0" + std::to_string(k % 10) + "\n";
+        for (std::size_t at = 0; (at = text.find(';', at)) != std::string::npos;) text.replace(at, 1, separator);
+        const CsvRecord record = read(text);
+        ASSERT_EQ(record.t.size(), 12u) << separator;
+        EXPECT_EQ(record.u.back(), 0.5);
+        EXPECT_EQ(record.y[3], 20.03);
+    }
+}
+
 TEST(Csv, TabsAndWindowsLineEndsAndByteOrderMark) {
     const CsvRecord record = read("\xEF\xBB\xBFtime\top\tpv\r\n0\t1\t2\r\n1\t1\t3\r\n");
     EXPECT_THAT(record.t, ElementsAre(0, 1));

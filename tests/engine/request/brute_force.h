@@ -113,6 +113,7 @@ inline Form form_of(const std::string& product, const Case& c) {
     if (product == "emerson_deltav_series") return {"GAIN", "RESET", "RATE", q, 1, 1, times};
     if (product == "klipper") return {"pid_Kp", "pid_Ki", "pid_Kd", duty, duty, duty, gains};
     if (product == "reprapfirmware") return {"P", "I", "D", duty, duty, duty, gains};
+    if (product == "marlin") return {"P", "I", "D", duty, duty, duty, gains};
     if (product == "esphome_pid") return {"kp", "ki", "kd", 1 / Su, 1 / Su, 1 / Su, gains};
     if (product == "openplc_iec_pid") return {"KP", "TR", "TD", -1, 1, 1, times};  // its error is y - r
     if (product == "mitsubishi_fx_pid") return {"KP", "TI", "TD", 100 * q, 10, 100, times, true};

@@ -46,7 +46,7 @@ void write_figures(const TuningEntry& entry, Writer& out) {
     write_figure("load_IAE", verdict::performance_of(entry).load.IAE, out);
 }
 
-/// What to enter: the controller, and the texts to type where it is for a product.
+/// Writes what to enter: the controller, and the texts to type where it is for a product.
 void write_settings(const TuningEntry& best, Writer& out) {
     out.key("controller");
     controller_contract().write(best.evaluation->controller, out);

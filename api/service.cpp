@@ -137,7 +137,7 @@ std::string method_label(const JobRequest& request) {
     return request.tune.size() == 1 ? request.tune.front().method : "several";
 }
 
-/// What a request comes to, with what reading its record has found.
+/// The result of a request, with what reading its record has found.
 Expected<TuningResult> tuned(JobRequest request, const RunControl& control) {
     ReadRecord read = request.read;
     read.record = {};

@@ -164,7 +164,7 @@ std::variant<std::string, Problem> tuning_request(const TuneWords& words, std::o
             return unclear("--model chooses the model of a recorded test, and there is none. Leave it out.");
         if (request.value("identify", Json::object()).is_object()) request["identify"]["model"] = words.record.model;
     }
-    // Of a record's text --time-unit is the file's; else it is that of the whole request.
+    // --time-unit is the file's where a record is read as text; else it is that of the whole request.
     const std::string& unit = !words.record.answer_unit.empty() ? words.record.answer_unit
                               : as_csv                          ? std::string()
                                                                 : words.record.time_unit;

@@ -281,7 +281,7 @@ public:
         ++families_[std::move(keys)];
     }
 
-    /// Whether lines of pairs are as many as those of a log.
+    /// True if lines of pairs are as many as those of a log.
     bool may_be_log() const {
         constexpr int kFewStats = 3;
         return with_pairs_ > 1 && (2 * with_pairs_ >= lines_ || stats_ >= kFewStats);

@@ -17,10 +17,10 @@ std::string no_data_sentence(const CsvLayout& layout, std::string_view first_lin
 /// neither needs saying.
 std::string sign_note(const CsvLayout& layout);
 
-/// Of a column, as the file writes it: in the heading, in the line below it or behind the numbers; "" if it does not.
+/// Unit of a column as the file has it: in the heading, in the line below it or behind the numbers; "" if it has none.
 std::string unit_of(const CsvLayout& layout, const ColumnProfile& profile, std::size_t column);
 
-/// Whether heading, a line below it or the numbers say percent: 0 to 100, never 0 to 1.
+/// True if heading, a line below it or the numbers say percent: 0 to 100, never 0 to 1.
 bool is_percent(const CsvLayout& layout, const ColumnProfile& profile, std::size_t column);
 
 /// Which words of u are its two levels, "OFF" 0 and "ON" 1; "" where it has none. Either word may be "", where the file

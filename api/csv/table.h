@@ -47,7 +47,7 @@ struct CsvLayout {
 /// comments (#, % and //) and what a logger writes above the headings are skipped.
 /// The headings are a line of text as wide as the data, in the lines right above it: the one that names most roles,
 /// else the first; a comment of that width is a heading line too. Of a log of pairs (pairs.h) they are its names.
-/// Of a log with lines of several kinds, those are read that have the `chosen` columns (pairs.h). Of a file whose first
+/// In a log with lines of several kinds, those with the `chosen` columns are read (pairs.h). Of a file whose first
 /// lines have more than kMaxColumns cells, only that width is found.
 /// `text` must outlive what is returned.
 CsvLayout find_layout(std::string_view text, const ColumnChoices& chosen);

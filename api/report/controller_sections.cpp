@@ -1,4 +1,4 @@
-// What the settings do, and how they were found.
+// Sections about what the settings do, and how they were found.
 #include <algorithm>
 #include <array>
 

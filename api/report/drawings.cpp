@@ -42,7 +42,7 @@ void add_responses(Plot& plot, const ReportSubject& s, const char* step, const c
                                .y = numbers_at(linear.at(signal))});
 }
 
-/// What the step asks for, from before it to the end of the longest response.
+/// Adds the set point, from before the step to the end of the longest response.
 void add_setpoint(Plot& plot, const ReportSubject& s) {
     double end = 0;
     for (const Trace& trace : plot.traces)

@@ -25,12 +25,12 @@ Html figure(const Place& place, int digits = 4);
 
 using Row = std::vector<Html>;
 
-/// Whether any of these objects has a member of that name.
+/// True if any of these objects has a member of that name.
 bool any_has(const std::vector<Place>& places, const std::string& name);
 
 /// "40 +- 0.30", the error with two digits; the value alone where the error is below a millionth of it.
 std::string uncertain_text(double value, double standard_error);
-/// Whether a standard error says nothing beside its value.
+/// True if a standard error is too small next to its value to be reported.
 bool negligible(double standard_error, double value);
 
 /// A model's `grade` and `grade_reason` as a sentence; "" for a grade that is not known.

@@ -1,4 +1,4 @@
-// What is to be entered: from today's settings to the new ones, by the names of the user's own controller where it is
+// Settings to enter: from today's settings to the new ones, by the names of the user's own controller where it is
 // known, and the generic forms.
 #include <algorithm>
 #include <array>
@@ -84,7 +84,7 @@ Html typed(const Place& texts, const std::string& name) {
     return value.exists() ? element("span", text_at(value), {{"data-typed", value.pointer}}) : Html("–");
 }
 
-/// What stands in the controller today beside what is to stand there, by the names of its own list.
+/// Today's settings next to the new ones, by the names of the controller's own list.
 Html change_table(const product::Product& product, const ReportSubject& s) {
     const Place entered = s.entry.at("as_entered"), texts = entered.at("as_typed");
     if (!texts.value().is_object()) return {};

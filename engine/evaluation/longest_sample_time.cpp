@@ -140,7 +140,7 @@ bool has_edges(const LinearPlant& plant, double Ts) {
                                 [=](std::complex<double> pole) { return std::abs(pole) * kSmoothingLag * Ts < 1; });
 }
 
-/// Of the sample times in (Ts, next] the longest that goes a whole number of times into the dead time, at which Ms has
+/// The longest sample time in (Ts, next] that goes a whole number of times into the dead time, at which Ms has
 /// its edges and is largest; else `next`.
 double at_edge(const LinearPlant& plant, double Ts, double next) {
     const double L = plant.dead_time();
@@ -225,7 +225,7 @@ private:
         return guess;
     }
 
-    /// Whether the whole loop bears the sample times below at which the dead time is whole samples.
+    /// True if the whole loop bears the sample times below at which the dead time is whole samples.
     bool bears_edges(double below, double from) const {
         double Ts = from;
         for (int i = 0; i < kMostWholeLooks; ++i) {

@@ -111,7 +111,7 @@ struct DataQuality {
     std::vector<std::string> notes;
 };
 
-/// What a further measured input (Record::d) does to y: for feedforward.
+/// Model of a further measured input (Record::d), for feedforward.
 struct DisturbanceModel {
     std::string name;
     Plant plant;  ///< a lag and a dead time (Fopdt); with 1/s (Ipdt) where the plant of u integrates

@@ -9,7 +9,7 @@
 //    sign on the negative side on either hand, which is located to rounding.
 // 4. Stretches whose |L| is smaller than at a crossing that is known are left out.
 //
-// What is left of L when the dead time is taken out must change little from point to point: the grid has points of its
+// L without the dead time must change little from point to point: the grid has points of its
 // own around corners and resonances. At a coarser one a crossing beside a hill between two points would be missed.
 //
 //   const Margins margins = find_interior_margins(open_loop, grid, plant.dead_time());

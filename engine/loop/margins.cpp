@@ -35,7 +35,7 @@ constexpr double kTooSmall = 0.45;        // of the largest value so far: 2 |T| 
 
 using OpenLoop = std::function<std::complex<double>(double)>;
 
-/// Where L crosses the real axis between two frequencies at which it is known.
+/// The frequency at which L crosses the real axis, between two at which it is known.
 double real_crossing(const OpenLoop& open_loop, double left, double right, std::complex<double> a,
                      std::complex<double> b) {
     const auto imaginary = [&](double omega) {
@@ -45,7 +45,7 @@ double real_crossing(const OpenLoop& open_loop, double left, double right, std::
     return log_root(imaginary, left, right, a.imag() / magnitude(a), b.imag() / magnitude(b), kToRounding);
 }
 
-/// Where |L| = 1 between two such frequencies.
+/// The frequency at which |L| = 1, between two such frequencies.
 double unit_crossing(const OpenLoop& open_loop, double left, double right, std::complex<double> a,
                      std::complex<double> b) {
     const auto log_gain = [&](double omega) { return std::log(magnitude(open_loop(omega))); };

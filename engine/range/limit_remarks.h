@@ -13,11 +13,11 @@
 
 namespace tunewright::range {
 
-/// Of a limit, before it counts as exceeded where settings are judged.
+/// Relative excess over a limit above which it counts as exceeded where settings are judged.
 constexpr double kAllowedRelativeExcess = 5e-5;
 inline bool exceeds_limit(const RangeCurve& curve) { return largest_excess(curve) > kAllowedRelativeExcess; }
 
-/// Of Ms and Mt the one that comes nearest to its limit or lies farthest beyond it; null for a curve without places.
+/// The one of Ms and Mt that comes nearest to its limit or lies farthest beyond it; null for a curve without places.
 const WorstPlace* worst_limit(const RangeCurve& curve);
 
 /// "limit-exceeded-between": one setting exceeds a limit between the points. Empty where it keeps them, but for 5e-5.

@@ -30,7 +30,7 @@ struct TuningEntry {
     std::string title;
     std::string source;
     bool over_region = false;  ///< limits hold over the record's confidence region, not on its model alone
-    /// Of an entry over the region: its load IAE over that of the same method on the model alone.
+    /// Load IAE of an entry over the region, divided by that of the same method on the model alone.
     std::optional<double> region_cost;
     MethodOptions options;  ///< given, over the defaults
     std::optional<Plant> reduced_model;

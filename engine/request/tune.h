@@ -22,7 +22,7 @@ enum class IdentifiedRegion {
     held,
 };
 
-/// What an experiment with a proportional controller shows of a plant, where nothing else is known.
+/// Result of an experiment with a proportional controller, for a plant of which nothing else is known.
 struct UltimateTest {
     double Ku = 1;            ///< gain at which the loop oscillates, u/y, != 0
     double Pu = 1;            ///< period of that oscillation, > 0

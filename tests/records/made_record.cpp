@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kFine = 6;  // steps of the simulation per row
 
-/// What u does: its level at a row, or at a step of the simulation, from what was measured there.
+/// The move of u: its level at a row, or at a step of the simulation, from what was measured there.
 using Operator = std::function<double(int place, double y)>;
 
 struct Plan {

@@ -1,4 +1,4 @@
-// What Design shows, and the request that is handed out for it: posted again, it must give the same to the digit.
+// Design as it is shown, and the request that is handed out for it: posted again, it must give the same to the digit.
 import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
 

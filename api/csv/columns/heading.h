@@ -56,7 +56,7 @@ bool is_frequency(const Heading& heading);
 /// "ssr_output_percent", "duty %", "heater_pct".
 bool is_percent(const Heading& heading);
 
-/// What belongs to the sensor, its radio or its supply, or is measured beside the process: signal quality, battery,
+/// Names a figure of the sensor, its radio or its supply, or a quantity next to the process: signal quality, battery,
 /// humidity. Never u unless chosen.
 bool is_never_input(const Heading& heading);
 

@@ -71,7 +71,7 @@ bool Pivot::add(std::string_view time, std::string_view tag, std::string_view va
 }
 
 ShapedText Pivot::table(std::string_view time_heading) const {
-    // Of the two readings of 03/04/2026 the one is right in which time runs on.
+    // 03/04/2026 has two readings: the right one is that in which time runs on.
     double way[2] = {};
     for (std::size_t i = 1; i < entries_.size(); ++i)
         for (int k = 0; k < 2; ++k) way[k] += std::abs(entries_[i].key[k] - entries_[i - 1].key[k]);

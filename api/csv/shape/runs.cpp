@@ -85,7 +85,7 @@ void turn_countdown(CsvRecord& record, const RowRun& run) {
                            tunewright::text(record.t[run.first]) + " on.");
 }
 
-/// Whether the rows that count up go on from those that count down.
+/// True if the rows that count up go on from those that count down.
 bool contiguous(const std::vector<double>& t, const RowRun& run) {
     if (run.countdown == 0 || run.rows() == run.countdown) return true;
     constexpr double kSpacings = 3;
@@ -120,7 +120,7 @@ double range_of(const std::vector<double>& values) {
     return high - low;
 }
 
-/// Whether u moves in the run and y then moves too: by a twentieth of `range_y`, what it does in the whole file.
+/// True if u moves in the run and y then moves too: by a twentieth of `range_y`, what it does in the whole file.
 bool tests_something(const CsvRecord& record, const RowRun& run, double range_y) {
     constexpr std::size_t kFewRows = 8;
     constexpr double kAnswer = 0.05;
@@ -174,7 +174,7 @@ void note_runs(CsvRecord& record, int taken, bool chosen) {
         "The times begin again: the file holds " + std::to_string(record.runs.size()) + " runs. Read is " +
         in_words(record.runs[static_cast<std::size_t>(taken) - 1], static_cast<std::size_t>(taken)) +
         (chosen ? ", as chosen" : ", the longest in which y answers a move of u") + ". The others are " + others + ".";
-    // Where nobody has said which one is meant, it is a warning.
+    // A run that was not chosen is a warning: another one may be meant.
     if (chosen)
         record.notes.push_back(sentence);
     else

@@ -200,7 +200,7 @@ struct Product {
     std::optional<GainScheduling> scheduling = {};  ///< none: none is known
 };
 
-/// Whether a choice of the product decides if this parameter has an effect.
+/// True if a choice of the product decides whether this parameter has an effect.
 bool depends_on_choice(const Product& product, const Parameter& parameter);
 
 /// The parameter of that name; null if there is none.

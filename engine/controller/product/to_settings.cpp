@@ -76,7 +76,7 @@ void set_own_form(Work& work) {
     if (alpha > 0) own.Tf = alpha * series.td;
 }
 
-// Where one option sets both weights, c decides among those of the same b only. Free weights cost less than any
+// If one option sets both weights, c decides among those of the same b only. Free weights cost less than any
 // difference that counts, so that they are taken where no fixed ones are the design's.
 constexpr double kLessThanB = 1e-6, kFreeWeights = 1e-12;
 constexpr double kAction = 10;  ///< of an action too much or too little: more than weights can differ

@@ -128,7 +128,7 @@ std::optional<double> number_of(const Parameter& parameter, const Settings& sett
 
 namespace {
 
-/// Whether a parameter has an effect with one option of a choice.
+/// True if a parameter has an effect with one option of a choice.
 bool counts_with(const Parameter& parameter, const Parameter& choice, const Option& option) {
     switch (parameter.role) {
         case Role::weight_b:
@@ -139,7 +139,7 @@ bool counts_with(const Parameter& parameter, const Parameter& choice, const Opti
     }
 }
 
-/// Whether it is given, and not as that which means: none.
+/// True if it is given, and its value does not mean "none".
 bool asks_for_effect(const Parameter& parameter, const Settings& settings) {
     const Value* given = setting_named(settings, parameter.name);
     if (!given) return false;

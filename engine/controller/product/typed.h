@@ -16,11 +16,11 @@ const Value* setting_named(const Settings& settings, std::string_view name);
 /// A numeric parameter's value, the maker's default where none is given; empty if neither is known.
 std::optional<double> number_of(const Parameter& parameter, const Settings& settings);
 
-/// What is chosen. Where nothing is given, the first option with which every setting that is given counts, else the
+/// The chosen option. If none is given, the first option with which every setting that is given counts, else the
 /// first. The parameter has options.
 const Option& option_of(const Product& product, const Parameter& parameter, const Settings& settings);
 
-/// Whether the parameter has an effect with what `settings` choose: weights of a structure that is not chosen, and the
+/// True if the parameter has an effect with what `settings` choose: weights of a structure that is not chosen, and the
 /// time of an action that is switched off, have none.
 bool counts(const Product& product, const Parameter& parameter, const Settings& settings);
 

@@ -137,7 +137,7 @@ bool answers_at_once(const IdentifiedModel& model) {
     });
 }
 
-/// What a straight line over y, of the same row or the next, leaves of u.
+/// Standard deviation of u that a straight line over y, of the same row or the next, leaves.
 double left_by_line(std::span<const double> y, std::span<const double> u) {
     return deviation(residuals(straight_line(y, u), y, u));
 }

@@ -85,7 +85,7 @@ Explained explain(const Eigen::MatrixXd& X, const Eigen::VectorXd& z) {
     return {c, (z - X * c).squaredNorm() / total};
 }
 
-/// Whether u is two periods and more of a sine about a straight line: u'' = -w^2 u, integrated twice.
+/// True if u is two periods or more of a sine about a straight line: u'' = -w^2 u, integrated twice.
 bool is_sine(const CleanRecord& record, const std::vector<double>& u, const MovingRows& rows) {
     constexpr double kLeft = 0.02, kTwoPeriods = 12.566370614359172;  // share of the variance; radians
     Eigen::MatrixXd X(rows.size(), 3);

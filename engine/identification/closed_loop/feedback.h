@@ -38,7 +38,7 @@ std::vector<double> input_at_samples(const CleanRecord& record);
 /// sines).
 std::optional<Feedback> find_feedback(const CleanRecord& record);
 
-/// Whether u moves as a controller may move it: 12 times and more, on more than three levels, neither as a relay nor on
+/// True if u moves as a controller may move it: 12 times or more, on more than three levels, neither as a relay nor on
 /// ramps.
 bool may_be_controlled(const CleanRecord& record);
 

@@ -100,7 +100,7 @@ std::optional<double> level_before_set_point(const CleanRecord& record, const st
 
 namespace {
 
-/// Whether u steps once in `run`, to an end of what it does in the record, and leaves it while y is on its way: a
+/// True if u steps once in `run`, to an end of its range in the record, and leaves it while y is on its way: a
 /// controller that is switched on far from its set point does that. By hand one waits for y to come to rest.
 bool one_step_to_end(const CleanRecord& record, const Run& run) {
     constexpr double kLastPart = 0.25,

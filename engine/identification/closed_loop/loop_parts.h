@@ -14,7 +14,7 @@ namespace tunewright {
 /// `r` is the set point at the record's samples, or its moves, in any unit.
 std::optional<double> level_before_set_point(const CleanRecord& record, const std::vector<double>& r);
 
-/// Where a controller took over: before that row u stands still.
+/// The row at which a controller took over: before it u stands still.
 struct SwitchOn {
     int row = 0;          ///< index of the first sample at which the controller moves u
     double y_before = 0;  ///< mean of y over the rows just before, dimensionless

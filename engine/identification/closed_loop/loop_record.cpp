@@ -67,7 +67,7 @@ std::vector<OutsideMove> of_whole_record(std::vector<OutsideMove> kicks, double 
     return kicks;
 }
 
-/// Of what may have moved u, the first that explains u plainly; else the one that explains most.
+/// Takes the first of the moves from outside that explains u plainly; else the one that explains most.
 void choose_excitation(const CleanRecord& record, const SetPoint& set_point, const std::vector<OutsideMove>& kicks,
                        bool u0_given, LoopRecord& loop) {
     const std::vector<double> u = input_at_samples(record);

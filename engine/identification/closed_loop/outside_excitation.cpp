@@ -12,7 +12,7 @@
 namespace tunewright {
 namespace {
 
-/// Whether r is y, as many controllers write it in manual: of this row or the one before, and rounded, in some rows.
+/// True if r is y, as many controllers write it in manual: of this row or the one before, and rounded, in some rows.
 bool tracks(std::span<const double> r, std::span<const double> y) {
     constexpr double kSame = 1e-3, kFine = 0.1;       // of y's range; more is a level of r, not a figure's rounding
     constexpr double kMostMoves = 0.8, kOften = 0.1;  // of the moves of r; of the rows: a set point moves in fewer
@@ -26,7 +26,7 @@ bool tracks(std::span<const double> r, std::span<const double> y) {
     return moves > kOften * static_cast<double>(r.size()) && tracking > kMostMoves * moves;
 }
 
-/// Whether u is a straight line over r, of the same row or the one before, but for rounding.
+/// True if u is a straight line over r, of the same row or the one before, but for rounding.
 bool commands(std::span<const double> r, std::span<const double> u) {
     constexpr double kSame = 1e-3;  // of u's deviation
     const double spread = deviation(u), grid = quantisation_step(u);
@@ -77,7 +77,7 @@ std::vector<double> stepped_from(double y_before, const std::vector<double>& r, 
     return w;
 }
 
-/// Where y is at rest with the first rows and goes far from there: the mean of its first rows.
+/// The mean of y's first rows if y is at rest there and goes far from it; else empty.
 std::optional<double> rest_at_first_row(const CleanRecord& record, const std::vector<double>& r) {
     constexpr double kFar = 0.5, kAway = 0.02;  // of y's range
     constexpr double kNoise = 3;                // deviations that noise may take y the other way

@@ -1,4 +1,4 @@
-// What moves u in a loop's record beside feedback: the set point, the controller's being switched on, kicks of u.
+// Moves of u in a loop's record that are no feedback: the set point, switching the controller on, kicks of u.
 #pragma once
 
 #include <vector>
@@ -28,7 +28,7 @@ struct SetPoint {
 /// one that is u, of the same row or the one before.
 SetPoint set_point_of(const CleanRecord& record, const Record& as_given);
 
-/// Whether column r is u itself (SetPoint::is_input).
+/// True if column r is u itself (SetPoint::is_input).
 bool set_point_is_input(const CleanRecord& record, const Record& as_given);
 
 /// The moves from outside that `record` may hold, the most trusted first:

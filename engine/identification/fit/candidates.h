@@ -67,7 +67,7 @@ bool leaves_a_pattern(const FitContext& context, const Fit& fit);
 /// lies below `least_variance`, where that is known of the noise.
 double information_criterion(const Fit& fit, double independent_samples, double least_variance = 0);
 
-/// Whether a late load, or a drift, can be distinguished from the response: where u moves again; a drift also by what y
+/// True if a late load, or a drift, can be distinguished from the response: if u moves again; a drift also by what y
 /// does before u moves.
 bool shows_load(const CleanRecord& record);
 bool shows_drift(const CleanRecord& record);

@@ -15,7 +15,7 @@ struct FittedRows {
     Eigen::VectorXd weight;    ///< n: root of the number of samples
     Eigen::VectorXd residual;  ///< n
     Eigen::MatrixXd J;         ///< n x m: the columns fitted
-    /// What was fitted beside them and taken out of J: its columns, n x k, and k rows of what is known of it, which
+    /// Parameters fitted as well and taken out of J: their columns, n x k, and k rows of what is known of them, which
     /// have `known_J` in J's columns, `known_weight` on the diagonal and leave `known_rest`.
     Eigen::MatrixXd nuisance, known_J;
     Eigen::VectorXd known_weight, known_rest;

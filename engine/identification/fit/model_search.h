@@ -36,7 +36,7 @@ struct ModelSearch {
 /// - an unstable plant's free run loses its digits over a long record: in relay tests that no model explains, the
 ///   record's beginning is tried.
 ///
-/// Where the best fit leaves more than white noise and u moves more than once, the times of the moves within their rows
+/// If the best fit leaves more than white noise and u moves more than once, the times of the moves within their rows
 /// are estimated with it (move_times.h). Rows that may show a few moves of u late are allowed for at the end
 /// (move_times.h).
 ///

@@ -131,7 +131,7 @@ private:
         return fit_.sse / std::max(0.2 * n, n - taken);
     }
 
-    /// What the record, beside the model's parameters, says of the times: their inverse covariance, each time in its
+    /// Information of the record on the times, given the model's parameters: their inverse covariance, each time in its
     /// own standard deviations.
     Eigen::MatrixXd seen_of(const Eigen::MatrixXd& N) const {
         const Eigen::MatrixXd J = of_samples(fit_), of_both = gram(J, N);
@@ -247,7 +247,7 @@ int affordable_samples(std::size_t moves) {
     return most < kLeastForEach * columns ? 0 : static_cast<int>(std::min(most, 1e6));
 }
 
-/// What acts as dead time: an integrator's lags, else half of the lags but the slowest (Skogestad 2003, half rule).
+/// Dead time that acts: an integrator's lags, else half of the lags but the slowest (Skogestad 2003, half rule).
 double acting_dead_time(const ModelShape& shape) {
     const bool third = shape.structure == Structure::third;
     if (shape.structure == Structure::ipdt) return shape.L();
@@ -257,7 +257,7 @@ double acting_dead_time(const ModelShape& shape) {
     return shape.L() + 0.5 * std::max(0.0, lags - shape.slowest_lag());
 }
 
-/// Whether the rows before the moves are such that each may lie anywhere between two of them.
+/// True if each move may lie anywhere between two rows.
 bool seen_at_rows(const CleanRecord& r, double row) {
     constexpr int kMost = 5;                     // moves: more are a program's
     constexpr double kGap = 1.5, kApart = 2.99;  // rows
@@ -273,7 +273,7 @@ bool seen_at_rows(const CleanRecord& r, double row) {
     return true;
 }
 
-/// Whether y would show any one of the moves that lay off its row by half of it.
+/// True if y would show any one of the moves that lay off its row by half of it.
 bool shown_on_rows(const CleanRecord& record, const Fit& fit, double row, const std::stop_token& stop) {
     constexpr double kPlainly = 4;    // two standard errors
     constexpr double kLeast = 1e-14;  // of y's range squared: rounding

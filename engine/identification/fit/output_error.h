@@ -66,7 +66,7 @@ struct Fit {
     std::vector<std::vector<double>> J;
     /// Columns for what was estimated beside the parameters and taken out of J (move_times.h), n_samples each.
     std::vector<std::vector<double>> nuisance;
-    /// What is known of each of them beforehand, as one row of the least-squares problem: its weight, and what the
+    /// Prior knowledge of each of them, as one row of the least-squares problem: its weight, and what the
     /// estimate leaves of it. J's last rows are these.
     std::vector<double> nuisance_weight, nuisance_rest;
     double nuisance_freedom = 0;  ///< degrees of freedom that they took from the residual

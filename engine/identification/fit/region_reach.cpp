@@ -134,7 +134,7 @@ private:
     double least_ = 0;
 };
 
-/// Whether the standard errors are so small that the sum of squares is a quadratic over the whole region.
+/// True if the standard errors are so small that the sum of squares is a quadratic over the whole region.
 bool is_linear(const FittedPlant& plant) {
     constexpr double kSmall = 0.05;
     double lags = plant.values.at("L");

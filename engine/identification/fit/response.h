@@ -53,12 +53,12 @@ inline constexpr int kLoadTime = 3, kThirdLag = 4;  ///< their places in ModelSh
 /// The places in ModelShape::p of the dead time and the lag of further input `k`, from 0.
 constexpr int further_dead_time(int k) { return kThirdLag + 1 + 2 * k; }
 constexpr int further_lag(int k) { return further_dead_time(k) + 1; }
-/// Whether a place holds a time itself, in place of a logarithm.
+/// True if a place holds a time itself, not a logarithm.
 constexpr bool is_time(int place) {
     return place == 0 || place == kLoadTime || (place > kThirdLag && (place - kThirdLag) % 2 == 1);
 }
 
-/// What further input `k` does to y, of unit gain: e^(-Ls)/(T s + 1), with 1/s beside it where the structure
+/// Shape of further input `k`'s effect on y, of unit gain: e^(-Ls)/(T s + 1), times 1/s where the structure
 /// integrates.
 ModelShape further_shape(const ModelShape& shape, int k);
 

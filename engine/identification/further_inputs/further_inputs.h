@@ -21,10 +21,10 @@ namespace tunewright {
 /// In the result `context.record.d` are the inputs that matter, in the order of ModelForm::further.
 ModelSearch search_with_further(const CleanRecord& record, ModelChoice model, bool relay, const RunControl& control);
 
-/// What further input `k` did to y at the record's samples. Needs `fit.linear`.
+/// Contribution of further input `k` to y at the record's samples. Needs `fit.linear`.
 std::vector<double> further_part(const CleanRecord& record, const Fit& fit, int k);
 
-/// Of the variances of what u and the further inputs did to y, that of input `k`, 0 to 1.
+/// Share of input `k` in the sum of the variances that u and the further inputs made in y, 0 to 1.
 double further_share(const CleanRecord& record, const Fit& fit, int k);
 
 /// K, T and L of each further input, one after the other, in the record's units.

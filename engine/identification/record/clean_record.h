@@ -76,7 +76,7 @@ struct CleanRecord : RecordFacts {
     std::vector<double> t, y;
     std::vector<int> row;  ///< of each sample, as Cleaning numbers them; empty where samples were chosen or averaged
     std::vector<double> v_time, v_level;
-    /// Of each change of u, the length of time within which it was estimated (fit/move_times.h); 0: its time is known.
+    /// Length of time within which each change of u was estimated (fit/move_times.h); 0: its time is known.
     /// Empty: all are known.
     std::vector<double> v_open = {};
     std::vector<FurtherSteps> d = {};  ///< those that move

@@ -329,7 +329,7 @@ std::vector<Saturation> flat_tops(const CleanRecord& r, double noise, double gri
 
 namespace {
 
-/// Whether the limits hide more than a quarter of the moves from one level on which u stands still to the next: a test
+/// True if the limits hide more than a quarter of the moves from one level on which u stands still to the next: a test
 /// stepped it there.
 bool hides_steps(const Record& record, const InputLimits& limits) {
     constexpr std::size_t kStands = 3;  // rows

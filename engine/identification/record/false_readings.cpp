@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kMinRows = 12;  // fewer samples show no usual move
 
-/// What sensors and their amplifiers report in place of a reading, which a process may also pass through: DS18B20 not
+/// Values that sensors and their amplifiers report in place of a reading; a process may pass through them: DS18B20 not
 /// yet read and not there (in C and in F), an open or shorted thermocouple, no signal.
 constexpr double kSensorFaults[] = {85, 185, -127, -196.6, 850, 1820, -999, 999, -999.9, 999.9, 0};
 
@@ -153,7 +153,7 @@ private:
         return !(u_moves_before(run.first) && u_moves_before(run.end));
     }
 
-    /// Whether the row may answer a move of u: a process faster than its rows jumps so.
+    /// True if the row may answer a move of u: a process faster than its rows jumps so.
     bool u_moves_before(std::size_t row) const {
         constexpr std::size_t kRows = 3, kRestless = 5;
         if (kRestless * rows_.change_time.size() > y_.size()) return false;

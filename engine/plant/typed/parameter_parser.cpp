@@ -241,7 +241,7 @@ private:
 
 namespace {
 
-/// Whether a formula stands behind "K =" at the cursor, as in K = 3/(10s+1): a bracket, or a number with one behind it.
+/// True if a formula stands behind "K =" at the cursor, as in K = 3/(10s+1): a bracket, or a number with one behind it.
 bool names_a_formula(const Cursor& cursor) {
     constexpr std::size_t kLongestSymbol = 2;  // "poles = (-1+2i)" is a list
     if (cursor.now().text.size() > kLongestSymbol || !is_assigned(cursor.peek(1))) return false;

@@ -7,7 +7,7 @@
 namespace tunewright::verdict {
 namespace {
 
-/// What u has to be at rest, and what its limits carry of a step.
+/// The u that a step needs at rest, and how much of the step its limits carry.
 struct Need {
     double u = 0;        ///< deviation from the operating point
     double carried = 0;  ///< of the step, with its sign; the largest at rest
@@ -25,7 +25,7 @@ std::optional<Need> of_setpoint(const LinearPlant& plant, const ActuatorLimits& 
     return Need{u, K * (u > 0 ? limits.max : limits.min)};
 }
 
-/// Of equations: where y comes to rest with u at the limit that it needs more of.
+/// For equations: the y at rest with u at the limit that it needs to exceed.
 std::optional<Need> of_setpoint(const Case& c, const NonlinearSystem& system, const ActuatorLimits& limits) {
     const SetpointPerformance& p = c.performance().setpoint;
     if (!c.warned_of("actuator-limited") || c.warned_of("does-not-settle") || p.settling_time || p.IAE) return {};

@@ -54,7 +54,7 @@ Found dead_time_rules(const Case& c) {
     const LinearPlant* plant = c.context.subject.linear();
     if (plant == nullptr || plant->integrators() != 0 || plant->unstable_poles() > 0) return {};
     const double L = plant->dead_time();
-    // Of poles that swing the sum of the lags says little: a resonance of no damping has none.
+    // The sum of the lags says little of poles that swing: a resonance of no damping has none.
     const double lags = std::max(plant->lag_sum(), plant->time_scale() - L);
     const bool alone = plant->poles().empty();
     if (!(L > 0) || (!alone && !(lags > 0 && L >= kDeadTimeRules * lags))) return {};
@@ -123,7 +123,7 @@ Found sample_time(const Case& c) {
 
 namespace {
 
-/// What the filter does to the same gains, where it leaves the loop its margins.
+/// Says what the filter does to the same gains, if it leaves the loop its margins.
 void say_filtered(Draft& draft, const Case& c, const Filter& filter) {
     const auto peaks = peaks_with_filter(c, filter);
     const Figure& Ms = c.evaluation.robustness.Ms;

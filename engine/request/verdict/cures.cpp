@@ -19,7 +19,7 @@ namespace {
 constexpr int kDoublings = 10, kHalvings = 6;  // of a lag that the loop that runs needs longer
 constexpr double kOwnTolerance = 0.01;         // percentage points, of a response that was simulated another way
 
-/// Of the loop that runs with this weight and lag; infinite where it does not settle.
+/// Overshoot in percent of the loop that runs with this weight and lag; infinite if it does not settle.
 double overshoot_with(const Case& c, const LinearPlant& plant, const SetpointCure& cure) {
     const EvaluateOptions& options = c.context.options;
     const double r = options.setpoint_step;

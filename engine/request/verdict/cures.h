@@ -1,4 +1,4 @@
-// What a finding advises is done before it is advised, on the loop of the entry: no figure here is guessed. Each is
+// Advice is tried before it is given, on the loop of the entry: no figure here is guessed. Each is
 // asked only where its finding is made, and is empty where the request was stopped.
 #pragma once
 
@@ -27,7 +27,7 @@ struct FilteredPeaks {
 /// equations.
 std::optional<FilteredPeaks> peaks_with_filter(const Case& c, const Filter& filter);
 
-/// Whether |C S| peaks at a higher frequency than |S|: below it is what holds y, such as 1/K at rest, and no noise.
+/// True if |C S| peaks at a higher frequency than |S|: below it is what holds y, such as 1/K at rest, and no noise.
 /// True for a plant known by points alone.
 bool noise_gain_peaks_beyond(const Case& c);
 

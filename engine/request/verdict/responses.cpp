@@ -24,7 +24,7 @@ constexpr Share kShares[] = {{0.09, 0.11, "about a tenth of"},
                              {1.9, 2.1, "about twice"},
                              {2.85, 3.15, "about three times"}};
 
-/// What keeps the overshoot within so many percent, tried on the loop that runs.
+/// Says what keeps the overshoot within so many percent, tried on the loop that runs.
 void say_cure(Draft& draft, const Case& c, double percent) {
     const auto cure = overshoot_cure(c, percent);
     if (!cure) return;

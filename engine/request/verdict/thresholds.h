@@ -23,7 +23,7 @@ inline constexpr double kOscillatoryMt = 2;
 inline constexpr double kMaxRegionCost = 5;
 /// A gain margin beyond it is as good as none.
 inline constexpr double kAnyGain = 100;
-/// Of the loop as built over the ideal one, before it is a warning: beyond what an identified gain is known to.
+/// Excess of the loop as built over the ideal one that is a warning: beyond what an identified gain is known to.
 inline constexpr double kWorsePercent_Ms = 5, kWorsePercent_IAE = 20;
 
 // Set points

@@ -28,7 +28,7 @@ struct LoopSizes {
     double y = 0, u = 0;
 };
 
-/// Of a plant that a u of 1 moves by `gain`. u answers r by its proportional part, or by what the plant needs; y
+/// Sizes of a loop whose plant a u of 1 moves by `gain`. u answers r by its proportional part, or by what it needs; y
 /// answers u by the plant's gain, or by what makes the proportional part as large: |P S| <= Mt/|Kp|.
 inline LoopSizes loop_sizes(double gain, const ParallelPid& controller, const StepInputs& inputs) {
     const double Kp = std::abs(controller.Kp), r = std::abs(inputs.r);

@@ -52,7 +52,7 @@ double period_of(const Build& build, const product::Settings& typed) {
     return build.Ts;
 }
 
-/// Whether the filter is a number of samples that is typed.
+/// True if the filter is a number of samples that is typed.
 bool counts_samples(const Build& build) {
     return build.sampled() && build.product != nullptr && build.product->filter.kind == product::FilterKind::slope &&
            build.product->filter.value == 0;

@@ -56,7 +56,7 @@ void weigh_setpoint(const LinearPlant& plant, const SetpointOptions& options, Tu
 void weigh_setpoint(built::Fitted& fitted, const built::Build& build, const LinearPlant& plant,
                     const SetpointOptions& options, TunedController& tuned);
 
-/// What keeps the overshoot of a set-point step.
+/// A weight or a lag that keeps the overshoot of a set-point step.
 struct SetpointCure {
     double b = 0;
     double lag = 0;  ///< T of a first-order lag of the set point; 0: the weight alone

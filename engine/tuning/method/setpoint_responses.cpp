@@ -15,7 +15,7 @@ bool jumps_after(const std::vector<ResponseNode>& nodes, std::size_t i) {
     return i + 1 < nodes.size() && nodes[i + 1].t - nodes[i].t <= kSameInstant * nodes[i + 1].t;
 }
 
-/// Where only one of two runs over the same steps has a jump, the other's node there is doubled.
+/// Doubles the node of one run at a jump that only the other has, over the same steps.
 void align(std::vector<ResponseNode>& a, std::vector<ResponseNode>& b) {
     std::vector<ResponseNode> both_a, both_b;
     std::size_t i = 0, j = 0;

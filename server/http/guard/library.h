@@ -1,4 +1,4 @@
-// What the versions of cpp-httplib call differently, for the guard alone. What they do differently stands in ADR 12.
+// Calls that differ between versions of cpp-httplib, for the guard alone. ADR 12 says what the versions do differently.
 #pragma once
 
 #include <httplib.h>

@@ -1,4 +1,4 @@
-// What versions 6 and 7 of libpqxx call differently, for the session and the listener alone.
+// Calls that differ between versions 6 and 7 of libpqxx, for the session and the listener alone.
 #pragma once
 
 #include <functional>

@@ -270,7 +270,7 @@ TEST(PidAlgorithm, NeitherTheSwitchToAutomaticNorNewSettingsJump) {
     });
 }
 
-// What the operator's u does not contain must not be found in it later: of a false measurement in the last manual call
+// Nothing may appear in u later that the operator's u does not contain: of a false measurement in the last manual call
 // the proportional part and one share of the integral stay, and nothing of the derivative.
 TEST(PidAlgorithm, TheSwitchToAutomaticKeepsNothingOfTheDerivativesNoise) {
     constexpr double kFalse = 3;

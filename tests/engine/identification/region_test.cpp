@@ -153,7 +153,7 @@ TEST(IdentifiedRegion, ACrossoverBeyondTheExcitedBandIsWarnedOf) {
         << loud.model->excited_band->omega_high << " " << *loud.controllers[0].evaluation->robustness.phase_crossover;
 }
 
-/// What a first-order plant leaves of the record, the offset fitted; the step comes at t = 10.
+/// Sum of squares that a first-order plant leaves of the record, the offset fitted; the step comes at t = 10.
 double left_by(const Fopdt& plant, const Record& record) {
     std::vector<double> rest;
     double mean = 0;

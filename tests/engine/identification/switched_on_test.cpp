@@ -21,7 +21,7 @@ std::complex<double> true_response(const LoopPlant& p, double w) {
     return p.K * std::exp(-p.L * s) / ((1.0 + p.T1 * s) * (1.0 + p.T2 * s));
 }
 
-/// Of the response where the plant lags by about 60 degrees, relative.
+/// Relative error of the response where the plant lags by about 60 degrees.
 double miss(const Plant& plant, const LoopPlant& truth) {
     const double w = 1 / (0.3 * truth.T1 + truth.T2 + truth.L);
     const auto found = LinearPlant::make(plant)->at({0, w}), right = true_response(truth, w);

@@ -214,7 +214,7 @@ TEST(Advice, AnActuatorThatIsTooSmallCondemnsNoMethod) {
     ASSERT_TRUE(result);
     EXPECT_EQ(result->verdict.front().code, "take");
     EXPECT_EQ(result->controllers[0].verdict.front().code, "actuator-too-small");
-    // Where nothing holds y it is bad, for the same reason.
+    // It is bad if nothing holds y, for the same reason.
     request.subject = test::subject_of(Ipdt{.K = 1, .L = 1});
     const auto runaway = tune(request, {});
     ASSERT_TRUE(runaway);

@@ -86,7 +86,8 @@ TEST_P(AsBuiltSamples, LeaveNothingToTrying) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Products, AsBuiltSamples,
-                         testing::Values("esphome_pid", "reprapfirmware", "openplc_iec_pid", "klipper", "marlin"), name_of_case);
+                         testing::Values("esphome_pid", "reprapfirmware", "openplc_iec_pid", "klipper", "marlin"),
+                         name_of_case);
 
 // A resonance behind a dead time, where the best has complex zeros: Ti far below Td. Found by trying over all four
 // numbers of ESPHome: kp 0.000943, ki 0.0000825, kd 0.2 and two samples have 13,436 (Ms 1.990).

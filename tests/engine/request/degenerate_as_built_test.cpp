@@ -1,4 +1,4 @@
-// What is typed for a product says so where its proportional part is next to nothing.
+// Settings typed for a product come with a warning if their proportional part is next to nothing.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -247,7 +247,7 @@ TEST(SampledResponse, DoesNotRestWhereALimitLeavesAnIntegratorMoving) {
     EXPECT_NEAR(response.nodes.back().y_slope, 0.7, 1e-9);
 }
 
-// What a run to infinity does up to the horizon, wherever that lies between two samples.
+// A run with a horizon is a run to infinity up to there, wherever that lies between two samples.
 TEST(SampledResponse, IndicesEndExactlyAtTheHorizon) {
     const LinearPlant plant = *LinearPlant::make(kLags);
     SampledPid law = pid(0.9, 0.6, 0.2, 0.2);

@@ -1,4 +1,4 @@
-// What is printed: Compare and the report, page by page.
+// Printed pages: Compare and the report, page by page.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import test from "node:test";
@@ -49,7 +49,7 @@ function textPieces(pdf) {
 }
 
 test("on paper every column has its heading, and the table is no wider than its card", async () => {
-  // What A4 leaves between usual margins.
+  // The area of A4 between usual margins.
   await withPage(PLANT, { width: 720, height: 1000 }, async (page) => {
     await compareAll(page);
     await page.locator(".league-table tbody tr").first().waitFor();

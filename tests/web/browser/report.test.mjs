@@ -37,7 +37,7 @@ test("a screen with a result leads to the report of the entry that it shows", as
 
 test("the link itself has the entry, chosen or not: a middle click or a copy leads to the same report", async () => {
   const job = await tuned({ ...REQUEST, tune: [{ method: "cohen_coon" }, { method: "robust" }] });
-  // Where none is chosen it is the one that the answer says to take.
+  // If none is chosen it is the one that the answer says to take.
   for (const [address, index] of [
     ["design", 1],
     ["design?entry=0", 0],

@@ -23,7 +23,7 @@ const onDesign = (page) => page.locator(".settings tbody tr").first();
 const start = (page) => page.getByRole("navigation", { name: "Screens" }).getByRole("link", { name: "Start" }).click();
 const sliders = (page) => page.locator(".controls .field.slider:not([hidden])");
 
-/** What can be done; each answers whether it could. */
+/** Actions; each answers whether it could be done. */
 const ACTIONS = {
   async model(page) {
     await page.goto(new URL(PLANT, page.url()).href);

@@ -14,7 +14,7 @@ const ts = fromWeb("typescript") as typeof TypeScript;
 
 // The newest edition of the language that each Node.js has whole.
 const EDITION_OF_NODE: Record<string, number> = { "18": 2022, "20": 2023, "22": 2024 };
-// Of Node.js itself, later than 18.
+// Names of Node.js itself that are newer than 18.
 const LATER_IN_NODE = ["import.meta.dirname", "import.meta.filename", "import.meta.resolve", "process.loadEnvFile",
   "process.getBuiltinModule", "util.styleText", "util.parseEnv", "fs.glob", "fs.globSync", "fs.openAsBlob", "path.matchesGlob",
   "assert.partialDeepStrictEqual", "mock.timers", "t.plan", "t.assert", "t.waitFor", "AbortSignal.any"];
@@ -52,7 +52,7 @@ function isLater(file: string): boolean {
 const known = methods((file) => /^lib\.es\d/.test(file) && !isLater(file));
 const later = new Set([...methods(isLater)].filter((name) => !known.has(name) && !COMMON_WORDS.includes(name)));
 
-/** What a source uses that the oldest Node.js lacks, one line each. */
+/** Uses in a source of what the oldest Node.js lacks, one line each. */
 function tooNew(file: string, text?: string): string[] {
   const source = parsed(file, text);
   const found: string[] = [];

@@ -18,10 +18,10 @@ export interface Outline extends JobFigures {
   units?: Units;
   /** How many controllers. */
   entries?: number;
-  /** Of the best one, which the figures and settings belong to. */
+  /** The best one's, to which the figures and settings belong. */
   method?: string;
   controller?: Controller;
-  /** What to type into the user's own controller, each text with its unit. */
+  /** Texts to type into the user's own controller, each with its unit. */
   to_type?: Record<string, string>;
   worst_Ms?: number | null;
   excess_percent?: number | null;

@@ -69,7 +69,7 @@ export const withHeldPoints = (body: Record<string, unknown>): Record<string, un
   evaluate: { ...(body["evaluate"] as object | undefined), points: HELD_POINTS },
 });
 
-/** What a job's result has that depends on its controllers. */
+/** Members of a job's result that depend on its controllers. */
 export type DesignAnswer = Pick<Result, "controllers" | "verdict" | "ranking" | "ranking_by">;
 
 export const designOf = async (body: unknown, signal: AbortSignal): Promise<DesignAnswer> =>

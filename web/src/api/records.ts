@@ -28,9 +28,9 @@ export interface Preview {
     gaps: number;
     duplicates: number;
   };
-  /** Where the times begin again. */
+  /** The runs, if the times begin again. */
   runs: { first_line: number; last_line: number; rows: number; from: number; to: number; tests: boolean }[];
-  /** Of several runs, the one that is read, from 1. */
+  /** The run that is read, from 1, if there are several. */
   run?: number;
   skipped: { line: number; reason: string }[];
   skipped_lines: number;

@@ -32,9 +32,9 @@ export interface RecordedTest {
   kind?: string;
   u0?: number;
   y0?: number;
-  /** Of a record without u: it stepped from one value to the other at the first sample. */
+  /** The step of u in a record without it: from one value to the other at the first sample. */
   u_step?: [number, number];
-  /** Of a csv whose times begin again: which of its runs, from 1. */
+  /** The run of a csv whose times begin again, from 1. */
   run?: number;
   /** The ends of the actuator: low, high. */
   u_limits?: [number, number];
@@ -126,7 +126,7 @@ export interface Controller {
   Kp: number;
   Ti: number | null;
   Td: number | null;
-  /** Of the parallel form. */
+  /** Gains of the parallel form. */
   Ki?: number | null;
   Kd?: number | null;
   b?: number;
@@ -306,7 +306,7 @@ export interface Model {
   fit?: { t: number[]; y: (number | null)[]; y_model: (number | null)[]; u?: (number | null)[] };
   standard_errors?: Record<string, number | null>;
   covariance?: { names: string[]; matrix: number[][] };
-  /** Of other structures, which the region has too. Older results do not tell. */
+  /** Fits of other structures, which the region has too. Older results have none. */
   alternatives?: Plant[];
   /** What the measured disturbances do to y. */
   disturbances?: { name: string; plant: Plant; share: number | null }[];

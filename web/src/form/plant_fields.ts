@@ -25,7 +25,7 @@ export interface PlantFields {
   loadTyped(form: string, values: Record<string, string>): void;
   /** Another loop: its plant is known exactly until somebody says otherwise. */
   beginLoop(): void;
-  /** Whether somebody types another plant, rather than changing a parameter. */
+  /** True if this is the line in which another plant is typed, not a parameter. */
   isLine(input: EventTarget | null): boolean;
   /** The form's id and the texts as typed: what an address keeps. */
   typed(): { form: string; values: Record<string, string> };

@@ -50,7 +50,7 @@ export function columnChoices(preview: Preview): [value: string, text: string][]
   });
 }
 
-/** Of a file whose times begin again, the runs in it. */
+/** The runs of a file whose times begin again. */
 const runChoices = ({ runs }: Preview): [value: string, text: string][] =>
   runs.map(({ first_line, last_line, rows, tests }, index) => [
     String(index + 1),
@@ -82,7 +82,7 @@ const METHODS = [
 
 const FOUND = "found by itself";
 const COLUMN_NAMES = ["t", "u", "y", "r", "d"] as const;
-/** What an unchosen column stands for where nothing was found. */
+/** Words for an unchosen column where nothing was found. */
 const UNCHOSEN: Partial<Record<ColumnName, string>> = { r: "none, or found by itself", d: "none" };
 
 const known = (choices: readonly (readonly [string, string])[], value: unknown): string =>

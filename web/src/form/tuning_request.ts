@@ -59,13 +59,13 @@ function isSibling(entry: Entry, before: Entry | undefined): boolean {
   return Boolean(before?.over_region) && before?.method === entry.method && same(before?.options, entry.options);
 }
 
-/** What every row of the request is made by: as it was sent, or what "all" came to. */
+/** The method of every row of the request: as it was sent, or what "all" came to. */
 function rowsAsked(request: TuningRequest, result: Result): TuneEntry[] {
   const all = request.tune === undefined || asksForAll(request.tune);
   return all ? everyMethod(result) : (request.tune as TuneEntry[]);
 }
 
-/** Of every entry the row of the request that has made it; -1 for today's settings. */
+/** For every entry the row of the request that has made it; -1 for today's settings. */
 export function rowsOf(request: TuningRequest, result: Result): number[] {
   const asked = rowsAsked(request, result);
   let row = -1;
@@ -79,7 +79,7 @@ export function rowsOf(request: TuningRequest, result: Result): number[] {
   });
 }
 
-/** What the entry of that index was made by; null for today's settings. */
+/** The method and options that made the entry of that index; null for today's settings. */
 export function tuneEntryOf(request: TuningRequest, result: Result, index: number): TuneEntry | null {
   const entry = result.controllers[index];
   if (!entry || entry.method === "baseline") return null;

@@ -19,7 +19,7 @@ export interface Proposal {
   today: Controller | null;
 }
 
-/** What is shown of a point. */
+/** A point as it is shown. */
 export interface Answer extends Shown {
   point: Point;
   entry: Entry;
@@ -62,7 +62,7 @@ export interface Live {
 
 const LATE_MS = 150;
 const RETRY_S = 2;
-/** What takes longer to compute does not follow a hand. */
+/** A design that takes longer to compute does not follow the slider. */
 const LONGEST_FRAME_MS = 250;
 
 interface Question {
@@ -83,7 +83,7 @@ export function liveDesign(onSettled: (point: Point) => void): Live {
   let retryTimer: ReturnType<typeof setTimeout> | undefined;
 
   const waits = signal(0);
-  /** What the last design of this proposal took; by hand nothing is searched unless it is made for a product. */
+  /** Time of the last design of this proposal, ms; by hand nothing is searched unless it is made for a product. */
   const cost = { design: 0, hand: 0 };
   const costs = (asked: Point): "design" | "hand" => (asked.hand ? "hand" : "design");
   const waitsFor = (asked: Point): number => {
@@ -101,7 +101,7 @@ export function liveDesign(onSettled: (point: Point) => void): Live {
     return handShown(from, asked, body, await entriesOf(coarse ? withHeldPoints(body) : body, abort));
   }
 
-  /** What does not follow a hand is not asked for before one comes either. */
+  /** A design that does not follow the slider is not asked for ahead of it either. */
   function* following(points: Iterable<Point>): Generator<Point> {
     for (const ahead of points) {
       if (waitsFor(ahead) > 0) return;

@@ -1,4 +1,4 @@
-// What a turned design shows: one request with one member altered, and the result that belongs to it. No element of the page.
+// A turned design: one request with one member altered, and the result that belongs to it. No element of the page.
 import { callSubject, designBody, evaluateBody, withHeldPoints } from "../api/live.ts";
 import type { DesignAnswer } from "../api/live.ts";
 import type { Controller, Entry, Result, TuneEntry, TuningRequest } from "../api/types.ts";
@@ -13,15 +13,15 @@ export interface Turnable {
 }
 
 export interface Shown {
-  /** What gives it, as it would be posted there: a job for a design, the figures of settings by hand. */
+  /** The call that gives it: a job for a design, the figures of settings by hand. */
   path: "v1/jobs" | "v1/evaluate";
   request: unknown;
   result: Result;
-  /** Of the entry that is turned. */
+  /** Index of the entry that is turned. */
   index: number;
   /** Index in the result of the job that is turned, of each entry here. */
   origin: number[];
-  /** What it took to compute what follows a hand, ms. */
+  /** Time to compute what follows the slider, ms. */
   cost: number;
   /** False: what is said over all entries, and their figures beside each other, waits until the hand lets go. */
   whole: boolean;
@@ -34,7 +34,7 @@ export const alteredBy = ({ request, result, index }: Turnable, tune: TuneEntry)
 /** Rows of the request; one is asked for as a whole while a slider is held. */
 const rowCount = (request: TuningRequest): number => (Array.isArray(request.tune) ? request.tune.length : 1);
 
-/** What is asked of POST /v1/design; `held`: of the turned row alone, with few samples. */
+/** The body for POST /v1/design; `held`: of the turned row alone, with few samples. */
 export function questionOf(from: Turnable, tune: TuneEntry, held: boolean): Record<string, unknown> {
   const body = designBody(alteredBy(from, tune), from.result);
   return held ? { ...withHeldPoints(body), tune: [tune] } : body;
@@ -76,7 +76,7 @@ function amongOthers(from: Turnable, answer: DesignAnswer): Pick<Shown, "result"
   };
 }
 
-/** What a design's answer shows. */
+/** A design's answer as it is shown. */
 export function designShown(from: Turnable, tune: TuneEntry, answer: DesignAnswer, held: boolean): Shown {
   const request = alteredBy(from, tune);
   const row = rowsOf(from.request, from.result)[from.index]!;
@@ -99,13 +99,13 @@ export function designShown(from: Turnable, tune: TuneEntry, answer: DesignAnswe
   return { path, request, result, index: at, origin, cost: costOf(made), whole: true };
 }
 
-/** What is asked of POST /v1/evaluate; null where there is no plant. */
+/** The body for POST /v1/evaluate; null if there is no plant. */
 export function handQuestion(from: Turnable, hand: Controller, today: Controller | null): Record<string, unknown> | null {
   const subject = callSubject(from.request, from.result);
   return subject && evaluateBody(from.request, subject, [hand, ...(today ? [today] : [])]);
 }
 
-/** What settings by hand show: the job's others stay, and nothing is said over all of them. */
+/** Settings by hand as they are shown: the job's other entries stay, without a verdict over all of them. */
 export function handShown(from: Turnable, point: Point, body: unknown, [entry, today]: Entry[]): Shown {
   const { request_hash: _hash, verdict: _verdict, ranking: _ranking, ranking_by: _by, ...kept } = from.result;
   const controllers = kept.controllers.map((other, at) =>

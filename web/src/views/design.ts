@@ -239,7 +239,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     range.element.hidden = !job.result?.range;
     finished = null;
     if (!isFinal(job.status)) {
-      // What stands here of the job before is not this one's.
+      // The cards still show the job before.
       if (screenOf !== job.id) for (const part of bodyParts) part.remove();
       progress.show(job);
     } else if (job.result?.range) {

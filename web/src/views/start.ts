@@ -70,7 +70,7 @@ export function startView(store: Store, events: StartEvents): StartView {
   const errors = new FormErrors();
   // Parts of a loaded request that have no field: sent back as they came.
   let base: TuningRequest = {};
-  // What the rest of the form speaks of; null: nothing was filled in or tuned yet.
+  // The kind of loop that the rest of the form is about; null: nothing was filled in or tuned yet.
   let loop: LoopKind | null = null;
   let ofExample = false;
   /** How many there were. */
@@ -229,7 +229,7 @@ export function startView(store: Store, events: StartEvents): StartView {
 
   function compose(subject: TuneSubject, all = false): { request: TuningRequest; faults: FieldError[] } {
     const { request, faults } = common(all);
-    // What a loaded request held its limits on belongs to its record; Identify has its own choice.
+    // The region that a loaded request held its limits on belongs to its record; Identify has its own choice.
     const held = "record" in subject && base.record ? { uncertainty: base["uncertainty"] } : {};
     return { request: { ...request, ...defined({ ...held, ...subject }) }, faults };
   }

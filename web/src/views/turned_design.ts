@@ -22,7 +22,7 @@ import type { FrontSubject } from "./cards/front_card.ts";
 /** A result as it is shown, and what gives it. */
 export interface OnScreen {
   result: Result;
-  /** Of the entry that is shown. */
+  /** Index of the entry that is shown. */
   index: number;
   /** The entries' places in the job's own result. */
   origin: number[];

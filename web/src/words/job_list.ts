@@ -166,7 +166,7 @@ function settingColumns(jobs: readonly ListedJob[]): BatchColumn[] {
   });
 }
 
-/** What to type into the product, a column for each of its settings. */
+/** Columns of what to type into the product, one for each of its settings. */
 function typedColumns(jobs: readonly ListedJob[]): BatchColumn[] {
   const names = [...new Set(jobs.flatMap((job) => Object.keys(job.outline?.to_type ?? {})))];
   return names.map((name) => ({

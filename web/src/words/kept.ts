@@ -1,4 +1,4 @@
-// Whether a design that was kept is the one that was on the screen, and what differs where it is not.
+// Compares a design that was kept with the one that was on the screen, and says what differs.
 import { settingsOf } from "../api/evaluate.ts";
 import type { Entry, Job } from "../api/types.ts";
 import { formatSetting } from "./numbers.ts";

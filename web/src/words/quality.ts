@@ -127,7 +127,7 @@ function otherRows(name: string, value: unknown): [string, string][] {
   return [];
 }
 
-/** What was moved: "one step of the set point, in automatic". */
+/** The test in words: "one step of the set point, in automatic". */
 const testWords = (model: Model): string => String(model.data_quality?.["test"] ?? "");
 
 /** "u steps once, at 120 s, from 30 to 35 %." */

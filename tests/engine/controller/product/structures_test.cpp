@@ -1,4 +1,4 @@
-// What weights and actions of a block depend on is typed with them: form, structure, equation, switches. Whoever types
+// Choices that decide a block's weights and actions are typed too: form, structure, equation, switches. Whoever types
 // a design into a block that stood otherwise before has the design's loop.
 #include "engine/controller/product/typed.h"
 #include "tests/engine/controller/product/support.h"

@@ -13,7 +13,7 @@ export interface EquationsCard {
   read(): PlantReading;
   /** False where this card cannot show such a plant. */
   load(plant: Plant): boolean;
-  /** Whether it says other equations than before. */
+  /** True if it has other equations than before. */
   loadTyped(values: Record<string, string>): boolean;
   setExamples(examples: Example[]): void;
   setUnits(units: UnitNames): void;

@@ -22,7 +22,7 @@ export interface MethodsCard {
   load(tune: TuneEntry[] | string | undefined): void;
   /** Another loop: the default again, unless methods were chosen for this one. */
   beginLoop(): void;
-  /** What stands here is this loop's. */
+  /** Takes the choice that is shown for this loop's. */
   endLoop(): void;
 }
 

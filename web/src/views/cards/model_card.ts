@@ -14,7 +14,7 @@ export interface ModelCard {
   isLine(input: EventTarget | null): boolean;
   /** False where this card cannot show such a plant. */
   load(plant: Plant): boolean;
-  /** Whether it says another model than before. */
+  /** True if it has another model than before. */
   loadTyped(form: string, values: Record<string, string>): boolean;
   setUnits(units: UnitNames): void;
 }

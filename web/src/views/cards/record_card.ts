@@ -114,7 +114,7 @@ export function recordCard(errors: FormErrors, events: RecordCardEvents): Record
     if (show(read.preview)) events.onIdentify();
   }
 
-  /** What was chosen of another file means nothing here; how to identify stays where it was chosen for this one. */
+  /** Forgets the columns of another file; how to identify stays if it was chosen for this one. */
   function begin(record: RecordedTest): void {
     fields.load(record, typed.has("") ? fields.read().identify : {});
     events.onNew();

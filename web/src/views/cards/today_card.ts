@@ -24,7 +24,7 @@ export interface TodayCard {
   readName(): string;
   /** Another loop: what was filled in, or belonged to the loop before, is emptied; what was typed for this one stays. */
   beginLoop(): void;
-  /** What stands here is this loop's: the next one has to be typed anew. */
+  /** Takes what is shown for this loop's: the next one has to be typed anew. */
   endLoop(): void;
   /** The user's own controller, whose own form is then one of the forms. */
   setMine(mine: MyController | null): void;

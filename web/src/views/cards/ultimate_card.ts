@@ -69,7 +69,7 @@ export function ultimateCard(errors: FormErrors, onTune: () => void): UltimateCa
   };
 }
 
-/** Whether the answer is of Ku and Pu alone: settings without the figures of a loop. */
+/** True if the answer is of Ku and Pu alone: settings without the figures of a loop. */
 export const isOfUltimate = (request: TuningRequest | undefined): boolean => request?.["ultimate"] !== undefined;
 
 /** The settings of every rule in a table, and above it what cannot be known. */

@@ -192,7 +192,8 @@ TEST(ProductConversions, ASlopeOfOneSampleIsThePlainDifferenceAndIsNoFilter) {
     for (const char* id : {"esphome_pid", "ha_smart_thermostat", "klipper"})
         EXPECT_FALSE(has_note(converted(id, pid, kContext, true).notes, "filter")) << id;
     pid.filter = {FilterType::derivative, 2};
-    EXPECT_THAT(note(converted("esphome_pid", pid, kContext, true).notes, "filter"), HasSubstr("slope over several samples"));
+    EXPECT_THAT(note(converted("esphome_pid", pid, kContext, true).notes, "filter"),
+                HasSubstr("slope over several samples"));
 }
 
 TEST(ProductConversions, SampledLawsFollowTheBlocksRules) {

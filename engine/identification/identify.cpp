@@ -86,13 +86,15 @@ std::vector<FrequencyConstraint> anchors_of(const ModelSearch& search, const Rec
     const Fit& fit = search.chosen();
     const double rms = std::sqrt(fit.sse / static_cast<double>(fit.residual.size()));
     const std::complex<double> G = cycle.harmonics.front().G;
-    std::vector<FrequencyConstraint> anchors = {{cycle.omega(), G, rms / (kHeldWithin * std::abs(G))}};
+    std::vector<FrequencyConstraint> anchors = {
+        {cycle.omega(), G, rms / (kHeldWithin * std::abs(G)), cycle.harmonics.front().G_std}};
     constexpr double kMoved = 0.01;  // of half a swing of u: less divides noise by noise
+    constexpr double kKnown = 0.3;   // relative error beyond which the structure knows the gain as well
     const double gain = cycle.static_gain(), sign = cycle.reversed ? -1 : 1;
     const bool shows_gain = cycle.biased() && std::abs(cycle.v_mean - cycle.rest.v) > kMoved * cycle.v_half &&
                             cycle.drift == 0 && !search.disturbances.slope && !search.disturbances.load &&
-                            gain * sign > std::abs(G);
-    if (shows_gain) anchors.push_back({0, gain, rms / (kHeldWithin * std::abs(gain))});
+                            gain * sign > std::abs(G) && cycle.static_gain_std() < kKnown * std::abs(gain);
+    if (shows_gain) anchors.push_back({0, gain, rms / (kHeldWithin * std::abs(gain)), cycle.static_gain_std()});
     return anchors;
 }
 
@@ -102,8 +104,10 @@ void warn_mismatch(const RecordedCycle& cycle, bool gain_held, double left, std:
                          "oscillation";
     detail += gain_held ? " and to the static gain." : ".";
     if (!gain_held) {
-        detail += cycle.biased() ? " The static gain is not reliable: a load or an unknown rest level is in the record."
-                                 : " The test has no bias, so the static gain is unknown.";
+        detail +=
+            cycle.biased()
+                ? " The static gain is not reliable: a load moves y, or the record does not show well where y rests."
+                : " The test has no bias, so the static gain is unknown.";
     }
     warnings.push_back({"structure-mismatch", detail});
 }
@@ -138,6 +142,15 @@ void warn_extrapolated_gain(const std::optional<double>& omega, const Fit& fit, 
                             "frequency: the static gain K may be off by more than its standard error. A step test "
                             "shows it."});
     }
+}
+
+/// A relay that pushes y on where its plant ends up never switches back: the sign of its feedback is the static gain's.
+void warn_sign(const RecordedCycle& cycle, const Fit& fit, std::vector<Warning>& warnings) {
+    if (fit.form.structure == Structure::unstable || (fit.linear[0] < 0) == cycle.reversed) return;
+    warnings.push_back({"gain-from-oscillation",
+                        "The model's static gain K has the sign with which this relay would not have oscillated: a "
+                        "drift, a load or another structure is in the record. Do not use this model; make a step test.",
+                        WarningLevel::bad});
 }
 
 double steady_misfit(const CleanRecord& r, const RecordedCycle& cycle, const Fit& fit) {
@@ -209,6 +222,7 @@ Expected<IdentifiedModel> by_output_error(const CleanRecord& record, ModelSearch
     std::vector<Warning> last;
     if (kind == RecordKind::relay)
         warn_extrapolated_gain(cycle ? std::optional(cycle->omega()) : std::nullopt, search.chosen(), left, last);
+    if (cycle) warn_sign(*cycle, search.chosen(), last);
     const double steady = cycle && whole ? steady_misfit(used, *cycle, search.chosen()) : 0;
     IdentifiedModel model = searched_model(std::move(search), record);
     model.warnings.insert(model.warnings.begin(), warnings.begin(), warnings.end());

@@ -57,7 +57,10 @@ void judge_gain(const MadeRecord& made, const IdentifiedModel& model, Judgement&
 
 /// The stated error of K where the record shows when u moved; of the same structure, so that the moves alone differ.
 void judge_told(const MadeRecord& made, const IdentifiedModel& model, Judgement& j) {
-    const auto told = identify(*made.with_moves, {}, {});
+    Record record = *made.with_moves;
+    // Rows of u alone hide from the product what kind of test it is, and with it what the kind leaves open.
+    if (made.test == Test::relay_between) record.kind = RecordKind::relay;
+    const auto told = identify(record, {}, {});
     if (!told || integrates(told->plant) != integrates(model.plant)) return;
     if (const auto at = told->standard_errors.find("K"); at != told->standard_errors.end()) j.K_std_told = at->second;
 }

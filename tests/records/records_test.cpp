@@ -57,10 +57,7 @@ TEST(MadeRecords, OfEveryFamilyTestAndNoiseOnce) {
         ++designed;
         unstable += !j.Ms_true;
         above += j.Ms_true && *j.Ms_true > 1.25 * j.Ms_asked;
-        // A relay between rows far apart shows one frequency and little of when it switched: one design in 300 may
-        // fail.
-        EXPECT_TRUE(j.Ms_true || made.test == records::Test::relay_between) << seed << " " << made.text() << "\n"
-                                                                            << j.detail;
+        EXPECT_TRUE(j.Ms_true) << seed << " " << made.text() << "\n" << j.detail;
     }
     EXPECT_LE(unstable, 0.003 * designed);
     EXPECT_EQ(records, 503);
@@ -76,8 +73,7 @@ TEST(MadeRecords, MovesBetweenRowsLeaveAsMuchOpenAsTheyHide) {
                 const Judgement j = judge(make_record(seed, family, test, Noise::white));
                 EXPECT_FALSE(j.wrong_in_silence()) << seed << " " << j.detail;
                 if (j.refused || !j.comparable) continue;
-                // A relay's gain is extrapolated by the structure, whenever it switches.
-                if (test == records::Test::staircase_between) ++comparable, covered += j.covered();
+                ++comparable, covered += j.covered();
                 const auto width = j.width();
                 told += width.has_value();
                 wide += width && *width > 2.5;
@@ -85,6 +81,33 @@ TEST(MadeRecords, MovesBetweenRowsLeaveAsMuchOpenAsTheyHide) {
     // 36 records: two standard deviations of a share of 95 % are 7 %.
     EXPECT_GE(covered, 0.88 * comparable);
     EXPECT_LE(wide, 0.12 * told);
+}
+
+TEST(MadeRecords, ARelaysStaticGainIsAsOpenAsTheStructuresLeaveIt) {
+    // Plants that a single structure, chosen by the fit, extrapolates wrongly: most have lags or a slow part beside
+    // those that the oscillation shows.
+    int covered = 0, comparable = 0;
+    for (const records::Test test : {records::Test::relay, records::Test::relay_between})
+        for (const Family family : {Family::spread_lags, Family::oscillating, Family::inverse_response,
+                                    Family::coarse_sensor, Family::two_time_scales})
+            for (const Noise noise : {Noise::none, Noise::white, Noise::irregular_times, Noise::missing_rows})
+                for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+                    const Judgement j = judge(make_record(seed, family, test, noise));
+                    EXPECT_FALSE(j.wrong_in_silence()) << seed << " " << j.detail;
+                    if (j.refused || !j.comparable) continue;
+                    ++comparable, covered += j.covered();
+                }
+    // 80 records: two standard deviations of a share of 90 % are 7 %.
+    EXPECT_GE(covered, 0.83 * comparable) << covered << " of " << comparable;
+}
+
+TEST(MadeRecords, AGainOfTheSignThatARelayExcludesIsBad) {
+    // y drifts, and a zero may stand in for the drift with a gain of the other sign.
+    for (const std::uint64_t seed : {1975, 1976, 1977, 1978}) {
+        const Judgement j = judge(make_record(seed, Family::drifting, records::Test::relay_between, Noise::white));
+        if (j.refused || !j.comparable || j.K * j.K_true > 0) continue;
+        EXPECT_TRUE(j.warned_badly) << seed << " " << j.detail;
+    }
 }
 
 /// The share of step tests whose stated 95 % interval holds K. `walk`: standard deviation of a load at the plant's

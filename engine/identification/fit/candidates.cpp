@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include "engine/identification/fit/residual_noise.h"
 #include "engine/identification/fit/starting_values.h"
 #include "engine/identification/record/series.h"
 #include "engine/number_text.h"
@@ -53,12 +54,25 @@ bool same_form(const ModelForm& a, const ModelForm& b) {
     return a.other_level == b.other_level && a.load == b.load && (a.slope == b.slope || is_integrating(a.structure));
 }
 
+/// A slow part beside the one lag of a simpler fit. A relay's oscillation hardly shows it, so neither does the scan.
+void add_slow_parts(const ModelShape& simpler, std::vector<ModelShape>& starts) {
+    if (simpler.structure != Structure::fopdt) return;
+    for (const double times : {5.0, 20.0}) {
+        ModelShape shape = simpler;
+        shape.structure = Structure::sopdt_zero;
+        shape.p[1] = simpler.p[1] + std::log(1 + times);
+        shape.p[2] = std::log(times / ((1 + times) * (1 + times)));
+        starts.push_back(shape);
+    }
+}
+
 Fit fit_form(const FitContext& context, const ModelForm& form, const std::vector<Fit>& simpler) {
     std::vector<ModelShape> nested, extended;
     for (const Fit& fit : simpler) {
         const std::vector<ModelShape> shapes = extend_shape(fit.shape, form.structure);
         if (!shapes.empty() && same_form(fit.form, form)) nested.push_back(shapes.front());
         extended.insert(extended.end(), shapes.begin(), shapes.end());
+        if (context.relay && form.structure == Structure::sopdt_zero) add_slow_parts(fit.shape, extended);
     }
     // Of either kind: the simpler fits' neighbourhood looks good from the start, another valley only once refined.
     std::vector<ModelShape> starts = scan_shapes(context.few(), form, kValleysRefined * form.gains(), context.stop);
@@ -143,6 +157,35 @@ bool leaves_a_pattern(const FitContext& context, const Fit& fit) {
     const auto n = static_cast<double>(fit.residual.size());
     constexpr double kMoreThanNoise = 2, kPattern = 3;  // times the noise's variance; samples of correlation time
     return fit.sse > kMoreThanNoise * n * context.noise * context.noise && correlation_time(fit.residual) > kPattern;
+}
+
+const Fit* best_fit(const std::vector<Fit>& fits) {
+    const Fit* best = nullptr;
+    for (const Fit& fit : fits) {
+        if (fit.determined && (best == nullptr || fit.sse < best->sse)) best = &fit;
+    }
+    return best;
+}
+
+double known_noise(const FitContext& context, const Fit* best) {
+    constexpr double kMaxNoise = 0.03;
+    double noise = context.noise;
+    if (context.relay && best != nullptr)
+        noise = std::clamp(std::sqrt(innovation_variance(best->residual)), context.grid / std::sqrt(12.0), noise);
+    return std::min(noise, kMaxNoise);
+}
+
+bool at_shortest_lag(const Fit& fit) {
+    constexpr double kNear = 0.2;  // of ln T: the search ends at the bound, or a step of its scan before
+    return fit.form.structure == Structure::unstable && fit.shape.p[1] <= kMinUnstable + kNear;
+}
+
+double unexplained_share(const FitContext& context, const Fit& fit) {
+    constexpr double kNoiseKnownTo = 1.1;  // the noise is known to some ten per cent
+    double left = 0;
+    for (const double e : fit.residual) left += e * e;
+    const double noise = kNoiseKnownTo * context.noise, n = context.record.samples();
+    return std::sqrt(std::max(0.0, left - n * noise * noise) / squares_about_mean(context.record.y));
 }
 
 Fit fit_structure(const FitContext& context, Structure structure, const Disturbances& disturbances,

@@ -59,8 +59,23 @@ void finish_fits(const FitContext& context, std::vector<Fit>& fits);
 /// The chosen one to its last digit.
 void polish(const FitContext& context, Fit& fit);
 
+/// The best-fitting candidate, whose residual is the nearest to noise; null where none is determined.
+const Fit* best_fit(const std::vector<Fit>& fits);
+
+/// y's noise, known to some ten per cent; a y of a few levels is no noise of that size. An oscillation of a few rows a
+/// period looks like noise from row to row: what the `best` model leaves, null where there is none, says that it is
+/// less.
+double known_noise(const FitContext& context, const Fit* best);
+
 /// Whether a fit leaves more than noise behind, and in a pattern.
 bool leaves_a_pattern(const FitContext& context, const Fit& fit);
+
+/// Whether an unstable model's time constant is about the least that a record can show, e^kMinUnstable of its length.
+bool at_shortest_lag(const Fit& fit);
+
+/// sqrt((||residual||^2 - n (1.1 noise)^2)/||y - mean(y)||^2), at least 0: what a fit leaves beyond noise, as a share
+/// of y's standard deviation. `fit` is of all samples of context.record.
+double unexplained_share(const FitContext& context, const Fit& fit);
 
 /// n ln(sse/n) + p ln n (Schwarz 1978) with n the number of independent samples that the residuals are worth, in place
 /// of their count: what a drift or a coarse grid leaves behind is not evidence for another time constant. Nor is what

@@ -150,14 +150,16 @@ std::vector<OpenChoice> open_choices(const ModelSearch& search) {
 bool knows_gain(const FittedPlant& plant) { return plant.standard_errors.at("K") <= std::abs(plant.values.at("K")); }
 
 /// The variance of K with the choice of structure left open, at least the chosen one's own: the mean of own variance
-/// and squared distance from the chosen one's K over the open structures (Burnham and Anderson 2002, section 4.3).
+/// and squared distance from the chosen one's K over the open structures (Burnham and Anderson 2002, section 4.3). One
+/// that does not know K at all says no more than its size.
 double open_choice_variance(const FittedPlant& chosen, const std::vector<FittedPlant>& plants,
                             const std::vector<OpenChoice>& open) {
     const double its_own = std::pow(chosen.standard_errors.at("K"), 2);
     double sum = its_own, weights = 1;
     for (const auto& [index, weight] : open) {
         const FittedPlant& other = plants[index];
-        const double own = other.standard_errors.at("K"), apart = other.values.at("K") - chosen.values.at("K");
+        const double K = other.values.at("K"), own = std::min(other.standard_errors.at("K"), std::abs(K)),
+                     apart = K - chosen.values.at("K");
         sum += weight * (own * own + apart * apart);
         weights += weight;
     }
@@ -214,7 +216,9 @@ IdentifiedModel searched_model(ModelSearch search, const CleanRecord& recorded) 
         plants[i] = fitted_plant(record, fit, grid, noise, load);
         if (i != chosen) forget_columns(fit);
     });
-    std::erase_if(open, [&](const OpenChoice& other) { return !knows_gain(plants[other.index]); });
+    // A relay's record leaves the static gain to the structure: one that explains it without knowing the gain counts.
+    if (!search.context.relay)
+        std::erase_if(open, [&](const OpenChoice& other) { return !knows_gain(plants[other.index]); });
     for (const OpenChoice& other : open) model.alternatives.push_back(plants[other.index].plant);
     if (!open.empty()) widen_gain(plants[chosen], open_choice_variance(plants[chosen], plants, open));
     plants[chosen].covariance.reach = region_reach(record, search.fits[chosen], plants[chosen]);

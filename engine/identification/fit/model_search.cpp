@@ -50,26 +50,16 @@ void report(const RunControl& control, double fraction, std::string message) {
     if (control.progress) control.progress({fraction, "identify", std::move(message), std::nullopt});
 }
 
-/// The best-fitting candidate's residual is the nearest to noise: it says how many independent samples there are.
-double independent_samples(const std::vector<Fit>& fits) {
-    const Fit* best = nullptr;
-    for (const Fit& fit : fits) {
-        if (fit.determined && (best == nullptr || fit.sse < best->sse)) best = &fit;
-    }
-    return best == nullptr ? kMinIndependent : effective_samples(best->residual);
-}
-
 ModelSearch ranked(FitContext context, std::vector<Fit> fits, const Plan& plan, const Disturbances& disturbances) {
     std::erase_if(fits, [&](const Fit& fit) {
         return std::find(plan.answers.begin(), plan.answers.end(), fit.form.structure) == plan.answers.end();
     });
     ModelSearch search{std::move(context), std::move(fits), {}, {}, kMinIndependent, {}, disturbances};
     finish_fits(search.context, search.fits);
-    search.independent = independent_samples(search.fits);
-    // The noise is known to some ten per cent; a y of a few levels is no noise of that size.
-    constexpr double kMaxNoise = 0.03;
+    const Fit* best = best_fit(search.fits);
+    if (best != nullptr) search.independent = effective_samples(best->residual);
     constexpr double kKnownTo = 0.8;  // of the noise's variance
-    const double noise = std::min(search.context.noise, kMaxNoise), least = kKnownTo * noise * noise;
+    const double noise = known_noise(search.context, best), least = kKnownTo * noise * noise;
     for (const Fit& fit : search.fits) {
         search.criteria.push_back(information_criterion(fit, search.independent, least));
         search.percents.push_back(fit_percent(search.context.record, fit));
@@ -83,13 +73,11 @@ ModelSearch ranked(FitContext context, std::vector<Fit> fits, const Plan& plan, 
     return search;
 }
 
-/// Whether the best fit leaves what another lag could explain: more than noise, or no white noise.
+/// Whether the best fit leaves what another lag could explain: more than noise, or no white noise. After a relay test
+/// always: the static gain is the structure's, and another structure's may be far from it.
 bool wants_richer(const FitContext& context, const std::vector<Fit>& fits) {
-    const Fit* best = nullptr;
-    for (const Fit& fit : fits) {
-        if (fit.determined && (best == nullptr || fit.sse < best->sse)) best = &fit;
-    }
-    if (best == nullptr) return false;
+    const Fit* best = best_fit(fits);
+    if (best == nullptr || context.relay) return best != nullptr;
     constexpr double kMoreThanNoise = 1.3, kNotWhite = 1.5;  // noise variances; samples of correlation time
     const auto n = static_cast<double>(best->residual.size());
     return best->sse > kMoreThanNoise * n * context.noise * context.noise ||
@@ -141,6 +129,12 @@ ModelSearch fit_some(const ModelSearch& search, ModelChoice model, const Disturb
 
 bool usable(const ModelSearch& search) { return search.choice.index >= 0; }
 
+/// Whether the rows are so far apart that they hardly show when u moved.
+bool few_rows(const CleanRecord& record) {
+    constexpr int kFewRows = 40;  // for each change of u
+    return record.samples() <= kFewRows * record.changes();
+}
+
 void try_between_rows(ModelSearch& search, ModelChoice model, const RunControl& control) {
     if (!unevenly_spaced(search.context.record)) return;
     const CleanRecord moved = changed_between_rows(search.context.record);
@@ -175,23 +169,28 @@ void try_gap_moves(ModelSearch& search, ModelChoice model, const RunControl& con
     search = std::move(other);
 }
 
-/// Moves of u between the rows, as y shows them.
-void try_move_times(ModelSearch& search, ModelChoice model, const RunControl& control) {
+/// `record` with the times of its moves estimated within their rows, from those of `search`, and its models; empty
+/// where y shows nothing of them.
+std::optional<ModelSearch> with_times_estimated(const CleanRecord& record, const ModelSearch& search, ModelChoice model,
+                                                const RunControl& control) {
     constexpr double kMoreThanNoise = 1.15, kNotWhite = 1.3;  // noise variances; samples of correlation time
-    constexpr double kLess = 1.01, kFarLess = 10;             // times the mean square; where a pattern remains
     constexpr int kRounds = 2;
-    const CleanRecord record = search.context.record;
     const double noise = search.context.noise, n = record.samples();
-    if (record.row.empty() || record.changes() < 2) return;
-    const bool pattern = search.chosen().sse > kMoreThanNoise * n * noise * noise &&
-                         correlation_time(search.chosen().residual) > kNotWhite;
+    if (record.row.empty() || record.changes() < 2) return std::nullopt;
+    // Of few rows a half period misplaced switches leave what looks like white noise, and the oscillation looks like
+    // it.
+    const bool pattern =
+        (search.context.relay && few_rows(record)) || (search.chosen().sse > kMoreThanNoise * n * noise * noise &&
+                                                       correlation_time(search.chosen().residual) > kNotWhite);
     RunControl quiet = control;  // the progress of a search that was done is not told again
     quiet.progress = {};
     std::optional<ModelSearch> other;
     Fit start = search.chosen();
+    std::vector<double> times = search.context.record.v_time;
     for (int round = 0; round < kRounds && !control.stop.stop_requested(); ++round) {
-        std::optional<CleanRecord> placed = with_move_times(record, start, noise, pattern, control.stop);
+        std::optional<CleanRecord> placed = with_move_times(record, times, start, noise, pattern, control.stop);
         if (!placed) break;
+        times = placed->v_time;
         ModelSearch next = fit_all(fit_context(std::move(*placed), search.context.relay, quiet), model, {}, quiet);
         if (!usable(next) || (other && next.chosen().sse >= other->chosen().sse)) break;
         const bool same = next.chosen().form.structure == start.form.structure;
@@ -199,6 +198,13 @@ void try_move_times(ModelSearch& search, ModelChoice model, const RunControl& co
         other = std::move(next);
         if (same) break;
     }
+    return other;
+}
+
+/// Moves of u between the rows, as y shows them.
+void try_move_times(ModelSearch& search, ModelChoice model, const RunControl& control) {
+    constexpr double kLess = 1.01, kFarLess = 10;  // times the mean square; where a pattern remains
+    std::optional<ModelSearch> other = with_times_estimated(search.context.record, search, model, control);
     if (!other) return;
     const double less = search.chosen().sse / other->chosen().sse;
     if (less > (leaves_a_pattern(other->context, other->chosen()) ? kFarLess : kLess)) search = std::move(*other);
@@ -208,11 +214,11 @@ void try_move_times(ModelSearch& search, ModelChoice model, const RunControl& co
 /// leaves two thirds of the sum of squares or less.
 void try_switches_between_rows(ModelSearch& search, ModelChoice model, const RunControl& control) {
     constexpr double kMuchLess = 1.5, kWorthLooking = 95, kMostWork = 60'000;  // times; per cent; changes times rows
-    constexpr int kFewRows = 40, kRounds = 4;                                  // rows for each change of u
+    constexpr int kRounds = 4;
     if (search.percents[static_cast<std::size_t>(search.choice.index)] > kWorthLooking) return;
     const CleanRecord& record = search.context.record;
     const double rows = record.samples(), changes = record.changes();
-    if (rows > kFewRows * changes || rows * changes > kMostWork) return;
+    if (!few_rows(record) || rows * changes > kMostWork) return;
     const auto fitted = [&](CleanRecord placed, ModelChoice choice) {
         return fit_all(fit_context(std::move(placed), true, control), choice, {}, control);
     };
@@ -289,11 +295,17 @@ void try_drift(ModelSearch& search, ModelChoice model, const RunControl& control
 /// Moves of u within their rows: each time estimated with the model, or a relay's switches put where they explain y
 /// best, whichever leaves less. From few rows a half period the joint estimate may end in another valley.
 void try_moves(ModelSearch& search, ModelChoice model, bool relay, const RunControl& control) {
+    constexpr double kAsGood = 1.05;  // times the sum of squares: an estimate whose errors are counted is worth it
     ModelSearch placed = search;
     try_move_times(search, model, control);
     if (!relay || control.stop.stop_requested()) return;
+    const CleanRecord recorded = placed.context.record;
     try_switches_between_rows(placed, model, control);
-    if (search.context.record.v_open.empty() || placed.chosen().sse < search.chosen().sse) search = std::move(placed);
+    if (placed.context.record.switches_placed == 0) return;
+    if (!search.context.record.v_open.empty() && placed.chosen().sse >= search.chosen().sse) return;
+    search = std::move(placed);
+    std::optional<ModelSearch> joint = with_times_estimated(recorded, search, model, control);
+    if (joint && joint->chosen().sse < kAsGood * search.chosen().sse) search = std::move(*joint);
 }
 
 void try_disturbances(ModelSearch& search, ModelChoice model, const RunControl& control) {
@@ -347,19 +359,6 @@ void try_beginning(ModelSearch& search, const CleanRecord& record, ModelChoice m
 }
 
 }  // namespace
-
-bool at_shortest_lag(const Fit& fit) {
-    constexpr double kNear = 0.2;  // of ln T: the search ends at the bound, or a step of its scan before
-    return fit.form.structure == Structure::unstable && fit.shape.p[1] <= kMinUnstable + kNear;
-}
-
-double unexplained_share(const FitContext& context, const Fit& fit) {
-    constexpr double kNoiseKnownTo = 1.1;  // the noise is known to some ten per cent
-    double left = 0;
-    for (const double e : fit.residual) left += e * e;
-    const double noise = kNoiseKnownTo * context.noise, n = context.record.samples();
-    return std::sqrt(std::max(0.0, left - n * noise * noise) / squares_about_mean(context.record.y));
-}
 
 ModelSearch search_models(const CleanRecord& record, ModelChoice model, bool relay, const RunControl& control) {
     ModelSearch search =

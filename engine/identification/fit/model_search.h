@@ -51,11 +51,4 @@ ModelSearch ranked_anew(const ModelSearch& search, FitContext context, std::vect
 void constrain(ModelSearch& search, std::vector<FrequencyConstraint> anchors, ModelChoice model,
                const RunControl& control);
 
-/// Whether an unstable model's time constant is about the least that a record can show, e^kMinUnstable of its length.
-bool at_shortest_lag(const Fit& fit);
-
-/// sqrt((||residual||^2 - n (1.1 noise)^2)/||y - mean(y)||^2), at least 0: what a fit leaves beyond noise, as a share
-/// of y's standard deviation. `fit` is of all samples of context.record.
-double unexplained_share(const FitContext& context, const Fit& fit);
-
 }  // namespace tunewright

@@ -21,11 +21,12 @@ struct OpenMove {
 
     double length() const { return high - low; }
     double middle() const { return 0.5 * (low + high); }
+    double earliest() const { return low + 1e-3 * length(); }  ///< of the search: times ascend strictly
     double deviation() const { return length() / std::sqrt(12.0); }
 };
 
 std::vector<OpenMove> open_moves(const CleanRecord& r) {
-    constexpr double kGap = 1.5;        // usual spacings: a row is missing
+    constexpr double kGap = 5.5;        // usual spacings: rows are missing, too many for one minimum
     constexpr double kRounding = 1e-9;  // of the record's length
     const double longest = kGap * usual_spacing(r);
     std::vector<OpenMove> moves;
@@ -64,13 +65,22 @@ Eigen::MatrixXd slopes_of_moves(const CleanRecord& r, const Fit& fit, std::span<
     return N;
 }
 
+/// The rows of fit.J that are samples.
+Eigen::MatrixXd of_samples(const Fit& fit) {
+    const auto n = static_cast<Eigen::Index>(fit.residual.size());
+    Eigen::MatrixXd J(n, static_cast<Eigen::Index>(fit.J.size()));
+    for (std::size_t k = 0; k < fit.J.size(); ++k)
+        J.col(static_cast<Eigen::Index>(k)) = Eigen::Map<const Eigen::VectorXd>(fit.J[k].data(), n);
+    return J;
+}
+
 /// Shape, linear coefficients and times together.
 class JointFit {
 public:
     JointFit(const CleanRecord& record, std::vector<OpenMove> moves, const Fit& start, double noise,
              const std::stop_token& stop)
         : record_(record), moves_(std::move(moves)), noise_(noise), stop_(stop) {
-        fit_ = project({&record_, {}}, start.form, start.shape);
+        fit_ = fit_shape({&record_, {}}, start.form, start.shape, kRough, stop_);
         on_rows_ = innovation_variance(fit_.residual);
     }
 
@@ -94,17 +104,13 @@ public:
         return 0.5 * pull.dot(solve_symmetric(normal, pull)) - 0.5 * apart - freedom;
     }
 
-    /// From the better of the recorded times and the middles of the rows. Twice: by the noise that y shows from row to
-    /// row, then by what the fit has left.
-    void run() {
-        constexpr Effort kRough{20, 1e-6};
-        CleanRecord middle = record_;
-        for (const OpenMove& move : moves_) middle.v_time[move.place] = move.middle();
-        Fit there = fit_shape({&middle, {}}, fit_.form, fit_.shape, kRough, stop_);
-        if (there.determined && there.sse < fit_.sse) {
-            fit_ = std::move(there);
-            record_ = std::move(middle);
-        }
+    /// From the best of the recorded times, the middles of the rows and `times`, which `shape` belongs to. Twice: by
+    /// the noise that y shows from row to row, then by what the fit has left.
+    void run(const std::vector<double>& times, const ModelShape& shape) {
+        std::vector<double> middles = record_.v_time;
+        for (const OpenMove& move : moves_) middles[static_cast<std::size_t>(move.place)] = move.middle();
+        take_if_better(middles, fit_.shape);
+        take_if_better(times, shape);
         for (int round = 0; round < 2 && !stop_.stop_requested(); ++round) {
             variance_ = std::max(kVarianceFloor, residual_variance());
             if (round == 0) variance_ = std::min(variance_, std::max(kVarianceFloor, noise_ * noise_));
@@ -124,6 +130,14 @@ public:
     }
 
 private:
+    static constexpr Effort kRough{20, 1e-6};
+
+    void take_if_better(const std::vector<double>& times, const ModelShape& shape) {
+        CleanRecord record = record_;
+        record.v_time = times;
+        Fit there = fit_shape({&record, {}}, fit_.form, shape, kRough, stop_);
+        if (there.determined && there.sse < fit_.sse) record_ = std::move(record), fit_ = std::move(there);
+    }
     const OpenMove& at(Eigen::Index k) const { return moves_[static_cast<std::size_t>(k)]; }
     double residual_variance() const {
         const auto n = static_cast<double>(fit_.residual.size());
@@ -162,16 +176,8 @@ private:
         return (kRidge * J.colwise().squaredNorm().maxCoeff() * Eigen::VectorXd::Ones(J.cols())).asDiagonal();
     }
 
-    static Eigen::MatrixXd of_samples(const Fit& fit) {
-        const auto n = static_cast<Eigen::Index>(fit.residual.size());
-        Eigen::MatrixXd J(n, static_cast<Eigen::Index>(fit.J.size()));
-        for (std::size_t k = 0; k < fit.J.size(); ++k)
-            J.col(static_cast<Eigen::Index>(k)) = Eigen::Map<const Eigen::VectorXd>(fit.J[k].data(), n);
-        return J;
-    }
-
     void descend() {
-        constexpr int kMostIterations = 12, kMostTries = 6;
+        constexpr int kMostIterations = 40, kMostTries = 6;
         constexpr double kEnough = 1e-6;  // of the cost
         double lambda = 1e-3;
         for (int i = 0; i < kMostIterations && !stop_.stop_requested(); ++i) {
@@ -198,13 +204,31 @@ private:
         jacobian({&record_, {}}, fit_);
     }
 
-    bool step(Eigen::MatrixXd normal, const Eigen::VectorXd& pull, double lambda, double before) {
+    /// What stands at a bound and is pulled beyond it is held: a step that is cut there leads nowhere.
+    static void hold_at_bound(double value, double low, double high, Eigen::Index k, Eigen::MatrixXd& normal,
+                              Eigen::VectorXd& pull) {
+        if ((value > low || pull[k] > 0) && (value < high || pull[k] < 0)) return;
+        normal.row(k).setZero();
+        normal.col(k).setZero();
+        normal(k, k) = 1;
+        pull[k] = 0;
+    }
+
+    bool step(Eigen::MatrixXd normal, Eigen::VectorXd pull, double lambda, double before) {
+        const std::vector<int> places = fit_.form.searched();
+        const ShapeBounds bounds = shape_bounds(record_, fit_.form.structure);
+        const Eigen::Index first = pull.size() - static_cast<Eigen::Index>(moves_.size());
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            const auto place = static_cast<std::size_t>(places[i]);
+            hold_at_bound(fit_.shape.p[place], bounds.low[place], bounds.high[place], Eigen::Index(i), normal, pull);
+        }
+        for (Eigen::Index k = first; k < pull.size(); ++k)
+            hold_at_bound(record_.v_time[at(k - first).place], at(k - first).earliest(), at(k - first).high, k, normal,
+                          pull);
         normal.diagonal() *= 1 + lambda;
         const double least = 1e-12 * normal.diagonal().maxCoeff();
         normal.diagonal().array() += least;
         const Eigen::VectorXd moved = solve_symmetric(normal, pull);
-        const std::vector<int> places = fit_.form.searched();
-        const ShapeBounds bounds = shape_bounds(record_, fit_.form.structure);
         constexpr double kLongest = 1.5;  // of a logarithm: beyond it the linearisation means nothing
         double longest = 0;
         for (std::size_t i = 1; i < places.size(); ++i)
@@ -217,12 +241,10 @@ private:
                                         bounds.high[place]);
         }
         CleanRecord next = record_;
-        const Eigen::Index first = pull.size() - static_cast<Eigen::Index>(moves_.size());
-        constexpr double kInside = 1e-3;  // of a row: times ascend strictly
         for (Eigen::Index k = first; k < pull.size(); ++k) {
             const OpenMove& move = at(k - first);
             double& time = next.v_time[move.place];
-            time = std::clamp(time + share * moved[k], move.low + kInside * move.length(), move.high);
+            time = std::clamp(time + share * moved[k], move.earliest(), move.high);
         }
         Fit fit = project({&next, {}}, fit_.form, shape);
         if (!fit.determined || !(cost(next, fit) < before)) return false;
@@ -242,8 +264,7 @@ private:
 int affordable_samples(std::size_t moves) {
     constexpr double kMostWork = 6e7;  // products: some tenths of a second in all
     constexpr int kLeastForEach = 4;   // samples for each move
-    const double columns = static_cast<double>(moves) + 8;
-    const double most = kMostWork / (columns * columns);
+    const double columns = static_cast<double>(moves) + 8, most = kMostWork / (columns * columns);
     return most < kLeastForEach * columns ? 0 : static_cast<int>(std::min(most, 1e6));
 }
 
@@ -293,8 +314,8 @@ bool shown_on_rows(const CleanRecord& record, const Fit& fit, double row, const 
 
 }  // namespace
 
-std::optional<CleanRecord> with_move_times(const CleanRecord& record, const Fit& start, double noise, bool pattern,
-                                           const std::stop_token& stop) {
+std::optional<CleanRecord> with_move_times(const CleanRecord& record, const std::vector<double>& times,
+                                           const Fit& start, double noise, bool pattern, const std::stop_token& stop) {
     constexpr double kPlainly = 5;  // logarithm of the likelihoods' ratio (Kass and Raftery 1995, section 3.2)
     constexpr std::size_t kFewest = 2;
     const std::vector<OpenMove> moves = open_moves(record);
@@ -302,7 +323,7 @@ std::optional<CleanRecord> with_move_times(const CleanRecord& record, const Fit&
     if (moves.size() < kFewest || most == 0) return std::nullopt;
     JointFit joint(every_few(record, most), moves, start, noise, stop);
     if (!(joint.linear_evidence() > 0) && !pattern) return std::nullopt;
-    joint.run();
+    joint.run(times, start.shape);
     if (stop.stop_requested() || !(joint.evidence() > kPlainly)) return std::nullopt;
     CleanRecord placed = record;
     placed.v_time = joint.record().v_time;
@@ -333,10 +354,7 @@ void take_out_move_times(const CleanRecord& record, Fit& fit) {
     if (moves.empty() || fit.J.empty()) return;
     const auto n = static_cast<Eigen::Index>(fit.residual.size());
     const auto count = static_cast<Eigen::Index>(moves.size()), rows = static_cast<Eigen::Index>(fit.J[0].size());
-    const Eigen::MatrixXd N = slopes_of_moves(record, fit, moves);
-    Eigen::MatrixXd J(n, static_cast<Eigen::Index>(fit.J.size()));
-    for (std::size_t k = 0; k < fit.J.size(); ++k)
-        J.col(static_cast<Eigen::Index>(k)) = Eigen::Map<const Eigen::VectorXd>(fit.J[k].data(), n);
+    const Eigen::MatrixXd N = slopes_of_moves(record, fit, moves), J = of_samples(fit);
     const double freedom = std::max(0.2 * static_cast<double>(n), static_cast<double>(n - J.cols()) - 0.5 * count);
     const double variance = std::max(kVarianceFloor, fit.sse / freedom);
     Eigen::VectorXd known(count);

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <stop_token>
+#include <vector>
 
 #include "engine/identification/fit/output_error.h"
 
@@ -17,16 +18,16 @@ namespace tunewright {
 /// Minimises sse + variance sum_j ((t_j - c_j)/s_j)^2 over shape, linear coefficients and times t_j: a change is as
 /// likely anywhere in its row, of middle c_j and length sqrt(12) s_j, which counts as a normal distribution of the same
 /// variance (random effects: Searle, Casella and McCulloch 1992, section 7.4). Levenberg-Marquardt, with exact
-/// sensitivities to the times, from the better of the recorded times and the middles of the rows. `noise`: y's standard
-/// deviation from sample to sample, dimensionless. Looked for where the residual of `start` shows shifts, or `pattern`:
-/// where it is so large that its own slopes may not tell.
+/// sensitivities to the times, from the best of the recorded times, the middles of the rows and `times`, those that
+/// `start` was fitted with. `noise`: y's standard deviation from sample to sample, dimensionless. Looked for where the
+/// residual of `start` shows shifts, or `pattern`: where it is so large that its own slopes may not tell.
 ///
 /// Empty where the times lower the residual's innovations by no more than their own freedom explains (Laplace's
 /// approximation of the marginal likelihoods apart by 5); for fewer than two such changes, of which the dead time takes
-/// up the lateness, and for so many that the sums would take seconds. Changes before which rows are missing, or that
-/// were put elsewhere than at a row, keep their times.
-std::optional<CleanRecord> with_move_times(const CleanRecord& record, const Fit& start, double noise, bool pattern,
-                                           const std::stop_token& stop);
+/// up the lateness, and for so many that the sums would take seconds. Changes that come after more than four missing
+/// rows, or that were put elsewhere than at a row, keep their times.
+std::optional<CleanRecord> with_move_times(const CleanRecord& record, const std::vector<double>& times,
+                                           const Fit& start, double noise, bool pattern, const std::stop_token& stop);
 
 /// Takes what the estimated times may explain out of the columns of `fit.J`, and fills `fit.nuisance`: what is left
 /// determines the parameters. Rows for what is known of the times follow those of J. Does nothing where all times are

@@ -362,6 +362,9 @@ void jacobian(const FitData& data, Fit& fit) {
     for (const Eigen::MatrixXd* part : {&D, &columns}) {
         for (int k = 0; k < part->cols(); ++k) fit.J.emplace_back(part->col(k).begin(), part->col(k).end());
     }
+    fit.held_errors.assign(data.record->y_rest ? 1 : 0, 0.0);
+    for (const FrequencyConstraint& anchor : data.anchors)
+        fit.held_errors.insert(fit.held_errors.end(), anchor.omega > 0 ? 2 : 1, anchor.weight * anchor.std);
 }
 
 }  // namespace tunewright

@@ -51,6 +51,7 @@ struct FrequencyConstraint {
     double omega = 0;  ///< dimensionless; 0: the static gain
     std::complex<double> value;
     double weight = 0;
+    double std = 0;  ///< standard deviation of the value's parts, which may be larger than the weight says
 };
 
 /// A model fitted to a clean record; dimensionless.
@@ -64,6 +65,9 @@ struct Fit {
     /// Columns d model/d searched, then d model/d linear; rows as in the least-squares problem: n_samples, one for
     /// y_rest if there is one, then the anchors'. Empty until `jacobian`.
     std::vector<std::vector<double>> J;
+    /// Standard deviation, in J's units, of what each row from n_samples on is held to, where it is not the row's own
+    /// noise: 0 for y_rest's, then the anchors'. As long as those rows; filled by `jacobian`.
+    std::vector<double> held_errors;
     /// Columns for what was estimated beside the parameters and taken out of J (move_times.h), n_samples each.
     std::vector<std::vector<double>> nuisance;
     /// Prior knowledge of each of them, as one row of the least-squares problem: its weight, and what the

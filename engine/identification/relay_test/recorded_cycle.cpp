@@ -4,8 +4,10 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 
 #include "engine/identification/record/record_kind.h"
+#include "engine/identification/record/series.h"
 #include "engine/number_text.h"
 #include "engine/numerics/statistics.h"
 
@@ -192,6 +194,32 @@ RestPoint rest_point(const CleanRecord& r, const TwoLevels& u, double relay_star
     return rest;
 }
 
+/// Standard deviation of the mean of y over the rows at rest, n of them before the relay's start.
+double rest_std(const CleanRecord& r, double relay_start, double noise) {
+    constexpr double kGivenRows = 10;  // that a given level of rest is taken to be the mean of
+    constexpr double kDithered = 0.3;  // of a step of y's grid: less noise leaves all rows with one error
+    if (r.y_rest) return noise / std::sqrt(kGivenRows);
+    const auto after = std::upper_bound(r.t.begin(), r.t.end(), relay_start);
+    const std::span rest(r.y.data(), static_cast<std::size_t>(after - r.t.begin()));
+    const double rounding = quantisation_step(r.y) / std::sqrt(12.0);
+    if (relay_start <= 0 || rest.size() < 2) return std::hypot(noise, rounding);
+    const double scatter = deviation(rest);
+    const auto n = static_cast<double>(rest.size());
+    if (scatter < kDithered * rounding * std::sqrt(12.0)) return std::max(rounding, scatter);
+    return std::max(noise / std::sqrt(n), scatter * std::sqrt(std::min(1.0, correlation_time(rest) / n)));
+}
+
+/// As RecordedCycle::mean_std.
+double mean_std(const CleanRecord& r, const std::vector<Period>& periods, const RecordedCycle& cycle, double noise) {
+    std::vector<double> steps;
+    for (std::size_t k = 1; k < periods.size(); ++k)
+        if (periods[k - 1].from >= cycle.start) steps.push_back(periods[k].mean - periods[k - 1].mean);
+    const double away = (cycle.start - 0.5 * cycle.relay_start) / cycle.period + 0.5 * cycle.periods;
+    const double creep = steps.empty() ? 0 : mean(steps) * away;
+    const double walk = steps.size() < 2 ? 0 : deviation(steps) * std::sqrt(away);
+    return std::hypot(rest_std(r, cycle.relay_start, noise), creep, walk);
+}
+
 /// Whole periods from `start` on, and the scatter of what they show.
 struct Pooled {
     Complex U, Y;
@@ -281,6 +309,8 @@ bool RecordedCycle::biased() const {
     return std::abs(v_middle - rest.v) > kBiased * v_half;
 }
 
+double RecordedCycle::static_gain_std() const { return mean_std / std::abs(v_mean - rest.v); }
+
 double RecordedCycle::static_gain() const { return (y_mean - rest.y) / (v_mean - rest.v); }
 
 Expected<RecordedCycle> find_cycle(const CleanRecord& r, double noise) {
@@ -317,6 +347,7 @@ Expected<RecordedCycle> find_cycle(const CleanRecord& r, double noise) {
     cycle.v_middle = 0.5 * (u.high + u.low);
     cycle.v_half = 0.5 * (u.high - u.low);
     cycle.rest = rest_point(r, u, cycle.relay_start, noise, cycle.y_half);
+    cycle.mean_std = mean_std(r, periods, cycle, noise);
     add_harmonics(signals, noise, cycle);
     if (cycle.harmonics.empty()) {
         return Error{

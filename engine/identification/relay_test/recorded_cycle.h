@@ -46,6 +46,11 @@ struct RecordedCycle {
     bool biased() const;
     /// Eq. 14 (Liu and Gao): mean of y over mean of v, from rest.
     double static_gain() const;
+    /// Standard deviation of the mean of y from its rest: noise and rounding of the rows at rest, and what y's mean
+    /// moves from period to period, carried on from rest to the steady periods as a creep and as a walk. One row's
+    /// where the record starts with the relay.
+    double mean_std = 0;
+    double static_gain_std() const;
 };
 
 /// Locates the switches from u, takes the last whole periods that repeat each other, and pools the Fourier integrals

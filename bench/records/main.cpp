@@ -1,5 +1,7 @@
-// records FIRST COUNT [--show KIND] [--family N] [--test N] [--noise N]: made records from seeds FIRST on, judged, and
-// the table of what came out. KIND: silent, unstable, above, refused, uncovered, seed.
+// records FIRST COUNT [--show KIND] [--family N] [--test N] [--noise N] [--form N] [--stride N] [--file]: made records
+// from seeds FIRST on, each or every N-th, judged, and the table of what came out. KIND: silent, unstable, above,
+// refused, uncovered, all. --form: 0 to 4, as columns, several runs, countdown, damaged cells, two inputs; --file
+// prints the first one's file and ends.
 #include <algorithm>
 #include <atomic>
 #include <cstdio>
@@ -10,16 +12,18 @@
 #include <thread>
 #include <vector>
 
-#include "tests/records/judgement.h"
+#include "tests/records/record_form.h"
 
 namespace tunewright::records {
 namespace {
 
 struct Options {
     std::uint64_t first = 1;
-    int count = 720;
+    int count = 720, stride = 1;
     std::string show;
     int family = -1, test = -1, noise = -1;
+    Form form = Form::columns;
+    bool file = false;
 };
 
 struct Row {
@@ -105,6 +109,12 @@ Options parse(int argc, char** argv) {
             options.test = std::atoi(argv[++i]);
         else if (word == "--noise" && i + 1 < argc)
             options.noise = std::atoi(argv[++i]);
+        else if (word == "--form" && i + 1 < argc)
+            options.form = static_cast<Form>(std::clamp(std::atoi(argv[++i]), 0, kForms - 1));
+        else if (word == "--stride" && i + 1 < argc)
+            options.stride = std::max(1, std::atoi(argv[++i]));
+        else if (word == "--file")
+            options.file = true;
         else if (place++ == 0)
             options.first = std::strtoull(word.c_str(), nullptr, 10);
         else
@@ -120,14 +130,19 @@ bool wanted(const Options& options, const MadeRecord& made) {
 }
 
 int run(const Options& options) {
+    if (options.file) {
+        std::fputs(written(make_record(options.first, options.form)).c_str(), stdout);
+        return 0;
+    }
     std::vector<std::optional<Row>> rows(static_cast<std::size_t>(options.count));
     std::atomic<int> next = 0;
     const auto work = [&] {
         for (int i = next++; i < options.count; i = next++) {
-            const std::uint64_t seed = options.first + static_cast<std::uint64_t>(i);
-            MadeRecord made = make_record(seed);
+            const std::uint64_t seed =
+                options.first + static_cast<std::uint64_t>(i) * static_cast<std::uint64_t>(options.stride);
+            MadeRecord made = make_record(seed, options.form);
             if (!wanted(options, made)) continue;
-            Judgement judgement = judge(made);
+            Judgement judgement = judge_as_sent(made);
             rows[static_cast<std::size_t>(i)] = Row{seed, std::move(made), std::move(judgement)};
         }
     };
@@ -156,7 +171,7 @@ int run(const Options& options) {
     for (const auto& [family, line] : by[0]) print(name_of(static_cast<Family>(family)), line);
     for (const auto& [test, line] : by[1]) print(name_of(static_cast<Test>(test)), line);
     for (const auto& [noise, line] : by[2]) print(name_of(static_cast<Noise>(noise)), line);
-    print("all", all);
+    print(options.form == Form::columns ? "all" : name_of(options.form), all);
     std::printf("\nwarnings, of %d records:", all.records);
     for (const auto& [code, count] : codes) std::printf(" %s %d", code.c_str(), count);
     std::printf("\n");

@@ -6,10 +6,10 @@
 #include <functional>
 #include <limits>
 
+#include "tests/records/record_form.h"
+
 namespace tunewright::records {
 namespace {
-
-constexpr int kFine = 6;  // steps of the simulation per row
 
 /// The move of u: its level at a row, or at a step of the simulation, from what was measured there.
 using Operator = std::function<double(int place, double y)>;
@@ -193,15 +193,6 @@ Plan make_plan(MadeRecord& made, const Scale& scale, Random& random) {
     }
 }
 
-/// A valve that follows u only by jumps larger than its dead band.
-struct Valve {
-    double dead_band, at = 0;
-    double follow(double u) {
-        if (std::abs(u - at) > dead_band) at = u - std::copysign(0.5 * dead_band, u - at);
-        return dead_band > 0 ? at : u;
-    }
-};
-
 /// What is added to y and to the plant's input, row by row; `size` is what a unit of u moves.
 struct Disturbance {
     std::vector<double> on_y, load;
@@ -229,87 +220,27 @@ Disturbance make_disturbance(const MadeRecord& made, const Plan& plan, double si
 }
 
 /// `moves`: each change of u between rows, in time.
-Record run(const MadeRecord& made, const Plan& plan, const Disturbance& d, double size,
+Record run(const MadeRecord& made, ActuatedPlant& process, const Plan& plan, const Disturbance& d, double size,
            std::vector<std::pair<double, double>>& moves) {
-    RunningPlant plant(made.plant, plan.dt / kFine);
-    Valve valve{made.plant.dead_band};
     Record record;
     record.r = plan.r;
-    double y = 0;
     for (int row = 0; row < plan.rows; ++row) {
-        double measured = y + d.on_y[static_cast<std::size_t>(row)];
-        if (made.plant.grid > 0) measured = size * made.plant.grid * std::round(measured / (size * made.plant.grid));
+        const double added = d.on_y[static_cast<std::size_t>(row)];
+        const double measured = on_grid(process.y() + added, size * made.plant.grid);
         double u = plan.each_step ? plan.u(row * kFine, measured) : plan.u(row, measured);
         record.t.push_back(plan.dt * row);
         record.u.push_back(u);
         record.y.push_back(measured);
         for (int k = 0; k < kFine; ++k) {
             if (plan.each_step && k > 0) {
-                const double now = plan.u(row * kFine + k, y + d.on_y[static_cast<std::size_t>(row)]);
+                const double now = plan.u(row * kFine + k, process.y() + added);
                 if (now != u) moves.emplace_back(plan.dt * (row + static_cast<double>(k) / kFine), now);
                 u = now;
             }
-            double in = valve.follow(u);
-            if (const int period = kFine * made.plant.switched_rows; period > 0) {
-                // The duty, -2 to 2 for all off and all on, is switched between the two ends; its mean over this step.
-                const double from = static_cast<double>((row * kFine + k) % period), duty = period * (2 + u) / 4;
-                in = std::abs(u) < 2 ? 4 * std::clamp(duty - from, 0.0, 1.0) - 2 : u;
-            }
-            y = plant.advance(in, d.load[static_cast<std::size_t>(row)]);
+            process.advance(u, d.load[static_cast<std::size_t>(row)]);
         }
     }
     return record;
-}
-
-void keep(Record& record, const std::function<bool(std::size_t)>& kept) {
-    std::size_t to = 0;
-    for (std::size_t i = 0; i < record.t.size(); ++i) {
-        if (!kept(i)) continue;
-        for (auto* column : {&record.t, &record.u, &record.y, &record.r}) {
-            if (!column->empty()) (*column)[to] = (*column)[i];
-        }
-        ++to;
-    }
-    for (auto* column : {&record.t, &record.u, &record.y, &record.r}) {
-        if (!column->empty()) column->resize(to);
-    }
-}
-
-/// What the logger does to the rows.
-void log_rows(const MadeRecord& made, Record& record, double size, Random& random) {
-    const double nan = std::numeric_limits<double>::quiet_NaN();
-    switch (made.noise) {
-        case Noise::outliers:
-            for (double& y : record.y) {
-                if (random.chance(0.004)) y += size * random.uniform(1, 6) * (random.chance(0.5) ? 1 : -1);
-            }
-            break;
-        case Noise::missing_rows:
-            for (double& y : record.y) {
-                if (random.chance(0.04)) y = nan;
-            }
-            keep(record, [&](std::size_t) { return !random.chance(0.05); });
-            break;
-        case Noise::irregular_times:
-            // Rows at random, those kept where u has just moved.
-            keep(record, [&](std::size_t i) { return i == 0 || record.u[i] != record.u[i - 1] || random.chance(0.6); });
-            break;
-        case Noise::logged_on_change: {
-            const double band = size * std::max(0.004, made.noise_std);
-            double last = record.y[0];
-            std::size_t silent = 0;
-            std::vector<bool> kept;
-            for (std::size_t i = 0; i < record.t.size(); ++i) {
-                const bool now =
-                    i == 0 || record.u[i] != record.u[i - 1] || std::abs(record.y[i] - last) > band || ++silent >= 30;
-                if (now) last = record.y[i], silent = 0;
-                kept.push_back(now);
-            }
-            keep(record, [&](std::size_t i) { return kept[i]; });
-            break;
-        }
-        default: break;
-    }
 }
 
 /// The record with a row of u alone for each of the moves.
@@ -326,12 +257,20 @@ Record told(const Record& record, const std::vector<std::pair<double, double>>& 
         with.u.push_back(record.u[i]);
         with.y.push_back(record.y[i]);
     }
+    for (const FurtherInput& input : record.d) {
+        FurtherInput& held = with.d.emplace_back(FurtherInput{input.name, {}});
+        std::size_t i = 0;
+        for (const double t : with.t) {
+            while (i + 1 < record.t.size() && record.t[i + 1] <= t) ++i;
+            held.values.push_back(input.values[i]);
+        }
+    }
     return with;
 }
 
 /// The user's units: a level, a slope for u, a start of time.
 void into_units(MadeRecord& made, double u_level, double u_step, double y_level, double t_start) {
-    for (Record* record : {&made.record, made.with_moves ? &*made.with_moves : nullptr}) {
+    for (Record* record : {&made.record, &made.earlier, made.with_moves ? &*made.with_moves : nullptr}) {
         if (record == nullptr) continue;
         for (double& u : record->u) u = u_level + u_step * u;
         for (double& y : record->y) y += y_level;
@@ -371,23 +310,31 @@ std::string MadeRecord::text() const {
     return line;
 }
 
-MadeRecord make_record(std::uint64_t seed) {
+MadeRecord make_record(std::uint64_t seed, Form form) {
     const int i = static_cast<int>(seed % (kFamilies * kTests * kNoises));
     return make_record(seed, static_cast<Family>(i % kFamilies), static_cast<Test>(i / kFamilies % kTests),
-                       static_cast<Noise>(i / (kFamilies * kTests)));
+                       static_cast<Noise>(i / (kFamilies * kTests)), form);
 }
 
-MadeRecord make_record(std::uint64_t seed, Family family, Test test, Noise noise) {
-    Random random(seed);
-    MadeRecord made{make_plant(family, random), test, noise, 0, false, {}, {}};
+MadeRecord make_record(std::uint64_t seed, Family family, Test test, Noise noise, Form form) {
+    Random random(seed), of_form(seed + 1'000'003ULL * (1 + static_cast<std::uint64_t>(form)));
+    MadeRecord made;
+    made.seed = seed, made.plant = make_plant(family, random), made.test = test, made.noise = noise, made.form = form;
     if (noise != Noise::none) made.noise_std = random.spread(0.001, 0.03);
     const Scale scale = some_scale(made, random);
     const Plan plan = make_plan(made, scale, random);
     const TruePlant& plant = made.plant;
     const double size = std::abs(plant.K) * (plant.integrating ? plant.L + plant.lag_sum() : 1);
+    Disturbance disturbance = make_disturbance(made, plan, size, random);
+    ActuatedPlant process(plant, plan.dt);
+    if (form == Form::several_runs || form == Form::countdown)
+        made.earlier = earlier_run(made, process, scale.dt, scale.settling, size, of_form);
+    std::optional<FurtherInput> second;
+    if (form == Form::two_inputs) second = second_input(made, plan.dt, size, disturbance.on_y, of_form);
     std::vector<std::pair<double, double>> moves;
-    made.record = run(made, plan, make_disturbance(made, plan, size, random), size, moves);
-    log_rows(made, made.record, size, random);
+    made.record = run(made, process, plan, disturbance, size, moves);
+    if (second) made.record.d.push_back(std::move(*second));
+    log_rows(made.noise, made.noise_std, size, made.record, random);
     if (plan.each_step) made.with_moves = told(made.record, moves);
     into_units(made, random.uniform(-50, 100), random.spread(0.1, 30), size * random.uniform(-10, 10),
                random.chance(0.5) ? 0 : random.uniform(0, 1e5));

@@ -1,6 +1,7 @@
 #include "tests/records/true_plant.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <unsupported/Eigen/MatrixFunctions>
 
@@ -170,6 +171,26 @@ double RunningPlant::advance(double u, double load) {
     x_ = A_ * x_ + B_ * (delayed_.front() + load);
     delayed_.pop_front();
     return C_.dot(x_);
+}
+
+double on_grid(double y, double grid) { return grid > 0 ? grid * std::round(y / grid) : y; }
+
+ActuatedPlant::ActuatedPlant(const TruePlant& plant, double dt)
+    : plant_(plant, dt / kFine), dead_band_(plant.dead_band), period_(kFine * plant.switched_rows) {}
+
+double ActuatedPlant::advance(double u, double load) {
+    double in = u;
+    if (dead_band_ > 0) {
+        if (std::abs(u - valve_) > dead_band_) valve_ = u - std::copysign(0.5 * dead_band_, u - valve_);
+        in = valve_;
+    }
+    if (period_ > 0) {
+        // The duty, -2 to 2 for all off and all on, is switched between the two ends; its mean over this step.
+        const double from = static_cast<double>(steps_ % period_), duty = period_ * (2 + u) / 4;
+        in = std::abs(u) < 2 ? 4 * std::clamp(duty - from, 0.0, 1.0) - 2 : u;
+    }
+    ++steps_;
+    return y_ = plant_.advance(in, load);
 }
 
 }  // namespace tunewright::records

@@ -59,4 +59,23 @@ private:
     std::deque<double> delayed_;
 };
 
+inline constexpr int kFine = 6;  ///< steps of the simulation per row
+
+double on_grid(double y, double grid);  ///< y itself where grid is 0
+
+/// The plant behind its actuator: a valve that follows u only by jumps larger than its dead band, or an element that is
+/// switched on and off.
+class ActuatedPlant {
+public:
+    ActuatedPlant(const TruePlant& plant, double dt);
+    /// Advances a step of dt/kFine; returns y at its end.
+    double advance(double u, double load);
+    double y() const { return y_; }
+
+private:
+    RunningPlant plant_;
+    double dead_band_, valve_ = 0, y_ = 0;
+    int period_, steps_ = 0;
+};
+
 }  // namespace tunewright::records

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include "engine/identification/record/series.h"
+#include "engine/identification/record/settled_levels.h"
 #include "engine/number_text.h"
 #include "engine/numerics/statistics.h"
 
@@ -48,13 +50,15 @@ void warn_unsettled(const CleanRecord& r, const Fit& fit, double remaining, std:
              " % of the response is yet to come, so gain and time constant are extrapolated. Record until y settles."});
 }
 
-void warn_residuals(const CleanRecord& r, const Fit& fit, const DataQuality& quality, std::vector<Warning>& warnings) {
+/// Whether the model leaves a pattern.
+bool warn_residuals(const CleanRecord& r, const Fit& fit, const DataQuality& quality, std::vector<Warning>& warnings) {
     const double rms = root_mean_square(fit.residual), unit = r.scale.y_scale;
     const double noise = std::max(quality.noise_std, quality.quantisation / std::sqrt(12.0)) / unit;
     constexpr double kVisible = 0.007;                    // of y's range: what an eye sees in the plot
     constexpr double kMoreThanNoise = 1.5, kPattern = 3;  // times the noise; samples of correlation time
     constexpr double kFarOff = 8;                         // root mean squares
-    if (rms > kVisible && rms > kMoreThanNoise * noise && correlation_time(fit.residual) > kPattern) {
+    const bool pattern = rms > kVisible && rms > kMoreThanNoise * noise && correlation_time(fit.residual) > kPattern;
+    if (pattern) {
         warnings.push_back(
             {"structured-residuals", "The model misses y by " + text(rms * unit, 3) +
                                          " (r.m.s.), more than noise or rounding (" + text(noise * unit, 3) +
@@ -69,6 +73,7 @@ void warn_residuals(const CleanRecord& r, const Fit& fit, const DataQuality& qua
                                             text(rms * unit, 3) +
                                             " is typical; remove false readings from the record."});
     }
+    return pattern;
 }
 
 void warn_uncertain(const std::map<std::string, double>& values, const std::map<std::string, double>& errors,
@@ -152,7 +157,9 @@ Diagnosis diagnose(const CleanRecord& record, const Fit& fit, const std::map<std
     diagnosis.settled = remaining < kSettledWithin;
     warn_unsettled(record, fit, remaining, diagnosis.warnings);
     if (!fit.form.other_level && !fit.form.slope) warn_not_at_rest(record, diagnosis.warnings);
-    warn_residuals(record, fit, quality, diagnosis.warnings);
+    if (warn_residuals(record, fit, quality, diagnosis.warnings) && self_regulating(fit)) {
+        if (auto warning = level_warning(record)) diagnosis.warnings.push_back(std::move(*warning));
+    }
     warn_uncertain(values, standard_errors, diagnosis.warnings);
     warn_sampling(record, fit, quality, diagnosis.warnings);
     return diagnosis;

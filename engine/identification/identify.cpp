@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/identification/closed_loop/closed_loop.h"
+#include "engine/identification/closed_loop/cold_start.h"
 #include "engine/identification/closed_loop/loop_parts.h"
 #include "engine/identification/closed_loop/outside_excitation.h"
 #include "engine/identification/fit/diagnosis.h"
@@ -13,8 +14,10 @@
 #include "engine/identification/further_inputs/further_inputs.h"
 #include "engine/identification/record/data_quality.h"
 #include "engine/identification/record/record_kind.h"
+#include "engine/identification/record/record_rows.h"
 #include "engine/identification/record/series.h"
 #include "engine/identification/relay_test/formula_answer.h"
+#include "engine/identification/time_direction.h"
 #include "engine/identification/two_point.h"
 #include "engine/number_text.h"
 
@@ -324,25 +327,13 @@ void add_figures(const CleanRecord& record, IdentifiedModel& model) {
     add_ultimate_point(model);
 }
 
-/// Names the further inputs that the model does without.
-void note_further_inputs(const Record& record, IdentifiedModel& model) {
-    for (const FurtherInput& input : record.d) {
-        if (std::ranges::find(model.disturbances, input.name, &DisturbanceModel::name) != model.disturbances.end())
-            continue;
-        model.data_quality.notes.push_back("The measured disturbance \"" + input.name +
-                                           "\" explains nothing of y that u and noise do not; the model is as without "
-                                           "it.");
-    }
-}
-
-}  // namespace
-
-Expected<IdentifiedModel> identify(const Record& record, const IdentifyOptions& options, const RunControl& control) {
-    Expected<Looked> looked = looked_at(record);
-    if (!looked) return looked.error();
-    auto& [clean, loop, rest] = *looked;
+/// The model of a record whose start is as it shows, or as u0 says. A loop that only the model of an open-loop test
+/// gives away is put into `looked`.
+Expected<IdentifiedModel> model_of(const Record& record, Looked& looked, const IdentifyOptions& options,
+                                   const RunControl& control) {
+    auto& [clean, loop, rest] = looked;
     if (!loop) {
-        if (auto model = by_manual_rows(record, *looked, options, control)) return std::move(*model);
+        if (auto model = by_manual_rows(record, looked, options, control)) return std::move(*model);
     }
     const bool by_formula = options.method == IdentifyMethod::relay_fourier;
     Expected<IdentifiedModel> model = by_formula                                    ? by_relay_formulas(clean, options)
@@ -350,7 +341,6 @@ Expected<IdentifiedModel> identify(const Record& record, const IdentifyOptions& 
                                       : loop ? identify_in_loop(clean, *loop, options.model, control)
                                              : by_fitting(record, clean, options, control);
     if (model && !loop && !by_formula && options.method != IdentifyMethod::two_point) {
-        // A loop that only the model of an open-loop test gives away.
         const double left = 1 - model->fit_percent / 100;
         auto by_law = find_loop(clean, record, left * left);
         if (by_law && *by_law) {
@@ -359,7 +349,7 @@ Expected<IdentifiedModel> identify(const Record& record, const IdentifyOptions& 
         }
     }
     if (!model && loop && model.error().kind == ErrorKind::not_identifiable) {
-        if (auto manual = by_manual_rows(record, *looked, options, control)) return std::move(*manual);
+        if (auto manual = by_manual_rows(record, looked, options, control)) return std::move(*manual);
     }
     if (!model) return model;
     if (rest)
@@ -372,7 +362,36 @@ Expected<IdentifiedModel> identify(const Record& record, const IdentifyOptions& 
             "Column r is u itself, or a straight line over it: it is taken for a command of u, not for a set point.");
     loop ? report_loop(*loop, *model) : doubt_open_loop(clean, *model);
     add_figures(clean, *model);
-    if (control.progress) control.progress({1, "identify", "model found", std::nullopt});
+    return model;
+}
+
+bool by_fit(IdentifyMethod method) {
+    return method == IdentifyMethod::automatic || method == IdentifyMethod::output_error;
+}
+
+/// The model, with its rows in the direction of time that they are taken to have.
+Expected<IdentifiedModel> identified(const Record& record, const IdentifyOptions& options, const RunControl& control) {
+    Expected<Looked> looked = looked_at(record);
+    if (!looked) return looked.error();
+    Expected<IdentifiedModel> model = model_of(record, *looked, options, control);
+    const bool in_loop = looked->loop || (model && model->data_quality.closed_loop) || !record.r.empty();
+    const ColdStart start = by_fit(options.method) ? cold_start(record, looked->clean, in_loop) : ColdStart::none;
+    if (start == ColdStart::none) return model;
+    Record off = record;
+    off.u0 = off_level(record);
+    return cold_start_model(start, std::move(model), identified(off, options, control), *off.u0);
+}
+
+}  // namespace
+
+Expected<IdentifiedModel> identify(const Record& record, const IdentifyOptions& options, const RunControl& control) {
+    Expected<IdentifiedModel> model = identified(record, options, control);
+    if (by_fit(options.method) && times_fall(record)) {
+        const Expected<Looked> turned = looked_at(record);
+        model =
+            model_in_time(std::move(model), identified(counted_down(record), options, control), turned && turned->loop);
+    }
+    if (model && control.progress) control.progress({1, "identify", "model found", std::nullopt});
     return model;
 }
 

@@ -247,4 +247,14 @@ ModelSearch search_with_further(const CleanRecord& record, ModelChoice model, bo
     return plain;
 }
 
+void note_further_inputs(const Record& record, IdentifiedModel& model) {
+    for (const FurtherInput& input : record.d) {
+        if (std::ranges::find(model.disturbances, input.name, &DisturbanceModel::name) != model.disturbances.end())
+            continue;
+        model.data_quality.notes.push_back("The measured disturbance \"" + input.name +
+                                           "\" explains nothing of y that u and noise do not; the model is as without "
+                                           "it.");
+    }
+}
+
 }  // namespace tunewright

@@ -35,4 +35,7 @@ std::vector<double> further_parameters(const CleanRecord& record, const ModelFor
 std::vector<DisturbanceModel> disturbances_of(const CleanRecord& record, const Fit& fit,
                                               const std::vector<double>& values, const std::vector<double>& variances);
 
+/// Names in the notes the further inputs of the record that the model does without.
+void note_further_inputs(const Record& record, IdentifiedModel& model);
+
 }  // namespace tunewright

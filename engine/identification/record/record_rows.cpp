@@ -8,11 +8,11 @@
 namespace tunewright {
 namespace {
 
-/// The order of the rows that have a time, and that time.
-class TimeOrder {
-public:
-    TimeOrder(const Record& record, Cleaning& cleaning) : record_(record), size_(record.t.size()) {
-        std::size_t up = 0, down = 0, same = 0;
+/// How often the time rises, falls and stays from one row to the next.
+struct TimeMoves {
+    std::size_t up = 0, down = 0, same = 0;
+
+    explicit TimeMoves(const Record& record) {
         double before = std::nan("");
         for (const double t : record.t) {
             if (!std::isfinite(t)) continue;
@@ -21,9 +21,18 @@ public:
             same += t == before ? 1 : 0;
             before = t;
         }
-        reversed_ = cleaning.reversed = down > 9 * up && down > 2;
+    }
+    bool fall() const { return down > 9 * up && down > 2; }
+};
+
+/// The order of the rows that have a time, and that time.
+class TimeOrder {
+public:
+    TimeOrder(const Record& record, Cleaning& cleaning) : record_(record), size_(record.t.size()) {
+        const TimeMoves moves(record);
+        reversed_ = cleaning.reversed = moves.fall();
         constexpr std::size_t kCoarse = 3;
-        if (kCoarse * same > size_ && up + down > 2) spread(cleaning);
+        if (kCoarse * moves.same > size_ && moves.up + moves.down > 2) spread(cleaning);
     }
 
     std::size_t row(std::size_t k) const { return reversed_ ? size_ - 1 - k : k; }
@@ -108,6 +117,8 @@ double limited(const Record& r, double u, Cleaning& cleaning) {
 }
 
 }  // namespace
+
+bool times_fall(const Record& record) { return TimeMoves(record).fall(); }
 
 RecordRows collect_rows(const Record& r, Cleaning& cleaning) {
     RecordRows rows;

@@ -16,6 +16,10 @@ struct RecordRows {
     bool started = false;  ///< a row with a time and a u has been seen
 };
 
+/// Whether the times fall from row to row, but for one in ten: from the newest row to the oldest, as the rows are taken
+/// to run, or counted down (time_direction.h).
+bool times_fall(const Record& record);
+
 /// The rows as clean_record() describes them, false readings included. The columns of `record` have equal lengths.
 RecordRows collect_rows(const Record& record, Cleaning& cleaning);
 

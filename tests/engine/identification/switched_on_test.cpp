@@ -2,8 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
+#include <string>
 
 #include "engine/identification/identify.h"
 #include "engine/plant/linear/linear_plant.h"
@@ -72,6 +74,56 @@ TEST(SwitchedOn, FromTheFirstRowOnTheLevelOfRestIsEstimated) {
     const auto model = identify(oven.record(), {}, {});
     ASSERT_TRUE(model) << model.error().message;
     EXPECT_LT(miss(model->plant, oven.plant), 0.1);
+}
+
+bool warns_of_gain(const IdentifiedModel& model) {
+    return std::any_of(model.warnings.begin(), model.warnings.end(), [](const Warning& warning) {
+        return warning.detail.find("gain") != std::string::npos || warning.detail.find("K = ") != std::string::npos;
+    });
+}
+
+/// With u moved in or before the first row, from 0 or from `rest`, the level of rest is not in the record. Nothing is
+/// wrong in silence then; from 0 on, nearly all are right.
+TEST(SwitchedOn, InTheFirstRowNothingIsWrongInSilence) {
+    constexpr unsigned kSeeds = 12;
+    for (const double rest : {0.0, 0.5}) {
+        int right = 0, answers = 0;
+        for (unsigned seed = 1; seed <= kSeeds; ++seed) {
+            ColdStart cold = random_cold_start(seed);
+            cold.on_row = 0;
+            Record record = cold.record();
+            for (double& u : record.u) u += rest * (cold.r - cold.y0) / cold.plant.K;
+            const auto model = identify(record, {}, {});
+            if (!model) continue;
+            ++answers;
+            const auto plant = LinearPlant::make(model->plant);
+            const double off = std::abs(plant->low_frequency_gain() - cold.plant.K), size = std::abs(cold.plant.K);
+            const bool gain =
+                plant->integrators() == 0 && (off < 0.1 * size || off < 3 * model->standard_errors.at("K"));
+            right += gain && miss(model->plant, cold.plant) < 0.15;
+            EXPECT_TRUE(gain || warns_of_gain(*model)) << seed << " from " << rest << ": " << model->choice_reason;
+        }
+        if (rest == 0) {
+            EXPECT_GE(right, 0.9 * answers);
+        }
+    }
+}
+
+/// The usual trim of a file: its first row is the one in which the heater is already on.
+TEST(SwitchedOn, AnOpenLoopRecordThatBeginsWithUMovedIsTakenToComeFromOff) {
+    testing::PlantRun run({1.2, 200, 20, 10, false}, 1);
+    Record record;
+    double y = 20;
+    for (int t = 0; t < 1500; ++t) {
+        record.t.push_back(t);
+        record.u.push_back(t < 700 ? 50 : 70);
+        record.y.push_back(std::round(50 * y) / 50);
+        y = 20 + run.advance(record.u.back());
+    }
+    const auto model = identify(record, {}, {});
+    ASSERT_TRUE(model) << model.error().message;
+    EXPECT_NEAR(LinearPlant::make(model->plant)->low_frequency_gain(), 1.2, 0.06);
+    EXPECT_LT(miss(model->plant, {1.2, 200, 20, 10, false}), 0.1);
 }
 
 /// Right: K within a tenth or three of its errors, and the response within 15 %.

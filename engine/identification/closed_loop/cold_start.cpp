@@ -1,0 +1,105 @@
+#include "engine/identification/closed_loop/cold_start.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/identification/closed_loop/feedback.h"
+#include "engine/identification/record/record_kind.h"
+#include "engine/identification/record/series.h"
+#include "engine/number_text.h"
+#include "engine/numerics/statistics.h"
+#include "engine/plant/linear/linear_plant.h"
+
+namespace tunewright {
+namespace {
+
+constexpr double kAway = 0.02;     ///< of y's range: y has left its rest
+constexpr double kDeviations = 4;  ///< of noise, which is no movement
+
+/// How many rows u stands still at its first value.
+std::size_t still_rows(const std::vector<double>& u) {
+    return static_cast<std::size_t>(std::ranges::find_if(u, [&](double v) { return v != u.front(); }) - u.begin());
+}
+
+/// What the model leaves of y's movement.
+double left_by(const IdentifiedModel& model) { return 1 - model.fit_percent / 100; }
+
+/// The static gain; empty where the plant integrates.
+std::optional<double> gain_of(const IdentifiedModel& model) {
+    const auto plant = LinearPlant::make(model.plant);
+    return plant && plant->integrators() == 0 ? std::optional(plant->low_frequency_gain()) : std::nullopt;
+}
+
+bool knows_gain(const IdentifiedModel& model) {
+    constexpr double kKnown = 0.1;  // standard error over the gain
+    const std::optional<double> K = gain_of(model);
+    const auto error = model.standard_errors.find("K");
+    return K && error != model.standard_errors.end() && error->second < kKnown * std::abs(*K);
+}
+
+bool same_sign(const IdentifiedModel& a, const IdentifiedModel& b) {
+    const std::optional<double> one = gain_of(a), other = gain_of(b);
+    return one && other && *one * *other > 0;
+}
+
+IdentifiedModel warned(IdentifiedModel model, const std::string& taken, WarningLevel level) {
+    model.warnings.insert(
+        model.warnings.begin(),
+        {"u0-not-recorded",
+         "The record begins with u already moved and y still at rest, so what u was before is not in it. " + taken +
+             " The gain K and the lags rest on that: give u0, the value of u before the first row, or record from five "
+             "rows before the switch on.",
+         level});
+    return model;
+}
+
+}  // namespace
+
+double off_level(const Record& record) { return record.u_limits ? std::max(0.0, (*record.u_limits)[0]) : 0.0; }
+
+ColdStart cold_start(const Record& record, const CleanRecord& clean, bool in_loop) {
+    constexpr double kFar = 0.5;     // of y's range
+    constexpr std::size_t kFew = 3;  // rows that may all lie within the dead time
+    constexpr std::size_t kShortest = 10 * kRestRows;
+    if (record.u0 || clean.samples() < static_cast<int>(kShortest)) return ColdStart::none;
+    const std::span<const double> y(clean.y);
+    const std::vector<double> v = input_at_samples(clean);
+    const auto [low, high] = std::ranges::minmax(v);
+    const double off = (off_level(record) - clean.scale.u_rest) / clean.scale.u_scale;
+    if (v.front() == off || (low < off && high > off)) return ColdStart::none;
+    if (!record.r.empty() && std::ranges::any_of(record.r, [&](double r) { return r != record.r.front(); }))
+        return ColdStart::none;
+    const double first = mean(y.first(kFew)), end = mean(y.last(y.size() / 5));
+    if (std::abs(end - first) < kFar) return ColdStart::none;
+    const double sign = end > first ? 1 : -1, most = kAway + kDeviations * noise_std(y) + quantisation_step(y);
+    if (std::ranges::any_of(y, [&](double value) { return sign * (value - first) < -most; })) return ColdStart::none;
+    const std::size_t still = still_rows(v);
+    if (still >= kRestRows && sign * (y[still - 1] - first) > most) return ColdStart::plain;
+    if (!in_loop) return ColdStart::none;
+    return still < kRestRows ? ColdStart::plain : ColdStart::possible;
+}
+
+Expected<IdentifiedModel> cold_start_model(ColdStart start, Expected<IdentifiedModel> estimated,
+                                           Expected<IdentifiedModel> from_off, double off) {
+    constexpr double kAsMuch = 1.05, kPlainlyLess = 0.5;  // of what the other model leaves
+    const double most = start == ColdStart::plain ? kAsMuch : kPlainlyLess;
+    const bool as_well =
+        from_off && (estimated ? left_by(*from_off) <= most * left_by(*estimated) : start == ColdStart::plain);
+    if (!estimated && !as_well) return estimated;
+    const bool rivals = estimated && (!from_off || left_by(*estimated) <= kAsMuch * left_by(*from_off));
+    if (rivals && knows_gain(*estimated)) return estimated;
+    if (!as_well) {
+        if (start == ColdStart::possible) return estimated;
+        return warned(std::move(*estimated), "No model explains y with u = " + text(off) + ", off, before it.",
+                      WarningLevel::bad);
+    }
+    if (rivals && same_sign(*estimated, *from_off)) from_off->alternatives.push_back(estimated->plant);
+    return warned(std::move(*from_off), "It is taken to be " + text(off) + ", off.", WarningLevel::warning);
+}
+
+}  // namespace tunewright

@@ -1,0 +1,59 @@
+#include "engine/identification/time_direction.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "engine/number_text.h"
+
+namespace tunewright {
+namespace {
+
+double left_by(const IdentifiedModel& model) { return 1 - model.fit_percent / 100; }
+
+std::string fits(const IdentifiedModel& a, const IdentifiedModel& b) {
+    return "(fit " + text(a.fit_percent, 4) + " % against " + text(b.fit_percent, 4) + " %)";
+}
+
+void add(IdentifiedModel& model, const std::string& detail, WarningLevel level) {
+    std::erase_if(model.warnings, [](const Warning& warning) { return warning.code == "reversed-time"; });
+    model.warnings.insert(model.warnings.begin(), {"reversed-time", detail, level});
+}
+
+}  // namespace
+
+Record counted_down(const Record& record) {
+    Record out = record;
+    for (double& t : out.t) t = -t;
+    return out;
+}
+
+Expected<IdentifiedModel> model_in_time(Expected<IdentifiedModel> newest_first, Expected<IdentifiedModel> countdown,
+                                        bool in_loop) {
+    constexpr double kPlainlyLess = 0.5;  // of what the other direction leaves
+    const std::string counted = "The times count down from row to row, and the rows were used in their order, at -t: ";
+    if (!countdown) return newest_first;
+    const bool may_be_inverse = in_loop || countdown->data_quality.closed_loop;
+    if (!newest_first) {
+        if (may_be_inverse) return newest_first;
+        add(*countdown, counted + "turned round, as from the newest row to the oldest, they show no plant.",
+            WarningLevel::warning);
+        return countdown;
+    }
+    const double turned = left_by(*newest_first), as_they_stand = left_by(*countdown);
+    if (turned < kPlainlyLess * as_they_stand) return newest_first;
+    if (as_they_stand < kPlainlyLess * turned && !may_be_inverse) {
+        add(*countdown, counted + "so y follows u, turned round it does not " + fits(*countdown, *newest_first) + ".",
+            WarningLevel::warning);
+        return countdown;
+    }
+    add(*newest_first,
+        "The times fall from row to row, and y follows u in both directions " + fits(*newest_first, *countdown) +
+            ": the rows were taken to run from the newest to the oldest. If the times count down instead, the gain K "
+            "and "
+            "the lags are wrong: give times that rise.",
+        WarningLevel::bad);
+    return newest_first;
+}
+
+}  // namespace tunewright

@@ -1,0 +1,91 @@
+// Records that no linear model of u explains, and times that run both ways: what is said of them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+
+#include "engine/plant/linear/linear_plant.h"
+#include "tests/engine/identification/identified.h"
+
+namespace tunewright {
+namespace {
+
+using testing::identified;
+using testing::warns;
+
+/// A lag of 60 s towards `goal` of the time, u as `level` says, every 5 s.
+Record towards(const std::function<double(double)>& goal, const std::function<double(double)>& level) {
+    Record record;
+    double y = 24;
+    for (int i = 0; i < 500; ++i) {
+        const double t = 5 * i;
+        record.t.push_back(t);
+        record.u.push_back(level(t));
+        record.y.push_back(std::round(100 * y) / 100);
+        y += (goal(t) - y) * -std::expm1(-5.0 / 60);
+    }
+    return record;
+}
+
+std::string detail_of(const IdentifiedModel& model, const std::string& code) {
+    for (const Warning& warning : model.warnings) {
+        if (warning.code == code) return warning.detail;
+    }
+    return "";
+}
+
+/// An oven's log whose column of the output shows the climb at 100 % and the holding at 40 and 65 %, whatever y does.
+TEST(ContradictoryRecords, YThatSettlesAtTwoLevelsUnderOneUIsSaidToContradict) {
+    const Record record = towards([](double t) { return t < 60     ? 24
+                                                        : t < 1110 ? 150
+                                                                   : 290; },
+                                  [](double t) {
+                                      return t < 60 ? 0 : t < 610 ? 100 : t < 1110 ? 40 : t < 1960 ? 100 : 65;
+                                  });
+    const IdentifiedModel model = identified(record);
+    ASSERT_TRUE(warns(model, "contradictory-levels"));
+    EXPECT_THAT(detail_of(model, "contradictory-levels"), ::testing::HasSubstr("u = 100 y settles at 150"));
+}
+
+/// The levels of a plant whose gain falls from 3 to 1.
+TEST(ContradictoryRecords, AGainThatFallsOverTheRangeIsNamedPartByPart) {
+    const auto level = [](double t) { return t < 200 ? 0.0 : t < 800 ? 30.0 : t < 1400 ? 60.0 : 90.0; };
+    const Record record = towards(
+        [&](double t) {
+            const double u = level(t);
+            return 24 + 3 * std::min(u, 30.0) + 2 * std::clamp(u - 30, 0.0, 30.0) + std::max(u - 60, 0.0);
+        },
+        level);
+    const IdentifiedModel model = identified(record);
+    EXPECT_THAT(detail_of(model, "gain-varies"),
+                ::testing::HasSubstr("3 from u = 0 to 30, 2 from u = 30 to 60, 1 from u = 60 to 90"));
+}
+
+TEST(ContradictoryRecords, ALinearPlantIsNotSaidToContradict) {
+    const auto level = [](double t) { return t < 200 ? 0.0 : t < 800 ? 30.0 : t < 1400 ? 60.0 : 30.0; };
+    const IdentifiedModel model = identified(towards([&](double t) { return 24 + 2 * level(t); }, level));
+    EXPECT_FALSE(warns(model, "contradictory-levels"));
+    EXPECT_FALSE(warns(model, "gain-varies"));
+}
+
+TEST(TimeDirection, TimesThatFallAreACountdownWhereYFollowsUSo) {
+    const auto level = [](double t) { return t < 300 ? 20.0 : t < 1300 ? 50.0 : 35.0; };
+    Record record = towards([&](double t) { return 2 * level(t) - 16; }, level);
+    const double end = record.t.back();
+    for (double& t : record.t) t = end - t;
+    const IdentifiedModel counted = identified(record);
+    EXPECT_NEAR(LinearPlant::make(counted.plant)->low_frequency_gain(), 2, 0.02);
+    EXPECT_THAT(detail_of(counted, "reversed-time"), ::testing::HasSubstr("count down"));
+
+    for (double& t : record.t) t = end - t;
+    for (auto* column : {&record.t, &record.u, &record.y}) std::reverse(column->begin(), column->end());
+    const IdentifiedModel turned = identified(record);
+    EXPECT_NEAR(LinearPlant::make(turned.plant)->low_frequency_gain(), 2, 0.02);
+    EXPECT_THAT(detail_of(turned, "reversed-time"), ::testing::HasSubstr("turned round"));
+}
+
+}  // namespace
+}  // namespace tunewright

@@ -149,27 +149,35 @@ Session::Session(const Address& address, std::shared_ptr<Line> line)
     : pooled_(address.pooled()), link_(connect(address)), line_(std::move(line)) {}
 Session::~Session() = default;
 
+/// Anything that asks the server: somebody looks whether it answers, and a fault is one of ours.
 template <class Work>
-pqxx::result Session::guarded(Work work) {
+auto Session::watched(Work work) {
     if (line_) line_->asked(link_->connection.sock());
     const std::shared_ptr<void> answered(nullptr, [this](void*) {
         if (line_) line_->answered();
     });
     try {
-        pqxx::nontransaction on(link_->connection);
-        return work(on);
+        return work();
     } catch (const std::exception& error) {
         throw failure_of(error, link_->connection.is_open());
     }
 }
 
+template <class Work>
+pqxx::result Session::guarded(Work work) {
+    return watched([&] {
+        pqxx::nontransaction on(link_->connection);
+        return work(on);
+    });
+}
+
+/// Version 6 of the library asks the server when the statement is used, version 7 at once.
 const std::string& Session::prepared(const std::string& sql) {
-    auto found = names_.find(sql);
-    if (found == names_.end()) {
-        found = names_.emplace(sql, "s" + std::to_string(names_.size())).first;
-        link_->connection.prepare(found->second, sql);
-    }
-    return found->second;
+    const auto found = names_.find(sql);
+    if (found != names_.end()) return found->second;
+    const std::string name = "s" + std::to_string(names_.size());
+    watched([&] { link_->connection.prepare(name, sql); });
+    return names_.emplace(sql, name).first->second;
 }
 
 template <class Work>

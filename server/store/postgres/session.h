@@ -102,6 +102,8 @@ public:
 
 private:
     template <class Work>
+    auto watched(Work work);
+    template <class Work>
     pqxx::result guarded(Work work);
     /// The same, in a transaction where one is needed.
     template <class Work>

@@ -95,7 +95,7 @@ void put_methods(const TuneWords& words, Json& request) {
     }
 }
 
-/// Whether the text is an object that is about a plant, a record, an ultimate point or a model, also in each of its
+/// True if the text is an object that is about a plant, a record, an ultimate point or a model, also in each of its
 /// `points`, and whose arrays are members of a request: a record may name its plant, too.
 bool holds_request(std::string_view text) {
     const auto parsed = parse(text);

@@ -6,8 +6,8 @@
 namespace tunewright::api {
 namespace {
 
-/// Whether `d` is a + b x within rounding, with b other than 0, in the rows where both have numbers; NaN holds what was
-/// before.
+/// True if `d` is a + b x within rounding, with b other than 0, in the rows where both have numbers; NaN repeats the
+/// number before it.
 bool moves_as(const std::vector<double>& d, const std::vector<double>& x) {
     constexpr double kRounding = 1e-9;  // of the range of d
     std::vector<std::pair<double, double>> held;

@@ -34,7 +34,7 @@ void hold_from_before(double from, std::size_t first, Record& record) {
     }
 }
 
-// What is given of the time before the first sample belongs to the file's first, and `from` leaves that out.
+// u_step and u0 speak of the time before the file's first sample, which `from` leaves out. True if that is reported.
 bool left_out_by_from(const GivenRecord& given, const ReadRecord& read, double from, Reader& reader) {
     const auto held = row_held(read.record.t, read.record.u, from);
     if (!held) return false;

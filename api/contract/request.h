@@ -70,7 +70,7 @@ const Description<EvaluateOptions>& evaluate_options_contract();
 
 /// The members that say what a request is about, one of them in each.
 const std::vector<std::string>& request_sources();
-/// Whether a request of any kind has a member of that name.
+/// True if a request of any kind has a member of that name.
 bool is_request_member(std::string_view name);
 
 /// The plant in the form in which it is computed with; empty after a fault, which the reader then has.

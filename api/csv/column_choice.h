@@ -9,7 +9,7 @@
 
 namespace tunewright::api {
 
-/// Of a file; wider ones are refused.
+/// The most columns of a file; wider files are refused.
 inline constexpr std::size_t kMaxColumns = 4000;
 
 /// A heading, or the column's number from 1.

@@ -281,7 +281,7 @@ private:
         return no_figure(kNone);
     }
 
-    /// Of the fastest mode that can move Ms at this sample time; 0 where none can.
+    /// The swing of the fastest mode that can move Ms at this sample time, rad/time; 0 if none can.
     double fastest_swing(double Ts) const {
         double fastest = 0;
         for (const Mode& mode : modes_)

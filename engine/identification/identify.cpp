@@ -12,6 +12,7 @@
 #include "engine/identification/fit/model_search.h"
 #include "engine/identification/fit/record_repair.h"
 #include "engine/identification/further_inputs/further_inputs.h"
+#include "engine/identification/model_grade.h"
 #include "engine/identification/record/data_quality.h"
 #include "engine/identification/record/record_kind.h"
 #include "engine/identification/record/record_rows.h"
@@ -341,7 +342,7 @@ Expected<IdentifiedModel> model_of(const Record& record, Looked& looked, const I
                                       : loop ? identify_in_loop(clean, *loop, options.model, control)
                                              : by_fitting(record, clean, options, control);
     if (model && !loop && !by_formula && options.method != IdentifyMethod::two_point) {
-        const double left = 1 - model->fit_percent / 100;
+        const double left = share_left_by(*model);
         auto by_law = find_loop(clean, record, left * left);
         if (by_law && *by_law) {
             loop = std::move(*by_law);

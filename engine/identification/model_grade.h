@@ -19,6 +19,9 @@ inline constexpr double kMinFitPercent = 70;
 /// The same where what is left is no noise (warning structured-residuals), so that no average takes it away.
 inline constexpr double kMinFitPercentBiased = 90;
 
+/// Standard deviation of what the model leaves of y, divided by y's own: 1 - fit/100.
+inline double share_left_by(const IdentifiedModel& model) { return 1 - model.fit_percent / 100; }
+
 /// `doubtful`: the model explains less than 70 % of the record's movement; or less than 90 % where what it misses is no
 /// noise (warning structured-residuals); or one of its warnings has the level `bad`. `usable`: it has other warnings.
 ModelGrade grade_of(const IdentifiedModel& model);

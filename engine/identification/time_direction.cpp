@@ -4,12 +4,11 @@
 #include <string>
 #include <utility>
 
+#include "engine/identification/model_grade.h"
 #include "engine/number_text.h"
 
 namespace tunewright {
 namespace {
-
-double left_by(const IdentifiedModel& model) { return 1 - model.fit_percent / 100; }
 
 std::string fits(const IdentifiedModel& a, const IdentifiedModel& b) {
     return "(fit " + text(a.fit_percent, 4) + " % against " + text(b.fit_percent, 4) + " %)";
@@ -40,7 +39,7 @@ Expected<IdentifiedModel> model_in_time(Expected<IdentifiedModel> newest_first, 
             WarningLevel::warning);
         return countdown;
     }
-    const double turned = left_by(*newest_first), as_they_stand = left_by(*countdown);
+    const double turned = share_left_by(*newest_first), as_they_stand = share_left_by(*countdown);
     if (turned < kPlainlyLess * as_they_stand) return newest_first;
     if (as_they_stand < kPlainlyLess * turned && !may_be_inverse) {
         add(*countdown, counted + "so y follows u, turned round it does not " + fits(*countdown, *newest_first) + ".",

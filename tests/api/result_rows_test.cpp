@@ -128,7 +128,7 @@ TEST(ResultRows, AsCsvHoldUnitsAndWhatIsToBeTyped) {
     EXPECT_EQ(under("gain_over_today_percent", lines[1]), "") << "today's own line";
 }
 
-// What runs is far from the ideal loop here: a slow program on a quick plant.
+// The loop that runs is far from the ideal one here: a slow program on a quick plant.
 TEST(ResultRows, TheGainOverTodayIsThatOfTheVerdict) {
     const JobOutcome outcome = run_job(StoredRequest{request_with(
                                                          R"("tune": [{"method": "simc"}], "evaluate": {"points": 0},

@@ -25,7 +25,7 @@ void keep_rows(Record& record, const std::function<bool(std::size_t)>& kept) {
     }
 }
 
-/// Whether an input is another than in the row before, or there is none.
+/// True if an input is another than in the row before, or there is none.
 bool moves(const Record& record, std::size_t i) {
     if (i == 0 || record.u[i] != record.u[i - 1]) return true;
     for (const FurtherInput& input : record.d) {

@@ -30,7 +30,8 @@ enum class Noise { none, white, coloured, drifting_load, outliers, missing_rows,
 inline constexpr int kNoises = 8;
 const char* name_of(Noise noise);
 
-/// What a user sends: columns of numbers, or a file that the product's own reader turns into them (record_form.h).
+/// The form in which a user sends it: columns of numbers, or a file that the product's own reader turns into them
+/// (record_form.h).
 enum class Form {
     columns,
     several_runs,   ///< the logger was started again, or its clock set back
@@ -63,7 +64,7 @@ MadeRecord make_record(std::uint64_t seed, Form form = Form::columns);
 /// The same with some of them given.
 MadeRecord make_record(std::uint64_t seed, Family family, Test test, Noise noise, Form form = Form::columns);
 
-/// What a logger does: spoils, drops or thins the rows in the way of `noise` (logged_rows.cpp). `size` is what a unit
+/// Acts as a logger: spoils, drops or thins the rows in the way of `noise` (logged_rows.cpp). `size` is what a unit
 /// of u moves, `noise_std` relative to it.
 void log_rows(Noise noise, double noise_std, double size, Record& record, Random& random);
 

@@ -31,7 +31,7 @@ std::string written(const MadeRecord& made);
 /// The record, or the reader's first sentence.
 std::variant<Record, std::string> read_back(const MadeRecord& made, const std::string& csv);
 
-/// Of what the user sends: the columns, or the file.
+/// Judges the record as the user sends it: the columns, or the file.
 Judgement judge_as_sent(MadeRecord made);
 
 }  // namespace tunewright::records

@@ -112,7 +112,7 @@ TEST(MadeRecords, AGainOfTheSignThatARelayExcludesIsBad) {
     }
 }
 
-/// What a user sends as a file: runs in turn, times that count down, damaged cells, a second input.
+/// Records that a user sends as a file: runs in turn, times that count down, damaged cells, a second input.
 TEST(MadeRecords, OfEveryFormNoneIsWrongInSilence) {
     for (const Form form : {Form::several_runs, Form::countdown, Form::damaged_cells, Form::two_inputs}) {
         int records = 0, silent = 0, unstable = 0, answered = 0;
@@ -127,7 +127,7 @@ TEST(MadeRecords, OfEveryFormNoneIsWrongInSilence) {
         EXPECT_EQ(records, 39);
         EXPECT_GE(answered, 0.6 * records) << name_of(form);
         EXPECT_LE(silent, 1) << name_of(form);
-        // Of damaged cells two designs are unstable without a bad warning; there are to be none.
+        // With damaged cells two designs are unstable without a bad warning; there are to be none.
         EXPECT_LE(unstable, form == Form::damaged_cells ? 2 : 1) << name_of(form);
     }
 }

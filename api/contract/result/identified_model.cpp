@@ -95,7 +95,7 @@ const Description<ClosedLoop>& closed_loop_contract() {
     return description;
 }
 
-/// What was moved in the test: "one step of the set point, in automatic".
+/// The test in words, with the signal that moved: "one step of the set point, in automatic".
 std::string test_words(const DataQuality& quality) {
     const auto steps = [](int count, const std::string& signal) {
         return count == 1 ? "one step of " + signal : std::to_string(count) + " steps of " + signal;

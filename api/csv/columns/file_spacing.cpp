@@ -69,7 +69,7 @@ std::optional<FileSpacing> spacing_in(std::string_view line, const CsvLayout& la
     const Heading heading = split_heading(rest.substr(0, sign));
     if (!is_frequency(heading) && !is_spacing(heading)) return std::nullopt;
     rest.remove_prefix(std::min(rest.find_first_not_of("=:,;\t ", sign), rest.size()));
-    // Where commas separate cells, a comma ends the number.
+    // A comma that separates cells ends the number.
     const bool commas = layout.sign == DecimalSign::comma || layout.separator != ',';
     std::size_t end = std::min(rest.find_first_not_of(commas ? "0123456789.eE+-," : "0123456789.eE+-"), rest.size());
     while (end > 0 && rest[end - 1] == ',') --end;

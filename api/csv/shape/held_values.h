@@ -7,11 +7,11 @@
 
 namespace tunewright::api {
 
-/// Of a set point, NaN where a row has none: each value holds until the next one, the first one from the beginning.
-/// False, and `r` empty, where there is no number.
+/// Fills the rows of a set point that are NaN: each value holds until the next one, the first from the beginning.
+/// Returns false, and makes `r` empty, if there is no number.
 bool hold_reference(std::vector<double>& r);
 
-/// Of a table made from values with times of their own (pivot.h): u of a time that has none is that of the time before.
+/// For a table made from values with times of their own (pivot.h): a time without u has that of the time before.
 /// A row without y stays only where u or a measured disturbance moves.
 void hold_input(CsvRecord& record);
 

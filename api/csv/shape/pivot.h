@@ -23,7 +23,7 @@ struct ShapedText {
     std::size_t cells = 0;
 };
 
-/// Of a table that is made from a file: the columns of a few values grow with every name in it, and so do all rows.
+/// Limits of a table that is made from a file: every name in it adds a column, and every column a cell to all rows.
 inline constexpr std::size_t kMaxTableCells = 50'000'000;
 
 /// Adds a line to the table, each cell with a value in quotes. A table of more than kMaxTableCells has a fault, and no

@@ -34,7 +34,7 @@ std::size_t falling(const std::vector<double>& t, std::size_t i) {
     return end - i;
 }
 
-/// Whether the times begin again at row i of a run that began at `first` and has come to `latest`: they fall by half of
+/// True if the times begin again at row i of a run that began at `first` and has come to `latest`: they fall by half of
 /// what it has covered and go on from there, and the row before is not the false one.
 bool begins_again(const std::vector<double>& t, std::size_t first, std::size_t i, double latest) {
     if (i - first < 2) return false;

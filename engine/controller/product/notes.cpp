@@ -96,7 +96,7 @@ void note_filter(const Comparison& it, std::vector<Note>& notes) {
     const bool derivative = it.realised.Td != 0;
     const bool idle = !derivative && asked.type != FilterType::measurement_first_order &&
                       asked.type != FilterType::measurement_second_order && realised.type == FilterType::none;
-    // Of one sample it is the plain difference.
+    // A slope over one sample is the plain difference.
     const bool slope = derivative && realised.type != FilterType::none &&
                        (kind == FilterKind::slope || kind == FilterKind::four_points);
     if (idle || (asked.type == realised.type && same(asked.Tf, realised.Tf) && !slope &&

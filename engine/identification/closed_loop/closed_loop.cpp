@@ -12,6 +12,7 @@
 #include "engine/identification/fit/model_answer.h"
 #include "engine/identification/fit/model_search.h"
 #include "engine/identification/further_inputs/further_inputs.h"
+#include "engine/identification/model_grade.h"
 #include "engine/number_text.h"
 #include "engine/numerics/matrix/dense.h"
 #include "engine/numerics/statistics.h"
@@ -220,7 +221,7 @@ void doubt_open_loop(const CleanRecord& full, IdentifiedModel& model) {
     const bool inverse = is_inverse_of_law(record, model);
     if (restless < kHardly && !inverse) return;
     const std::optional<SetPointPart> law = set_point_part(input_at_samples(record), record.y, record.y.front());
-    const double left = 1 - model.fit_percent / 100, unexplained = left * left;
+    const double left = share_left_by(model), unexplained = left * left;
     if (!law) return;
     const double by_law = (1 - law->share) / unexplained, error = gain_error(model);
     const bool at_once = by_law < kNearly && restless > kSomewhat && answers_at_once(model);

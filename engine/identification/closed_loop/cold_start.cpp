@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/identification/closed_loop/feedback.h"
+#include "engine/identification/model_grade.h"
 #include "engine/identification/record/record_kind.h"
 #include "engine/identification/record/series.h"
 #include "engine/number_text.h"
@@ -25,9 +26,6 @@ constexpr double kDeviations = 4;  ///< of noise, which is no movement
 std::size_t still_rows(const std::vector<double>& u) {
     return static_cast<std::size_t>(std::ranges::find_if(u, [&](double v) { return v != u.front(); }) - u.begin());
 }
-
-/// What the model leaves of y's movement.
-double left_by(const IdentifiedModel& model) { return 1 - model.fit_percent / 100; }
 
 /// The static gain; empty where the plant integrates.
 std::optional<double> gain_of(const IdentifiedModel& model) {
@@ -89,9 +87,9 @@ Expected<IdentifiedModel> cold_start_model(ColdStart start, Expected<IdentifiedM
     constexpr double kAsMuch = 1.05, kPlainlyLess = 0.5;  // of what the other model leaves
     const double most = start == ColdStart::plain ? kAsMuch : kPlainlyLess;
     const bool as_well =
-        from_off && (estimated ? left_by(*from_off) <= most * left_by(*estimated) : start == ColdStart::plain);
+        from_off && (estimated ? share_left_by(*from_off) <= most * share_left_by(*estimated) : start == ColdStart::plain);
     if (!estimated && !as_well) return estimated;
-    const bool rivals = estimated && (!from_off || left_by(*estimated) <= kAsMuch * left_by(*from_off));
+    const bool rivals = estimated && (!from_off || share_left_by(*estimated) <= kAsMuch * share_left_by(*from_off));
     if (rivals && knows_gain(*estimated)) return estimated;
     if (!as_well) {
         if (start == ColdStart::possible) return estimated;

@@ -12,7 +12,7 @@ double off_level(const Record& record);
 
 enum class ColdStart { none, possible, plain };
 
-/// Whether u left its level of rest with the first row or before it, and y rests there and then goes far: by half of
+/// Tells whether u left its level of rest with the first row or before it, and y rests there and then goes far: by half of
 /// its range and more, from one end of it. Plain where u stands still in the first rows, and y leaves its rest before u
 /// has moved, or where u moves from the first rows on, as that of the loop `in_loop`. Possible where such a loop's u
 /// stands still in the first rows: a coarse one does so within the dead time. None where u0 is given, where u begins

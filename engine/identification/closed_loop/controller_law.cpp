@@ -85,9 +85,9 @@ Explained explain(const Eigen::MatrixXd& X, const Eigen::VectorXd& z) {
     return {c, (z - X * c).squaredNorm() / total};
 }
 
-/// True if u is two periods or more of a sine about a straight line: u'' = -w^2 u, integrated twice.
-bool is_sine(const CleanRecord& record, const std::vector<double>& u, const MovingRows& rows) {
-    constexpr double kLeft = 0.02, kTwoPeriods = 12.566370614359172;  // share of the variance; radians
+/// Explains u by itself: u about its mean is a straight line over time and a multiple of its first or second integral.
+Explained by_integral_of_itself(const CleanRecord& record, const std::vector<double>& u, const MovingRows& rows,
+                                int order) {
     Eigen::MatrixXd X(rows.size(), 3);
     Eigen::VectorXd z(rows.size());
     double middle = 0, once = 0, twice = 0;
@@ -97,29 +97,25 @@ bool is_sine(const CleanRecord& record, const std::vector<double>& u, const Movi
         const double dt = i > rows.from ? record.t[at] - record.t[at - 1] : 0, before = once;
         once += i > rows.from ? (0.5 * (u[at] + u[at - 1]) - middle) * dt : 0;
         twice += 0.5 * (once + before) * dt;
-        X.row(i - rows.from) << 1, record.t[at], twice;
+        X.row(i - rows.from) << 1, record.t[at], order == 1 ? once : twice;
         z[i - rows.from] = u[at] - middle;
     }
-    const Explained sine = explain(X, z);
+    return explain(X, z);
+}
+
+/// True if u is two periods or more of a sine about a straight line: u'' = -w^2 u, integrated twice.
+bool is_sine(const CleanRecord& record, const std::vector<double>& u, const MovingRows& rows) {
+    constexpr double kLeft = 0.02, kTwoPeriods = 12.566370614359172;  // share of the variance; radians
+    const Explained sine = by_integral_of_itself(record, u, rows, 2);
     const double length =
         record.t[static_cast<std::size_t>(rows.to - 1)] - record.t[static_cast<std::size_t>(rows.from)];
     return sine.left < kLeft && sine.coefficient[2] < 0 && std::sqrt(-sine.coefficient[2]) * length > kTwoPeriods;
 }
 
-/// What the course of u by itself leaves, as a lag that follows one step: u' = a + b u, integrated, and a straight line
-/// over it. A soft start is that; a filter of y explains it too, with y's noise.
+/// Share of u's variance left by u as a lag that follows one step: u' = a + b u, integrated, and a straight line over
+/// it. A soft start is that; a filter of y explains it too, with y's noise.
 double left_by_lagged_step(const CleanRecord& record, const std::vector<double>& u, const MovingRows& rows) {
-    Eigen::MatrixXd X(rows.size(), 3);
-    Eigen::VectorXd z(rows.size());
-    double middle = 0, once = 0;
-    for (int i = rows.from; i < rows.to; ++i) middle += u[static_cast<std::size_t>(i)] / rows.size();
-    for (int i = rows.from; i < rows.to; ++i) {
-        const auto at = static_cast<std::size_t>(i);
-        if (i > rows.from) once += (0.5 * (u[at] + u[at - 1]) - middle) * (record.t[at] - record.t[at - 1]);
-        X.row(i - rows.from) << 1, record.t[at], once;
-        z[i - rows.from] = u[at] - middle;
-    }
-    return explain(X, z).left;
+    return by_integral_of_itself(record, u, rows, 1).left;
 }
 
 /// P or PI; PID only where the integral has its share, for y and its slope alone are also how a lag leads to its input.

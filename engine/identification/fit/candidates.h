@@ -70,7 +70,7 @@ double known_noise(const FitContext& context, const Fit* best);
 /// Whether a fit leaves more than noise behind, and in a pattern.
 bool leaves_a_pattern(const FitContext& context, const Fit& fit);
 
-/// Whether an unstable model's time constant is about the least that a record can show, e^kMinUnstable of its length.
+/// True if an unstable model's time constant is about the least that a record can show, e^kMinUnstable of its length.
 bool at_shortest_lag(const Fit& fit);
 
 /// sqrt((||residual||^2 - n (1.1 noise)^2)/||y - mean(y)||^2), at least 0: what a fit leaves beyond noise, as a share

@@ -50,7 +50,7 @@ void warn_unsettled(const CleanRecord& r, const Fit& fit, double remaining, std:
              " % of the response is yet to come, so gain and time constant are extrapolated. Record until y settles."});
 }
 
-/// Whether the model leaves a pattern.
+/// Adds the warnings on residuals; true if the model leaves a pattern in them.
 bool warn_residuals(const CleanRecord& r, const Fit& fit, const DataQuality& quality, std::vector<Warning>& warnings) {
     const double rms = root_mean_square(fit.residual), unit = r.scale.y_scale;
     const double noise = std::max(quality.noise_std, quality.quantisation / std::sqrt(12.0)) / unit;

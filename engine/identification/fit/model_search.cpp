@@ -73,7 +73,7 @@ ModelSearch ranked(FitContext context, std::vector<Fit> fits, const Plan& plan, 
     return search;
 }
 
-/// Whether the best fit leaves what another lag could explain: more than noise, or no white noise. After a relay test
+/// True if the best fit leaves what another lag could explain: more than noise, or no white noise. After a relay test
 /// always: the static gain is the structure's, and another structure's may be far from it.
 bool wants_richer(const FitContext& context, const std::vector<Fit>& fits) {
     const Fit* best = best_fit(fits);
@@ -129,7 +129,7 @@ ModelSearch fit_some(const ModelSearch& search, ModelChoice model, const Disturb
 
 bool usable(const ModelSearch& search) { return search.choice.index >= 0; }
 
-/// Whether the rows are so far apart that they hardly show when u moved.
+/// True if the rows are so far apart that they hardly show when u moved.
 bool few_rows(const CleanRecord& record) {
     constexpr int kFewRows = 40;  // for each change of u
     return record.samples() <= kFewRows * record.changes();
@@ -177,7 +177,7 @@ std::optional<ModelSearch> with_times_estimated(const CleanRecord& record, const
     constexpr int kRounds = 2;
     const double noise = search.context.noise, n = record.samples();
     if (record.row.empty() || record.changes() < 2) return std::nullopt;
-    // Of few rows a half period misplaced switches leave what looks like white noise, and the oscillation looks like
+    // With few rows a half period misplaced switches leave what looks like white noise, and the oscillation looks like
     // it.
     const bool pattern =
         (search.context.relay && few_rows(record)) || (search.chosen().sse > kMoreThanNoise * n * noise * noise &&

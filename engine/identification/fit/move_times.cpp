@@ -204,7 +204,7 @@ private:
         jacobian({&record_, {}}, fit_);
     }
 
-    /// What stands at a bound and is pulled beyond it is held: a step that is cut there leads nowhere.
+    /// Parameters at a bound that are pulled beyond it are held: a step that is cut there leads nowhere.
     static void hold_at_bound(double value, double low, double high, Eigen::Index k, Eigen::MatrixXd& normal,
                               Eigen::VectorXd& pull) {
         if ((value > low || pull[k] > 0) && (value < high || pull[k] < 0)) return;

@@ -271,7 +271,7 @@ Eigen::MatrixXd deviations_of(const Fit& whole, std::span<const double> times, d
     all.reserve(static_cast<std::size_t>(m));
     for (int k = 0; k < m; ++k)
         all.emplace_back(widened * std::sqrt(std::max(axes.values[k], 0.0)) * axes.vectors.col(k));
-    // What the model is held to in spite of its samples moves it by its own error.
+    // Values that the model is held to in spite of its samples add their own error.
     for (std::size_t k = 0; k < whole.held_errors.size(); ++k)
         if (whole.held_errors[k] > 0)
             all.emplace_back(whole.held_errors[k] * p.inverse *

@@ -16,7 +16,7 @@ struct RecordRows {
     bool started = false;  ///< a row with a time and a u has been seen
 };
 
-/// Whether the times fall from row to row, but for one in ten: from the newest row to the oldest, as the rows are taken
+/// True if the times fall from row to row, but for one in ten: from the newest row to the oldest, as the rows are taken
 /// to run, or counted down (time_direction.h).
 bool times_fall(const Record& record);
 

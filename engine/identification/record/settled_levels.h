@@ -1,4 +1,4 @@
-// Where y settles while u stands still, level by level: what a static gain must explain.
+// The levels at which y settles while u stands still: a static gain must explain them.
 #pragma once
 
 #include <optional>
@@ -20,7 +20,7 @@ struct SettledLevel {
 /// the whole of them, or by less than a fiftieth of its range.
 std::vector<SettledLevel> settled_levels(const CleanRecord& record);
 
-/// What no linear model of a self-regulating plant explains:
+/// Looks for levels that no linear model of a self-regulating plant explains:
 /// - y settles a quarter of its range apart at one level of u (within a twentieth of u's range): u alone does not
 ///   decide where y goes. Warning contradictory-levels, of level bad;
 /// - the gains between neighbouring levels differ by half and more: warning gain-varies, with each gain.

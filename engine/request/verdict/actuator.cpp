@@ -43,7 +43,7 @@ std::optional<ActuatorLimits> limits_of(const Case& c) {
     return system != nullptr ? limited_as(*system, c.context.options).actuator : c.context.options.actuator;
 }
 
-/// What the steps of an evaluation need of u; empty where the question makes no sense.
+/// The u that the steps of an evaluation need.
 struct Needs {
     ActuatorLimits limits;
     Need load;

@@ -35,7 +35,7 @@ Found unstable_member(const Case& c) {
     return Draft("unstable-member", Level::bad).say("Unstable on a part of what the plant may be.");
 }
 
-/// Whether both responses come to rest, but for steps that no controller can carry.
+/// True if both responses come to rest, but for steps that no controller can carry.
 bool rests(const Performance& p, const StepsBeyondActuator& beyond) {
     return (p.setpoint.settling_time || beyond.setpoint) && (p.load.recovery_time || beyond.load);
 }

@@ -18,7 +18,7 @@ const TuningEntry* todays(const std::vector<TuningEntry>& entries) {
 /// A large one is among the heads.
 Found small_overshoot(const Case& c) { return overshoot_level(c) == Level::note ? overshoot(c) : Found{}; }
 
-/// Of steps that were asked for it is among the heads.
+/// The note; for steps that were asked for the finding is among the heads.
 Found actuator_too_small_as_assumed(const Case& c) {
     auto finding = actuator_too_small(c);
     return finding && finding->level == Level::note ? finding : Found{};

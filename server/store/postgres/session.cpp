@@ -149,7 +149,7 @@ Session::Session(const Address& address, std::shared_ptr<Line> line)
     : pooled_(address.pooled()), link_(connect(address)), line_(std::move(line)) {}
 Session::~Session() = default;
 
-/// Anything that asks the server: somebody looks whether it answers, and a fault is one of ours.
+/// Runs `work`, which asks the server: the line is watched meanwhile, and a fault becomes a Failure.
 template <class Work>
 auto Session::watched(Work work) {
     if (line_) line_->asked(link_->connection.sock());

@@ -194,7 +194,7 @@ TEST(Records, ARelayThatSwitchesBetweenRowsGivesADesignThatHolds) {
     for (const double hysteresis : {0.07, 0.08, 0.1}) {
         const auto model = identify(coarse_relay_record(hysteresis, 2), {}, {});
         ASSERT_TRUE(model) << model.error().message;
-        // When it switched is estimated, and counted, or the answer warns that it is not counted.
+        // The times of the switches are estimated, and counted, or the answer warns that it is not counted.
         const bool counted = std::ranges::any_of(model->data_quality.notes, [](const std::string& note) {
             return note.find("the standard errors count it") != std::string::npos;
         });

@@ -277,7 +277,7 @@ TEST(Advice, WhatStaysWithinTheOvershootAskedForIsNoFinding) {
     EXPECT_GE(within, 3);
 }
 
-/// What is looked for is not found by somebody who was stopped, and the verdict stands without it.
+/// A search that was stopped finds nothing, and the verdict stands without it.
 TEST(Advice, ACureWhoseSearchIsStoppedIsNone) {
     auto request = advice_request(TransferFunction{.num = {1}, .den = {10, 11, 1}, .L = 0}, "robust", 1.4);
     const auto result = tune(request, {});

@@ -21,10 +21,10 @@ async function reached(page, name) {
   return Number(/^reached (\S+)/.exec(text)[1]);
 }
 
-/** Of the loop that runs. */
+/** The overshoot of the loop that runs. */
 const overshootOf = ({ implemented, performance }) => (implemented?.performance ?? performance).setpoint.overshoot_percent;
 
-/** What stands beside the slider is the answer's, or nothing where the answer has as much as is asked for. */
+/** The text beside the slider is the answer's, or nothing where the answer has as much as is asked for. */
 async function assertBeside(page, entry, asked) {
   const percent = three(overshootOf(entry));
   assert.equal(await reached(page), asked !== null && percent === three(asked) ? null : percent);

@@ -1,4 +1,4 @@
-// What of a file is read where it holds more than one record: a run of several, a further measured input.
+// The choice of a part where a file holds more than one record: a run of several, a further measured input.
 import assert from "node:assert/strict";
 import test from "node:test";
 import { browserTests, dropFile } from "../harness.mjs";
@@ -47,7 +47,7 @@ function assertNear(plant, { K, T, L }, what) {
 
 const reading = (page) => page.getByText("How the record is read").click();
 const optionsOf = (select) => select.locator("option").evaluateAll((list) => list.map((option) => option.value));
-/** What a choice asks of the service, and what it answers. */
+/** The request that a choice sends, and its answer. */
 async function chosen(page, label, value) {
   const [response] = await Promise.all([
     page.waitForResponse((answer) => answer.url().endsWith("/v1/identify")),

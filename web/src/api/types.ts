@@ -308,7 +308,7 @@ export interface Model {
   covariance?: { names: string[]; matrix: number[][] };
   /** Fits of other structures, which the region has too. Older results have none. */
   alternatives?: Plant[];
-  /** What the measured disturbances do to y. */
+  /** The effect of the measured disturbances on y. */
   disturbances?: { name: string; plant: Plant; share: number | null }[];
   excited_band?: { omega_low: number; omega_high: number };
   data_quality?: Record<string, unknown>;

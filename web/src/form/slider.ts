@@ -41,7 +41,7 @@ export interface Slider {
   near(most?: number): Iterable<number>;
   /** Writes again what is spoken: it depends on more than the value. */
   speak(): void;
-  /** What was reached of it, under its field; "" for as much as is asked. `missed`: a limit that does not hold. */
+  /** The value reached, under its field; "" for as much as is asked. `missed`: a limit that does not hold. */
   setReached(text: string, missed: boolean): void;
 }
 

@@ -20,7 +20,7 @@ export interface Knob {
   value: number | null;
   /** What the method says of the option's values. */
   schema?: Schema;
-  /** Of the same quantity, what a design came to: less or more than was asked for. */
+  /** The value of the same quantity that a design came to: less or more than was asked for. */
   reached?(entry: Entry): number | null;
 }
 
@@ -159,7 +159,7 @@ function noiseKnob(tune: TuneEntry, entry: Entry, units: UnitNames): Knob {
 
 const filterTime = ({ controller }: Entry): number | null => controller?.filter?.Tf ?? null;
 
-/** Of the loop that runs: in the user's own controller where the request names one. */
+/** The overshoot of the loop that runs: in the user's own controller where the request names one. */
 const overshootReached = ({ implemented, performance }: Entry): number | null =>
   given((implemented?.performance ?? performance)?.setpoint?.["overshoot_percent"]);
 

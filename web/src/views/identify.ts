@@ -59,7 +59,7 @@ export function identifyView(
   let whole: Samples | null = null;
   let samples = samplesOf(given.record);
   const givenText = csvOf(given.record);
-  /** What the extent that can be chosen from is of; null before anything was asked. */
+  /** The request that the extent to choose from belongs to; null before anything was asked. */
   let askedExtent: string | null = null;
   let plot: Plot | null = null;
   let plotTitle = "";

@@ -133,7 +133,7 @@ export function controlsCard(live: Live): ControlsCard {
     return asked !== null && text === formatNumber(asked) ? "" : `reached ${text}${unit ? ` ${unit}` : ""}`;
   }
 
-  /** What is asked of every option, and beside it what the design on the screen has. */
+  /** The value asked of every option, and beside it that of the design on the screen. */
   function sayReached(): void {
     const entry = followed ?? shown?.entry;
     for (const { knob, slider: made } of options) {

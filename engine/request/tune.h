@@ -28,8 +28,8 @@ struct UltimateTest {
     double Pu = 1;            ///< period of that oscillation, > 0
     std::optional<double> K;  ///< static gain, y/u, != 0, of the sign of Ku
 
-    /// The fault of the signs, if there is one: a proportional controller makes a plant oscillate at a gain of the plant's own
-    /// sign.
+    /// The fault of the signs, if there is one: a proportional controller makes a plant oscillate at a gain of the
+    /// plant's own sign.
     std::optional<Error> fault() const;
 };
 

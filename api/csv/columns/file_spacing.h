@@ -30,8 +30,9 @@ bool unit_is_known(const FileSpacing& spacing, const CsvOptions& options);
 /// The sentence that says what the times are made from.
 std::string spacing_note(const FileSpacing& spacing, const CsvOptions& options);
 
-/// The spacing in comments and a preamble: "# fs = 100", "% Ts: 0.5 s", "Sample Period:","5 Sec", "Rate = 6 per minute". The
-/// unit decides between time and frequency; a line with another word behind the number says nothing that is known.
+/// The spacing in comments and a preamble: "# fs = 100", "% Ts: 0.5 s", "Sample Period:","5 Sec", "Rate = 6 per
+/// minute". The unit decides between time and frequency; a line with another word behind the number says nothing that
+/// is known.
 std::optional<FileSpacing> spacing_above(std::string_view text, const CsvLayout& layout);
 
 /// A column named "Ts" or "fs" with one number, or always the same one, in a unit that is known or in none.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -27,10 +28,15 @@ std::size_t still_rows(const std::vector<double>& u) {
     return static_cast<std::size_t>(std::ranges::find_if(u, [&](double v) { return v != u.front(); }) - u.begin());
 }
 
-/// The static gain; empty where the plant integrates.
-std::optional<double> gain_of(const IdentifiedModel& model) {
-    const auto plant = LinearPlant::make(model.plant);
-    return plant && plant->integrators() == 0 ? std::optional(plant->low_frequency_gain()) : std::nullopt;
+/// True if u moves up to this row by small moves, or by single steps of its grid, and not by a step that somebody made.
+bool creeps(const std::vector<double>& u, std::size_t row) {
+    constexpr double kStep = 0.5, kOneOfGrid = 1.5;  // of the whole way; of the grid
+    constexpr std::size_t kFewLevels = 3;            // of which the distance is no grid
+    if (std::set<double>(u.begin(), u.end()).size() <= kFewLevels) return false;
+    double largest = 0;
+    for (std::size_t i = 1; i <= row && i < u.size(); ++i) largest = std::max(largest, std::abs(u[i] - u[i - 1]));
+    const double way = std::abs(u[std::min(row, u.size() - 1)] - u.front());
+    return largest <= std::max(kStep * way, kOneOfGrid * quantisation_step(u));
 }
 
 bool knows_gain(const IdentifiedModel& model) {
@@ -43,6 +49,14 @@ bool knows_gain(const IdentifiedModel& model) {
 bool same_sign(const IdentifiedModel& a, const IdentifiedModel& b) {
     const std::optional<double> one = gain_of(a), other = gain_of(b);
     return one && other && *one * *other > 0;
+}
+
+/// Gains a tenth apart, or three standard errors.
+bool agree(const IdentifiedModel& estimated, const IdentifiedModel& from_off) {
+    constexpr double kApart = 0.1, kErrors = 3;
+    const std::optional<double> one = gain_of(estimated), other = gain_of(from_off);
+    const double most = one ? kApart * std::abs(*one) + kErrors * estimated.standard_errors.at("K") : 0;
+    return one && other && std::abs(*one - *other) < most;
 }
 
 IdentifiedModel warned(IdentifiedModel model, const std::string& taken, WarningLevel level) {
@@ -78,19 +92,22 @@ ColdStart cold_start(const Record& record, const CleanRecord& clean, bool in_loo
     if (std::ranges::any_of(y, [&](double value) { return sign * (value - first) < -most; })) return ColdStart::none;
     const std::size_t still = still_rows(v);
     if (still >= kRestRows && sign * (y[still - 1] - first) > most) return ColdStart::plain;
-    if (!in_loop) return ColdStart::none;
-    return still < kRestRows ? ColdStart::plain : ColdStart::possible;
+    if (in_loop && still < kRestRows) return ColdStart::plain;
+    const auto leaves = std::ranges::find_if(y, [&](double value) { return sign * (value - first) > most; });
+    const bool controlled = in_loop || may_be_controlled(clean);
+    return controlled && creeps(v, static_cast<std::size_t>(leaves - y.begin())) ? ColdStart::possible
+                                                                                 : ColdStart::none;
 }
 
 Expected<IdentifiedModel> cold_start_model(ColdStart start, Expected<IdentifiedModel> estimated,
                                            Expected<IdentifiedModel> from_off, double off) {
-    constexpr double kAsMuch = 1.05, kPlainlyLess = 0.5;  // of what the other model leaves
-    const double most = start == ColdStart::plain ? kAsMuch : kPlainlyLess;
-    const bool as_well =
-        from_off && (estimated ? share_left_by(*from_off) <= most * share_left_by(*estimated) : start == ColdStart::plain);
+    constexpr double kAsMuch = 1.05, kNoMore = 1;  // of what the other model leaves
+    const double most = start == ColdStart::plain ? kAsMuch : kNoMore;
+    const bool as_well = from_off && (estimated ? share_left_by(*from_off) <= most * share_left_by(*estimated)
+                                                : start == ColdStart::plain);
     if (!estimated && !as_well) return estimated;
     const bool rivals = estimated && (!from_off || share_left_by(*estimated) <= kAsMuch * share_left_by(*from_off));
-    if (rivals && knows_gain(*estimated)) return estimated;
+    if (rivals && knows_gain(*estimated) && (!as_well || agree(*estimated, *from_off))) return estimated;
     if (!as_well) {
         if (start == ColdStart::possible) return estimated;
         return warned(std::move(*estimated), "No model explains y with u = " + text(off) + ", off, before it.",

@@ -204,7 +204,8 @@ RecordStart start_of(const CleanRecord& r, bool relay, double noise) {
     if (r.moved_at_first_row) return RecordStart::moving;
     if (r.u0_given) return RecordStart::at_rest;
     const auto n = static_cast<std::size_t>(std::lower_bound(r.t.begin(), r.t.end(), r.v_time.front()) - r.t.begin());
-    if (n < kRestRows || r.t[n - 1] <= r.t[0]) return r.changes() == 1 ? RecordStart::at_rest : RecordStart::unseen;
+    if (n < kRestRows || r.t[n - 1] <= r.t[0])
+        return input_levels(r).moves() == 1 ? RecordStart::at_rest : RecordStart::unseen;
     const std::span t(r.t.data(), n), y(r.y.data(), n);
     if (relay && comes_back(r)) {
         constexpr double kStill = 0.01, kTimesNoise = 6;  // of y's range; the span of some hundred readings

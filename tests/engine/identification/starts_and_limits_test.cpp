@@ -54,6 +54,17 @@ TEST(Start, ARecordAtRestStaysAtRestHoweverManyLagsFollow) {
     }
 }
 
+/// A damaged cell or the rounding of u is no second move, after which the start would be free.
+TEST(Start, JitterOfUIsNoSecondMove) {
+    Record record = simulate(even_times(300, 1), 0, 10, {{1, 5}}, first_order(1.4, 30, 2));
+    add_noise(record, 0.02, 5);
+    EXPECT_EQ(start_of(*clean_record(record), false, 0.001), RecordStart::at_rest);
+    record.u[150] += 0.01;
+    EXPECT_EQ(start_of(*clean_record(record), false, 0.001), RecordStart::at_rest);
+    record.u[150] += 1;
+    EXPECT_EQ(start_of(*clean_record(record), false, 0.001), RecordStart::unseen);
+}
+
 TEST(Start, TellsRestFromMotion) {
     const auto start = [](const Record& record) { return start_of(*clean_record(record), false, 0.001); };
     Record resting = simulate(even_times(300, 1), 0, 0, {{60, 1}}, first_order(1, 20, 2));

@@ -88,7 +88,7 @@ TEST(SwitchedOn, InTheFirstRowNothingIsWrongInSilence) {
     constexpr unsigned kSeeds = 12;
     for (const double rest : {0.0, 0.5}) {
         int right = 0, answers = 0;
-        for (unsigned seed = 1; seed <= kSeeds; ++seed) {
+        for (unsigned seed = 36; seed < 36 + kSeeds; ++seed) {
             ColdStart cold = random_cold_start(seed);
             cold.on_row = 0;
             Record record = cold.record();

@@ -41,8 +41,8 @@ std::string unit_of(const FigureRow& row, const ReportSubject& s) {
     return unit;
 }
 
-/// The limit that the request set to this figure, if it did.
-Place asked_for(const FigureRow& row, const ReportSubject& s) {
+/// The limit of the design on this figure, if it has one.
+Place limit_on(const FigureRow& row, const ReportSubject& s) {
     const Place options = s.entry.at("options");
     if (std::string_view(row.place) == "overshoot_percent") return options.at("setpoint").at("overshoot");
     const bool limited =
@@ -71,9 +71,9 @@ Html figure_table(const char* caption, const FigureRow (&rows)[n], const std::st
     std::vector<Row> out;
     for (const FigureRow& row : rows) {
         if (!any_has(columns, row.place)) continue;
-        const Place asked = asked_for(row, s);
+        const Place limit = limit_on(row, s);
         Row line = {with_unit(row.label, unit_of(row, s))};
-        if (asked.exists()) line[0] += ", asked: " + figure(asked);
+        if (limit.exists()) line[0] += ", limit: " + figure(limit);
         for (const Place& column : columns) line.push_back(figure(column.at(row.place)));
         out.push_back(std::move(line));
     }

@@ -36,6 +36,7 @@ struct TuningEntry {
     std::optional<Plant> reduced_model;
     std::optional<double> Ms_limit;            ///< that the method was asked for
     std::optional<double> asked_Ms;            ///< the same where the request asked, or the method promises it
+    std::optional<double> asked_overshoot;     ///< percent of the step, where the request has one
     Reports reports;                           ///< of the method, and what was asked for of every controller
     std::optional<OptimumAtMs> optimum_at_Ms;  ///< where asked for
     std::optional<double> best_PI_load_IAE;    ///< beside a robust PID: of the robust PI within the same limits

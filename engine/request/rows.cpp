@@ -148,6 +148,7 @@ TuningEntry Rows::entry(const PlannedRow& planned, const std::optional<TuningPro
     entry.reduced_model = tuned->reduced_model;
     entry.Ms_limit = tuned->Ms_limit;
     if (planned.Ms_asked) entry.asked_Ms = tuned->Ms_limit;
+    entry.asked_overshoot = setpoint_options(planned.options).overshoot;
     partial = partial || tuned->partial;
     evaluate_into(entry, controller_of(*tuned), tuned->warnings);
     add_reports(entry, tuned->report);

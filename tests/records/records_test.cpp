@@ -127,8 +127,8 @@ TEST(MadeRecords, OfEveryFormNoneIsWrongInSilence) {
         EXPECT_EQ(records, 39);
         EXPECT_GE(answered, 0.6 * records) << name_of(form);
         EXPECT_LE(silent, 1) << name_of(form);
-        // With damaged cells two designs are unstable without a bad warning; there are to be none.
-        EXPECT_LE(unstable, form == Form::damaged_cells ? 2 : 1) << name_of(form);
+        // There are to be none.
+        EXPECT_LE(unstable, 1) << name_of(form);
     }
 }
 

@@ -150,7 +150,7 @@ class ReportTest(unittest.TestCase):
         _, text, figures = self.checked(job)
         self.assertEqual(text.count("Set point</span>"), 1)
         self.assertTrue(any(at.endswith("options/setpoint/overshoot") for at in figures))
-        self.assertIn(", asked: ", text)
+        self.assertIn(", limit: ", text)
 
     def test_one_step_of_the_set_point_is_called_one_step(self):
         # A PI loop on 2/(20 s + 1) after 3 s, with a controller that moves u in every row.

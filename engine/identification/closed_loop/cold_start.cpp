@@ -39,6 +39,12 @@ bool creeps(const std::vector<double>& u, std::size_t row) {
     return largest <= std::max(kStep * way, kOneOfGrid * quantisation_step(u));
 }
 
+/// The static gain; empty where the plant integrates.
+std::optional<double> gain_of(const IdentifiedModel& model) {
+    const auto plant = LinearPlant::make(model.plant);
+    return plant && plant->integrators() == 0 ? std::optional(plant->low_frequency_gain()) : std::nullopt;
+}
+
 bool knows_gain(const IdentifiedModel& model) {
     constexpr double kKnown = 0.1;  // standard error over the gain
     const std::optional<double> K = gain_of(model);

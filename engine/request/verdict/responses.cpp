@@ -42,18 +42,14 @@ const Performance* todays_performance(const Case& c) {
     return &performance_of(*c.today);
 }
 
-std::optional<double> asked_overshoot(const Case& c) {
-    return c.entry.options.number(std::string(kSetpointOption) + "/overshoot");
-}
-
 }  // namespace
 
 std::optional<Level> overshoot_level(const Case& c) {
     const Figure& percent = c.performance().setpoint.overshoot_percent;
     if (!percent) return {};
-    const auto asked = asked_overshoot(c);
+    const auto asked = c.entry.asked_overshoot, limit = setpoint_options(c.entry.options).overshoot;
     if (asked ? *percent > *asked + kOvershootFarAbove : *percent > kLargeOvershootPercent) return Level::warning;
-    if (asked ? *percent > *asked + kOvershootAbove : *percent >= kOvershootPercent) return Level::note;
+    if (limit ? *percent > *limit + kOvershootAbove : *percent >= kOvershootPercent) return Level::note;
     return {};
 }
 
@@ -91,12 +87,15 @@ Found overshoot(const Case& c) {
     const Figure& percent = c.performance().setpoint.overshoot_percent;
     const auto level = overshoot_level(c);
     if (!level) return {};
-    const auto asked = asked_overshoot(c);
+    const auto asked = c.entry.asked_overshoot, limit = setpoint_options(c.entry.options).overshoot;
     Draft draft("overshoot", *level);
     draft.say("A set-point step overshoots by ").number("overshoot_percent", *percent, "%");
-    if (asked) draft.say(", more than the ").number("asked_percent", *asked, "%").say(" asked for");
+    if (asked)
+        draft.say(", more than the ").number("asked_percent", *asked, "%").say(" asked for");
+    else if (limit)
+        draft.say(", more than the ").number("design_percent", *limit, "%").say(" of the design");
     draft.say(".");
-    say_cure(draft, c, asked.value_or(kDefaultOvershoot));
+    say_cure(draft, c, limit.value_or(kDefaultOvershoot));
     return draft;
 }
 

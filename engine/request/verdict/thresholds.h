@@ -31,8 +31,8 @@ inline constexpr double kWorsePercent_Ms = 5, kWorsePercent_IAE = 20;
 /// Overshoot worth a word, and from where on the loop is not called good: a quarter of the step, as a second-order loop
 /// with a damping of 0.4 has it.
 inline constexpr double kOvershootPercent = 15, kLargeOvershootPercent = 25;
-/// Percentage points of overshoot above what was asked for: worth a word from what prints as another figure; not good
-/// from the band on within which a response counts as settled.
+/// Percentage points of overshoot above the limit of a design: worth a word from what prints as another figure. Where
+/// the request set the limit, not good from the band on within which a response counts as settled.
 inline constexpr double kOvershootAbove = 0.05, kOvershootFarAbove = 2;
 
 // Against today's settings

@@ -72,6 +72,7 @@ const std::map<std::string, std::vector<std::string>>& places() {
         {"longest_sample_time", {"/longest_sample_time"}},
         {"excess_percent", {"/optimum_at_Ms/excess_percent"}},
         {"asked_percent", {"/options/setpoint/overshoot"}},
+        {"design_percent", {"/options/setpoint/overshoot"}},
         {"Tf", {"/controller/filter/Tf"}},
         {"region_cost", {"/region_cost"}},
         {"Ms_limit", {"/options/Ms", "/options/limit"}},
@@ -291,6 +292,17 @@ const Json* finding(const Json& verdict, const std::string& code) {
     return nullptr;
 }
 
+/// The limit on the overshoot that the request sets, and not the method by itself.
+std::optional<double> asked_overshoot(const Json& entry, const Json& request) {
+    if (!request.contains("tune")) return {};
+    const Json tune = request["tune"].is_array() ? request["tune"] : Json::array({request["tune"]});
+    const auto limit = at(entry, "/options/setpoint/overshoot");
+    const bool asked = std::ranges::any_of(tune, [&](const Json& row) {
+        return row["method"] == entry["method"] && at(row, "/setpoint/overshoot") == limit;
+    });
+    return asked ? limit : std::nullopt;
+}
+
 Facts facts_of(const Json& entry, const Json& request) {
     Facts facts;
     const auto bad = [&](bool is, const std::string& why) {
@@ -310,7 +322,7 @@ Facts facts_of(const Json& entry, const Json& request) {
     if (beyond.named && stable)
         rests_alone(request) ? doubt(true, "the actuator is too small") : bad(true, "the actuator is too small");
     const auto overshoot = at(entry, runs(entry) + "/performance/setpoint/overshoot_percent");
-    const auto asked_percent = at(entry, "/options/setpoint/overshoot");
+    const auto asked_percent = asked_overshoot(entry, request);
     doubt(overshoot.value_or(0) > (asked_percent ? *asked_percent + 2.00001 : 25.00001), "overshoot");
     for (const std::string place : {"", "/implemented"}) {
         if (place != "" && !entry.contains("implemented")) continue;

@@ -104,6 +104,7 @@ Json job(Dice& dice) {
         if (dice.one_in(5)) robust["Mt"] = dice.between(1.05, 2);
         if (dice.one_in(6)) robust["Mks"] = dice.log_between(0.5, 20) / std::abs(K);
         if (dice.one_in(4)) robust["controller"] = "PI";
+        if (dice.one_in(4)) robust["setpoint"]["overshoot"] = dice.between(0, 20);
         tune.push_back(robust);
     }
     while (tune.empty() || dice.one_in(2))

@@ -71,7 +71,7 @@ for (const [product, more] of [
       const job = `v1/jobs/${id}`;
       const report = await (await page.request.get(new URL(`${job}/report.html`, page.url()).href)).text();
       assert.deepEqual([...new Set(lags(report.replaceAll(/<[^>]*>/g, " ")))], [lag]);
-      const row = /Overshoot \(%\), asked:\s+(\S+)\s+(\S+)\s+(\S+)/.exec(report.replaceAll(/<[^>]*>/g, " "));
+      const row = /Overshoot \(%\), limit:\s+(\S+)\s+(\S+)\s+(\S+)/.exec(report.replaceAll(/<[^>]*>/g, " "));
       const both = [entry.performance, entry.implemented.performance].map(({ setpoint }) => Number(setpoint.overshoot_percent.toPrecision(4)));
       assert.deepEqual(row.slice(1).map(Number), [5, ...both]);
       for (const language of ["st", "c", "python"]) {

@@ -89,11 +89,11 @@ test("a figure that is null carries the service's reason", () => {
   }
 });
 
-test("what was asked of the overshoot stands beside it, on Design and in the table, where the verdict says that there is more", () => {
+test("the limit on the overshoot stands beside it, on Design and in the table, where the verdict says that there is more", () => {
   const figures = figureGroups(unitNames(undefined)).flatMap((group) => group.rows);
   const columns = leagueColumns(unitNames(undefined));
-  const texts = (percent: number | null, asked?: number): string[] => {
-    const said = asked === undefined ? {} : { asked_percent: asked };
+  const texts = (percent: number | null, limit?: number, who = "asked"): string[] => {
+    const said = limit === undefined ? {} : { [`${who}_percent`]: limit };
     const made: Entry = {
       ...entry(),
       performance: { setpoint: { overshoot_percent: percent } },
@@ -106,6 +106,7 @@ test("what was asked of the overshoot stands beside it, on Design and in the tab
   };
   assert.deepEqual(texts(31.4, 5), ["31.4 (asked 5.00)", "31.4 (asked 5.00)"]);
   assert.deepEqual(texts(31.4, 0), ["31.4 (asked 0)", "31.4 (asked 0)"]);
+  assert.deepEqual(texts(31.4, 5, "design"), ["31.4 (design 5.00)", "31.4 (design 5.00)"]);
   assert.deepEqual(texts(31.4), ["31.4", "31.4"]);
   assert.deepEqual(texts(null, 5), ["", ""]);
 });

@@ -38,20 +38,28 @@ function numeric(part: Part, name: string, absent: string): FigureValue {
 
 const NOT_GIVEN = "The service gave no figure.";
 
-/** "12.5 (asked 5.00)" where the design has more than was asked of it. */
+/** "12.5 (asked 5.00)" where the loop has more than its design has as its limit. */
 function overshoot(entry: Entry): FigureValue {
   const reached = numeric(entry.performance?.["setpoint"], "overshoot_percent", NOT_GIVEN);
-  return { ...reached, text: reached.text && reached.text + besideAsked(entry) };
+  return { ...reached, text: reached.text && reached.text + besideLimit(entry) };
 }
 
-/** The overshoot that was asked for, in percent, where the verdict says that the loop has more; else null. */
-export const missedOvershoot = (entry: Entry): number | null =>
-  entry.verdict?.find(({ code }) => code === "overshoot")?.figures?.["asked_percent"] ?? null;
+/** The design's limit on the overshoot, in percent, where the verdict says that the loop has more. */
+function missedOvershoot(entry: Entry): { who: "asked" | "design"; percent: number } | null {
+  const figures = entry.verdict?.find(({ code }) => code === "overshoot")?.figures ?? {};
+  for (const who of ["asked", "design"] as const) {
+    const percent = figures[`${who}_percent`];
+    if (typeof percent === "number") return { who, percent };
+  }
+  return null;
+}
 
-/** " (asked 5.00)" after an overshoot that is larger than that; else "". */
-export function besideAsked(entry: Entry): string {
-  const asked = missedOvershoot(entry);
-  return asked === null ? "" : ` (asked ${formatNumber(asked)})`;
+export const missesOvershoot = (entry: Entry): boolean => missedOvershoot(entry) !== null;
+
+/** " (asked 5.00)" after an overshoot above the limit of the request, " (design 5.00)" above the method's own; else "". */
+export function besideLimit(entry: Entry): string {
+  const missed = missedOvershoot(entry);
+  return missed === null ? "" : ` (${missed.who} ${formatNumber(missed.percent)})`;
 }
 
 export function filterWords(type: string | undefined): string {

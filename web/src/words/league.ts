@@ -1,6 +1,6 @@
 // The league table of a comparison as data: its rows in order, its columns with their figures. No DOM.
 import type { Entry, Result, WhyNull } from "../api/types.ts";
-import { besideAsked } from "./figures.ts";
+import { besideLimit } from "./figures.ts";
 import { formatNumber, formatPercent, product, quotient, withUnit } from "./numbers.ts";
 import type { UnitNames } from "./numbers.ts";
 
@@ -135,7 +135,7 @@ export function leagueColumns(units: UnitNames): LeagueColumn[] {
       true,
       (entry) => {
         const reached = of(setpoint, "overshoot_percent", NOT_GIVEN, formatPercent)(entry);
-        return { ...reached, text: reached.text && reached.text + besideAsked(entry) };
+        return { ...reached, text: reached.text && reached.text + besideLimit(entry) };
       },
     ),
     column(

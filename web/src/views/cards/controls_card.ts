@@ -10,7 +10,7 @@ import type { HandName, Knob } from "../../live/knobs.ts";
 import type { Live } from "../../live/live.ts";
 import { tiedAt } from "../../live/point.ts";
 import type { Point } from "../../live/point.ts";
-import { missedOvershoot } from "../../words/figures.ts";
+import { missesOvershoot } from "../../words/figures.ts";
 import { formatNumber } from "../../words/numbers.ts";
 import type { UnitNames } from "../../words/numbers.ts";
 
@@ -137,7 +137,7 @@ export function controlsCard(live: Live): ControlsCard {
   function sayReached(): void {
     const entry = followed ?? shown?.entry;
     for (const { knob, slider: made } of options) {
-      const missed = knob.id === OVERSHOOT && entry !== undefined && missedOvershoot(entry) !== null;
+      const missed = knob.id === OVERSHOOT && entry !== undefined && missesOvershoot(entry);
       made.setReached(reachedText(knob, askedOf(knob, now())), missed);
       made.speak();
     }

@@ -22,13 +22,18 @@ namespace tunewright::api {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kMaxDepth = 32;      ///< of nested objects and arrays; the contract needs 6
-constexpr std::size_t kMaxMembers = 1000;  ///< of one object; the contract needs about 20
+constexpr std::size_t kMaxDepth = 32;       ///< of nested objects and arrays; the contract needs 6
+constexpr std::size_t kMaxMembers = 1000;   ///< of one object; the contract needs about 20
+constexpr std::size_t kMaxTree = 96 << 20;  ///< bytes of the values of one text: some three million numbers
 
 /// The value that `text` spells; how long it may be is the transport's business. Problems: 400 not JSON (with line and
-/// column); 422 a member written twice, a number beyond double, nested deeper than kMaxDepth, more than kMaxMembers in
-/// one object.
+/// column); 413 values of more than kMaxTree; 422 a member written twice, a number beyond double, nested deeper than
+/// kMaxDepth, more than kMaxMembers in one object.
 std::variant<Json, Problem> parse(std::string_view text);
+
+/// Bytes that the values of `text` take in memory, to within a quarter or less than it says; from one look at its
+/// characters.
+std::size_t tree_size(std::string_view text);
 
 /// 400: what was sent cannot be read as JSON.
 Problem not_json(std::string detail);

@@ -152,7 +152,7 @@ private:
     // Left to itself the library copies all members: pairs with a constant name cannot be moved.
     static void grow(Json::object_t& members) {
         Json::object_t larger;
-        larger.reserve(2 * members.size() + 4);
+        larger.reserve(2 * members.size() + 1);
         for (auto& [name, member] : members) larger.Container::emplace_back(name, std::move(member));
         members.swap(larger);
     }
@@ -208,6 +208,15 @@ private:
 std::variant<Json, Problem> parse(std::string_view text) {
     constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
     if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+    if (tree_size(text) > kMaxTree)
+        return Problem{
+            413,
+            "too-large",
+            "The request is too large",
+            "The JSON holds more values than are accepted in one request (some three million numbers, "
+            "or half a million small objects). Send a record as CSV, or leave out rows that say nothing new.",
+            {},
+            {}};
     TreeBuilder builder(text);
     // The reader's own check reads on behind the end of a text that breaks off within a character.
     if (const std::size_t valid = valid_utf8(text); valid < text.size()) {

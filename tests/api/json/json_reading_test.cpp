@@ -146,6 +146,24 @@ TEST(JsonReading, KeepsLargeMembersWholeWhereverTheyStand) {
     EXPECT_EQ(as_read(wanted.dump()), wanted.dump());
 }
 
+std::string repeated(const std::string& value, std::size_t bytes) {
+    std::string text = "[" + value;
+    while (text.size() < bytes) text += "," + value;
+    return text + "]";
+}
+
+TEST(JsonReading, RefusesMoreValuesThanMemoryIsFor) {
+    constexpr std::size_t body = 8 << 20;
+    for (const std::string value : {R"({"":0})", "{}", "[]", R"("")", R"([[1]])"}) {
+        const auto parsed = parse(repeated(value, body));
+        ASSERT_TRUE(std::holds_alternative<Problem>(parsed)) << value;
+        EXPECT_EQ(std::get<Problem>(parsed).status, 413) << value;
+    }
+    // A record of ten characters a row, and a file in one string, are what bodies are for.
+    EXPECT_TRUE(std::holds_alternative<Json>(parse(repeated("23.4567", body))));
+    EXPECT_TRUE(std::holds_alternative<Json>(parse("[\"" + std::string(body, ',') + "\"]")));
+}
+
 TEST(JsonReading, NamesThePlaceOfWhatItCannotRead) {
     EXPECT_NE(as_read("{\n  \"K\": 2,\n  \"T\": oops}").find("line 3, column 8"), std::string::npos);
     EXPECT_NE(as_read("[1] x").find("line 1, column 5"), std::string::npos);

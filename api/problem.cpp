@@ -27,7 +27,7 @@ constexpr KindRow kTable[] = {
     {ErrorKind::not_representable, 422, "The product cannot be this controller"},
     {ErrorKind::cancelled, 409, "The job was cancelled"},
     {ErrorKind::timeout, 504, "The time allowed is over"},
-    {ErrorKind::numerical_failure, 500, "The computation did not reach its accuracy"},
+    {ErrorKind::numerical_failure, 422, "The computation did not reach its accuracy"},
 };
 
 // "plant/A/0" -> "/plant/A/0"

@@ -17,6 +17,7 @@ struct Config {
     bool pooled = false;              ///< PostgreSQL is behind a pooler in transaction mode
     std::string role = "all";         ///< or api, worker
     std::size_t workers = 0;          ///< 0: as many as there are cores
+    std::size_t memory = 0;           ///< bytes that the process may take; 0: see memory_limit()
     std::string web;                  ///< "": `web` beside the folder of the binary
     double drain_timeout_s = 5;       ///< what running jobs get when the service is asked to stop
     std::string log_format = "text";  ///< or json

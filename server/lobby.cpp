@@ -17,7 +17,9 @@ namespace {
 constexpr std::chrono::milliseconds kMoment{700};       // most stores open sooner, and nobody need know
 constexpr std::chrono::seconds kBetweenTries{2};        // where somebody else takes the steps
 constexpr std::chrono::milliseconds kSignalsLook{100};  // between two looks whether the process is to end
-constexpr const char* kNotYet = "The tables of the store are being brought up to date. Try again in a while.";
+constexpr const char* kNotYet =
+    "The store is not open yet: its tables are being brought up to date, or its disk is full; the log says which. Try "
+    "again in a while.";
 
 /// A port that says so.
 class Desk {
@@ -62,6 +64,9 @@ std::unique_ptr<JobStore> open_patiently(const Config& config, const std::stop_t
             return open_store(config.store, steps, config.pooled);
         } catch (const SchemaBehind& behind) {
             if (!std::exchange(told, true)) log_info(std::string("waiting: ") + behind.what());
+        } catch (const StoreError& error) {
+            if (error.kind != StoreFault::Kind::full) throw;
+            if (!std::exchange(told, true)) log_error(std::string("waiting for room: ") + error.what());
         }
         for (auto waited = kSignalsLook; waited < kBetweenTries && !stop.stop_requested(); waited += kSignalsLook)
             std::this_thread::sleep_for(kSignalsLook);

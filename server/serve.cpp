@@ -1,6 +1,5 @@
 #include "server/serve.h"
 
-#include <malloc.h>
 #include <pthread.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -22,9 +21,11 @@
 #include "server/jobs/service.h"
 #include "server/lobby.h"
 #include "server/log.h"
+#include "server/metrics/memory.h"
 #include "server/metrics/metrics.h"
 #include "server/notify/notifier.h"
 #include "server/routes/job_json.h"
+#include "server/routes/request_checks.h"
 #include "server/routes/routes.h"
 #include "server/spare_cores.h"
 #include "server/store/open_store.h"
@@ -33,12 +34,13 @@ namespace tunewright::server {
 namespace {
 
 constexpr std::chrono::seconds kStopPatience{2};  // for computations and for the store, which have been asked to end
-constexpr std::size_t kWaitingComputations = 64;
+constexpr std::chrono::seconds kMemoryLook{1};
+constexpr std::size_t kLargeBody = 1 << 20, kWaitingComputations = 64;
 constexpr std::size_t kForOthers = 4;  // computations, for clients that have none while others fill the cores
 // Answers with a whole job that are made at the same time; each may take a hundred megabytes for some moments.
 constexpr std::size_t kReaders = 2, kWaitingReaders = 1024;
-// Of one client, and of one more: a shared store has four connections for all that is read.
-constexpr std::size_t kSearchers = 1;
+// Fewer than the connections for reading, four of a shared store: a single job is never behind lists alone.
+constexpr std::size_t kListers = 2, kSearchers = 1;
 // Batches come and go without keeping others from being answered.
 constexpr std::size_t kBatchThreads = 2;
 constexpr int kBatchNiceness = 5;
@@ -50,13 +52,6 @@ Retention retention_of(const Config& config) {
     };
     const auto own = [&](double seconds) { return age(seconds < 0 ? config.retention_s : seconds); };
     return {age(config.retention_s), own(config.retention_failed_s), own(config.retention_cancelled_s)};
-}
-
-/// Answers of some 100 KiB come and go on many threads. Returned to the system each time, they cost a fifth of all jobs
-/// a second in page faults; what is larger than a MiB is returned.
-void keep_small_memory() {
-    ::mallopt(M_MMAP_THRESHOLD, 1024 * 1024);
-    ::mallopt(M_TRIM_THRESHOLD, 64 * 1024 * 1024);
 }
 
 /// As many connections as the system allows this process.
@@ -87,24 +82,27 @@ class Service {
 public:
     Service(const Config& config, std::unique_ptr<JobStore> store)
         : config_(config),
+          memory_(memory_limit(config.memory)),
           store_(metered(std::move(store), [this](std::string_view operation, double seconds,
                                                   bool done) { metrics_.count_store(operation, seconds, done); })),
           spare_cores_(computations(config)),
           jobs_(*store_, timer_, settings(config)),
           turns_(core_count(), std::max(core_count(), kForOthers), kWaitingComputations),
           readers_(std::max(kReaders, core_count()), kReaders, kWaitingReaders),
+          listers_(kListers, 1, kWaitingReaders),
           searchers_(kSearchers, kSearchers, kWaitingReaders),
-          places_(places_of(limits(config))),
+          places_(places_of(limits())),
           batch_lane_(kBatchThreads, kBatchNiceness),
           batches_(*store_, jobs_, batch_lane_, [this] { return now(); }),
           policy_(config.notify_targets, config.notify_secrets),
           notifier_(*store_, policy_, notifier_settings()),
           page_(config.web.empty() ? default_web_folder() : config.web),
           gate_(gate_settings(config)),
-          server_(limits(config), application(router_)) {
+          server_(limits(), application(router_)) {
         add_routes();
         if (config.metrics_listen.empty()) return;
-        add_health_routes(metrics_router_, jobs_, *store_, gate_, [this] { return metrics_.text(standing()); });
+        add_health_routes(metrics_router_, jobs_, *store_, gate_, memory_,
+                          [this] { return metrics_.text(standing()); });
         metrics_server_ = std::make_unique<http::Server>(http::Limits(), application(metrics_router_));
     }
 
@@ -124,6 +122,7 @@ public:
                      std::to_string(recovery.interrupted) + " of them were interrupted; " +
                      std::to_string(recovery.given_up) + " were given up");
         notifier_.start();
+        watch_memory();
         serving_ = std::jthread([this] { server_.run(); });
         if (metrics_server_) serving_metrics_ = std::jthread([this] { metrics_server_->run(); });
     }
@@ -204,6 +203,7 @@ private:
         made.running = jobs_.running();
         made.workers = jobs_.workers();
         made.clients = server_.occupancy();
+        made.memory_limit = memory_.limit();
         made.event_streams = jobs_.followers();
         made.synchronous_waiting = turns_.waiting();
         made.batch_tasks_waiting = batch_lane_.waiting();
@@ -211,14 +211,20 @@ private:
         return made;
     }
 
-    static http::Limits limits(const Config& config) {
+    /// Half of the memory is for what clients hold: requests and answers on their way.
+    http::Limits limits() const {
         http::Limits made;
         made.connections = connection_limit();
-        made.max_body = config.max_body;
-        made.max_batch_body = config.max_batch_body;
-        made.bodies = std::max(made.bodies, 6 * made.max_body);
-        made.behind_proxy = config.behind_proxy;
+        made.max_body = config_.max_body;
+        made.max_batch_body = config_.max_batch_body;
+        made.bodies = made.unsent = memory_.limit() / 4;
+        made.behind_proxy = config_.behind_proxy;
         return made;
+    }
+
+    void watch_memory() {
+        memory_.look();
+        timer_.after(kMemoryLook, [this] { watch_memory(); });
     }
 
     static GateSettings gate_settings(const Config& config) {
@@ -233,8 +239,13 @@ private:
     }
 
     void add_routes() {
-        router_.guard([this](http::Request& request) { return gate_.admit(request); });
-        add_health_routes(router_, jobs_, *store_, gate_, [this] { return metrics_.text(standing()); });
+        router_.guard([this](http::Request& request) {
+            auto refusal = gate_.admit(request);
+            if (!refusal && request.method == "POST" && memory_.tight())
+                refusal = http::problem_response(503, "The service has no memory left for now. Try again in a moment.");
+            return refusal;
+        });
+        add_health_routes(router_, jobs_, *store_, gate_, memory_, [this] { return metrics_.text(standing()); });
         if (parse_role(config_.role) != Role::worker) add_public_routes();
         router_.observe([this](const http::Answered& answered) {
             metrics_.count(answered);
@@ -244,14 +255,14 @@ private:
 
     /// What a process that only computes does not answer.
     void add_public_routes() {
-        add_job_routes(router_, jobs_, places_, readers_, searchers_, policy_,
+        add_job_routes(router_, jobs_, places_, {turns_, readers_, listers_, searchers_}, policy_,
                        {config_.job_timeout_s, config_.max_timeout_s});
         add_event_routes(router_, jobs_, places_);
         add_trace_routes(router_, jobs_, readers_);
         add_code_routes(router_, jobs_, readers_);
         add_report_routes(router_, jobs_, readers_);
         add_queue_routes(router_, jobs_);
-        add_batch_routes(router_, batches_, jobs_, places_, batch_lane_, policy_,
+        add_batch_routes(router_, batches_, jobs_, places_, listers_, batch_lane_, policy_,
                          {{config_.job_timeout_s, config_.max_timeout_s}, config_.max_body});
         add_synchronous_routes(router_, turns_, timer_, spare_cores_, closing_.get_token());
         add_description_routes(router_);
@@ -268,7 +279,13 @@ private:
         http::Application made;
         made.admit = [&router](http::Request& request) { return router.admit(request); };
         made.streams = [&router](const http::Request& head) { return router.streams(head); };
-        made.handle = [&router](http::Request request) { return router.handle(std::move(request)); };
+        made.weight = handling_weight;
+        made.handle = [this, &router](http::Request request) {
+            const bool large = request.body.size() > kLargeBody;
+            http::Response response = router.handle(std::move(request));
+            if (large) memory_.look();  // what it took goes back before the next one comes
+            return response;
+        };
         made.refuse = [this](int status, const std::string& detail, http::Request& request) {
             return refusal(status, detail, request);
         };
@@ -292,6 +309,7 @@ private:
     }
 
     Config config_;
+    Memory memory_;
     std::stop_source closing_;
     Timer timer_;
     Metrics metrics_{TUNEWRIGHT_VERSION};
@@ -299,7 +317,7 @@ private:
     SpareCores spare_cores_;
     JobService jobs_;
     Turns turns_;
-    Turns readers_, searchers_;
+    Turns readers_, listers_, searchers_;
     Places places_;
     Executor batch_lane_;
     Batches batches_;

@@ -69,6 +69,15 @@ Equivalents equivalents_of(const Controller& controller) {
 
 }  // namespace
 
+std::optional<Error> refuse_traces(const EvaluateOptions& options, std::size_t controllers) {
+    constexpr std::size_t most = 100'000;  // an answer of some ten megabytes
+    if (options.points <= 0 || static_cast<std::size_t>(options.points) * controllers <= most) return std::nullopt;
+    return Error{ErrorKind::invalid_argument, "evaluate/points",
+                 "points is " + std::to_string(options.points) + " for each of " + std::to_string(controllers) +
+                     " controllers; an answer has at most " + std::to_string(most) + " altogether. Give at most " +
+                     std::to_string(most / controllers) + ", or ask for fewer controllers."};
+}
+
 std::optional<Error> refuse_evaluation(const Controller& controller, const EvaluateOptions& options) {
     if (auto error = check_options(options)) return error;
     return check_npid(controller);

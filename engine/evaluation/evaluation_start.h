@@ -13,6 +13,9 @@ namespace tunewright {
 /// The first fault of the options ("evaluate/...") or of an Npid ("controller/..."), whatever the plant.
 std::optional<Error> refuse_evaluation(const Controller& controller, const EvaluateOptions& options);
 
+/// An error where the traces of so many controllers in one answer would have too many points altogether.
+std::optional<Error> refuse_traces(const EvaluateOptions& options, std::size_t controllers);
+
 /// An error where the options' stop was requested.
 std::optional<Error> stopped(const EvaluateOptions& options);
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "engine/evaluation/evaluate.h"
+#include "engine/evaluation/evaluation_start.h"
 #include "engine/request/identified_region.h"
 #include "engine/request/optimum_at_ms.h"
 #include "engine/request/verdict/verdict.h"
@@ -44,6 +45,7 @@ Expected<EvaluationResult> evaluate_all(const Subject& subject, const std::vecto
                                         const verdict::Labels& labels, const RunControl& control,
                                         const IdentifiedModel* model, const verdict::GivenSteps& given_steps) {
     const auto now = [&] { return control.now_ms ? control.now_ms() : 0; };
+    if (const auto error = refuse_traces(options, controllers.size())) return *error;
     EvaluationResult result;
     if (subject.equations() != nullptr) result.operating_point = operating_point(*subject.equations());
     EvaluateOptions watched = options;

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "engine/evaluation/evaluate.h"
+#include "engine/evaluation/evaluation_start.h"
 #include "engine/request/identified_region.h"
 #include "engine/request/plan.h"
 #include "engine/request/ranking.h"
@@ -215,6 +216,8 @@ bool TuningRun::wants_optima() const {
 Expected<TuningResult> TuningRun::result() {
     auto planned = plan_rows(request_.tune);
     if (!planned) return planned.error();
+    const std::size_t entries = planned->size() + request_.baseline.has_value();
+    if (const auto error = refuse_traces(request_.evaluate, entries)) return *error;
     if (const auto error = find_plant()) return *error;
     state_problem();
     rows_.emplace(request_, *subject_, problem_, result_.model ? &*result_.model : nullptr);

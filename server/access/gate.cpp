@@ -151,9 +151,11 @@ std::optional<Response> Gate::check_site(Request& request) const {
         return std::nullopt;
     }
     const bool foreign = !origin.empty() && !sites_.may_call(origin, request.header("Host"));
-    // A browser that names no origin says so itself when another site's page makes it send something to us.
+    // A browser that names no origin says so itself when another site's page makes it call. Whoever follows a link to
+    // the page comes from there too.
     const std::string_view site = request.header("Sec-Fetch-Site");
-    const bool crossing = changes(request) && (site == "cross-site" || site == "same-site");
+    const bool follows_link = !changes(request) && request.header("Sec-Fetch-Mode") == "navigate";
+    const bool crossing = (site == "cross-site" || site == "same-site") && !follows_link;
     if (!foreign && !crossing) return std::nullopt;
     api::Problem problem = http::problem(403,
                                          "Pages of other sites may not use this service through a visitor's browser. "

@@ -69,6 +69,8 @@ void add_process_options(CLI::App& app, Config& config) {
         ->capture_default_str();
     option(app, "workers", config.workers, "Jobs computed at the same time (default: one a core)")
         ->check(CLI::Range(1, 1024));
+    size(app, "memory", config.memory, "512MiB, or as the control group has it",
+         "Memory that the process may take: what clients hold is shared out below it");
     option(app, "web", config.web, "Folder of the built page (default: web beside the binary's folder)");
     duration(app, "drain-timeout", config.drain_timeout_s, "5s", {0, 3600},
              "Time that running jobs get when the service is stopped");

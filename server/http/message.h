@@ -48,8 +48,9 @@ struct Request {
     /// body does not come to its end (too large, malformed, too slow, or the client has gone): the answer is then the
     /// transport's.
     std::function<bool(const BodyTaker&)> read_body;
-    std::function<bool()> left;      ///< true where the client has gone and nobody waits for the answer; may be empty
-    std::function<bool()> admitted;  ///< false where the caller's key is known no longer; may be empty
+    std::function<void()> give_back;  ///< the body and the room kept for it are needed no longer; may be empty
+    std::function<bool()> left;       ///< true where the client has gone and nobody waits for the answer; may be empty
+    std::function<bool()> admitted;   ///< false where the caller's key is known no longer; may be empty
     std::string remote_addr;
     std::string client;  ///< whom it counts for where clients share something: the key's name, else the address
     std::optional<std::string> owner;  ///< name of the API key; nothing where none is asked for: everybody sees all

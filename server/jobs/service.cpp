@@ -65,7 +65,7 @@ Recovery JobService::start() {
 
 void JobService::submit(Order order, std::function<void(Submission)> done, WaitEnd ended) {
     if (draining_) return done({Submission::Kind::draining, {}, {}});
-    if (!depth_.reserve()) return done({Submission::Kind::queue_full, {}, {}});
+    if (!depth_.reserve()) return done(submission_of_key(order));
     NewJob job;
     job.id = new_id();
     job.name = std::move(order.job.name);
@@ -110,6 +110,23 @@ void JobService::submit(Order order, std::function<void(Submission)> done, WaitE
         if (draining_) waits_.notify(id);
     };
     store_.accept(std::move(job), accepted);
+}
+
+/// Of a full queue: a job that was accepted before under the same key is answered all the same.
+Submission JobService::submission_of_key(const Order& order) {
+    Submission full{Submission::Kind::queue_full, {}, {}};
+    if (order.idempotency_key.empty()) return full;
+    try {
+        const std::optional<JobState> known = store_.job_of_key(order.owner, order.idempotency_key);
+        if (!known) return full;
+        Submission submission;
+        const bool same = known->request_hash == order.job.request_hash;
+        submission.kind = same ? Submission::Kind::existing : Submission::Kind::conflict;
+        static_cast<JobSummary&>(submission.job) = *known;
+        return submission;
+    } catch (const StoreError& error) {
+        return {Submission::Kind::store_failed, {}, {error.kind, error.what()}};
+    }
 }
 
 int JobService::seconds_until_room() const {
@@ -166,10 +183,16 @@ void JobService::requeue(const std::string& id, Done<RequeueEffect> done) {
 void JobService::pause(bool paused, Done<bool> done) {
     store_.pause(paused, [this, paused, done = std::move(done)](Outcome<bool> outcome) {
         if (std::holds_alternative<bool>(outcome)) depth_.paused(paused);
+        if (paused) give_back_unbegun();
         done(outcome);
         if (!paused) claims_.arrived();
         look_again();
     });
+}
+
+/// What was claimed and no worker has begun waits again.
+void JobService::give_back_unbegun() {
+    for (const auto& held : claims_.withdraw(HeldJob::Clock::now())) outbox_.release(held);
 }
 
 void JobService::wait(const std::string& id, std::chrono::duration<double> wait, WaitEnd ended) {

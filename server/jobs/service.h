@@ -154,6 +154,8 @@ private:
     void ended(const Ended& ended, bool kept);
     void stop_held(const std::shared_ptr<HeldJob>& held, HeldJob::Stop why);
     void forget(const std::shared_ptr<HeldJob>& held);
+    void give_back_unbegun();
+    Submission submission_of_key(const Order& order);
     void tell_ended(const std::string& id);
     void hear(const StoreNotice& notice);
     std::chrono::milliseconds tend();

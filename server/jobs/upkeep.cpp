@@ -48,6 +48,7 @@ std::chrono::milliseconds JobService::look() {
         if (now >= next_depth_) {
             depth_.refresh(store_);
             claims_.suspects(depth_.now().suspects);
+            if (depth_.now().paused) give_back_unbegun();
             const auto took = HeldJob::Clock::now() - now;
             next_depth_ =
                 now + std::max<HeldJob::Clock::duration>(kPollsPerUpkeep * settings_.poll, kCountingShare * took);

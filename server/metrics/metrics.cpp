@@ -129,6 +129,7 @@ struct Metrics::Families {
     Gauge& connections = gauge("tunewright_http_connections", "Open connections of clients");
     Gauge& body_bytes = gauge("tunewright_http_body_bytes", "Bytes of requests that are not answered yet");
     Gauge& unsent_bytes = gauge("tunewright_http_unsent_bytes", "Bytes of answers that clients have not taken");
+    Gauge& memory_limit = gauge("tunewright_memory_limit_bytes", "Memory that the process may take");
     Gauge& streams = gauge("tunewright_event_streams", "Followers of jobs by server-sent events");
     Gauge& synchronous = gauge("tunewright_synchronous_waiting", "Synchronous calls that wait to be computed");
     Gauge& batch_tasks = gauge("tunewright_batch_tasks_waiting", "Pieces of batches that wait for a thread");
@@ -214,6 +215,7 @@ std::string Metrics::text(const Standing& standing) {
     put(all.connections, standing.clients.connections);
     put(all.body_bytes, standing.clients.body_bytes);
     put(all.unsent_bytes, standing.clients.unsent_bytes);
+    put(all.memory_limit, standing.memory_limit);
     put(all.streams, standing.event_streams);
     put(all.synchronous, standing.synchronous_waiting);
     put(all.batch_tasks, standing.batch_tasks_waiting);

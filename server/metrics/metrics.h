@@ -19,6 +19,7 @@ struct Standing {
     UnixMs now = 0;  ///< of the clock that the queue's moments are of
     std::size_t running = 0, workers = 0;
     http::Occupancy clients;
+    std::size_t memory_limit = 0;  ///< bytes that the process may take
     std::size_t event_streams = 0;
     std::size_t synchronous_waiting = 0;  ///< calls that wait for their turn to be computed
     std::size_t batch_tasks_waiting = 0;  ///< pieces of batches that wait for a thread

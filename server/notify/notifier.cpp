@@ -13,6 +13,7 @@ namespace tunewright::server {
 namespace {
 
 constexpr std::chrono::milliseconds kWatch{500};  ///< between looks at what is under way
+constexpr std::chrono::minutes kAlone{1};         ///< between looks at a note that only a new start may allow
 constexpr int kGone = 410;
 
 static_assert(Notifier::kHold > 2 * Sender::kLongest);
@@ -112,7 +113,9 @@ void Notifier::taken(const std::vector<Delivery>& due, Lanes::Clock::time_point 
 
 void Notifier::tell(const Delivery& delivery) {
     const auto address = policy_.address_of(delivery.target.url);
-    if (const auto* why = std::get_if<std::string>(&address)) return give_up(delivery, *why);
+    if (const auto* why = std::get_if<std::string>(&address)) return leave_to_others(delivery, *why);
+    if (store_.shared() && policy_.secrets(delivery.target.secret_id).empty())
+        return leave_to_others(delivery, "no secret of its name is there to sign with");
     const auto& where = std::get<WebAddress>(address);
     std::optional<News> news;
     try {
@@ -198,11 +201,24 @@ void Notifier::give_up(const Delivery& delivery, const std::string& why) {
     settle(delivery, std::nullopt);
 }
 
-void Notifier::settle(const Delivery& delivery, std::optional<std::chrono::milliseconds> pause) {
-    store_.settle_delivery(delivery.seq, settings_.now(), pause, [what = what_ended(delivery)](const auto& outcome) {
-        if (const auto* fault = std::get_if<StoreFault>(&outcome))
-            log_error(what + " may be told again, as the store could not take down that it was: " + fault->detail);
-    });
+/// Another process, or this one when it is started anew, may be allowed what this one is not: a note waits for it as
+/// long as for a receiver.
+void Notifier::leave_to_others(const Delivery& delivery, const std::string& why) {
+    if (settings_.now() - delivery.created_at > std::chrono::milliseconds(kTellingTime).count())
+        return give_up(delivery, why);
+    if (!left_some_.exchange(true))
+        log_info("ends of jobs that this process may not tell (" + why + ") are left to others");
+    // By chance, so that not the same process comes first each time.
+    const auto soon = std::chrono::duration_cast<std::chrono::milliseconds>(kPoll * (0.3 + 2 * chance()));
+    settle(delivery, store_.shared() ? soon : kAlone, false);
+}
+
+void Notifier::settle(const Delivery& delivery, std::optional<std::chrono::milliseconds> pause, bool tried) {
+    store_.settle_delivery(
+        delivery.seq, settings_.now(), pause, tried, [what = what_ended(delivery)](const auto& outcome) {
+            if (const auto* fault = std::get_if<StoreFault>(&outcome))
+                log_error(what + " may be told again, as the store could not take down that it was: " + fault->detail);
+        });
 }
 
 }  // namespace tunewright::server

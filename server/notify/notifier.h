@@ -74,7 +74,8 @@ private:
     };
     std::optional<News> news_of(const Delivery& delivery);
     Reply send(const Delivery& delivery, const WebAddress& address, const News& news);
-    void settle(const Delivery& delivery, std::optional<std::chrono::milliseconds> pause);
+    void settle(const Delivery& delivery, std::optional<std::chrono::milliseconds> pause, bool tried = true);
+    void leave_to_others(const Delivery& delivery, const std::string& why);
     void give_up(const Delivery& delivery, const std::string& why);
     void failed(const Delivery& delivery, const std::string& where, const std::string& why,
                 std::optional<std::chrono::seconds> retry_after = {});
@@ -86,6 +87,7 @@ private:
     std::atomic<bool> closed_ = false;
     std::atomic<bool> taking_ = false;
     std::atomic<bool> store_failed_ = false;
+    std::atomic<bool> left_some_ = false;  ///< to others, which the log has said
     std::mutex mutex_;
     std::map<std::int64_t, std::shared_ptr<UnderWay>> under_way_;  ///< by the delivery
     Lanes lanes_;

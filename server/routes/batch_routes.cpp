@@ -158,7 +158,7 @@ Response get_batch(Batches& batches, const Call& call) {
     return response.set("Cache-Control", "no-cache");
 }
 
-Response list_batches(Batches& batches, const Call& call) {
+Response list_batches(Batches& batches, Turns& listers, const Call& call) {
     if (auto refusal = refuse_form(call.request)) return *std::move(refusal);
     api::Problem problem = bad_parameters("list");
     int limit = 50;
@@ -179,7 +179,8 @@ Response list_batches(Batches& batches, const Call& call) {
         }
     }
     if (!problem.errors.empty()) return http::problem_response(problem);
-    return guarded([&] { return http::json_response(batch_page_json(batches.list(owner, limit, before), limit)); });
+    return in_turn(listers, call.request,
+                   [&] { return http::json_response(batch_page_json(batches.list(owner, limit, before), limit)); });
 }
 
 /// What the call asks of the results; a refusal where that is not possible.
@@ -265,12 +266,12 @@ Response delete_batch(Batches& batches, const Call& call) {
 
 }  // namespace
 
-void add_batch_routes(http::Router& router, Batches& batches, JobService& jobs, Places& places, Executor& lane,
-                      NotifyPolicy& policy, const BatchLimits& limits) {
+void add_batch_routes(http::Router& router, Batches& batches, JobService& jobs, Places& places, Turns& listers,
+                      Executor& lane, NotifyPolicy& policy, const BatchLimits& limits) {
     router.streamed("POST", "/v1/batches", [&batches, &places, &policy, limits](const Call& call) {
         return post_batch(batches, places, policy, limits, call);
     });
-    router.add("GET", "/v1/batches", [&](const Call& call) { return list_batches(batches, call); });
+    router.add("GET", "/v1/batches", [&](const Call& call) { return list_batches(batches, listers, call); });
     router.add("GET", "/v1/batches/{id}", [&](const Call& call) { return get_batch(batches, call); });
     router.add("DELETE", "/v1/batches/{id}", [&](const Call& call) { return delete_batch(batches, call); });
     router.add("GET", "/v1/batches/{id}/results",

@@ -8,13 +8,15 @@ namespace {
 using http::Call;
 using http::Response;
 
-Response ready(const JobService& jobs, const JobStore& store, Gate& gate) {
+Response ready(const JobService& jobs, const JobStore& store, Gate& gate, const Memory& memory) {
     if (jobs.draining()) return http::problem_response(503, "The service is being stopped.");
     if (!store.healthy())
         return http::problem_response(
             503, "The store could not be written to when it was last tried, or it does not answer.");
     if (!gate.ready())
         return http::problem_response(503, "The file of keys cannot be used, so nobody is admitted; the log says why.");
+    if (memory.tight())
+        return http::problem_response(503, "Nine tenths of the memory that the process may take (--memory) are taken.");
     return http::json_response(R"({"status":"ready"})");
 }
 
@@ -26,9 +28,9 @@ void add_liveness_route(http::Router& router) {
 }
 
 void add_health_routes(http::Router& router, const JobService& jobs, const JobStore& store, Gate& gate,
-                       std::function<std::string()> metrics) {
+                       const Memory& memory, std::function<std::string()> metrics) {
     add_liveness_route(router);
-    router.quick("GET", "/readyz", [&](const Call&) { return ready(jobs, store, gate); });
+    router.quick("GET", "/readyz", [&](const Call&) { return ready(jobs, store, gate, memory); });
     router.add("GET", "/metrics", [metrics = std::move(metrics)](const Call&) {
         Response response;
         response.body = metrics();

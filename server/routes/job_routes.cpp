@@ -1,5 +1,6 @@
 #include <future>
 #include <memory>
+#include <variant>
 
 #include "api/service.h"
 #include "server/http/app/negotiation.h"
@@ -16,6 +17,8 @@ namespace {
 using http::Call;
 using http::problem_response;
 using http::Response;
+
+constexpr std::size_t kLarge = 256 * 1024;  // bytes of a body that is read in turn
 
 Response job_response(JobService& jobs, Turns& readers, const http::Request& request, const std::string& id,
                       int status) {
@@ -73,7 +76,10 @@ Response after_wait(JobService& jobs, Turns& readers, const http::Request& reque
                     std::chrono::seconds wait) {
     if (wait.count() == 0) return waited(jobs, readers, request, id, std::nullopt);
     try {
-        await_end([&](const std::function<void()>& ended) { jobs.wait(id, wait, [ended](const auto&) { ended(); }); });
+        const auto wait_for_end = [&](const std::function<void()>& ended) {
+            jobs.wait(id, wait, [ended](const auto&) { ended(); });
+        };
+        if (!await_end(wait_for_end, request.left)) return client_gone();
     } catch (const StoreError& error) {
         return store_failed({error.kind, error.what()});
     }
@@ -87,10 +93,11 @@ struct Submitted {
 };
 
 /// Where the order says to wait, a job that is created is waited for in the same breath: this thread is woken once.
-Submitted submit(JobService& jobs, Order order) {
+/// Nothing where the client has left meanwhile.
+std::optional<Submitted> submit(JobService& jobs, Order order, const std::function<bool()>& left) {
     const bool waits = order.wait.count() > 0;
     const auto made = std::make_shared<Submitted>();
-    await_end([&](const std::function<void()>& wake) {
+    const auto accept = [&](const std::function<void()>& wake) {
         const auto done = [made, waits, wake](Submission submission) {
             made->submission = std::move(submission);
             if (!waits || made->submission.kind != Submission::Kind::created) wake();
@@ -99,7 +106,8 @@ Submitted submit(JobService& jobs, Order order) {
             made->ended = job;
             wake();
         });
-    });
+    };
+    if (!await_end(accept, waits ? left : nullptr)) return std::nullopt;
     return std::move(*made);
 }
 
@@ -113,13 +121,34 @@ std::optional<Response> refuse_parameters(const http::Request& request) {
     return http::problem_response(problem);
 }
 
-Response post_job(JobService& jobs, Places& places, Turns& readers, NotifyPolicy& policy, const api::JobLimits& limits,
-                  const Call& call) {
+/// A large body takes a turn as what is computed does: reading it may take a second.
+std::variant<api::PreparedJob, api::Problem, Response> prepared_in_turn(Turns& computing, const http::Request& request,
+                                                                        const api::JobLimits& limits) {
+    std::variant<api::PreparedJob, api::Problem, Response> made;
+    const auto prepare = [&] {
+        std::visit([&](auto&& value) { made = std::forward<decltype(value)>(value); },
+                   api::prepare_job(request.body, limits));
+    };
+    if (request.body.size() <= kLarge) {
+        prepare();
+        return made;
+    }
+    Response refusal = in_turn(computing, request, [&] {
+        prepare();
+        return Response();
+    });
+    if (refusal.status != 200) made = std::move(refusal);
+    return made;
+}
+
+Response post_job(JobService& jobs, Places& places, const SharedTurns& turns, NotifyPolicy& policy,
+                  const api::JobLimits& limits, Call& call) {
     if (auto refusal = refuse_call(call.request)) return *std::move(refusal);
     const std::string key(call.request.header("Idempotency-Key"));
     if (auto refusal = refuse_key(key)) return *std::move(refusal);
     if (auto refusal = refuse_parameters(call.request)) return *std::move(refusal);
-    auto prepared = api::prepare_job(call.request.body, limits);
+    auto prepared = prepared_in_turn(turns.computing, call.request, limits);
+    if (auto* refusal = std::get_if<Response>(&prepared)) return std::move(*refusal);
     if (const auto* problem = std::get_if<api::Problem>(&prepared)) return http::problem_response(*problem);
 
     Order order;
@@ -134,13 +163,24 @@ Response post_job(JobService& jobs, Places& places, Turns& readers, NotifyPolicy
     std::chrono::seconds wait = http::preferred_wait(call.request).value_or(std::chrono::seconds(0));
     std::optional<Places::Place> place;
     if (wait.count() > 0 && !(place = places.take(call.request.client))) wait = {};
-    order.wait = wait;
-    const auto [submission, ended] = submit(jobs, std::move(order));
-    if (submission.kind == Submission::Kind::existing)
-        return after_wait(jobs, readers, call.request, submission.job.id, wait);
+    // The room for the request is given back before the wait for its job; what is large is in the store by then.
+    const bool large = call.request.body.size() > kLarge;
+    const auto give_back = [&] {
+        std::string().swap(call.request.body);
+        if (call.request.give_back) call.request.give_back();
+    };
+    order.wait = large ? std::chrono::seconds(0) : wait;
+    if (!large) give_back();
+    const auto made = submit(jobs, std::move(order), call.request.left);
+    if (!made) return client_gone();
+    if (large) give_back();
+    const auto& [submission, ended] = *made;
+    const bool still_to_wait = large && wait.count() > 0 && submission.kind == Submission::Kind::created;
+    if (submission.kind == Submission::Kind::existing || still_to_wait)
+        return after_wait(jobs, turns.readers, call.request, submission.job.id, wait);
     if (submission.kind != Submission::Kind::created || wait.count() == 0) return submitted(jobs, submission);
     if (ended) return waited(JobView{*ended, std::nullopt}, wait);
-    return waited(jobs, readers, call.request, submission.job.id, wait);
+    return waited(jobs, turns.readers, call.request, submission.job.id, wait);
 }
 
 /// Of a job that has ended nothing changes any more, so that its tag needs no look at its result.
@@ -208,15 +248,17 @@ api::Problem read_query(const http::Request& request, JobQuery& query) {
     return problem;
 }
 
-Response list_jobs(JobService& jobs, Turns& searchers, const Call& call) {
+Response list_jobs(JobService& jobs, const SharedTurns& turns, const Call& call) {
     if (auto refusal = refuse_form(call.request)) return *std::move(refusal);
     JobQuery query;
     query.owner = visible_owner(call.request);
     const api::Problem problem = read_query(call.request, query);
     if (!problem.errors.empty()) return http::problem_response(problem);
-    const auto list = [&] { return http::json_response(job_page_json(jobs.list(query), query, call.request.admin)); };
-    // A text is looked for in all jobs that are kept, which may take seconds.
-    return query.text ? in_turn(searchers, call.request, list) : guarded(list);
+    const auto list = [&] {
+        return in_turn(turns.listers, call.request,
+                       [&] { return http::json_response(job_page_json(jobs.list(query), query, call.request.admin)); });
+    };
+    return query.text ? in_turn(turns.searchers, call.request, list) : list();
 }
 
 Response cancel_job(JobService& jobs, Turns& readers, const Call& call) {
@@ -293,16 +335,19 @@ Response delete_job(JobService& jobs, const Call& call) {
 
 }  // namespace
 
-void add_job_routes(http::Router& router, JobService& jobs, Places& places, Turns& readers, Turns& searchers,
+void add_job_routes(http::Router& router, JobService& jobs, Places& places, const SharedTurns& turns,
                     NotifyPolicy& policy, const api::JobLimits& limits) {
-    router.add("POST", "/v1/jobs", [&jobs, &places, &readers, &policy, limits](const Call& call) {
-        return post_job(jobs, places, readers, policy, limits, call);
+    router.add("POST", "/v1/jobs", [&jobs, &places, turns, &policy, limits](Call& call) {
+        return post_job(jobs, places, turns, policy, limits, call);
     });
-    router.add("GET", "/v1/jobs", [&](const Call& call) { return list_jobs(jobs, searchers, call); });
-    router.add("GET", "/v1/jobs/{id}", [&](const Call& call) { return get_job(jobs, readers, call); });
+    router.add("GET", "/v1/jobs", [&jobs, turns](const Call& call) { return list_jobs(jobs, turns, call); });
+    router.add("GET", "/v1/jobs/{id}",
+               [&jobs, &readers = turns.readers](const Call& call) { return get_job(jobs, readers, call); });
     router.add("DELETE", "/v1/jobs/{id}", [&](const Call& call) { return delete_job(jobs, call); });
-    router.add("POST", "/v1/jobs/{id}/cancel", [&](const Call& call) { return cancel_job(jobs, readers, call); });
-    router.add("POST", "/v1/jobs/{id}/requeue", [&](const Call& call) { return requeue_job(jobs, readers, call); });
+    router.add("POST", "/v1/jobs/{id}/cancel",
+               [&jobs, &readers = turns.readers](const Call& call) { return cancel_job(jobs, readers, call); });
+    router.add("POST", "/v1/jobs/{id}/requeue",
+               [&jobs, &readers = turns.readers](const Call& call) { return requeue_job(jobs, readers, call); });
 }
 
 }  // namespace tunewright::server

@@ -1,5 +1,6 @@
 #include "server/routes/request_checks.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "api/csv/text.h"
@@ -11,8 +12,17 @@ namespace tunewright::server {
 namespace {
 
 constexpr std::size_t kMaxKeyLength = 200;
+constexpr std::size_t kCopies = 2;  // of a body: as it is written again, on the way to the store
+constexpr std::size_t kCells = 5;   // what the numbers of a file take, in its bytes
 
 }  // namespace
+
+std::size_t handling_weight(const http::Request& request) {
+    const std::size_t bytes = request.body.size();
+    if (!http::sends_json(request)) return (kCopies + kCells) * bytes;
+    const std::size_t tree = api::tree_size(request.body);
+    return tree > api::kMaxTree ? 0 : kCopies * bytes + tree;  // what is refused takes nothing
+}
 
 std::optional<http::Response> refuse_form(const http::Request& request) {
     if (http::accepts(request, "application/json") || http::accepts(request, "application/problem+json"))

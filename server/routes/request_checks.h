@@ -15,6 +15,10 @@ namespace tunewright::server {
 /// no JSON. Nothing where all is well.
 std::optional<http::Response> refuse_call(const http::Request& request);
 
+/// Bytes that a request with a whole body takes while it is answered: what is read from the body, and its texts on the
+/// way to the store or back.
+std::size_t handling_weight(const http::Request& request);
+
 /// 406 where the client takes no JSON.
 std::optional<http::Response> refuse_form(const http::Request& request);
 

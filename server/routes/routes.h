@@ -13,15 +13,23 @@
 #include "server/jobs/batch/batches.h"
 #include "server/jobs/service.h"
 #include "server/jobs/timer.h"
+#include "server/metrics/memory.h"
 #include "server/notify/policy.h"
 #include "server/spare_cores.h"
 
 namespace tunewright::server {
 
+/// Turns of what takes a core, a connection to the store or much memory for a while.
+struct SharedTurns {
+    Turns& computing;  ///< what is computed, or read from a large body, while its client waits
+    Turns& readers;    ///< answers with a job as a whole
+    Turns& listers;    ///< lists
+    Turns& searchers;  ///< lists that look for a text in all jobs that are kept, which may take seconds
+};
+
 /// /v1/jobs and what is below it. Who waits for a job takes one of `places`; whom a job may tell of its end, `policy`
-/// says. Here and below, what answers with a job as a whole takes one of the turns of `readers`; a list that looks for
-/// a text, one of `searchers`.
-void add_job_routes(http::Router& router, JobService& jobs, Places& places, Turns& readers, Turns& searchers,
+/// says.
+void add_job_routes(http::Router& router, JobService& jobs, Places& places, const SharedTurns& turns,
                     NotifyPolicy& policy, const api::JobLimits& limits);
 
 /// /v1/jobs/{id}/events: progress as server-sent events.
@@ -45,8 +53,8 @@ struct BatchLimits {
 };
 
 /// /v1/batches and what is below it. Bodies are read and results are made on `lane`.
-void add_batch_routes(http::Router& router, Batches& batches, JobService& jobs, Places& places, Executor& lane,
-                      NotifyPolicy& policy, const BatchLimits& limits);
+void add_batch_routes(http::Router& router, Batches& batches, JobService& jobs, Places& places, Turns& listers,
+                      Executor& lane, NotifyPolicy& policy, const BatchLimits& limits);
 
 /// /v1/evaluate, /v1/design, /v1/frontier, /v1/range, /v1/identify, /v1/experiments/... and the conversions below
 /// /v1/controllers: computed while the client waits, when its turn has come, with a deadline, or until `closing`.
@@ -62,6 +70,6 @@ void add_liveness_route(http::Router& router);
 
 /// /healthz, /readyz, /metrics. None of them asks the store: they answer while it hangs.
 void add_health_routes(http::Router& router, const JobService& jobs, const JobStore& store, Gate& gate,
-                       std::function<std::string()> metrics);
+                       const Memory& memory, std::function<std::string()> metrics);
 
 }  // namespace tunewright::server

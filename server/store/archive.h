@@ -89,6 +89,8 @@ public:
     virtual std::optional<JobRecord> find(const std::string& id) = 0;
     /// Those that there are, in no order.
     virtual std::vector<JobState> states(const std::vector<std::string>& ids) = 0;
+    /// The job that was accepted under this key of an owner's, as long as it is kept.
+    virtual std::optional<JobState> job_of_key(const std::string& owner, const std::string& idempotency_key) = 0;
     virtual JobPage list(const JobQuery& query) = 0;
     virtual void remove(std::string id, Done<RemoveEffect> done) = 0;
     /// Deletes at most `most` single jobs that ended longer before `now` than `retention` says, and batches whose last

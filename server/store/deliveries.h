@@ -42,9 +42,10 @@ public:
     /// Those that are due, the oldest first; they are nobody else's for `hold` from now.
     virtual void take_deliveries(UnixMs now, std::chrono::milliseconds hold, std::size_t most,
                                  Done<std::vector<Delivery>> done) = 0;
-    /// Delivered or given up: it goes. With a pause: that try failed, and the next is due so long after `now`.
+    /// Delivered or given up: it goes. With a pause: the next try is due so long after `now`; one that was `tried` has
+    /// failed once more, another was not for this process to send.
     virtual void settle_delivery(std::int64_t seq, UnixMs now, std::optional<std::chrono::milliseconds> pause,
-                                 Done<bool> done) = 0;
+                                 bool tried, Done<bool> done) = 0;
 };
 
 }  // namespace tunewright::server

@@ -51,6 +51,8 @@ auto opening(const std::string& shown, Work work) {
         return work();
     } catch (const SchemaBehind& error) {
         throw SchemaBehind(sentence(error));
+    } catch (const StoreError& error) {
+        throw StoreError({error.kind, sentence(error)});
     } catch (const std::exception& error) {
         throw StoreError({StoreFault::Kind::unavailable, sentence(error)});
     }

@@ -27,6 +27,9 @@ public:
     std::optional<JobRecord> find(const std::string& id) override {
         return timed("find", [&] { return store_->find(id); });
     }
+    std::optional<JobState> job_of_key(const std::string& owner, const std::string& idempotency_key) override {
+        return timed("job_of_key", [&] { return store_->job_of_key(owner, idempotency_key); });
+    }
     std::vector<JobState> states(const std::vector<std::string>& ids) override {
         return timed("states", [&] { return store_->states(ids); });
     }
@@ -99,9 +102,9 @@ public:
                          Done<std::vector<Delivery>> done) override {
         store_->take_deliveries(now, hold, most, timed("take_deliveries", std::move(done)));
     }
-    void settle_delivery(std::int64_t seq, UnixMs now, std::optional<std::chrono::milliseconds> pause,
+    void settle_delivery(std::int64_t seq, UnixMs now, std::optional<std::chrono::milliseconds> pause, bool tried,
                          Done<bool> done) override {
-        store_->settle_delivery(seq, now, pause, timed("settle_delivery", std::move(done)));
+        store_->settle_delivery(seq, now, pause, tried, timed("settle_delivery", std::move(done)));
     }
 
 private:

@@ -118,25 +118,25 @@ class LeavingTest(unittest.TestCase):
 class UnreadTest(unittest.TestCase):
     def test_answers_that_nobody_reads_take_bounded_memory(self):
         with Service("--workers", "2") as service:
-            job = service.post_job({"plant": FOPDT, "tune": [{"method": "all"}], "evaluate": {"points": 5000}}, wait=60)
+            job = service.post_job({"plant": FOPDT, "tune": [{"method": "all"}], "evaluate": {"points": 1500}}, wait=60)
             path = "/v1/jobs/" + job["id"]
             size = len(service.get(path).body)
-            self.assertGreater(size, 16 * MEGABYTE)
+            self.assertGreater(size, 6 * MEGABYTE)
             readers = [self.unread(service, path) for _ in range(40)]
             most = 0
             for _ in range(40):
                 most = max(most, resident(service))
                 self.assertEqual(service.get("/healthz").status, 200)
                 time.sleep(0.1)
-            self.assertLess(most, 256 * MEGABYTE + 16 * size)
-            self.assertLessEqual(metric(service, "tunewright_http_unsent_bytes"), 256 * MEGABYTE + 4 * size)
+            self.assertLess(most, 128 * MEGABYTE + 16 * size)
+            self.assertLessEqual(metric(service, "tunewright_http_unsent_bytes"), 128 * MEGABYTE + 4 * size)
             self.assertEqual(len(service.get(path).body), size, "who reads is served")
             for reader in readers:
                 reader.close()
 
     def test_long_results_of_batches_come_row_by_row(self):
         with Service("--workers", "2") as service:
-            entry = {"plant": FOPDT, "tune": [{"method": "all"}], "evaluate": {"points": 2000}}
+            entry = {"plant": FOPDT, "tune": [{"method": "all"}], "evaluate": {"points": 1500}}
             batch = service.post("/v1/batches", {"jobs": [entry] * 12}).json["id"]
             path = "/v1/batches/%s/results" % batch
             whole = service.get(path + "?follow=true").body

@@ -85,8 +85,9 @@ bool Router::streams(const Request& head) const {
 
 std::optional<Response> Router::admit(Request& request) const {
     const auto start = std::chrono::steady_clock::now();
-    if (!admit_) return std::nullopt;
-    std::optional<Response> refusal = admit_(request);
+    std::optional<Response> refusal = admit_ ? admit_(request) : std::nullopt;
+    if (!refusal && request.method != "GET" && request.method != "HEAD" && find(request) == nullptr)
+        refusal = unrouted(request);
     if (!refusal) return std::nullopt;
     return observed(request, nullptr, start, *std::move(refusal));
 }
@@ -100,7 +101,7 @@ Response Router::handle(Request request) const {
 }
 
 /// What a handler throws becomes a 500 that says nothing about our insides.
-Response Router::answer(const Route* route, const Call& call) const {
+Response Router::answer(const Route* route, Call& call) const {
     try {
         return route != nullptr ? route->handler(call) : unrouted(call.request);
     } catch (const std::exception& fault) {

@@ -21,7 +21,7 @@ struct Call {
 };
 
 /// Gives the answer. Runs on the request's own thread and may wait.
-using Handler = std::function<Response(const Call&)>;
+using Handler = std::function<Response(Call&)>;
 
 /// What logs and metrics learn about each answered request.
 struct Answered {
@@ -73,7 +73,7 @@ private:
     };
 
     const Route* find(const Request& request) const;
-    Response answer(const Route* route, const Call& call) const;
+    Response answer(const Route* route, Call& call) const;
     Response unrouted(const Request& request) const;
     Response observed(const Request& request, const Route* route, std::chrono::steady_clock::time_point start,
                       Response response) const;

@@ -1,67 +1,83 @@
-// One sum of bytes for all who hold some, and a wait for room in it.
+// The memory that requests take until they are answered: one sum, and which client gives way where it is too much.
 #pragma once
 
-#include <algorithm>
 #include <chrono>
 #include <condition_variable>
+#include <functional>
+#include <list>
+#include <map>
 #include <mutex>
+#include <string>
 #include <utility>
 
 namespace tunewright::server::http {
 
 class Budget {
 public:
-    explicit Budget(std::size_t bytes) : left_(bytes), whole_(bytes) {}
+    explicit Budget(std::size_t bytes) : most_(bytes) {}
 
-    /// Bytes that are held; given back when it goes.
+private:
+    struct Entry {
+        std::string client;
+        std::size_t bytes = 0;
+        std::function<void()> give_way;  ///< empty: its request has arrived, and keeps what it holds
+        bool leaving = false;            ///< has been asked to give way
+    };
+    using Place = std::list<Entry>::iterator;
+
+public:
+    /// What one request holds; given back when it goes.
     class Share {
     public:
         Share() = default;
         Share(Share&& other) noexcept { *this = std::move(other); }
         Share& operator=(Share&& other) noexcept {
             std::swap(budget_, other.budget_);
-            std::swap(bytes_, other.bytes_);
+            std::swap(place_, other.place_);
             return *this;
         }
         ~Share() {
-            if (budget_ != nullptr) budget_->give_back(bytes_);
+            if (budget_ != nullptr) budget_->close(place_);
+        }
+        /// Holds so many bytes more of a request that arrives; all of those have half of the whole. Where that is too
+        /// much it waits, while of the client that holds most the largest request that is still arriving gives way; if
+        /// that is the same client, to one of half its size or less. Small requests have room of their own, a quarter
+        /// more. False where there was no room within the time, or this one has been asked to give way itself.
+        bool grow(std::size_t bytes, std::chrono::milliseconds patience) {
+            return budget_->grow(*place_, bytes, patience);
+        }
+        /// The request is whole and gives no way from now on; it holds so many bytes more while it is answered, at most
+        /// half of the whole: where nothing else is being answered there is room for it. False likewise.
+        bool arrived(std::size_t more, std::chrono::milliseconds patience) {
+            budget_->keep(*place_);
+            return more == 0 || budget_->grow(*place_, more, patience);
         }
 
     private:
         friend class Budget;
-        Share(Budget& budget, std::size_t bytes) : budget_(&budget), bytes_(bytes) {}
+        Share(Budget& budget, Place place) : budget_(&budget), place_(place) {}
         Budget* budget_ = nullptr;
-        std::size_t bytes_ = 0;
+        Place place_;
     };
 
-    /// False where there was no room within the time. What is more than the whole counts as the whole.
-    bool take(std::size_t bytes, std::chrono::milliseconds patience, Share& share) {
-        bytes = std::min(bytes, whole_);
-        std::unique_lock lock(mutex_);
-        if (!freed_.wait_for(lock, patience, [&] { return left_ >= bytes; })) return false;
-        left_ -= bytes;
-        share = Share(*this, bytes);
-        return true;
-    }
-
-    std::size_t taken() const {
-        const std::lock_guard lock(mutex_);
-        return whole_ - left_;
-    }
+    /// A share of nothing yet. `give_way` is called once at most, from any thread and under a lock: it only tells the
+    /// one whose share it is.
+    Share open(std::string client, std::function<void()> give_way);
+    /// What all hold together.
+    std::size_t taken() const;
 
 private:
-    void give_back(std::size_t bytes) {
-        {
-            const std::lock_guard lock(mutex_);
-            left_ += bytes;
-        }
-        freed_.notify_all();
-    }
+    bool grow(Entry& entry, std::size_t bytes, std::chrono::milliseconds patience);
+    void keep(Entry& entry);
+    void close(Place place);
+    Entry* to_give_way(const std::string& client, std::size_t bytes);
 
+    const std::size_t most_;
     mutable std::mutex mutex_;
     std::condition_variable freed_;
-    std::size_t left_;
-    const std::size_t whole_;
+    std::list<Entry> entries_;
+    std::map<std::string, std::size_t, std::less<>> held_;  ///< by client; none is 0
+    std::size_t sum_ = 0;                                   ///< of all
 };
 
 }  // namespace tunewright::server::http

@@ -36,6 +36,7 @@ bool wait_for(int fd, short what, nanoseconds patience) {
 Connection::Connection(int fd, std::string client, std::string of_network, const Limits& limits)
     : address(std::move(client)),
       network(std::move(of_network)),
+      heard(Clock::now()),
       since(Clock::now()),
       moved(Clock::now()),
       fd_(fd),
@@ -57,6 +58,7 @@ bool Connection::receive(nanoseconds patience) {
         const ssize_t n = ::recv(fd_, piece.data(), piece.size(), long_wait ? 0 : MSG_DONTWAIT);
         if (n > 0) return in_.append(piece.data(), static_cast<std::size_t>(n)), true;
         if (n == 0 || (errno != EAGAIN && errno != EINTR)) return gone_ = true, false;
+        if (gives_way_) return false;
         if (!long_wait && !wait_for(fd_, POLLIN, end - Clock::now())) return false;
     }
 }
@@ -134,8 +136,12 @@ bool Connection::receive_body() {
     if (std::exchange(asks_first_, false) && !send("HTTP/1.1 100 Continue\r\n\r\n")) return fail(0, {});
     const auto start = Clock::now();
     const std::size_t before = in_.size();
-    if (!receive(patience_))
-        return fail(408, at_pace_ ? "The body arrives too slowly." : "The body did not arrive in time.");
+    heard = start;
+    receiving = true;
+    const bool came = receive(patience_);
+    receiving = false;
+    if (!came && gives_way_) return refuse_body("Others need the memory that this request takes; send it again later.");
+    if (!came) return fail(408, at_pace_ ? "The body arrives too slowly." : "The body did not arrive in time.");
     patience_ -= Clock::now() - start;
     come_ += in_.size() - before;
     if (!at_pace_ || come_ < limits_.pace_bytes) return true;
@@ -174,6 +180,7 @@ bool Connection::next_chunk() {
 
 bool Connection::drop_body() {
     if (left_ > kDroppedMost || (asks_first_ && !body_done())) return false;
+    patience_ = {};
     std::array<char, 4096> piece;
     for (std::size_t dropped = 0; !failed_ && !body_done() && dropped <= kDroppedMost;)
         dropped += static_cast<std::size_t>(std::max<ssize_t>(read(piece.data(), piece.size()), 0));
@@ -227,6 +234,7 @@ bool Connection::gone() {
 void Connection::linger() {
     ::shutdown(fd_, SHUT_WR);
     in_.clear();
+    gives_way_ = false;
     rest();
     std::size_t allowance = std::max(left_ <= kLingerBodyMost ? left_ : 0, kDroppedMost);
     const auto end = Clock::now() + limits_.lingering;
@@ -234,5 +242,11 @@ void Connection::linger() {
 }
 
 void Connection::cut_off() const { ::shutdown(fd_, SHUT_RDWR); }
+
+std::optional<Connection::Clock::time_point> Connection::waiting_since() const {
+    if (waiting) return since.load();
+    if (receiving) return heard.load();
+    return std::nullopt;
+}
 
 }  // namespace tunewright::server::http

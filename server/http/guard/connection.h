@@ -32,7 +32,9 @@ public:
     void start(const Head& head, std::string_view text);
     /// The body is gathered within `body_time`, or comes as it is read, at a pace.
     void expect_body(bool as_it_arrives);
-    /// Drops what is left of the body, if it is little and comes soon. False: some may still be on its way.
+    /// The body cannot be taken: 503 with this sentence. Always false.
+    bool refuse_body(std::string detail) { return fail(503, std::move(detail)); }
+    /// Drops what has come of the body. False: some is still on its way.
     bool drop_body();
     bool body_done() const { return left_ == 0 && !chunked_; }
     bool body_failed() const { return failed_; }
@@ -52,6 +54,10 @@ public:
     void linger();
     /// From any thread: wakes who waits on the socket.
     void cut_off() const;
+    /// From any thread: the rest of a body is refused within a second (kLook), as another needs the room.
+    void give_way() { gives_way_ = true; }
+    /// Since when it has waited for its client, for a head or for more of a body; nothing while it does not.
+    std::optional<Clock::time_point> waiting_since() const;
 
     ssize_t read(char* to, size_t size) override;
     ssize_t write(const char* from, size_t size) override;
@@ -65,6 +71,8 @@ public:
     const std::string network;             ///< the same, of IPv6 its first 64 bits, which is what one customer gets
     std::atomic<bool> waiting = true;      ///< for a head, or lingering: no request is under way
     std::atomic<bool> begun = false;       ///< and some of the head has come
+    std::atomic<bool> receiving = false;   ///< waits for more of a body
+    std::atomic<Clock::time_point> heard;  ///< when that wait began
     bool leaving = false;                  ///< gives way to another; of the guard
     std::atomic<Clock::time_point> since;  ///< when the wait, or else the request, began
     std::atomic<Clock::time_point> moved;  ///< when the client took something of an answer
@@ -101,8 +109,9 @@ private:
 
     std::string out_;
     bool gathers_ = true;
-    bool http_1_0_ = false;            ///< the client knows neither interim answers nor chunks
-    std::atomic<bool> asked_ = false;  ///< has been sent what shows whether it has gone
+    bool http_1_0_ = false;                ///< the client knows neither interim answers nor chunks
+    std::atomic<bool> asked_ = false;      ///< has been sent what shows whether it has gone
+    std::atomic<bool> gives_way_ = false;  ///< give_way()
     bool gone_ = false;
 };
 

@@ -9,8 +9,7 @@ namespace {
 
 constexpr std::size_t kPiece = 256 * 1024;
 constexpr std::size_t kChunk = 64 * 1024;
-constexpr std::size_t kCopies =
-    6;  // of a body, at the peak: itself, its JSON, its texts on the way to the store or back
+constexpr const char* kNoRoom = "Too many requests are being received; try again in a moment.";
 
 using HandlerResponse = httplib::Server::HandlerResponse;
 
@@ -88,6 +87,7 @@ void Exchange::take(httplib::Request& raw) {
     request_.remote_addr = connection_.address;
     taken_ = true;
     request_.left = [this] { return connection_.gone(); };
+    request_.give_back = [this] { share_ = {}; };
     // What is left is what the library routes by: whether there is a body, and our one handler of each method.
     raw.method = request_.method;
     raw.path = "/";
@@ -114,22 +114,27 @@ std::optional<Response> Exchange::refuse_early() {
     if (application_.admit) {
         if (auto refusal = application_.admit(request_)) return refusal;
     }
-    const bool chunked = head_.transfer == Head::Transfer::chunked;
-    const std::size_t arriving = chunked ? limits_.arriving : std::min(head_.content_length, limits_.arriving);
-    const std::size_t bytes = streamed_ ? arriving : kCopies * head_.content_length;
-    if (bytes > 0 && !bodies_.take(bytes, limits_.room, share_))
-        return refused(503, "Too many requests are being received; try again in a moment.");
     return std::nullopt;
 }
 
+/// Counts what has come of a body. What is read as it arrives is handed on, and held up to a limit.
+bool Exchange::count(std::size_t bytes) {
+    if (streamed_) bytes = std::min(bytes, limits_.arriving - std::min(limits_.arriving, come_));
+    come_ += bytes;
+    return share_.grow(bytes, limits_.room);
+}
+
 void Exchange::answer(httplib::Response& out, const httplib::ContentReader& body) {
+    const std::string& client = request_.client == connection_.address ? connection_.network : request_.client;
+    share_ = bodies_.open(client, [this] { connection_.give_way(); });
     // The library reads in small pieces; they are handed on when there are no more at hand.
     const auto read = [this, &body](const BodyTaker& take) {
         std::string piece;
         const auto pass_on = [&] { return piece.empty() || take(std::exchange(piece, {})); };
         const bool whole = body([&](const char* data, std::size_t size) {
             piece.append(data, size);
-            return (connection_.has_more() && piece.size() < kPiece) || pass_on();
+            if (connection_.has_more() && piece.size() < kPiece) return true;
+            return count(piece.size()) ? pass_on() : connection_.refuse_body(kNoRoom);
         });
         return whole && pass_on() && !connection_.body_failed();
     };
@@ -137,11 +142,13 @@ void Exchange::answer(httplib::Response& out, const httplib::ContentReader& body
     if (streamed_) {
         request_.read_body = read;
     } else {
-        request_.body.reserve(head_.content_length);
         whole = body([this](const char* data, std::size_t size) {
+            if (!count(size)) return connection_.refuse_body(kNoRoom);
             request_.body.append(data, size);
             return true;
         });
+        const std::size_t more = whole && application_.weight ? application_.weight(request_) : 0;
+        if (!share_.arrived(more, limits_.room)) whole = connection_.refuse_body(kNoRoom);
     }
     // The library sets a status of its own where it was not given the whole body.
     Response response = whole ? handled() : Response();

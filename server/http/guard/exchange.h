@@ -39,6 +39,7 @@ private:
     httplib::Server::HandlerResponse begin(httplib::Response& out);
     std::optional<Response> refuse_early();
     void answer(httplib::Response& out, const httplib::ContentReader& body);
+    bool count(std::size_t bytes);
     void finish(httplib::Response& out);
     Response handled();
     Response refused(int status, const std::string& detail);
@@ -54,8 +55,9 @@ private:
     const std::atomic<bool>& stopping_;
     Request request_;
     Budget::Share share_;
-    Answers::Share held_;  ///< the body of the answer; the library has it until the end of the exchange
-    bool taken_ = false;   ///< the library could read the head
+    std::size_t come_ = 0;  ///< of the body, as far as it is held
+    Answers::Share held_;   ///< the body of the answer; the library has it until the end of the exchange
+    bool taken_ = false;    ///< the library could read the head
     bool streamed_ = false;
     bool keep_;
 };

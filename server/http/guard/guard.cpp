@@ -165,18 +165,19 @@ void Server::Guard::thin_out() {
     make_room(std::ranges::max_element(neighbours_, {}, [](const auto& item) { return item.second.size(); })->second);
 }
 
-/// Cuts off the connection that has waited for a head for longest. A client sends its head at once: its connections are
-/// hardly ever among these but between two requests.
+/// Cuts off the connection that has waited for its client for longest. A client sends its head, and more of its body,
+/// at once: its connections are hardly ever among these but between two requests.
 bool Server::Guard::make_room(const Neighbours& among) {
-    Connection* oldest = nullptr;
-    for (Connection* connection : among)
-        if (connection->waiting && !connection->leaving &&
-            (oldest == nullptr || connection->since.load() < oldest->since.load()))
-            oldest = connection;
-    if (oldest == nullptr) return false;
-    oldest->leaving = true;
+    Connection* longest = nullptr;
+    Connection::Clock::time_point since;
+    for (Connection* connection : among) {
+        const auto own = connection->leaving ? std::nullopt : connection->waiting_since();
+        if (own && (longest == nullptr || *own < since)) longest = connection, since = *own;
+    }
+    if (longest == nullptr) return false;
+    longest->leaving = true;
     leaving_++;
-    oldest->cut_off();
+    longest->cut_off();
     return true;
 }
 

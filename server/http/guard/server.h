@@ -15,16 +15,15 @@ namespace tunewright::server::http {
 struct Limits {
     std::size_t max_body = 8 * 1024 * 1024;          ///< bytes of one body
     std::size_t max_batch_body = 256 * 1024 * 1024;  ///< bytes of one body that is read as it arrives
-    std::size_t bodies =
-        128 * 1024 * 1024;  ///< bytes for all requests that are not answered yet: six times those of a body
-    std::size_t arriving = 12 * 1024 * 1024;  ///< what a body that is read as it arrives counts for, at most
-    std::size_t unsent = 256 * 1024 * 1024;   ///< bytes of answers that clients have not taken; see Answers
-    std::size_t connections = 2048;           ///< beyond it the longest waiting one of whoever has the most gives way
-    std::size_t of_one_network = 512;         ///< an address, of IPv6 a /64; loopback and proxies have no such limit
-    bool behind_proxy = false;                ///< addresses are a proxy's
-    std::chrono::milliseconds idle{60'000};   ///< between two requests
-    std::chrono::milliseconds head{10'000};   ///< from the first byte of a request to the end of its head
-    std::chrono::milliseconds room{5'000};    ///< for room among `bodies`, before the body is read
+    std::size_t bodies = 128 * 1024 * 1024;          ///< bytes for all requests that are not answered yet; see Budget
+    std::size_t arriving = 6 * 1024 * 1024;          ///< what a body that is read as it arrives counts for, at most
+    std::size_t unsent = 256 * 1024 * 1024;          ///< bytes of answers that clients have not taken; see Answers
+    std::size_t connections = 2048;          ///< beyond it the longest waiting one of whoever has the most gives way
+    std::size_t of_one_network = 512;        ///< an address, of IPv6 a /64; loopback and proxies have no such limit
+    bool behind_proxy = false;               ///< addresses are a proxy's
+    std::chrono::milliseconds idle{60'000};  ///< between two requests
+    std::chrono::milliseconds head{10'000};  ///< from the first byte of a request to the end of its head
+    std::chrono::milliseconds room{5'000};   ///< for room among `bodies`
     std::chrono::milliseconds lingering{5'000};
     std::chrono::milliseconds stopping{2'000};  ///< for answers under way when the port is asked to stop
     std::chrono::milliseconds farewell{250};    ///< for requests that are on their way to us at that moment
@@ -40,6 +39,8 @@ struct Application {
     std::function<std::optional<Response>(Request&)> admit;
     /// True where the body is to be read as it arrives (Request::read_body). May be empty.
     std::function<bool(const Request&)> streams;
+    /// Bytes that a request takes while it is answered, beside its body, which is whole. May be empty: none.
+    std::function<std::size_t(const Request&)> weight;
     std::function<Response(Request)> handle;
     /// The answer to what never becomes a request (malformed, too large, too slow). Of the request it has what is
     /// known: where its head was refused, no more than the address and the fields Origin and X-Request-Id.

@@ -237,10 +237,22 @@ namespace {
 std::size_t sweep_state(Session& session, JobStatus status, UnixMs ended_before, std::size_t most) {
     const pqxx::result gone = session.run(
         "WITH due AS MATERIALIZED (SELECT seq FROM ended WHERE single AND status = $1 AND finished_at < $2 "
-        "ORDER BY finished_at LIMIT $3), e AS (DELETE FROM ended WHERE seq IN (SELECT seq FROM due)) "
-        "DELETE FROM jobs WHERE seq IN (SELECT seq FROM due) RETURNING seq",
+        "ORDER BY finished_at LIMIT $3), "
+        // One that waits again by now is not among those that have ended, and stays.
+        "gone AS (DELETE FROM ended WHERE seq IN (SELECT seq FROM due) RETURNING seq) "
+        "DELETE FROM jobs WHERE seq IN (SELECT seq FROM gone) RETURNING seq",
         Values().plain(std::string(to_string(status))).number(ended_before).number(static_cast<std::int64_t>(most)));
     return static_cast<std::size_t>(gone.size());
+}
+
+/// False where a job of it waits again by now.
+bool leave_if_over(Session& session, std::int64_t batch, UnixMs ended_before) {
+    const Values values = std::move(Values().number(batch).number(ended_before));
+    const pqxx::result over =
+        session.run("SELECT 1 FROM batches WHERE seq = $1 AND (state = 'leaving' OR ended_at < $2) FOR UPDATE", values);
+    if (over.empty()) return false;
+    leave(session, batch);
+    return true;
 }
 
 std::size_t sweep_batch(Work& work, UnixMs ended_before, std::size_t most) {
@@ -251,7 +263,7 @@ std::size_t sweep_batch(Work& work, UnixMs ended_before, std::size_t most) {
             "(SELECT seq FROM batches WHERE ended_at IS NOT NULL AND ended_at < $1 ORDER BY ended_at LIMIT 1) LIMIT 1",
             Values().number(ended_before)));
         if (!batch) return 0;
-        leave(work.session, *batch);
+        if (!leave_if_over(work.session, *batch, ended_before)) continue;
         if (const std::size_t gone = delete_entries(work, *batch, most); gone > 0) return gone;
     }
 }

@@ -53,7 +53,8 @@ Unsettled settle_batches(Session& session);
 
 // ---- deliveries and settings (deliveries.cpp)
 std::vector<Delivery> take_deliveries(Session& session, UnixMs now, std::chrono::milliseconds hold, std::size_t most);
-bool settle_delivery(Session& session, std::int64_t seq, UnixMs now, std::optional<std::chrono::milliseconds> pause);
+bool settle_delivery(Session& session, std::int64_t seq, UnixMs now, std::optional<std::chrono::milliseconds> pause,
+                     bool tried);
 bool pause_queue(Session& session, bool paused);
 
 }  // namespace tunewright::server::postgres

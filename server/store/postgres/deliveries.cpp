@@ -18,11 +18,12 @@ std::vector<Delivery> take_deliveries(Session& session, UnixMs now, std::chrono:
     return due;
 }
 
-bool settle_delivery(Session& session, std::int64_t seq, UnixMs now, std::optional<std::chrono::milliseconds> pause) {
+bool settle_delivery(Session& session, std::int64_t seq, UnixMs now, std::optional<std::chrono::milliseconds> pause,
+                     bool tried) {
     if (!pause) return session.run("DELETE FROM deliveries WHERE seq = $1", Values().number(seq)).affected_rows() > 0;
     return session
-               .run("UPDATE deliveries SET tries = tries + 1, due_at = $2 WHERE seq = $1",
-                    Values().number(seq).number(now + pause->count()))
+               .run("UPDATE deliveries SET tries = tries + $3, due_at = $2 WHERE seq = $1",
+                    Values().number(seq).number(now + pause->count()).number(tried ? 1 : 0))
                .affected_rows() > 0;
 }
 

@@ -220,6 +220,12 @@ RequeueEffect requeue_job(Session& session, const std::string& id) {
     // What could never be read cannot be computed either.
     if (!found->readable || !has_failed(session, found->seq)) return RequeueEffect::not_failed;
     if (found->batch_cancelled) return RequeueEffect::batch_cancelled;
+    // Held until the commit, so that nobody sweeps it meanwhile; who was earlier has it.
+    if (found->batch && session
+                            .run("SELECT 1 FROM batches WHERE seq = $1 AND state <> 'leaving' FOR UPDATE",
+                                 Values().number(*found->batch))
+                            .empty())
+        return RequeueEffect::none;
     static const std::string sql =
         "WITH gone AS (DELETE FROM ended WHERE seq = $1 AND status IN ('failed', 'cancelled') "
         "RETURNING seq, status, attempts), "

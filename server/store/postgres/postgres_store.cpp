@@ -50,6 +50,9 @@ public:
     std::optional<JobRecord> find(const std::string& id) override {
         return readers_.read([&](Session& session) { return find_record(session, id); });
     }
+    std::optional<JobState> job_of_key(const std::string& owner, const std::string& idempotency_key) override {
+        return readers_.read([&](Session& session) { return find_job_of_key(session, owner, idempotency_key); });
+    }
     std::vector<JobState> states(const std::vector<std::string>& ids) override {
         if (ids.empty()) return {};
         return readers_.read([&](Session& session) { return find_states(session, ids); });
@@ -158,10 +161,10 @@ public:
             kQuick, [=](Work& work) { return postgres::take_deliveries(work.session, now, hold, most); },
             std::move(done));
     }
-    void settle_delivery(std::int64_t seq, UnixMs now, std::optional<std::chrono::milliseconds> pause,
+    void settle_delivery(std::int64_t seq, UnixMs now, std::optional<std::chrono::milliseconds> pause, bool tried,
                          Done<bool> done) override {
         write<bool>(
-            kQuick, [=](Work& work) { return postgres::settle_delivery(work.session, seq, now, pause); },
+            kQuick, [=](Work& work) { return postgres::settle_delivery(work.session, seq, now, pause, tried); },
             std::move(done));
     }
 

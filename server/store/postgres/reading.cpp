@@ -196,46 +196,61 @@ std::vector<JobState> find_states(Session& session, const std::vector<std::strin
     return states;
 }
 
-namespace {
-
-/// The condition by which jobs of a state are found in few steps: few wait or run, and of those that have ended an
-/// index gives the newest of a state.
-std::string status_condition(JobStatus status, bool of_batch, const std::string& name) {
-    if (of_batch) return " AND " + kStatus + " = " + name;
-    if (status == JobStatus::queued) return " AND w.batch IS NULL AND " + name + " <> ''";
-    if (status == JobStatus::running) return " AND " + name + " <> ''";
-    return " AND e.single AND e.status = " + name;
+std::optional<JobState> find_job_of_key(Session& session, const std::string& owner, const std::string& key) {
+    static const std::string sql =
+        "SELECT " + kSummaryColumns + kJobTables + " WHERE j.owner = $1 AND j.idempotency_key = $2";
+    const pqxx::result rows = session.run(sql, Values().text(owner).text(key));
+    if (rows.empty()) return std::nullopt;
+    return read_state(rows[0]);
 }
 
-/// The number that orders the list, of the table by which jobs are found.
-std::string seq_of(const JobQuery& query) {
-    if (query.batch || !query.status) return "j.seq";
+namespace {
+
+/// True where the jobs are found by the table of their state: few wait or run, and of those that have ended an index
+/// gives the newest of a state. Entries of a batch that wait or run are found among all of it.
+bool found_by_state(const JobQuery& query) { return query.status && (!query.batch || has_ended(*query.status)); }
+
+std::string status_condition(const JobQuery& query, const std::string& name) {
+    if (!found_by_state(query)) return " AND " + kStatus + " = " + name;
+    if (*query.status == JobStatus::queued) return " AND w.batch IS NULL AND " + name + " <> ''";
+    if (*query.status == JobStatus::running) return " AND " + name + " <> ''";
+    return query.batch ? "" : " AND e.single AND e.status = " + name;
+}
+
+/// The number that orders the list, of the table by which jobs are found. The entries of a batch stand in the order of
+/// their index, which is that of their seq too.
+std::string order_of(const JobQuery& query) {
+    if (!found_by_state(query)) return query.batch ? "j.batch_index" : "j.seq";
     if (*query.status == JobStatus::queued) return "w.seq";
     return *query.status == JobStatus::running ? "r.seq" : "e.seq";
 }
 
-std::string tables_of(const JobQuery& query) {
-    if (query.batch || !query.status) return kJobTables;
+std::string tables_of(const JobQuery& query, const std::string& status) {
+    if (!found_by_state(query)) return kJobTables;
     if (*query.status == JobStatus::queued)
         return " FROM waiting w JOIN jobs j ON j.seq = w.seq" + kEnded + kRunning + kBatch;
     if (*query.status == JobStatus::running)
         return " FROM running r JOIN jobs j ON j.seq = r.seq" + kEnded + kWaiting + kBatch;
-    return " FROM ended e JOIN jobs j ON j.seq = e.seq" + kRunning + kWaiting + kBatch;
+    if (!query.batch) return " FROM ended e JOIN jobs j ON j.seq = e.seq" + kRunning + kWaiting + kBatch;
+    const std::string entry = "(SELECT seq FROM jobs WHERE batch = " + kBatchOfId + "$1) ORDER BY batch_index ";
+    // OFFSET 0 keeps the planner from looking at every entry of the batch instead.
+    return " FROM (SELECT * FROM ended WHERE NOT single AND status = " + status + " AND seq BETWEEN " + entry +
+           "LIMIT 1) AND " + entry +
+           "DESC LIMIT 1) ORDER BY seq DESC OFFSET 0) e CROSS JOIN LATERAL "
+           "(SELECT * FROM jobs WHERE seq = e.seq OFFSET 0) j" +
+           kRunning + kWaiting + kBatch;
 }
 
 }  // namespace
 
 JobPage list_jobs(Session& session, const JobQuery& query) {
-    // The entries of a batch stand in the order of their index, which is that of their seq too.
-    const std::string seq = seq_of(query);
-    Query sql("SELECT " + kSummaryColumns + tables_of(query));
-    if (query.batch)
-        sql += " WHERE j.batch = " + kBatchOfId + sql.text(*query.batch) + ")";
-    else
-        sql += " WHERE j.batch IS NULL";
-    if (query.status)
-        sql +=
-            status_condition(*query.status, query.batch.has_value(), sql.text(std::string(to_string(*query.status))));
+    const std::string order = order_of(query);
+    Query sql("SELECT " + kSummaryColumns);
+    const std::string batch = query.batch ? sql.text(*query.batch) : std::string();
+    const std::string status = query.status ? sql.text(std::string(to_string(*query.status))) : std::string();
+    sql += tables_of(query, status);
+    sql += query.batch ? " WHERE j.batch = " + kBatchOfId + batch + ")" : " WHERE j.batch IS NULL";
+    if (query.status) sql += status_condition(query, status);
     if (query.name) sql += " AND j.name = " + sql.text(*query.name) + (query.name->empty() ? "" : " AND j.name <> ''");
     if (query.owner)
         sql += " AND j.owner = " + sql.text(*query.owner) + (query.owner->empty() ? "" : " AND j.owner <> ''");
@@ -244,10 +259,12 @@ JobPage list_jobs(Session& session, const JobQuery& query) {
         sql += " AND (strpos(lower(j.name), " + part + ") > 0 OR strpos(j.id, " + part +
                ") > 0 OR strpos(e.outline::jsonb ->> 'method', " + part + ") > 0)";
     }
-    if (query.before_seq && query.batch)
-        sql += " AND j.batch_index < (SELECT batch_index FROM jobs WHERE seq = " + sql.number(*query.before_seq) + ")";
-    if (query.before_seq && !query.batch) sql += " AND " + seq + " < " + sql.number(*query.before_seq);
-    sql += " ORDER BY " + (query.batch ? "j.batch_index" : seq) + " DESC LIMIT " + sql.number(query.limit + 1);
+    if (query.before_seq) {
+        const std::string before = sql.number(*query.before_seq);
+        sql += " AND " + order + " < " +
+               (order == "j.batch_index" ? "(SELECT batch_index FROM jobs WHERE seq = " + before + ")" : before);
+    }
+    sql += " ORDER BY " + order + " DESC LIMIT " + sql.number(query.limit + 1);
     JobPage page;
     for (const pqxx::row& row : sql.run(session)) page.jobs.push_back(read_summary(row));
     page.more = page.jobs.size() > static_cast<std::size_t>(query.limit);

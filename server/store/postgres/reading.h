@@ -43,6 +43,7 @@ std::string text_of(const pqxx::field& field);
 std::optional<JobRecord> find_record(Session& session, const std::string& id);
 /// The states of those of the jobs that there are, in no particular order.
 std::vector<JobState> find_states(Session& session, const std::vector<std::string>& ids);
+std::optional<JobState> find_job_of_key(Session& session, const std::string& owner, const std::string& key);
 /// A page of jobs, newest first, as `query` asks for.
 JobPage list_jobs(Session& session, const JobQuery& query);
 struct Counted {

@@ -263,7 +263,10 @@ constexpr const char* kStep5 = R"sql(
 CREATE UNLOGGED TABLE server_life (id uuid NOT NULL, one boolean PRIMARY KEY DEFAULT true CHECK (one));
 )sql";
 
-constexpr std::array kSteps{kStep1, kStep2, kStep3, kStep4, kStep5};
+// Entries of a batch that ended in a state, which are few among many.
+constexpr const char* kStep6 = "CREATE INDEX ended_entries ON ended (status, seq) WHERE NOT single";
+
+constexpr std::array kSteps{kStep1, kStep2, kStep3, kStep4, kStep5, kStep6};
 
 [[noreturn]] void refuse(const std::string& sentence) { throw StoreError({StoreFault::Kind::unavailable, sentence}); }
 

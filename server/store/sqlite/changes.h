@@ -43,6 +43,7 @@ std::size_t sweep_slice(Connection& store, UnixMs now, const Retention& retentio
 bool pause_queue(Connection& store, bool paused);
 bool is_paused(Connection& store);
 std::vector<Delivery> take_deliveries(Connection& store, UnixMs now, std::chrono::milliseconds hold, std::size_t most);
-bool settle_delivery(Connection& store, std::int64_t seq, UnixMs now, std::optional<std::chrono::milliseconds> pause);
+bool settle_delivery(Connection& store, std::int64_t seq, UnixMs now, std::optional<std::chrono::milliseconds> pause,
+                     bool tried);
 
 }  // namespace tunewright::server

@@ -21,7 +21,7 @@ std::optional<UnixMs> Connection::Use::moment(int column) const {
 }
 
 Connection::Connection(const std::string& path, int flags) : database_(path, flags) {
-    database_.setBusyTimeout(5000);
+    wait_for_others(kUsualWait);
     database_.exec("PRAGMA foreign_keys = ON");
 }
 

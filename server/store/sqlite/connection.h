@@ -3,6 +3,7 @@
 
 #include <SQLiteCpp/SQLiteCpp.h>
 
+#include <chrono>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -12,6 +13,8 @@
 #include "server/store/store.h"
 
 namespace tunewright::server {
+
+constexpr std::chrono::milliseconds kUsualWait{5000};
 
 class Connection {
 public:
@@ -58,6 +61,10 @@ public:
     /// The only value of the only row.
     std::int64_t number(std::string_view sql);
     SQLite::Database& database() { return database_; }
+    /// How long a statement waits for other connections.
+    void wait_for_others(std::chrono::milliseconds patience) {
+        database_.setBusyTimeout(static_cast<int>(patience.count()));
+    }
 
 private:
     SQLite::Database database_;

@@ -19,10 +19,11 @@ std::vector<Delivery> take_deliveries(Connection& store, UnixMs now, std::chrono
     return due;
 }
 
-bool settle_delivery(Connection& store, std::int64_t seq, UnixMs now, std::optional<std::chrono::milliseconds> pause) {
+bool settle_delivery(Connection& store, std::int64_t seq, UnixMs now, std::optional<std::chrono::milliseconds> pause,
+                     bool tried) {
     if (!pause) return store.use("DELETE FROM deliveries WHERE seq = ?1").with(seq).run() > 0;
-    return store.use("UPDATE deliveries SET tries = tries + 1, due_at = ?2 WHERE seq = ?1")
-               .with(seq, now + pause->count())
+    return store.use("UPDATE deliveries SET tries = tries + ?3, due_at = ?2 WHERE seq = ?1")
+               .with(seq, now + pause->count(), tried ? 1 : 0)
                .run() > 0;
 }
 

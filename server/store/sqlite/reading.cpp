@@ -134,12 +134,25 @@ std::vector<JobState> find_states(Connection& store, const std::vector<std::stri
     return states;
 }
 
+std::optional<JobState> find_job_of_key(Connection& store, const std::string& owner, const std::string& key) {
+    static const std::string sql =
+        "SELECT " + kSummaryColumns + kJobTables + " WHERE j.owner = ?1 AND j.idempotency_key = ?2";
+    Connection::Use row = store.use(sql);
+    if (!row.with(owner, key).next()) return std::nullopt;
+    return read_state(row);
+}
+
 namespace {
+
+/// True where the jobs are found by the table of their state: few wait or run, and of those that have ended an index
+/// gives the newest of a state. Entries of a batch that wait are found among all of it.
+bool found_by_state(const JobQuery& query) {
+    return query.status && !(query.batch && *query.status == JobStatus::queued);
+}
 
 /// The tables with the one first by which few jobs are found.
 std::string tables_of(const JobQuery& query) {
-    if (query.batch || !query.status) return kJobTables;
-    // Few wait or run; of those that have ended an index gives the newest of a state.
+    if (!found_by_state(query)) return kJobTables;
     std::string tables = kJobTables;
     const auto first = [&](const std::string& join, const std::string& table) {
         tables.replace(tables.find(join), join.size(), "");
@@ -155,25 +168,30 @@ std::string tables_of(const JobQuery& query) {
     return tables;
 }
 
-/// The number that orders the list, of the table by which jobs are found.
-std::string seq_of(const JobQuery& query) {
-    if (query.batch || !query.status) return "j.seq";
+/// The number that orders the list, of the table by which jobs are found. The entries of a batch stand in the order of
+/// their index, which is that of their seq too.
+std::string order_of(const JobQuery& query) {
+    if (!found_by_state(query)) return query.batch ? "j.batch_index" : "j.seq";
     if (*query.status == JobStatus::queued) return "w.seq";
     return *query.status == JobStatus::running ? "r.seq" : "e.seq";
 }
 
 /// "" where the table says it.
 std::string status_condition(const JobQuery& query) {
-    if (query.batch) return " AND " + kStatus + " = ?2";
+    if (!found_by_state(query)) return " AND " + kStatus + " = ?2";
     if (*query.status == JobStatus::queued) return " AND w.batch IS NULL";
-    return has_ended(*query.status) ? " AND e.single AND e.status = ?2" : "";
+    const std::string ended = has_ended(*query.status) ? " AND e.status = ?2" : "";
+    if (!query.batch) return ended.empty() ? "" : " AND e.single" + ended;
+    const std::string entry =
+        "(SELECT seq FROM jobs WHERE batch = (SELECT seq FROM batches WHERE id = ?1) ORDER BY batch_index ";
+    return (ended.empty() ? "" : " AND NOT e.single" + ended) + " AND " + order_of(query) + " BETWEEN " + entry +
+           "LIMIT 1) AND " + entry + "DESC LIMIT 1)";
 }
 
 }  // namespace
 
 JobPage list_jobs(Connection& store, const JobQuery& query) {
-    // The entries of a batch stand in the order of their index, which is that of their seq too.
-    const std::string seq = seq_of(query);
+    const std::string order = order_of(query);
     std::string sql = "SELECT " + kSummaryColumns + tables_of(query);
     sql += query.batch ? " WHERE j.batch = (SELECT seq FROM batches WHERE id = ?1 AND state <> 'leaving')"
                        : " WHERE j.batch IS NULL";
@@ -186,10 +204,9 @@ JobPage list_jobs(Connection& store, const JobQuery& query) {
             " AND (instr(lower(j.name), lower(?7)) > 0 OR instr(j.id, lower(?7)) > 0 OR "
             "instr(json_extract(e.outline, '$.method'), lower(?7)) > 0)";
     if (query.before_seq)
-        sql += query.batch ? " AND j.batch_index < (SELECT batch_index FROM jobs WHERE seq = ?5)"
-                           : " AND " + seq + " < ?5";
-    sql += query.batch ? " ORDER BY j.batch_index DESC" : " ORDER BY " + seq + " DESC";
-    sql += " LIMIT ?6";
+        sql +=
+            " AND " + order + (order == "j.batch_index" ? " < (SELECT batch_index FROM jobs WHERE seq = ?5)" : " < ?5");
+    sql += " ORDER BY " + order + " DESC LIMIT ?6";
     Connection::Use row = store.use(sql);
     const std::string status(query.status ? to_string(*query.status) : "");
     if (query.batch) row.bind(1, *query.batch);

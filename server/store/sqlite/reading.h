@@ -35,6 +35,7 @@ BatchSummary read_batch(const Connection::Use& row);
 std::optional<JobRecord> find_record(Connection& store, const std::string& id);
 /// The states of those of the jobs that there are, in no particular order.
 std::vector<JobState> find_states(Connection& store, const std::vector<std::string>& ids);
+std::optional<JobState> find_job_of_key(Connection& store, const std::string& owner, const std::string& key);
 /// A page of jobs, newest first, as `query` asks for.
 JobPage list_jobs(Connection& store, const JobQuery& query);
 /// How many single jobs, and how many entries of batches, wait.

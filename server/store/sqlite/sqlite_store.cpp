@@ -1,5 +1,7 @@
 #include "server/store/open_store.h"
 
+#include <cerrno>
+#include <condition_variable>
 #include <filesystem>
 #include <future>
 #include <limits>
@@ -11,12 +13,15 @@
 #include "server/store/sqlite/changes.h"
 #include "server/store/sqlite/file.h"
 #include "server/store/sqlite/reading.h"
+#include "server/store/sqlite/reserve.h"
 #include "server/store/sqlite/writer.h"
 
 namespace tunewright::server {
 namespace {
 
 constexpr UnixMs kEver = std::numeric_limits<UnixMs>::max();
+constexpr std::size_t kOpening = 256 << 10;                       // bytes that opening may take
+constexpr std::size_t kReaders = 8;                               // connections for reading
 constexpr const char* kPageCache = "PRAGMA cache_size = -16384";  // KiB; the default of 2 MiB thrashes in long queues
 
 /// The file is locked.
@@ -33,13 +38,16 @@ void bring_up_to_date(SQLite::Database& database, SchemaSteps steps) {
 
 class SqliteStore : public JobStore {
 public:
-    SqliteStore(const std::string& path, SchemaSteps steps) : path_(path), lock_(path), connection_(open_file(path)) {
+    SqliteStore(const std::string& path, SchemaSteps steps)
+        : path_(path), lock_(path), reserve_(path), connection_(open_file(path)) {
         connection_.database().exec("PRAGMA journal_mode = WAL");
         // Debian's library writes zeros over each page that it frees, which is most of what deleting costs.
         connection_.database().exec("PRAGMA secure_delete = FAST");
         connection_.database().exec(kPageCache);
         bring_up_to_date(connection_.database(), steps);
-        writer_ = std::make_unique<SqliteWriter>(connection_);
+        connection_.database().tryExec("PRAGMA wal_checkpoint(TRUNCATE)");
+        reserve_.fill();
+        writer_ = std::make_unique<SqliteWriter>(connection_, reserve_);
     }
 
     ~SqliteStore() override {
@@ -59,6 +67,9 @@ public:
     std::vector<JobState> states(const std::vector<std::string>& ids) override {
         return read([&](Connection& store) { return find_states(store, ids); });
     }
+    std::optional<JobState> job_of_key(const std::string& owner, const std::string& idempotency_key) override {
+        return read([&](Connection& store) { return find_job_of_key(store, owner, idempotency_key); });
+    }
     JobPage list(const JobQuery& query) override {
         return read([&](Connection& store) { return list_jobs(store, query); });
     }
@@ -68,7 +79,7 @@ public:
         const std::size_t bytes = job.request.size();
         write<Accepted>(
             kDurable, [job = std::move(job)](Connection& store) { return accept_job(store, job); }, std::move(done),
-            bytes);
+            bytes, Kind::job);
     }
     void claim(Claim claim, Done<std::vector<JobRecord>> done) override {
         // Not waiting for the disk: after a power cut the job is queued again, which is where it belongs anyway.
@@ -106,7 +117,8 @@ public:
     }
     void remove(std::string id, Done<RemoveEffect> done) override {
         write<RemoveEffect>(
-            kDurable, [id = std::move(id)](Connection& store) { return remove_job(store, id); }, std::move(done));
+            kDurable, [id = std::move(id)](Connection& store) { return remove_job(store, id); }, std::move(done), 0,
+            Kind::gives_room);
     }
 
     void open_batch(NewBatch batch, Done<bool> done) override {
@@ -116,7 +128,7 @@ public:
                 server::open_batch(store, batch);
                 return true;
             },
-            std::move(done));
+            std::move(done), 0, Kind::job);
     }
     void add_entries(std::string batch, std::vector<NewEntry> entries, UnixMs now, Done<bool> done) override {
         std::size_t bytes = 0;
@@ -126,7 +138,7 @@ public:
             [batch = std::move(batch), entries = std::move(entries), now](Connection& store) {
                 return server::add_entries(store, batch, entries, now);
             },
-            std::move(done), bytes);
+            std::move(done), bytes, Kind::job);
     }
     void seal_batch(BatchSeal seal, Done<Sealed> done) override { slices_.seal(std::move(seal), std::move(done)); }
     void drop_batch(std::string batch, Done<bool> done) override { slices_.drop(std::move(batch), std::move(done)); }
@@ -146,10 +158,10 @@ public:
             kQuick, [=](Connection& store) { return server::take_deliveries(store, now, hold, most); },
             std::move(done));
     }
-    void settle_delivery(std::int64_t seq, UnixMs now, std::optional<std::chrono::milliseconds> pause,
+    void settle_delivery(std::int64_t seq, UnixMs now, std::optional<std::chrono::milliseconds> pause, bool tried,
                          Done<bool> done) override {
         write<bool>(
-            kQuick, [=](Connection& store) { return server::settle_delivery(store, seq, now, pause); },
+            kQuick, [=](Connection& store) { return server::settle_delivery(store, seq, now, pause, tried); },
             std::move(done));
     }
 
@@ -170,10 +182,11 @@ public:
 private:
     /// Idle: bulky, and not waiting for the disk: after a power cut it is done again.
     enum Manner { kDurable, kQuick, kBulky, kIdle };
+    using Kind = SqliteWriter::Change::Kind;
 
     /// Queues `work`, which stores texts of so many bytes, for the writer and passes its value on after the commit.
     template <class T, class Work>
-    void write(Manner manner, Work work, Done<T> done, std::size_t bytes = 0) {
+    void write(Manner manner, Work work, Done<T> done, std::size_t bytes = 0, Kind kind = Kind::usual) {
         auto value = std::make_shared<T>();
         SqliteWriter::Change change;
         change.apply = [value, work = std::move(work)](Connection& store) { *value = work(store); };
@@ -183,6 +196,7 @@ private:
         change.durable = manner == kDurable || manner == kBulky;
         change.bulky = manner == kBulky || manner == kIdle;
         change.bytes = bytes;
+        change.kind = kind;
         writer_->submit(std::move(change));
     }
 
@@ -190,7 +204,9 @@ private:
     template <class T, class Work>
     T write_now(Work work) {
         std::promise<Outcome<T>> promise;
-        write<T>(kBulky, std::move(work), [&](Outcome<T> outcome) { promise.set_value(std::move(outcome)); });
+        write<T>(
+            kBulky, std::move(work), [&](Outcome<T> outcome) { promise.set_value(std::move(outcome)); }, 0,
+            Kind::gives_room);
         Outcome<T> outcome = promise.get_future().get();
         if (const auto* fault = std::get_if<StoreFault>(&outcome)) throw StoreError(*fault);
         return std::get<T>(std::move(outcome));
@@ -198,33 +214,53 @@ private:
 
     template <class Work>
     std::invoke_result_t<Work, Connection&> read(Work work) {
-        std::unique_ptr<Connection> reader;
-        {
-            const std::lock_guard lock(readers_mutex_);
-            if (!readers_.empty()) {
-                reader = std::move(readers_.back());
-                readers_.pop_back();
-            }
-        }
         try {
-            if (!reader) reader = std::make_unique<Connection>(path_, SQLite::OPEN_READONLY);
-            auto value = work(*reader);
-            const std::lock_guard lock(readers_mutex_);
-            readers_.push_back(std::move(reader));
-            return value;
+            Reader reader(*this);
+            return work(reader.get());
         } catch (const SQLite::Exception& error) {
             throw StoreError(fault_of(error));
         }
     }
 
+    /// One of the connections for reading, when one is free; a new one while there are few.
+    struct Reader {
+        explicit Reader(SqliteStore& store) : store(store) {
+            std::unique_lock lock(store.readers_mutex_);
+            store.reader_free_.wait(lock, [&] { return store.reading_ < kReaders; });
+            store.reading_++;
+            if (store.readers_.empty()) return;
+            connection = std::move(store.readers_.back());
+            store.readers_.pop_back();
+        }
+        ~Reader() {
+            {
+                const std::lock_guard lock(store.readers_mutex_);
+                store.reading_--;
+                if (connection) store.readers_.push_back(std::move(connection));
+            }
+            store.reader_free_.notify_one();
+        }
+        Reader(const Reader&) = delete;
+        Reader& operator=(const Reader&) = delete;
+        Connection& get() {
+            if (!connection) connection = std::make_unique<Connection>(store.path_, SQLite::OPEN_READONLY);
+            return *connection;
+        }
+        SqliteStore& store;
+        std::unique_ptr<Connection> connection;
+    };
+
     std::string path_;
     FileLock lock_;
+    Reserve reserve_;
     Connection connection_;
     std::mutex readers_mutex_;
+    std::condition_variable reader_free_;
+    std::size_t reading_ = 0;
     std::vector<std::unique_ptr<Connection>> readers_;
     std::unique_ptr<SqliteWriter> writer_;
     Slices<Connection> slices_{[this](std::function<void(Connection&)> apply, Slices<Connection>::Finished done) {
-        writer_->submit({std::move(apply), std::move(done), true, true});
+        writer_->submit({std::move(apply), std::move(done), true, true, 0, Kind::gives_room});
     }};
 };
 
@@ -266,7 +302,17 @@ void SqliteStore::reclaim(Reclaim what, Done<Recovery> done) {
 std::unique_ptr<JobStore> open_sqlite_store(const std::string& path, SchemaSteps steps) {
     return opening(path, [&] {
         make_folder(path);
-        return std::make_unique<SqliteStore>(path, steps);
+        for (;;) {
+            errno = 0;
+            try {
+                return std::make_unique<SqliteStore>(path, steps);
+            } catch (const SQLite::Exception& error) {
+                // What it lacks may be room for the files beside it, which it reports in many ways.
+                StoreFault fault = fault_of(error, errno);
+                if (room_of(path).left < kOpening) fault.kind = StoreFault::Kind::full;
+                if (fault.kind != StoreFault::Kind::full || !Reserve(path).release()) throw StoreError(fault);
+            }
+        }
     });
 }
 

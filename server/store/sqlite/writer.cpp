@@ -11,6 +11,7 @@
 
 #include "server/log.h"
 #include "server/store/sqlite/connection.h"
+#include "server/store/sqlite/reserve.h"
 
 namespace tunewright::server {
 namespace {
@@ -19,7 +20,12 @@ namespace {
 constexpr std::size_t kLargestGroup = 256;
 constexpr std::chrono::milliseconds kProbePause{500};
 constexpr std::chrono::seconds kQuiet{30};
-constexpr std::size_t kRow = 4096;  // what a change without texts may take
+constexpr std::chrono::milliseconds kShortWait{20};
+constexpr std::chrono::seconds kLook{1};  // whether the file is still there
+constexpr std::size_t kRow = 4096;        // what a change without texts may take
+constexpr std::int64_t kFewPages = 256;   // of 4 KiB, free within the file
+const StoreFault kMoved{StoreFault::Kind::unavailable,
+                        "its file was removed or replaced while it was open; put it back, or start again"};
 
 }  // namespace
 
@@ -35,7 +41,8 @@ StoreFault fault_of(const std::exception& error, int system_error) {
     return fault;
 }
 
-SqliteWriter::SqliteWriter(Connection& connection) : connection_(connection), thread_([this] { work(); }) {}
+SqliteWriter::SqliteWriter(Connection& connection, Reserve& reserve)
+    : connection_(connection), reserve_(reserve), thread_([this] { work(); }) {}
 
 SqliteWriter::~SqliteWriter() { stop(); }
 
@@ -59,10 +66,7 @@ void SqliteWriter::submit(Change change) {
 std::vector<SqliteWriter::Change> SqliteWriter::next_group() {
     std::unique_lock lock(mutex_);
     const auto ready = [this] { return stopping_ || !quick_.empty() || !waiting_.empty() || !bulky_.empty(); };
-    if (healthy_)
-        changed_.wait(lock, ready);
-    else
-        changed_.wait_for(lock, kProbePause, ready);
+    changed_.wait_for(lock, healthy_ ? std::chrono::milliseconds(kLook) : kProbePause, ready);
     std::vector<Change> group;
     // What need not wait for the disk goes ahead, by itself: a claim that was put into a group with others would keep a
     // worker waiting for their results. Every other group is theirs, whatever comes.
@@ -90,6 +94,7 @@ void SqliteWriter::work() {
         } else {
             probe();
         }
+        if (!healthy_ || !reserve_.filled()) refill();
     }
 }
 
@@ -99,6 +104,8 @@ bool SqliteWriter::stopping() {
 }
 
 void SqliteWriter::probe() {
+    if (has_moved()) return failed(kMoved, 0);
+    if (healthy_) return;
     // Writes a page, and leaves everything as it is.
     std::vector<Change> nothing(1);
     nothing[0].apply = [](Connection& store) {
@@ -128,7 +135,7 @@ void SqliteWriter::failed(const StoreFault& fault, std::size_t bytes) {
 }
 
 void SqliteWriter::worked(std::size_t bytes) {
-    if (healthy_) return;
+    if (healthy_ || is_scarce()) return;
     const bool quiet = std::chrono::steady_clock::now() - failed_at_ > kQuiet;
     if (bytes < awaited_ && !quiet && !has_room(awaited_)) return;
     awaited_ = 0;
@@ -153,7 +160,54 @@ void SqliteWriter::write_group(std::vector<Change>& group) {
     }
 }
 
+/// The path leads to another file, or to none: what is written now would be gone with the process.
+bool SqliteWriter::has_moved() {
+    int moved = 0;
+    const int asked = sqlite3_file_control(connection_.database().getHandle(), "main", SQLITE_FCNTL_HAS_MOVED, &moved);
+    return asked == SQLITE_OK && moved != 0;
+}
+
+/// Neither the disk nor the file itself has much room left.
+bool SqliteWriter::is_scarce() {
+    return reserve_.is_scarce() && connection_.number("PRAGMA freelist_count") < kFewPages;
+}
+
+/// Where there is little room: what the log of changes has grown by goes back to the disk, and the reserve is taken
+/// again. Where the tables must grow for it half of the reserve helps; another program may be quicker to take that.
+void SqliteWriter::refill() {
+    const auto now = std::chrono::steady_clock::now();
+    if (now - refilled_at_ < kProbePause) return;
+    refilled_at_ = now;
+    connection_.wait_for_others(kShortWait);
+    const auto shorten_log = [this] { return connection_.database().tryExec("PRAGMA wal_checkpoint(TRUNCATE)"); };
+    // Where somebody reads it is done later.
+    if (shorten_log() != SQLITE_OK && reserve_.release(false)) shorten_log();
+    connection_.wait_for_others(kUsualWait);
+    reserve_.fill();
+}
+
 std::optional<StoreFault> SqliteWriter::try_commit(std::vector<Change>& group, std::size_t first, std::size_t count) {
+    const auto begin = group.begin() + static_cast<std::ptrdiff_t>(first);
+    const auto any = [&](Change::Kind kind) {
+        return std::any_of(begin, begin + static_cast<std::ptrdiff_t>(count),
+                           [kind](const Change& change) { return change.kind == kind; });
+    };
+    if (has_moved()) return kMoved;
+    const bool needs_room = any(Change::Kind::job);
+    if (needs_room && is_scarce()) refill();
+    if (needs_room && is_scarce())
+        return StoreFault{StoreFault::Kind::full, "the disk is nearly full; what is left is for jobs that are there"};
+    auto fault = commit(group, first, count);
+    if (!fault || fault->kind != StoreFault::Kind::full) return fault;
+    refilled_at_ = {};  // at once: what was tried has filled the log, and others would take what has become free
+    if (count == 1 && any(Change::Kind::gives_room) && reserve_.release()) {
+        if (healthy_) log_info("the disk of the store is full: the room that was kept for deleting is given away");
+        fault = commit(group, first, count);
+    }
+    return fault;
+}
+
+std::optional<StoreFault> SqliteWriter::commit(std::vector<Change>& group, std::size_t first, std::size_t count) {
     const auto begin = group.begin() + static_cast<std::ptrdiff_t>(first);
     const auto end = begin + static_cast<std::ptrdiff_t>(count);
     errno = 0;  // SQLite's own record of it does not outlive the rollback

@@ -20,6 +20,7 @@
 namespace tunewright::server {
 
 class Connection;
+class Reserve;
 
 class SqliteWriter {
 public:
@@ -35,9 +36,12 @@ public:
         bool bulky = false;
         /// Of the texts that it stores.
         std::size_t bytes = 0;
+        /// A new job needs room for its result too, so that it is refused while the disk has little left; what gives
+        /// room back may use the reserve.
+        enum class Kind { usual, job, gives_room } kind = Kind::usual;
     };
 
-    explicit SqliteWriter(Connection& connection);
+    SqliteWriter(Connection& connection, Reserve& reserve);
     /// Makes everything durable that was asked for, then joins.
     ~SqliteWriter();
     SqliteWriter(const SqliteWriter&) = delete;
@@ -60,11 +64,16 @@ private:
     std::vector<Change> next_group();
     void write_group(std::vector<Change>& group);
     std::optional<StoreFault> try_commit(std::vector<Change>& group, std::size_t first, std::size_t count);
+    std::optional<StoreFault> commit(std::vector<Change>& group, std::size_t first, std::size_t count);
+    bool has_moved();
+    bool is_scarce();
+    void refill();
     void failed(const StoreFault& fault, std::size_t bytes);
     void worked(std::size_t bytes);
     bool has_room(std::size_t bytes);
 
     Connection& connection_;
+    Reserve& reserve_;
     std::optional<bool> waits_for_disk_;  ///< how the connection is set, once it is
     std::mutex mutex_;
     std::condition_variable changed_;
@@ -75,7 +84,7 @@ private:
     bool stopping_ = false;
     std::atomic<bool> healthy_ = true;
     std::size_t awaited_ = 0;  ///< bytes of the largest change that has found no room since it was healthy
-    std::chrono::steady_clock::time_point failed_at_;
+    std::chrono::steady_clock::time_point failed_at_, refilled_at_;
     std::jthread thread_;
 };
 

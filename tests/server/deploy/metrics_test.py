@@ -17,7 +17,7 @@ from service import FOPDT, QUICK, ROOT, Service
 RULES = ROOT / "deploy" / "prometheus" / "rules.yaml"
 DASHBOARD = ROOT / "deploy" / "grafana" / "tunewright.json"
 # Long enough to be seen, and to keep the one worker from the next.
-SLOW = {"plant": FOPDT, "tune": [{"method": "all"}], "evaluate": {"points": 20000}}
+SLOW = {"plant": FOPDT, "tune": [{"method": "all"}], "evaluate": {"points": 1500}}
 # Written only when something has gone wrong.
 OF_FAULTS = {"tunewright_store_faults_total"}
 

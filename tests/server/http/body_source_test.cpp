@@ -221,9 +221,9 @@ TEST(BodySource, AGatheredBodyThatDoesNotComeIs408) {
     EXPECT_THAT(client.read_all(), StartsWith("HTTP/1.1 408"));
 }
 
-TEST(BodySource, BodiesBeyondTheBudgetAreRefusedBeforeTheyAreRead) {
+TEST(BodySource, BodiesBeyondTheBudgetAreRefusedAndALengthAloneTakesNothing) {
     Limits limits;
-    limits.bodies = 6'000'000;
+    limits.bodies = 1'000'000;
     limits.room = 50ms;
     std::promise<void> held, go;
     Loopback server(
@@ -233,10 +233,15 @@ TEST(BodySource, BodiesBeyondTheBudgetAreRefusedBeforeTheyAreRead) {
             return read_all(request);
         },
         limits);
+    std::vector<std::unique_ptr<Client>> silent;
+    for (int i = 0; i < 5; i++) {
+        silent.push_back(std::make_unique<Client>(server));
+        silent.back()->send(post("Content-Length: 900000\r\n"));
+    }
     Client first(server), second(server), small(server);
     first.send(post("Content-Length: 700000\r\n") + std::string(700'000, 'x'));
     held.get_future().wait();
-    second.send(post("Content-Length: 700000\r\nExpect: 100-continue\r\n"));
+    second.send(post("Content-Length: 700000\r\n") + std::string(700'000, 'x'));
     const std::string refused = second.read_all();
     EXPECT_THAT(refused, StartsWith("HTTP/1.1 503"));
     EXPECT_THAT(refused, HasSubstr("Retry-After: "));

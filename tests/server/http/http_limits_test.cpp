@@ -40,12 +40,13 @@ TEST(Unsent, AnswersThatNobodyTakesGoTheOldestFirst) {
     EXPECT_THAT(other.read_to("small"), EndsWith("small"));
 }
 
-/// Connections that have sent one byte of a request.
-std::vector<std::unique_ptr<Client>> begun(const Loopback& server, std::size_t count, std::uint32_t from) {
+/// Connections that have sent so much of a request.
+std::vector<std::unique_ptr<Client>> begun(const Loopback& server, std::size_t count, std::uint32_t from,
+                                           const std::string& bytes) {
     std::vector<std::unique_ptr<Client>> clients;
     for (std::size_t i = 0; i < count; i++) {
         clients.push_back(std::make_unique<Client>(server, 0, from));
-        clients.back()->send("G");
+        clients.back()->send(bytes);
     }
     return clients;
 }
@@ -55,20 +56,23 @@ bool is_served(Client& client) {
     return client.read_to("small").ends_with("small");
 }
 
-TEST(Connections, UnfinishedHeadsOfWhoeverHasTheMostGiveWay) {
-    Limits limits;
-    limits.connections = 20;
-    Loopback server(answer, limits);
-    Client idle(server, 0, 3);
-    EXPECT_TRUE(is_served(idle));
-    // Three times as many as there is room for: those of this address push each other out, and nobody else.
-    const auto crowd = begun(server, 60, 2);
-    for (int i = 0; i < 20; i++) {
-        Client other(server, 0, 4);
-        EXPECT_TRUE(is_served(other));
+TEST(Connections, UnfinishedRequestsOfWhoeverHasTheMostGiveWay) {
+    const std::string head = "POST /small HTTP/1.1\r\nHost: x\r\nContent-Length: 9\r\n\r\n";
+    for (const std::string& sent : {std::string("G"), head, head + "body"}) {
+        Limits limits;
+        limits.connections = 20;
+        Loopback server(answer, limits);
+        Client idle(server, 0, 3);
+        EXPECT_TRUE(is_served(idle));
+        // Three times as many as there is room for: those of this address push each other out, and nobody else.
+        const auto crowd = begun(server, 60, 2, sent);
+        for (int i = 0; i < 20; i++) {
+            Client other(server, 0, 4);
+            EXPECT_TRUE(is_served(other)) << sent;
+        }
+        EXPECT_TRUE(is_served(idle)) << sent;
+        EXPECT_EQ(crowd.front()->read_all(), "") << sent;
     }
-    EXPECT_TRUE(is_served(idle));
-    EXPECT_EQ(crowd.front()->read_all(), "");
 }
 
 }  // namespace

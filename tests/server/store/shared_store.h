@@ -59,6 +59,9 @@ public:
     }
     std::optional<JobRecord> find(const std::string& id) override { return store_.find(id); }
     std::vector<JobState> states(const std::vector<std::string>& ids) override { return store_.states(ids); }
+    std::optional<JobState> job_of_key(const std::string& owner, const std::string& key) override {
+        return store_.job_of_key(owner, key);
+    }
     JobPage list(const JobQuery& query) override { return store_.list(query); }
     QueueDepth depth() override { return store_.depth(); }
     void pause(bool paused, Done<bool> done) override {
@@ -159,9 +162,9 @@ public:
                          Done<std::vector<Delivery>> done) override {
         write(done, [&] { store_.take_deliveries(now, hold, most, done); });
     }
-    void settle_delivery(std::int64_t seq, UnixMs now, std::optional<std::chrono::milliseconds> pause,
+    void settle_delivery(std::int64_t seq, UnixMs now, std::optional<std::chrono::milliseconds> pause, bool tried,
                          Done<bool> done) override {
-        write(done, [&] { store_.settle_delivery(seq, now, pause, done); });
+        write(done, [&] { store_.settle_delivery(seq, now, pause, tried, done); });
     }
 
 private:

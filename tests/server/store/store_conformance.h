@@ -242,7 +242,7 @@ protected:
         return completed<std::vector<Delivery>>([&](auto done) { store_->take_deliveries(at, hold, most, done); });
     }
     bool settle(std::int64_t seq, UnixMs at = 0, std::optional<Milliseconds> pause = std::nullopt) {
-        return completed<bool>([&](auto done) { store_->settle_delivery(seq, at, pause, done); });
+        return completed<bool>([&](auto done) { store_->settle_delivery(seq, at, pause, true, done); });
     }
     /// Ids of the jobs and batches whose ends are to be told; they are, and nothing is left.
     Ids tell() {

@@ -171,8 +171,8 @@ class SqliteTest(unittest.TestCase):
         self.fill(DATA / "fourth_version.sql")
         done = migrate("sqlite:" + self.path)
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertRegex(done.stdout, r"The schema is at step 5; it was at 4\.")
-        self.assertRegex(migrate("sqlite:" + self.path).stdout, "it was at 5")
+        self.assertRegex(done.stdout, r"The schema is at step 6; it was at 4\.")
+        self.assertRegex(migrate("sqlite:" + self.path).stdout, "it was at 6")
 
     def test_one_that_was_killed_is_done_again(self):
         self.fill(DATA / "fourth_version.sql")

@@ -1,0 +1,82 @@
+// Who gives way where requests take more memory than there is for all.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <thread>
+#include <vector>
+
+#include "server/http/guard/budget.h"
+
+namespace tunewright::server::http {
+namespace {
+
+using namespace std::chrono_literals;
+
+TEST(Budget, TheLargestArrivingRequestOfWhoHoldsMostGivesWay) {
+    Budget budget(200);
+    std::atomic<int> asked = 0;
+    Budget::Share small = budget.open("greedy", [&] { asked = 1; });
+    Budget::Share large = budget.open("greedy", [&] { asked = 2; });
+    Budget::Share whole = budget.open("greedy", [&] { asked = 3; });
+    ASSERT_TRUE(small.grow(10, 0ms) && large.grow(30, 0ms) && whole.grow(40, 0ms) && whole.arrived(0, 0ms));
+    Budget::Share other = budget.open("modest", [] {});
+    std::thread leaves([&] {
+        while (asked == 0) std::this_thread::sleep_for(1ms);
+        EXPECT_FALSE(large.grow(1, 0ms)) << "it has been asked to give way";
+        large = {};
+    });
+    EXPECT_TRUE(other.grow(30, 5s));
+    leaves.join();
+    EXPECT_EQ(asked, 2);
+    EXPECT_EQ(budget.taken(), 80U);
+}
+
+TEST(Budget, WhoHoldsMostWaitsForItsOwnUnlessOneIsTwiceAsLarge) {
+    Budget budget(200);
+    std::atomic<bool> asked = false;
+    const auto ask = [&] { asked = true; };
+    Budget::Share first = budget.open("greedy", ask);
+    Budget::Share second = budget.open("greedy", ask);
+    Budget::Share other = budget.open("modest", ask);
+    ASSERT_TRUE(first.grow(60, 0ms) && other.grow(30, 0ms));
+    EXPECT_FALSE(second.grow(31, 10ms));
+    EXPECT_FALSE(asked);
+    std::thread ends([&] {
+        while (!asked) std::this_thread::sleep_for(1ms);
+        first = {};
+    });
+    EXPECT_TRUE(second.grow(20, 5s)) << "a stalled large body would keep its own client's small ones from coming";
+    ends.join();
+}
+
+TEST(Budget, RequestsThatWaitToBeAnsweredLeaveRoomForOneThatIs) {
+    Budget budget(200);
+    std::vector<Budget::Share> all;
+    for (int i = 0; i < 5; ++i) {
+        all.push_back(budget.open("one", [] {}));
+        ASSERT_TRUE(all.back().grow(20, 0ms));
+    }
+    EXPECT_TRUE(all[0].arrived(1000, 0ms)) << "more than half of the whole counts as half";
+    EXPECT_FALSE(all[1].arrived(50, 0ms));
+    all[0] = {};
+    EXPECT_TRUE(all[1].arrived(50, 0ms));
+}
+
+TEST(Budget, SmallRequestsHaveRoomWhoeverFillsTheRest) {
+    Budget budget(51'200);
+    Budget::Share large = budget.open("greedy", [] {});
+    ASSERT_TRUE(large.grow(30'000, 0ms) && large.arrived(30'000, 0ms));
+    std::vector<Budget::Share> small;
+    for (int i = 0; i < 128; ++i) {
+        small.push_back(budget.open("greedy", [] {}));
+        EXPECT_TRUE(small.back().grow(100, 0ms));
+    }
+    EXPECT_FALSE(small.front().grow(1, 0ms));
+    EXPECT_EQ(budget.taken(), 51'200U + 12'800U);
+    small.clear();
+    large = {};
+    EXPECT_EQ(budget.taken(), 0U);
+}
+
+}  // namespace
+}  // namespace tunewright::server::http

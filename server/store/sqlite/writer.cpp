@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <new>
 #include <string>
 #include <utility>
 
@@ -26,6 +27,15 @@ constexpr std::size_t kRow = 4096;        // what a change without texts may tak
 constexpr std::int64_t kFewPages = 256;   // of 4 KiB, free within the file
 const StoreFault kMoved{StoreFault::Kind::unavailable,
                         "its file was removed or replaced while it was open; put it back, or start again"};
+
+/// Does it; where there is no memory for it, the thread goes on all the same.
+template <class Work>
+void survive(Work work) {
+    try {
+        work();
+    } catch (const std::bad_alloc&) {
+    }
+}
 
 }  // namespace
 
@@ -63,11 +73,10 @@ void SqliteWriter::submit(Change change) {
     changed_.notify_one();
 }
 
-std::vector<SqliteWriter::Change> SqliteWriter::next_group() {
+void SqliteWriter::next_group(std::vector<Change>& group) {
     std::unique_lock lock(mutex_);
     const auto ready = [this] { return stopping_ || !quick_.empty() || !waiting_.empty() || !bulky_.empty(); };
     changed_.wait_for(lock, healthy_ ? std::chrono::milliseconds(kLook) : kProbePause, ready);
-    std::vector<Change> group;
     // What need not wait for the disk goes ahead, by itself: a claim that was put into a group with others would keep a
     // worker waiting for their results. Every other group is theirs, whatever comes.
     std::deque<Change>& first = !quick_.empty() && !std::exchange(quick_went_, true) ? quick_ : waiting_;
@@ -81,20 +90,18 @@ std::vector<SqliteWriter::Change> SqliteWriter::next_group() {
         group.push_back(std::move(bulky_.front()));
         bulky_.pop_front();
     }
-    return group;
 }
 
 void SqliteWriter::work() {
+    std::vector<Change> group;
+    group.reserve(kLargestGroup + 1);  // now: what has been taken over is not lost where memory runs out
     for (;;) {
-        std::vector<Change> group = next_group();
-        if (!group.empty()) {
-            write_group(group);
-        } else if (stopping()) {
-            return;
-        } else {
-            probe();
-        }
-        if (!healthy_ || !reserve_.filled()) refill();
+        next_group(group);
+        if (group.empty() && stopping()) return;
+        if (group.empty()) survive([this] { probe(); });
+        write_group(group);
+        group.clear();
+        if (!healthy_ || !reserve_.filled()) survive([this] { refill(); });
     }
 }
 
@@ -144,19 +151,23 @@ void SqliteWriter::worked(std::size_t bytes) {
 }
 
 void SqliteWriter::write_group(std::vector<Change>& group) {
+    if (group.empty()) return;
     const auto size_of = [](const Change& change) { return change.bytes + kRow; };
+    const auto answer = [](Change& change, const std::optional<StoreFault>& fault) {
+        survive([&] { change.done(fault); });
+    };
     if (!try_commit(group, 0, group.size())) {
         std::size_t bytes = 0;
         for (const Change& change : group) bytes += size_of(change);
-        worked(bytes);
-        for (Change& change : group) change.done(std::nullopt);
+        survive([&] { worked(bytes); });
+        for (Change& change : group) answer(change, std::nullopt);
         return;
     }
     // Somebody's change cannot be made: each alone, so that the others are not lost with it.
     for (std::size_t i = 0; i < group.size(); i++) {
         const std::optional<StoreFault> fault = try_commit(group, i, 1);
-        fault ? failed(*fault, size_of(group[i])) : worked(size_of(group[i]));
-        group[i].done(fault);
+        survive([&] { fault ? failed(*fault, size_of(group[i])) : worked(size_of(group[i])); });
+        answer(group[i], fault);
     }
 }
 
@@ -187,6 +198,15 @@ void SqliteWriter::refill() {
 }
 
 std::optional<StoreFault> SqliteWriter::try_commit(std::vector<Change>& group, std::size_t first, std::size_t count) {
+    try {
+        return commit_where_room(group, first, count);
+    } catch (const std::bad_alloc&) {
+        return StoreFault{StoreFault::Kind::unavailable, "no memory"};
+    }
+}
+
+std::optional<StoreFault> SqliteWriter::commit_where_room(std::vector<Change>& group, std::size_t first,
+                                                          std::size_t count) {
     const auto begin = group.begin() + static_cast<std::ptrdiff_t>(first);
     const auto any = [&](Change::Kind kind) {
         return std::any_of(begin, begin + static_cast<std::ptrdiff_t>(count),

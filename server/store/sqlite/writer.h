@@ -60,10 +60,11 @@ private:
     /// While nothing can be written and nobody asks: whether it can be again.
     void probe();
     bool stopping();
-    /// Empty when it is time to stop or to probe.
-    std::vector<Change> next_group();
+    /// Left empty when it is time to stop or to probe.
+    void next_group(std::vector<Change>& group);
     void write_group(std::vector<Change>& group);
     std::optional<StoreFault> try_commit(std::vector<Change>& group, std::size_t first, std::size_t count);
+    std::optional<StoreFault> commit_where_room(std::vector<Change>& group, std::size_t first, std::size_t count);
     std::optional<StoreFault> commit(std::vector<Change>& group, std::size_t first, std::size_t count);
     bool has_moved();
     bool is_scarce();

@@ -28,6 +28,12 @@ private:
     std::filesystem::path path_;
 };
 
+/// In memory where that can be: a disk would take minutes to make durable what these tests write.
+inline std::string scratch() {
+    const bool memory = std::filesystem::is_directory("/dev/shm");
+    return memory ? "/dev/shm" : std::filesystem::temp_directory_path().string();
+}
+
 /// Runs statements; the first column of the last row, "" if there is none. Throws what SQLite says.
 inline std::string run_sqlite(const std::string& file, const std::string& sql) {
     sqlite3* opened = nullptr;

@@ -1,6 +1,9 @@
 #include "tests/server/store/faulty/disk.h"
 
+#include <algorithm>
 #include <cstring>
+#include <fstream>
+#include <iterator>
 
 namespace tunewright::server {
 
@@ -10,6 +13,7 @@ FaultyDisk* FaultyDisk::now_ = nullptr;
 struct FaultyDisk::File {
     sqlite3_file head;
     sqlite3_io_methods methods;
+    const char* path;  ///< SQLite keeps it for as long as the file is open; null for temporary ones
 
     sqlite3_file* real() { return reinterpret_cast<sqlite3_file*>(this + 1); }
 };
@@ -19,6 +23,7 @@ FaultyDisk::FaultyDisk() : real_(sqlite3_vfs_find(nullptr)), own_(*real_) {
     own_.zName = "faulty";
     own_.szOsFile = static_cast<int>(sizeof(File)) + real_->szOsFile;
     own_.xOpen = &FaultyDisk::open;
+    own_.xDelete = &FaultyDisk::remove;
     sqlite3_vfs_register(&own_, 1);
 }
 
@@ -51,6 +56,11 @@ int FaultyDisk::open(sqlite3_vfs*, sqlite3_filename name, sqlite3_file* opened, 
     std::memset(static_cast<void*>(file), 0, sizeof(File));
     const int result = now_->real_->xOpen(now_->real_, name, file->real(), flags, out);
     if (file->real()->pMethods == nullptr) return result;
+    file->path = name;
+    if (name != nullptr) {
+        const std::lock_guard lock(now_->mutex_);
+        if (!now_->images_.contains(name)) load(name, now_->images_[name]);
+    }
     constexpr std::size_t head = sizeof(File);
     sqlite3_io_methods& m = file->methods;
     m.iVersion = file->real()->pMethods->iVersion;
@@ -96,28 +106,99 @@ int FaultyDisk::open(sqlite3_vfs*, sqlite3_filename name, sqlite3_file* opened, 
     return result;
 }
 
-int FaultyDisk::write(sqlite3_file* opened, const void* bytes, int count, sqlite3_int64 at) {
-    sqlite3_file* real = file_of(opened)->real();
-    switch (now_->next()) {
-        case Fault::none: return real->pMethods->xWrite(real, bytes, count, at);
-        case Fault::short_write: real->pMethods->xWrite(real, bytes, count / 2, at); return SQLITE_IOERR_WRITE;
-        case Fault::full: real->pMethods->xWrite(real, bytes, count / 2, at); return SQLITE_FULL;
-        default: return SQLITE_IOERR_WRITE;
+int FaultyDisk::remove(sqlite3_vfs*, const char* path, int sync_folder) {
+    {
+        const std::lock_guard lock(now_->mutex_);
+        now_->images_.erase(path);
     }
+    return now_->real_->xDelete(now_->real_, path, sync_folder);
+}
+
+int FaultyDisk::write(sqlite3_file* opened, const void* bytes, int count, sqlite3_int64 at) {
+    File* file = file_of(opened);
+    const Fault fault = now_->next();
+    const int written = fault == Fault::none                                  ? count
+                        : fault == Fault::short_write || fault == Fault::full ? count / 2
+                                                                              : 0;
+    int result = SQLITE_OK;
+    if (written > 0) result = file->real()->pMethods->xWrite(file->real(), bytes, written, at);
+    now_->note(file, {at, std::string(static_cast<const char*>(bytes), static_cast<std::size_t>(written)), false});
+    if (fault == Fault::none) return result;
+    return fault == Fault::full ? SQLITE_FULL : SQLITE_IOERR_WRITE;
 }
 
 int FaultyDisk::truncate(sqlite3_file* opened, sqlite3_int64 size) {
-    sqlite3_file* real = file_of(opened)->real();
+    File* file = file_of(opened);
     if (now_->next() != Fault::none) return SQLITE_IOERR_TRUNCATE;
-    return real->pMethods->xTruncate(real, size);
+    const int result = file->real()->pMethods->xTruncate(file->real(), size);
+    now_->note(file, {size, "", true});
+    return result;
 }
 
 int FaultyDisk::sync(sqlite3_file* opened, int flags) {
-    sqlite3_file* real = file_of(opened)->real();
+    File* file = file_of(opened);
     if (now_->next() != Fault::none) return SQLITE_IOERR_FSYNC;
-    const int result = real->pMethods->xSync(real, flags);
-    if (now_->synced_) now_->synced_();
+    const int result = file->real()->pMethods->xSync(file->real(), flags);
+    now_->made_durable(file);
     return result;
+}
+
+// ---- power
+
+void FaultyDisk::after_each(std::function<void()> called) {
+    const std::lock_guard lock(mutex_);
+    called_ = std::move(called);
+}
+
+void FaultyDisk::load(const std::string& path, Image& image) {
+    std::ifstream file(path, std::ios::binary);
+    image.durable.assign(std::istreambuf_iterator<char>(file), {});
+}
+
+void FaultyDisk::apply(const Change& change, std::string& image) {
+    const auto at = static_cast<std::size_t>(change.at);
+    if (change.truncates) return image.resize(at);
+    image.resize(std::max(image.size(), at + change.bytes.size()));
+    image.replace(at, change.bytes.size(), change.bytes);
+}
+
+void FaultyDisk::note(const File* file, Change change) {
+    std::function<void()> called;
+    {
+        const std::lock_guard lock(mutex_);
+        if (file->path == nullptr) return;
+        images_[file->path].since.push_back(std::move(change));
+        called = called_;
+    }
+    if (called) called();
+}
+
+void FaultyDisk::made_durable(const File* file) {
+    std::function<void()> called;
+    {
+        const std::lock_guard lock(mutex_);
+        if (file->path == nullptr) return;
+        Image& image = images_[file->path];
+        for (const Change& change : image.since) apply(change, image.durable);
+        image.since.clear();
+        called = called_;
+    }
+    if (called) called();
+}
+
+void FaultyDisk::lose_power(const std::filesystem::path& folder, const std::function<bool()>& survives) {
+    constexpr std::size_t sector = 512;
+    const std::lock_guard lock(mutex_);
+    for (const auto& [path, image] : images_) {
+        std::string left = image.durable;
+        for (const Change& change : image.since) {
+            if (change.truncates && survives()) apply(change, left);
+            for (std::size_t at = 0; at < change.bytes.size(); at += sector)
+                if (survives())
+                    apply({change.at + static_cast<std::int64_t>(at), change.bytes.substr(at, sector), false}, left);
+        }
+        std::ofstream(folder / std::filesystem::path(path).filename(), std::ios::binary) << left;
+    }
 }
 
 }  // namespace tunewright::server

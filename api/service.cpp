@@ -95,13 +95,16 @@ std::variant<PreparedJob, Problem> prepared_as(const Description<Request>& contr
     auto& request = std::get<Request>(decoded);
     const bool given = value.contains("timeout_s");
     if (given && request.timeout_s > limits.longest_timeout_s) return timeout_too_long(request.timeout_s, limits);
+    if (auto problem = refuse_far(request.not_before)) return *std::move(problem);
     const bool typed = spell_plants(value, request);
     PreparedJob job{.name = request.name.value_or(""),
                     .timeout_s = given ? request.timeout_s : limits.default_timeout_s,
                     .request_json = typed ? value.dump() : text(),
                     .request_hash = {},
                     .notify = request.notify,
-                    .low_priority = request.low_priority};
+                    .low_priority = request.low_priority,
+                    .not_before = request.not_before,
+                    .unique = request.unique};
     leave_out_terms(value);
     job.request_hash = sha256_hex(canonical(value));
     keep_decoded(job, std::move(request));

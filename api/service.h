@@ -25,6 +25,8 @@ struct PreparedJob {
     std::string request_hash;           ///< of the canonical request without the terms it is run on, hexadecimal
     std::optional<Notify> notify = {};  ///< whom to tell of its end
     bool low_priority = false;
+    std::optional<std::int64_t> not_before = {};  ///< its time, ms since 1970, UTC
+    bool unique = false;                          ///< an earlier job of the same hash will do
     /// Decoded, for a run in this process: one of the two; both null for a batch's entry.
     std::shared_ptr<const JobRequest> request = {};
     std::shared_ptr<const RangeRequest> range = {};

@@ -28,6 +28,7 @@ struct Config {
     // Jobs
     std::size_t queue_limit = 10'000;     ///< single jobs that may wait
     std::size_t entry_limit = 1'000'000;  ///< entries of batches that may wait
+    std::size_t client_jobs = 0;          ///< single jobs of one client that may wait or run; 0: no limit
     int max_attempts = 10;
     double lease_s = 10;
     double retention_s = 7 * 86400;  ///< 0: without limit

@@ -158,6 +158,7 @@ private:
         made.workers = parse_role(config.role) == Role::api ? 0 : workers(config);
         made.queue_limit = config.queue_limit;
         made.entry_limit = config.entry_limit;
+        made.client_jobs = config.client_jobs;
         made.most_attempts = config.max_attempts;
         made.lease = std::chrono::milliseconds(static_cast<std::int64_t>(config.lease_s * 1e3));
         made.retention = retention_of(config);
@@ -176,8 +177,9 @@ private:
             if (job.batch.empty() && job.request.find("\"notify\"") != std::string::npos) notifier_.wake();
         };
         made.observer.dropped = [this] { metrics_.count_dropped(); };
+        made.observer.limited = [this] { metrics_.count_limited(); };
         made.observer.begun = [this](const JobRecord& job) {
-            metrics_.count_begun(!job.batch.empty(), std::max(0.0, static_cast<double>(now() - job.created_at) * 1e-3));
+            metrics_.count_begun(!job.batch.empty(), std::max(0.0, static_cast<double>(now() - ready_at(job)) * 1e-3));
         };
         made.observer.recovered = [this](const Recovery& found) { metrics_.count(found); };
         return made;

@@ -210,6 +210,8 @@ const Description<JobRequest>& job_contract() {
                 "Time allowed for the job; it fails with type timeout after it.", {.unit = "s"})
             .field("priority", &JobRequest::low_priority, choice<bool>({{"normal", false}, {"low", true}}),
                    "low: it takes its turn among the entries of batches, after single jobs of normal priority.")
+            .field("not_before", &JobRequest::not_before, maybe(moment()), kNotBeforeSentence)
+            .field("unique", &JobRequest::unique, boolean(), kUniqueSentence)
             .field("notify", &JobRequest::notify, maybe(object(notify_contract())),
                    "Whom to tell when the job has ended.")
             .check_presence([](const Json& value, JobRequest& request, Reader& reader) {

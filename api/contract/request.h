@@ -29,6 +29,8 @@ struct JobRequest {
     double timeout_s = 60;
     std::optional<Notify> notify;
     bool low_priority = false;
+    std::optional<std::int64_t> not_before;  ///< ms since 1970, UTC
+    bool unique = false;
     ReadRecord read;                             ///< of `record`
     std::optional<built::Build> build;           ///< of `implement`
     std::optional<built::Build> baseline_build;  ///< of `baseline_settings`

@@ -1,5 +1,9 @@
 #include "api/contract/terms.h"
 
+#include <chrono>
+#include <cmath>
+
+#include "api/csv/time_stamp.h"
 #include "api/describe/body.h"
 
 namespace tunewright::api {
@@ -26,6 +30,40 @@ const Description<Notify>& notify_contract() {
     return description;
 }
 
+Codec<std::int64_t> moment() {
+    Codec<std::int64_t> codec;
+    codec.read = [](const Json& value, std::int64_t& target, Reader& reader) {
+        const auto rule = "a time such as \"2026-05-04T06:00:00Z\"";
+        if (!value.is_string()) return reader.fault(wrong_kind(value, rule, reader));
+        const auto& text = value.get_ref<const std::string&>();
+        // Year first: of other dates the order is a guess.
+        const bool iso = text.size() > 4 && text.find_first_not_of("0123456789") >= 4;
+        const auto stamp = iso ? read_time_stamp(text) : std::nullopt;
+        if (stamp && stamp->has_date && stamp->has_clock && stamp->has_zone) {
+            target = std::llround(stamp->seconds * 1e3);
+            return;
+        }
+        const bool known = stamp && stamp->has_date && stamp->has_clock;
+        reader.fault(reader.name() + " is " +
+                     Json(text.substr(0, 48)).dump(-1, ' ', false, Json::error_handler_t::replace) +
+                     (known ? ", which has no zone; end it with Z for UTC or with an offset such as +02:00."
+                            : "; it must be " + std::string(rule) + " (ISO 8601 with a zone)."));
+    };
+    codec.schema = [](SchemaBook&) { return Json{{"type", "string"}, {"format", "date-time"}}; };
+    return codec;
+}
+
+std::optional<Problem> refuse_far(const std::optional<std::int64_t>& not_before) {
+    using std::chrono::milliseconds;
+    const auto latest = std::chrono::system_clock::now() + std::chrono::days(kMaxDaysAhead);
+    if (!not_before || milliseconds(*not_before) <= latest.time_since_epoch()) return std::nullopt;
+    Reader reader;
+    reader.fault_at("not_before", "not_before is more than " + std::to_string(kMaxDaysAhead) +
+                                      " days ahead, the longest that a job may wait for its time. Give an earlier "
+                                      "time, or post the job later.");
+    return reader.problem();
+}
+
 std::variant<Notify, Problem> read_notify(std::string_view json) {
     auto parsed = parse(json);
     if (const auto* problem = std::get_if<Problem>(&parsed)) return *problem;
@@ -42,6 +80,8 @@ std::variant<Notify, Problem> read_notify(std::string_view json) {
 void leave_out_terms(Json& request) {
     request.erase("notify");
     request.erase("priority");
+    request.erase("not_before");
+    request.erase("unique");
 }
 
 std::optional<Problem> refuse_terms_of_entry(const Json& request) {
@@ -54,6 +94,11 @@ std::optional<Problem> refuse_terms_of_entry(const Json& request) {
     if (const auto at = request.find("priority"); at != request.end() && *at == "normal")
         reader.fault_at("priority",
                         "priority is \"normal\", which no entry of a batch has: leave it out, or post the job alone.");
+    for (const char* name : {"not_before", "unique"})
+        if (request.contains(name))
+            reader.fault_at(name, std::string(name) +
+                                      " stands in an entry, but only a job that is posted alone can "
+                                      "have it: leave it out, or post the job with POST /v1/jobs.");
     return reader.problem();
 }
 

@@ -85,6 +85,10 @@ void add_job_options(CLI::App& app, Config& config) {
     option(app, "entry-limit", config.entry_limit, "Entries of batches that may wait; more are answered 429")
         ->check(CLI::Range(1, 100'000'000))
         ->capture_default_str();
+    option(app, "client-jobs", config.client_jobs,
+           "Single jobs of one key or address that may wait or run; more are answered 429; 0: no limit")
+        ->check(CLI::Range(0, 10'000'000))
+        ->capture_default_str();
     option(app, "max-attempts", config.max_attempts, "Interruptions after which a job fails")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();

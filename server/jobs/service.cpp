@@ -15,6 +15,9 @@ using Stop = HeldJob::Stop;
 
 constexpr std::chrono::seconds kStopPatience{2};
 
+// A header cannot give it: the space in front would be cut off.
+constexpr const char* kUniqueKey = " unique ";
+
 /// As the store has it now.
 JobRecord record_of(const Ended& ended) {
     JobRecord job = ended.held->job;
@@ -65,17 +68,21 @@ Recovery JobService::start() {
 
 void JobService::submit(Order order, std::function<void(Submission)> done, WaitEnd ended) {
     if (draining_) return done({Submission::Kind::draining, {}, {}});
+    if (order.job.unique) order.idempotency_key = kUniqueKey + order.job.request_hash;
     if (!depth_.reserve()) return done(submission_of_key(order));
     NewJob job;
     job.id = new_id();
     job.name = std::move(order.job.name);
     job.timeout_s = order.job.timeout_s;
     job.request_hash = std::move(order.job.request_hash);
+    job.unique = order.job.unique;
     job.idempotency_key = std::move(order.idempotency_key);
+    job.client_limit = settings_.client_jobs;
     job.owner = std::move(order.owner);
     job.flow = std::move(order.flow);
     job.origin = std::move(order.origin);
     job.created_at = settings_.now();
+    if (order.job.not_before.value_or(0) > job.created_at) job.not_before = order.job.not_before;
     job.priority = order.job.low_priority ? Priority::low : Priority::normal;
     job.notify = target_of(order.job.notify);
     auto request = std::make_shared<std::string>(order.job.request_json);
@@ -96,6 +103,10 @@ void JobService::submit(Order order, std::function<void(Submission)> done, WaitE
             depth_.refused();
             const bool same = value.kind == Accepted::Kind::existing;
             submission.kind = same ? Submission::Kind::existing : Submission::Kind::conflict;
+            if (value.kind == Accepted::Kind::too_many) {
+                submission.kind = Submission::Kind::too_many;
+                if (settings_.observer.limited) settings_.observer.limited();
+            }
             return done(std::move(submission));
         }
         depth_.accepted();
@@ -118,7 +129,8 @@ Submission JobService::submission_of_key(const Order& order) {
     if (order.idempotency_key.empty()) return full;
     try {
         const std::optional<JobState> known = store_.job_of_key(order.owner, order.idempotency_key);
-        if (!known) return full;
+        const bool again = order.job.unique && known && transition(known->status, JobEvent::requeue);
+        if (!known || again) return full;
         Submission submission;
         const bool same = known->request_hash == order.job.request_hash;
         submission.kind = same ? Submission::Kind::existing : Submission::Kind::conflict;

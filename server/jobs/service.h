@@ -33,6 +33,7 @@ struct JobObserver {
     std::function<void(const Ended& ended)> ended;  ///< once for each job that a worker ended, when the store has it
     std::function<void()> dropped;  ///< a result came too late: another process has the job, or had ended it
     std::function<void(const JobRecord& job)> begun;       ///< a worker begins with it
+    std::function<void()> limited;                         ///< a client has as many jobs under way as it may
     std::function<void(const Recovery& found)> recovered;  ///< jobs whose process had gone, at the start and later
 };
 
@@ -41,6 +42,7 @@ struct JobSettings {
     std::size_t workers = 1;              ///< 0: this process takes requests and computes nothing
     std::size_t queue_limit = 10'000;     ///< single jobs that may wait, all processes together
     std::size_t entry_limit = 1'000'000;  ///< entries of batches that may wait
+    std::size_t client_jobs = 0;          ///< single jobs of one client that may wait or run; 0: any number
     int most_attempts = 10;               ///< a job that was interrupted that often is given up
     std::chrono::milliseconds lease{10'000};
     /// How often the store is looked at for what other processes have done, notices or none.
@@ -54,7 +56,7 @@ struct JobSettings {
 };
 
 struct Submission {
-    enum class Kind { created, existing, conflict, queue_full, draining, store_failed };
+    enum class Kind { created, existing, conflict, queue_full, too_many, draining, store_failed };
     Kind kind = Kind::store_failed;
     JobRecord job;     ///< of created and existing (the latter without request and result)
     StoreFault fault;  ///< of store_failed
@@ -134,6 +136,7 @@ public:
     /// Seconds after which a full queue has room again, from the pace of the latest jobs: 1 to 60.
     int seconds_until_room() const;
 
+    std::size_t client_jobs() const { return settings_.client_jobs; }
     bool draining() const { return draining_; }
     /// Jobs accepted and not yet running, those being accepted included.
     std::size_t queued() const { return depth_.now().single + depth_.now().entries; }

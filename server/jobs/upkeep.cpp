@@ -44,6 +44,12 @@ std::chrono::milliseconds JobService::tend() {
 
 std::chrono::milliseconds JobService::look() {
     const auto now = HeldJob::Clock::now();
+    store_.start_due(settings_.now(), [this](Outcome<std::size_t> outcome) {
+        if (const auto* fault = std::get_if<StoreFault>(&outcome))
+            outage_.failed("no job can be started at its time", *fault);
+        else if (std::get<std::size_t>(outcome) > 0)
+            claims_.arrived();
+    });
     try {
         if (now >= next_depth_) {
             depth_.refresh(store_);

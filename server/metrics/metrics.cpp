@@ -103,6 +103,8 @@ struct Metrics::Families {
                                                        "Calls that the store could not do, by operation");
     Counter& dropped = counter("tunewright_jobs_dropped_total",
                                "Results that came too late: the job's lease had gone to another process");
+    Counter& limited = counter("tunewright_client_limit_refusals_total",
+                               "Jobs refused because their client has --client-jobs of them that wait or run");
     Counter& interrupted =
         counter("tunewright_jobs_interrupted_total", "Jobs found running without a process, which wait again");
     Counter& given_up =
@@ -189,6 +191,8 @@ void Metrics::count_store(std::string_view operation, double seconds, bool done)
 }
 
 void Metrics::count_dropped() { families_->dropped.Increment(); }
+
+void Metrics::count_limited() { families_->limited.Increment(); }
 
 void Metrics::count_begun(bool entry_of_batch, double waited_s) {
     (entry_of_batch ? families_->entry_wait : families_->single_wait).Observe(waited_s);

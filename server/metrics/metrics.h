@@ -38,6 +38,7 @@ public:
     /// `method` as in api::JobOutcome.
     void count(JobStatus status, const std::string& method, double seconds);
     void count_dropped();
+    void count_limited();
     /// A worker begins with a job that was accepted so long ago.
     void count_begun(bool entry_of_batch, double waited_s);
     void count(const Recovery& found);

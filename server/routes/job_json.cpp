@@ -41,6 +41,7 @@ void add_times(JsonObject& object, const JobSummary& job) {
         .raw("started_at", moment(job.started_at))
         .raw("finished_at", moment(job.finished_at))
         .number("attempts", job.attempts);
+    if (job.not_before) object.text("not_before", iso_time(*job.not_before));
     if (!job.outline.empty()) object.raw("outline", job.outline);
 }
 
@@ -98,6 +99,8 @@ std::string job_progress_json(const JobView& view) {
     Progress progress;
     progress.stage = std::string(to_string(view.job.status));
     progress.message = view.job.status == JobStatus::queued ? "Waits for a worker." : "Has just been started.";
+    if (view.job.status == JobStatus::queued && view.job.not_before.value_or(0) > wall_clock())
+        progress.message = "Waits for its time.";
     return api::progress_json(progress);
 }
 

@@ -29,13 +29,17 @@ Response job_response(JobService& jobs, Turns& readers, const http::Request& req
     });
 }
 
-Response queue_full(const JobService& jobs) {
-    const std::string seconds = std::to_string(jobs.seconds_until_room());
-    Response response =
-        problem_response(429, "The queue of jobs is full. Try again in " + seconds + " s (Retry-After).");
-    for (auto& [name, value] : response.headers)
-        if (name == "Retry-After") value = seconds;
-    return response;
+Response queue_full(const JobService& jobs, bool of_client = false) {
+    const int seconds = jobs.seconds_until_room();
+    api::Problem problem = http::problem(429, "The queue of jobs is full.");
+    if (of_client) {
+        problem.type = "too-many-jobs";
+        problem.detail = "This client has " + std::to_string(jobs.client_jobs()) +
+                         " jobs that wait or run, the limit of this service. Wait for one to end, cancel one, or post "
+                         "many as a batch.";
+    }
+    problem.detail += " Try again in " + std::to_string(seconds) + " s (Retry-After).";
+    return problem_response(problem, std::chrono::seconds(seconds));
 }
 
 Response submitted(const JobService& jobs, const Submission& submission) {
@@ -47,6 +51,7 @@ Response submitted(const JobService& jobs, const Submission& submission) {
         case Submission::Kind::conflict:
             return problem_response(409, "This Idempotency-Key was used before with another request. Use a new key.");
         case Submission::Kind::queue_full: return queue_full(jobs);
+        case Submission::Kind::too_many: return queue_full(jobs, true);
         case Submission::Kind::draining:
             return problem_response(503, "The service is being stopped and takes no more jobs. Try again shortly.");
         case Submission::Kind::existing:
@@ -153,6 +158,8 @@ Response post_job(JobService& jobs, Places& places, const SharedTurns& turns, No
 
     Order order;
     order.job = std::get<api::PreparedJob>(std::move(prepared));
+    if (order.job.unique && !key.empty())
+        return problem_response(422, "The request says unique and has an Idempotency-Key. Remove one.");
     if (order.job.notify)
         if (const auto problem = policy.refuse(*order.job.notify, "notify.")) return http::problem_response(*problem);
     order.idempotency_key = key;

@@ -30,13 +30,17 @@ struct JobSummary {
     std::string request_hash;
     bool cancel_requested = false;
     std::string owner;
-    std::string batch;        ///< id of the batch it belongs to; "" if none
-    std::int64_t index = 0;   ///< its place in the batch, from 0
-    std::string outline;      ///< JSON: what an ended job was about and what came out, in a line; "" if none
-    std::string request_id;   ///< of the call that posted it; "" if unknown
-    std::string traceparent;  ///< of that call; "" if it had none
-    bool settled = false;     ///< cannot be queued again: its request could not be read, or its batch was cancelled
+    std::string batch;                 ///< id of the batch it belongs to; "" if none
+    std::int64_t index = 0;            ///< its place in the batch, from 0
+    std::string outline;               ///< JSON: what an ended job was about and what came out, in a line; "" if none
+    std::string request_id;            ///< of the call that posted it; "" if unknown
+    std::string traceparent;           ///< of that call; "" if it had none
+    std::optional<UnixMs> not_before;  ///< it is not begun before; nothing for a job that could begin at once
+    bool settled = false;  ///< cannot be queued again: its request could not be read, or its batch was cancelled
 };
+
+/// Since when a job waits to be run, if nothing else held it up.
+inline UnixMs ready_at(const JobSummary& job) { return std::max(job.created_at, job.not_before.value_or(0)); }
 
 /// What somebody who follows a job needs.
 struct JobState : JobSummary {

@@ -57,6 +57,9 @@ public:
     void cancel(std::string id, UnixMs now, Done<CancelEffect> done) override {
         store_->cancel(std::move(id), now, timed("cancel", std::move(done)));
     }
+    void start_due(UnixMs now, Done<std::size_t> done) override {
+        store_->start_due(now, timed("start_due", std::move(done)));
+    }
     void requeue(std::string id, Done<RequeueEffect> done) override {
         store_->requeue(std::move(id), timed("requeue", std::move(done)));
     }

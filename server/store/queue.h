@@ -10,6 +10,9 @@
 // turn that is being served. Jobs of normal priority go before those of low priority, which entries of batches have;
 // within a class the lowest turn goes first, the oldest of the same turn. So flows take turns one job each, however
 // many jobs one of them has posted. A claim that asks for the low class first is how that class never starves.
+//
+// A scheduled job waits for its time in a class of its own, which no claim looks at. Its turn there is that time; then
+// start_due() moves it to its class, as if it had just come.
 #pragma once
 
 #include <algorithm>
@@ -28,6 +31,8 @@ namespace tunewright::server {
 
 enum class Priority { normal = 0, low = 1 };
 
+constexpr int kScheduled = 2;  ///< the class of jobs that wait for their time
+
 /// Where a job came from, for logs and traces.
 struct JobOrigin {
     std::string request_id;   ///< of the call that posted it
@@ -42,15 +47,19 @@ struct NewJob {
     std::string request_hash;
     std::string idempotency_key;  ///< "" if none; each owner has keys of his own
     std::string owner;            ///< name of the API key; "" where none is asked for
-    std::string flow;             ///< whom it counts for in the order of turns
+    std::string flow;             ///< whom it counts for in the order of turns, and for `client_limit`
     UnixMs created_at = 0;
     Priority priority = Priority::normal;
     NotifyTarget notify = {};
     JobOrigin origin = {};
+    std::optional<UnixMs> not_before = {};  ///< its time; it is scheduled until then
+    bool unique = false;                    ///< a job of its key that failed or was cancelled gives the key up
+    std::size_t client_limit = 0;           ///< single jobs of its flow that may wait or run, this one included; 0: any
 };
 
 struct Accepted {
-    enum class Kind { created, existing, conflict };  ///< the last two only with an idempotency key
+    /// `existing` and `conflict` only with an idempotency key; `too_many`: the flow has `client_limit` jobs already.
+    enum class Kind { created, existing, conflict, too_many };
     Kind kind = Kind::created;
     JobSummary job;  ///< of created and existing
 };
@@ -141,7 +150,7 @@ struct QueueDepth {
     std::size_t single = 0;                         ///< waiting jobs that were posted one by one
     std::size_t entries = 0;                        ///< waiting jobs of batches
     std::size_t suspects = 0;                       ///< of both: those that Claim::suspects would give now
-    std::optional<UnixMs> next_single, next_entry;  ///< when the job of each class that is next was accepted
+    std::optional<UnixMs> next_single, next_entry;  ///< since when the job of each class that is next waits to run
     bool paused = false;                            ///< nothing is handed out
 };
 
@@ -167,6 +176,9 @@ public:
     /// A job whose process ended while it ran (recover(), reclaim()) counts that as a crash, which giving it back
     /// (release()) is not. From the second on it waits: 1 s, then twice as long each time, at most 5 min.
     virtual void claim(Claim claim, Done<std::vector<JobRecord>> done) = 0;
+    /// Scheduled jobs whose time has come wait for their turns, some thousand at most: how many. A shared store goes by
+    /// its own clock where that is behind `now`, and each job is moved by one process.
+    virtual void start_due(UnixMs now, Done<std::size_t> done) = 0;
     /// All jobs that the store takes for this worker's, in no order. What the worker holds and the store does not name
     /// is lost; what the store names and the worker does not hold came in an answer that was lost: it releases it.
     virtual void beat(Heartbeat beat, Done<std::vector<Holding>> done) = 0;
@@ -175,7 +187,8 @@ public:
     /// A running job is queued again, at its old place; false as in finish().
     virtual void release(std::int64_t seq, int attempts, Done<bool> done) = 0;
     virtual void cancel(std::string id, UnixMs now, Done<CancelEffect> done) = 0;
-    /// A job that failed or was cancelled waits again, as if it had just come; its attempts go on counting.
+    /// A job that failed or was cancelled waits again, as if it had just come; its attempts go on counting. If its time
+    /// has not come it is scheduled again.
     virtual void requeue(std::string id, Done<RequeueEffect> done) = 0;
 };
 

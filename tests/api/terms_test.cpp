@@ -1,7 +1,12 @@
-// The terms on which a job is run: whom to tell of its end, and when its turn comes.
+// The terms on which a job is run: whom to tell of its end, when its turn comes, and whether an earlier one will do.
 #include "api/contract/terms.h"
 
 #include <gmock/gmock.h>
+
+#include <chrono>
+#include <ctime>
+#include <iomanip>
+#include <sstream>
 
 #include "api/batch/reader.h"
 #include "api/json/json.h"
@@ -38,9 +43,48 @@ TEST(Terms, AreTakenFromARequest) {
     EXPECT_FALSE(prepared("").notify);
 }
 
+std::string in_days(int days) {
+    const auto time = std::chrono::time_point_cast<std::chrono::seconds>(std::chrono::system_clock::now());
+    const std::time_t at = std::chrono::system_clock::to_time_t(time + std::chrono::days(days));
+    std::ostringstream text;
+    text << std::put_time(std::gmtime(&at), "%Y-%m-%dT%H:%M:%SZ");
+    return text.str();
+}
+
+TEST(Terms, SayWhenAJobMayBegin) {
+    const auto at = [](const std::string& text) { return prepared("\"not_before\": \"" + text + "\"").not_before; };
+    // 2026-05-04T06:00:00Z is 1,777,874,400 s after 1970 (date -u -d ... +%s).
+    EXPECT_EQ(at("2026-05-04T06:00:00Z"), 1'777'874'400'000);
+    EXPECT_EQ(at("2026-05-04T06:00:00.123Z"), 1'777'874'400'123);
+    EXPECT_EQ(at("2026-05-04 08:00:00+02:00"), 1'777'874'400'000);
+    EXPECT_EQ(at("2026-05-03T22:30-07:30"), 1'777'874'400'000);
+    EXPECT_EQ(at("20260504T060000Z"), 1'777'874'400'000);
+    EXPECT_EQ(at("1970-01-01T00:00:00Z"), 0) << "the past is at once";
+    EXPECT_TRUE(at(in_days(29)));
+    EXPECT_FALSE(prepared("").not_before);
+    EXPECT_TRUE(prepared("\"unique\": true").unique);
+    EXPECT_FALSE(prepared("\"unique\": false").unique || prepared("").unique);
+}
+
+TEST(Terms, RefuseTimesThatAreNone) {
+    const auto refusal = [](const std::string& json) {
+        return detail_at(faults("\"not_before\": " + json), "/not_before");
+    };
+    for (const char* none :
+         {"\"soon\"", "\"\"", "\"2026-05-04\"", "\"06:00Z\"", "\"04.05.2026 06:00Z\"", "\"2026-02-30T06:00Z\"",
+          "\"2026-05-04T25:00Z\"", "\"4/5/2026 06:00Z\"", "1777874400", "true", "[]"})
+        EXPECT_THAT(refusal(none), HasSubstr("must be a time such as \"2026-05-04T06:00:00Z\"")) << none;
+    EXPECT_THAT(refusal("\"2026-05-04T06:00:00\""), HasSubstr("has no zone; end it with Z"));
+    EXPECT_THAT(refusal("\"" + in_days(31) + "\""), HasSubstr("more than 30 days ahead"));
+    EXPECT_THAT(detail_at(faults("\"unique\": 1"), "/unique"), HasSubstr("must be true or false"));
+    const auto range = prepare_range(R"({"plant": "1", "not_before": "soon"})");
+    EXPECT_THAT(detail_at(std::get<Problem>(range).errors, "/not_before"), HasSubstr("must be a time"));
+}
+
 TEST(Terms, ChangeNeitherTheHashNorTheResult) {
     const PreparedJob plain = prepared(R"("evaluate": {"points": 0})");
-    const PreparedJob termed = prepared(R"("evaluate": {"points": 0}, "priority": "low", )" + kNotify);
+    const PreparedJob termed = prepared(R"("evaluate": {"points": 0}, "priority": "low", "unique": true, )" +
+                                        ("\"not_before\": \"" + in_days(1) + "\", ") + kNotify);
     EXPECT_EQ(termed.request_hash, plain.request_hash);
     EXPECT_NE(prepared(R"("evaluate": {"points": 0}, "timeout_s": 5)").request_hash, plain.request_hash);
     const JobOutcome outcome = run_job(StoredRequest{termed.request_json, termed.request_hash}, {});
@@ -72,6 +116,9 @@ TEST(Terms, OfABatchAreNotThoseOfItsEntries) {
     EXPECT_THAT(detail_at(std::get<Problem>(entry(R"("priority": "normal")")).errors, "/priority"),
                 HasSubstr("no entry of a batch has"));
     EXPECT_TRUE(std::holds_alternative<PreparedJob>(entry(R"("priority": "low")")));
+    for (const std::string name : {"not_before", "unique"})
+        EXPECT_THAT(detail_at(std::get<Problem>(entry("\"" + name + "\": true")).errors, "/" + name),
+                    HasSubstr("POST /v1/jobs"));
 }
 
 /// What a body's reader says and finds, however the bytes are cut.

@@ -130,7 +130,7 @@ class Client:
     def run(self, request: Mapping[str, Any]) -> Result:
         """Runs a tuning request as it stands, such as one of GET /v1/examples, and returns the result."""
         end = time.monotonic() + self.timeout
-        key = {"Idempotency-Key": str(uuid.uuid4())}
+        key = {} if request.get("unique") else {"Idempotency-Key": str(uuid.uuid4())}
         wait = max(1, min(_LONGEST_WAIT, int(self.timeout)))
         job: Optional[Json] = None
         try:
@@ -139,7 +139,7 @@ class Client:
         except KeyboardInterrupt:
             with suppress(Problem, OSError):
                 soon = time.monotonic() + 5
-                # Interrupted before the answer came: the same key and body give the same job, and so its id.
+                # Interrupted before the answer came: the same body with its key, or unique, gives the same job, and so its id.
                 job = job or self._json("POST", "/v1/jobs", request, key, soon)
                 self._json("POST", _job(job["id"]) + "/cancel", end=soon)
             raise

@@ -223,6 +223,8 @@ const Description<RangeRequest>& range_request_contract() {
                    "Time allowed for the job; it fails with type timeout after it.", {.unit = "s"})
             .field("priority", &R::low_priority, choice<bool>({{"normal", false}, {"low", true}}),
                    "low: it takes its turn among the entries of batches, after single jobs of normal priority.")
+            .field("not_before", &R::not_before, maybe(moment()), kNotBeforeSentence)
+            .field("unique", &R::unique, boolean(), kUniqueSentence)
             .field("notify", &R::notify, maybe(object(notify_contract())), "Whom to tell when the job has ended.")
             .refuse("record", "A range takes a record for each point: points [{\"at\": 30, \"record\": {...}}, ...].")
             .refuse("tune", "A range is designed by its own search; limits and kind of controller stand in schedule.")

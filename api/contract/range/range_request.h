@@ -71,6 +71,8 @@ struct RangeRequest : RangeSubject {
     double timeout_s = 60;
     std::optional<Notify> notify;
     bool low_priority = false;
+    std::optional<std::int64_t> not_before;  ///< ms since 1970, UTC
+    bool unique = false;
     RangeQuestion question;         ///< the whole of it for the engine
     std::vector<ReadRecord> reads;  ///< of the points, in their order; the records themselves are in the question
 };

@@ -57,13 +57,31 @@ std::vector<JobRecord> claim_by(Session& session, const std::string& sql, const 
 }  // namespace
 
 std::vector<JobRecord> claim_jobs(Session& session, const Claim& claim) {
-    static const std::string usual = claim_sql(kGoing + "crashes < 2 ORDER BY class, turn, seq");
+    static const std::string usual = claim_sql(kGoing + "class < 2 AND crashes < 2 ORDER BY class, turn, seq");
     static const std::string low = claim_sql(kGoing + "crashes < 2 AND class = 1 ORDER BY class, turn, seq");
     static const std::string suspects = claim_sql(kGoing + "crashes > 1 AND " + kPauseOver + " ORDER BY not_before");
     if (claim.suspects) return claim_by(session, suspects, claim);
     if (claim.low_first)
         if (std::vector<JobRecord> claimed = claim_by(session, low, claim); !claimed.empty()) return claimed;
     return claim_by(session, usual, claim);
+}
+
+std::size_t start_due(Session& session, UnixMs now) {
+    static const std::string sql =
+        "WITH due AS MATERIALIZED (SELECT ctid FROM waiting WHERE class = 2 AND turn <= least($1::bigint, " + kClock +
+        ") ORDER BY turn, seq LIMIT 1000 FOR UPDATE SKIP LOCKED), "
+        "taken AS (DELETE FROM waiting WHERE ctid = ANY (ARRAY(SELECT ctid FROM due)) RETURNING *), "
+        "flows AS MATERIALIZED (SELECT f.class, f.flow, " +
+        last_turn("f.class", "f.flow") +
+        " AS turn FROM (SELECT DISTINCT j.class, j.flow FROM taken t JOIN jobs j ON j.seq = t.seq) f), "
+        "placed AS (SELECT t.seq, f.turn + row_number() OVER (PARTITION BY j.class, j.flow ORDER BY t.turn, t.seq) AS "
+        "turn FROM taken t JOIN jobs j ON j.seq = t.seq JOIN flows f ON f.class = j.class AND f.flow = j.flow), "
+        "moved AS (UPDATE jobs j SET turn = p.turn FROM placed p WHERE j.seq = p.seq "
+        "RETURNING j.class, j.turn, j.seq), "
+        "queued AS (INSERT INTO waiting (class, turn, seq, flow, batch, attempts, crashes) SELECT m.class, m.turn, "
+        "m.seq, t.flow, t.batch, t.attempts, t.crashes FROM moved m JOIN taken t ON t.seq = m.seq) "
+        "SELECT count(*) FROM moved";
+    return session.run(sql, Values().number(now))[0][0].as<std::size_t>();
 }
 
 std::vector<Holding> beat_worker(Session& session, const Heartbeat& beat) {

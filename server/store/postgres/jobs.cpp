@@ -11,23 +11,45 @@
 namespace tunewright::server::postgres {
 namespace {
 
-const std::string kAccept =
-    "WITH given AS MATERIALIZED (SELECT * FROM unnest($1::text[], $2::text[], $3::float8[], $4::text[], $5::text[], "
-    "$6::text[], $7::text[], $8::text[], $9::bigint[], $10::smallint[], $11::text[], $12::text[], $13::text[]) "
-    "WITH ORDINALITY AS g (id, name, timeout_s, request, request_hash, key, owner, flow, created_at, class, notify, "
-    "request_id, traceparent, place)), "
-    "flows AS MATERIALIZED (SELECT f.flow, f.class, " +
-    last_turn("f.class", "f.flow") +
-    " AS turn "
-    "FROM (SELECT DISTINCT flow, class FROM given) f), "
-    "made AS (INSERT INTO jobs (id, name, class, turn, owner, flow, created_at, timeout_s, request_hash, "
-    "idempotency_key, request, notify, request_id, traceparent) SELECT g.id, g.name, g.class, "
-    "f.turn + row_number() OVER (PARTITION BY g.flow, g.class ORDER BY g.place), g.owner, g.flow, g.created_at, "
-    "g.timeout_s, g.request_hash, nullif(g.key, ''), g.request, nullif(g.notify, ''), g.request_id, g.traceparent "
-    "FROM given g JOIN flows f ON f.flow = g.flow AND f.class = g.class ORDER BY g.place "
-    "ON CONFLICT DO NOTHING RETURNING id, seq, class, turn, flow), "
-    "queued AS (INSERT INTO waiting (class, turn, seq, flow) SELECT class, turn, seq, flow FROM made) "
-    "SELECT id, seq FROM made";
+/// With a limit ($15) another statement: one for both would be planned anew each time.
+std::string accept_sql(bool limited) {
+    const auto if_limited = [limited](const std::string& sql) { return limited ? sql : std::string(); };
+    return "WITH given AS MATERIALIZED (SELECT * FROM unnest($1::text[], $2::text[], $3::float8[], $4::text[], "
+           "$5::text[], $6::text[], $7::text[], $8::text[], $9::bigint[], $10::smallint[], $11::text[], $12::text[], "
+           "$13::text[], $14::bigint[]) WITH ORDINALITY AS g (id, name, timeout_s, request, request_hash, key, owner, "
+           "flow, created_at, class, notify, request_id, traceparent, not_before, place)), "
+           "flows AS MATERIALIZED (SELECT f.flow, f.class, " +
+           last_turn("f.class", "f.flow") + " AS turn" + if_limited(", " + under_way("f.flow") + " AS under_way") +
+           " FROM (SELECT DISTINCT flow, class FROM given) f), "
+           "placed AS (SELECT g.*, coalesce(nullif(g.not_before, 0), "
+           "f.turn + row_number() OVER (PARTITION BY g.flow, g.class ORDER BY g.place)) AS turn" +
+           if_limited(", f.under_way + row_number() OVER (PARTITION BY g.flow ORDER BY g.place) AS under_way") +
+           " FROM given g JOIN flows f ON f.flow = g.flow AND f.class = g.class), "
+           "made AS (INSERT INTO jobs (id, name, class, turn, owner, flow, created_at, timeout_s, request_hash, "
+           "idempotency_key, request, notify, request_id, traceparent, not_before) SELECT id, name, class, turn, "
+           "owner, flow, created_at, timeout_s, request_hash, nullif(key, ''), request, nullif(notify, ''), "
+           "request_id, traceparent, nullif(not_before, 0) FROM placed " +
+           if_limited("WHERE under_way <= $15 ") +
+           "ORDER BY place ON CONFLICT DO NOTHING RETURNING id, seq, class, turn, flow, not_before), "
+           "queued AS (INSERT INTO waiting (class, turn, seq, flow) "
+           "SELECT CASE WHEN not_before IS NULL THEN class ELSE 2 END, turn, seq, flow FROM made) "
+           "SELECT id, seq FROM made";
+}
+
+/// A job that failed or was cancelled gives its key up to a unique one. Its row is locked: queued again at this moment,
+/// it keeps the key, or comes after this.
+void free_key(Session& session, const NewJob& job) {
+    session.run(
+        "WITH free AS MATERIALIZED (SELECT e.seq FROM jobs j JOIN ended e ON e.seq = j.seq WHERE j.owner = $1 "
+        "AND j.idempotency_key = $2 AND e.status IN ('failed', 'cancelled') FOR UPDATE OF e) "
+        "UPDATE jobs SET idempotency_key = NULL WHERE seq IN (SELECT seq FROM free)",
+        Values().text(job.owner).text(job.idempotency_key));
+}
+
+// Where the jobs of a client are counted one process at a time accepts them: what others are about to commit counts.
+const std::string kCountInTurn =
+    "SELECT count(pg_advisory_xact_lock(x'74756e65'::int, hashtext(flow))) FROM "
+    "(SELECT DISTINCT flow FROM unnest($1::text[]) AS g (flow) ORDER BY flow OFFSET 0) f";
 
 /// The job that stood in the way of this one: that of its key, or itself, accepted before.
 Accepted find_earlier(Session& session, const NewJob& job) {
@@ -35,6 +57,7 @@ Accepted find_earlier(Session& session, const NewJob& job) {
                                    kSummaryColumns + kJobTables +
                                    " WHERE j.owner = $2 AND j.idempotency_key = $3 AND $3 <> ''";
     const pqxx::result rows = session.run(sql, Values().text(job.id).text(job.owner).text(job.idempotency_key));
+    if (rows.empty() && job.client_limit > 0) return {Accepted::Kind::too_many, {}};
     if (rows.empty() || job.idempotency_key.empty())
         throw Failure(Failure::Kind::refused, "a job of that id has been accepted before");
     Accepted accepted;
@@ -85,7 +108,7 @@ std::optional<FoundJob> find_job(Session& session, const std::string& id) {
 /// False where it does not wait at this moment.
 bool cancel_waiting(Session& session, std::int64_t seq, UnixMs now) {
     static const std::string sql =
-        "WITH taken AS (DELETE FROM waiting w USING jobs j WHERE j.seq = $1 AND w.class = j.class AND "
+        "WITH taken AS (DELETE FROM waiting w USING jobs j WHERE j.seq = $1 AND w.class IN (j.class, 2) AND "
         "w.turn = j.turn AND w.seq = j.seq RETURNING w.seq, w.batch, w.attempts), "
         "gone AS (INSERT INTO ended (seq, single, status, attempts, cancel_requested, finished_at) "
         "SELECT seq, batch IS NULL, 'cancelled', attempts, true, $2 FROM taken RETURNING seq), told AS (" +
@@ -108,7 +131,7 @@ constexpr int kLooks = 20;  // at a job that others move meanwhile
 }  // namespace
 
 std::vector<Accepted> accept_jobs(Session& session, const std::vector<const NewJob*>& jobs) {
-    TextArray id, name, timeout, request, hash, key, owner, flow, created, priority, notify, call, trace;
+    TextArray id, name, timeout, request, hash, key, owner, flow, created, priority, notify, call, trace, not_before;
     for (const NewJob* job : jobs) {
         id.add(job->id);
         name.add(job->name);
@@ -123,13 +146,20 @@ std::vector<Accepted> accept_jobs(Session& session, const std::vector<const NewJ
         notify.add(job->notify.text());
         call.add(job->origin.request_id);
         trace.add(job->origin.traceparent);
+        not_before.add_plain(std::to_string(job->not_before.value_or(0)));
+        if (job->unique) free_key(session, *job);
     }
+    const std::size_t client_limit = jobs.front()->client_limit;  // the same for all of one process
+    if (client_limit > 0) session.run(kCountInTurn, Values().plain(flow.literal()));
     Values values;
-    for (const TextArray* array :
-         {&id, &name, &timeout, &request, &hash, &key, &owner, &flow, &created, &priority, &notify, &call, &trace})
+    for (const TextArray* array : {&id, &name, &timeout, &request, &hash, &key, &owner, &flow, &created, &priority,
+                                   &notify, &call, &trace, &not_before})
         values.plain(array->literal());
+    if (client_limit > 0) values.number(static_cast<std::int64_t>(client_limit));
+    static const std::string plain = accept_sql(false), limited = accept_sql(true);
     std::map<std::string, std::int64_t> created_jobs;
-    for (const pqxx::row& row : session.run(kAccept, values)) created_jobs[text_of(row[0])] = row[1].as<std::int64_t>();
+    for (const pqxx::row& row : session.run(client_limit > 0 ? limited : plain, values))
+        created_jobs[text_of(row[0])] = row[1].as<std::int64_t>();
     std::vector<Accepted> answers;
     for (const NewJob* job : jobs) {
         const auto found = created_jobs.find(job->id);
@@ -146,6 +176,7 @@ std::vector<Accepted> accept_jobs(Session& session, const std::vector<const NewJ
         answer.job.timeout_s = job->timeout_s;
         answer.job.request_hash = job->request_hash;
         answer.job.owner = job->owner;
+        answer.job.not_before = job->not_before;
     }
     return answers;
 }
@@ -229,10 +260,10 @@ RequeueEffect requeue_job(Session& session, const std::string& id) {
     static const std::string sql =
         "WITH gone AS (DELETE FROM ended WHERE seq = $1 AND status IN ('failed', 'cancelled') "
         "RETURNING seq, status, attempts), "
-        "placed AS (UPDATE jobs j SET turn = 1 + " +
-        last_turn("j.class", "j.flow") +
-        " FROM gone "
-        "WHERE j.seq = gone.seq RETURNING j.class, j.turn, j.seq, j.flow, j.batch), "
+        "placed AS (UPDATE jobs j SET turn = CASE WHEN gone.attempts = 0 AND j.not_before > " +
+        kClock + " THEN j.not_before ELSE 1 + " + last_turn("j.class", "j.flow") +
+        " END FROM gone WHERE j.seq = gone.seq "
+        "RETURNING CASE WHEN j.turn = j.not_before THEN 2 ELSE j.class END AS class, j.turn, j.seq, j.flow, j.batch), "
         "queued AS (INSERT INTO waiting (class, turn, seq, flow, batch, attempts) SELECT p.class, p.turn, p.seq, "
         "p.flow, p.batch, gone.attempts FROM placed p JOIN gone ON gone.seq = p.seq) SELECT status FROM gone";
     const pqxx::result rows = session.run(sql, Values().number(found->seq));

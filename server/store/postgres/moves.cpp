@@ -97,6 +97,15 @@ void BatchCounts::write(Session& session) const {
     session.run(sql, values.plain(last_end.literal()));
 }
 
+std::string under_way(const std::string& flow) {
+    const std::string mine = "c.flow = " + flow, single = mine + " AND c.batch IS NULL)";
+    return "((SELECT count(*) FROM waiting c WHERE c.class = 0 AND " + mine +
+           ") + (SELECT count(*) FROM waiting c WHERE c.class > 0 AND " + single +
+           " + (SELECT count(*) FROM running c WHERE " + single + ")";
+}
+
+const std::string kClock = "(extract(epoch FROM clock_timestamp()) * 1000)::bigint";
+
 std::string last_turn(const std::string& priority, const std::string& flow) {
     const std::string waiting = " FROM waiting w WHERE w.class = " + priority + " AND w.";
     return "greatest(0, (SELECT w.turn - 1" + waiting + "crashes < 2 ORDER BY w.class, w.turn, w.seq LIMIT 1), " +

@@ -57,4 +57,10 @@ private:
 /// being served in its class, which is that before the first that waits. A part of a statement.
 std::string last_turn(const std::string& priority, const std::string& flow);
 
+/// The single jobs of a flow that wait or run: a part of a statement.
+std::string under_way(const std::string& flow);
+
+/// The database's clock in milliseconds since 1970: a part of a statement.
+extern const std::string kClock;
+
 }  // namespace tunewright::server::postgres

@@ -100,6 +100,16 @@ public:
             },
             std::move(done));
     }
+    void start_due(UnixMs now, Done<std::size_t> done) override {
+        write<std::size_t>(
+            kQuick,
+            [now](Work& work) {
+                const std::size_t due = postgres::start_due(work.session, now);
+                if (due > 0) work.notices.queued();
+                return due;
+            },
+            std::move(done));
+    }
     void requeue(std::string id, Done<RequeueEffect> done) override {
         write<RequeueEffect>(
             kQuick,

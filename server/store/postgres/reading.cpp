@@ -7,7 +7,7 @@
 namespace tunewright::server::postgres {
 namespace {
 
-constexpr int kSummaryCount = 19;
+constexpr int kSummaryCount = 20;
 
 std::optional<UnixMs> moment(const pqxx::field& field) {
     return field.is_null() ? std::nullopt : std::optional<UnixMs>(field.as<UnixMs>());
@@ -39,6 +39,7 @@ void fill_summary(const pqxx::row& row, JobSummary& job) {
     job.request_id = text_of(row[15]);
     job.traceparent = text_of(row[16]);
     job.settled = row[17].as<bool>();
+    job.not_before = moment(row[18]);
 }
 
 }  // namespace
@@ -49,7 +50,8 @@ const std::string kSummaryColumns = "j.seq, j.id, j.name, " + kStatus +
                                     "coalesce(e.attempts, r.attempts, w.attempts, 0), j.timeout_s, j.request_hash, "
                                     "coalesce(e.cancel_requested, r.cancel_requested, false), j.owner, b.id, "
                                     "j.batch_index, e.outline, j.request_id, j.traceparent, "
-                                    "j.request IS NULL OR coalesce(b.cancel_requested, false), r.progress";
+                                    "j.request IS NULL OR coalesce(b.cancel_requested, false), j.not_before, "
+                                    "r.progress";
 const std::string kRecordColumns = kSummaryColumns + ", j.request, e.result, e.error";
 // A job that has ended is in no other place: those are not looked into then.
 const std::string kEnded = " LEFT JOIN ended e ON e.seq = j.seq";
@@ -62,7 +64,7 @@ const std::string kBatch = " LEFT JOIN batches b ON b.seq = j.batch";
 const std::string kJobTables = " FROM jobs j" + kEnded + kRunning + kWaiting + kBatch;
 const std::string kClaimedColumns =
     "j.seq, j.id, j.name, j.created_at, r.started_at, r.attempts, j.timeout_s, j.request_hash, j.owner, b.id, "
-    "j.batch_index, j.request_id, j.traceparent, j.request";
+    "j.batch_index, j.request_id, j.traceparent, j.request, j.not_before";
 const std::string kVisible = "(j.batch IS NULL OR b.state <> 'leaving')";
 
 std::string text_of(const pqxx::field& field) {
@@ -109,6 +111,7 @@ JobRecord read_claimed(const pqxx::row& row) {
     job.request_id = text_of(row[11]);
     job.traceparent = text_of(row[12]);
     job.request = text_of(row[13]);
+    job.not_before = moment(row[14]);
     return job;
 }
 
@@ -273,17 +276,15 @@ JobPage list_jobs(Session& session, const JobQuery& query) {
 }
 
 Counted count_waiting(Session& session) {
-    const std::string head = "(SELECT j.created_at FROM waiting w JOIN jobs j ON j.seq = w.seq WHERE w.class = ";
+    const std::string head =
+        "(SELECT greatest(j.created_at, j.not_before) FROM waiting w JOIN jobs j ON j.seq = w.seq WHERE w.class = ";
     const std::string order = " ORDER BY w.class, w.turn, w.seq LIMIT 1)";
     const pqxx::row row = session.run(
         "SELECT (SELECT count(*) FROM waiting WHERE batch IS NULL), "
         "(SELECT coalesce(sum(c.queued), 0) FROM batches b JOIN batch_counts c ON c.batch = b.seq "
         "WHERE b.ended_at IS NULL AND b.state <> 'leaving'), "
         "(SELECT count(*) FROM waiting WHERE crashes > 1 AND " +
-        kPauseOver +
-        "), "
-        "(extract(epoch FROM clock_timestamp()) * 1000)::bigint, " +
-        head + "0" + order + ", " + head + "1" + order +
+        kPauseOver + "), " + kClock + ", " + head + "0" + order + ", " + head + "1" + order +
         ", EXISTS (SELECT 1 FROM settings WHERE name = 'paused' AND value = '1')")[0];
     Counted counted;
     counted.depth.single = row[0].as<std::size_t>();

@@ -266,7 +266,15 @@ CREATE UNLOGGED TABLE server_life (id uuid NOT NULL, one boolean PRIMARY KEY DEF
 // Entries of a batch that ended in a state, which are few among many.
 constexpr const char* kStep6 = "CREATE INDEX ended_entries ON ended (status, seq) WHERE NOT single";
 
-constexpr std::array kSteps{kStep1, kStep2, kStep3, kStep4, kStep5, kStep6};
+// Jobs at a time, which wait in a class of their own; and the single jobs of one client are counted, of
+// which those of low priority stand among entries.
+constexpr const char* kStep7 = R"sql(
+ALTER TABLE waiting DROP CONSTRAINT waiting_class_check, ADD CHECK (class IN (0, 1, 2));
+ALTER TABLE jobs ADD COLUMN not_before bigint;
+CREATE INDEX waiting_clients ON waiting (flow) WHERE class > 0 AND batch IS NULL;
+)sql";
+
+constexpr std::array kSteps{kStep1, kStep2, kStep3, kStep4, kStep5, kStep6, kStep7};
 
 [[noreturn]] void refuse(const std::string& sentence) { throw StoreError({StoreFault::Kind::unavailable, sentence}); }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "server/store/slices.h"
@@ -11,7 +12,9 @@
 namespace tunewright::server {
 
 // ---- queue.cpp
-Accepted accept_job(Connection& store, const NewJob& job);
+/// At most so many single jobs of each flow wait or run; of flows that are not in it nothing is known.
+using ClientBounds = std::unordered_map<std::string, std::size_t>;
+Accepted accept_job(Connection& store, ClientBounds& bounds, const NewJob& job);
 bool finish_job(Connection& store, const JobEnd& end);
 CancelEffect cancel_job(Connection& store, const std::string& id, UnixMs now);
 RequeueEffect requeue_job(Connection& store, const std::string& id);
@@ -19,6 +22,7 @@ RemoveEffect remove_job(Connection& store, const std::string& id);
 
 // ---- claims.cpp
 std::vector<JobRecord> claim_jobs(Connection& store, const Claim& claim);
+std::size_t start_due(Connection& store, UnixMs now);
 std::vector<Holding> beat_worker(Connection& store, const Heartbeat& beat);
 /// `now` is the end of a job that is cancelled instead.
 bool release_job(Connection& store, std::int64_t seq, int attempts, UnixMs now);

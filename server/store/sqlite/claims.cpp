@@ -15,7 +15,8 @@ std::vector<Place> read_places(Connection::Use& row) {
 }
 
 std::vector<Place> next_places(Connection& store, const Claim& claim) {
-    static const std::string usual = std::string(kNext) + "crashes < 2 ORDER BY class, turn, seq LIMIT ?1";
+    static const std::string usual =
+        std::string(kNext) + "class < 2 AND crashes < 2 ORDER BY class, turn, seq LIMIT ?1";
     static const std::string low = std::string(kNext) + "crashes < 2 AND class = 1 ORDER BY turn, seq LIMIT ?1";
     static const std::string suspects =
         std::string(kNext) + "crashes > 1 AND " + pause_over("?2") + " ORDER BY not_before LIMIT ?1";
@@ -82,6 +83,24 @@ std::vector<JobRecord> claim_jobs(Connection& store, const Claim& claim) {
     counts.write(store);
     if (!claimed.empty()) hear_of(store, claim.worker, claim.now + claim.lease.count());
     return claimed;
+}
+
+std::size_t start_due(Connection& store, UnixMs now) {
+    std::vector<Place> due;
+    {
+        Connection::Use row = store.use(
+            "SELECT w.seq, j.class, w.turn, w.flow, w.batch, w.attempts, w.crashes FROM waiting w "
+            "JOIN jobs j ON j.seq = w.seq WHERE w.class = 2 AND w.turn <= ?1 ORDER BY w.turn, w.seq LIMIT 1000");
+        due = read_places(row.with(now));
+    }
+    for (const Place& job : due) {
+        const std::int64_t turn = next_turn(store, job.priority, job.flow);
+        store.use("UPDATE waiting SET class = ?3, turn = ?4 WHERE class = 2 AND turn = ?2 AND seq = ?1")
+            .with(job.seq, job.turn, job.priority, turn)
+            .run();
+        store.use("UPDATE jobs SET turn = ?2 WHERE seq = ?1").with(job.seq, turn).run();
+    }
+    return due.size();
 }
 
 std::vector<Holding> beat_worker(Connection& store, const Heartbeat& beat) {

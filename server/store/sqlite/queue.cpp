@@ -36,6 +36,30 @@ std::optional<FoundJob> find_job(Connection& store, const std::string& id) {
     return found;
 }
 
+/// The single jobs of its flow are counted only where so many have come since the last count that there may be no room.
+bool has_room(Connection& store, ClientBounds& bounds, const NewJob& job) {
+    constexpr std::size_t most_flows = 10'000;
+    if (job.client_limit == 0) return true;
+    if (bounds.size() > most_flows) bounds.clear();
+    std::size_t& bound = bounds.try_emplace(job.flow, job.client_limit).first->second;
+    if (bound >= job.client_limit) {
+        Connection::Use row = store.use(
+            "SELECT (SELECT count(*) FROM waiting WHERE class = 0 AND flow = ?1) + "
+            "(SELECT count(*) FROM waiting WHERE class > 0 AND flow = ?1 AND batch IS NULL) + "
+            "(SELECT count(*) FROM running WHERE flow = ?1 AND batch IS NULL)");
+        row.with(job.flow).next();
+        bound = static_cast<std::size_t>(row.integer(0));
+    }
+    return bound++ < job.client_limit;
+}
+
+/// Where the job waits: by its time where that has not come, else by the next turn of its flow.
+void find_turn(Connection& store, Place& job, std::optional<UnixMs> not_before, UnixMs now) {
+    const bool later = not_before.value_or(0) > now;
+    job.turn = later ? *not_before : next_turn(store, job.priority, job.flow);
+    if (later) job.priority = kScheduled;
+}
+
 void move_in_batch(Connection& store, const Place& job, JobStatus from, JobStatus to, UnixMs ended_at = 0) {
     BatchCounts counts;
     counts.move(job.batch, from, to, ended_at);
@@ -44,19 +68,24 @@ void move_in_batch(Connection& store, const Place& job, JobStatus from, JobStatu
 
 }  // namespace
 
-Accepted accept_job(Connection& store, const NewJob& job) {
-    if (!job.idempotency_key.empty())
-        if (std::optional<Accepted> earlier = find_by_key(store, job)) return *std::move(earlier);
+Accepted accept_job(Connection& store, ClientBounds& bounds, const NewJob& job) {
+    std::optional<Accepted> earlier;
+    if (!job.idempotency_key.empty()) earlier = find_by_key(store, job);
+    if (earlier && !(job.unique && transition(earlier->job.status, JobEvent::requeue))) return *std::move(earlier);
+    if (!has_room(store, bounds, job)) return {Accepted::Kind::too_many, {}};
+    if (earlier) store.use("UPDATE jobs SET idempotency_key = NULL WHERE seq = ?1").with(earlier->job.seq).run();
     const int priority = static_cast<int>(job.priority);
-    Place place{0, priority, next_turn(store, priority, job.flow), job.flow, {}, 0, 0};
+    Place place{0, priority, 0, job.flow, {}, 0, 0};
+    find_turn(store, place, job.not_before, job.created_at);
     const std::string target = job.notify.text();
     store
         .use(
             "INSERT INTO jobs (id, name, owner, flow, class, turn, created_at, timeout_s, request_hash, "
-            "idempotency_key, notify, request_id, traceparent, request) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, "
-            "nullif(?10, ''), nullif(?11, ''), ?12, ?13, ?14)")
+            "idempotency_key, notify, request_id, traceparent, request, not_before) VALUES (?1, ?2, ?3, ?4, ?5, ?6, "
+            "?7, ?8, ?9, nullif(?10, ''), nullif(?11, ''), ?12, ?13, ?14, nullif(?15, 0))")
         .with(job.id, job.name, job.owner, job.flow, priority, place.turn, job.created_at, job.timeout_s,
-              job.request_hash, job.idempotency_key, target, job.origin.request_id, job.origin.traceparent, job.request)
+              job.request_hash, job.idempotency_key, target, job.origin.request_id, job.origin.traceparent, job.request,
+              job.not_before.value_or(0))
         .run();
     place.seq = store.database().getLastInsertRowid();
     put_waiting(store, place);
@@ -68,6 +97,7 @@ Accepted accept_job(Connection& store, const NewJob& job) {
     accepted.job.timeout_s = job.timeout_s;
     accepted.job.request_hash = job.request_hash;
     accepted.job.owner = job.owner;
+    accepted.job.not_before = job.not_before;
     return accepted;
 }
 
@@ -88,7 +118,9 @@ CancelEffect cancel_job(Connection& store, const std::string& id, UnixMs now) {
         store.use("UPDATE running SET cancel_requested = 1 WHERE seq = ?1").with(found->seq).run();
         return CancelEffect::requested;
     }
-    take_waiting(store, *found);
+    Place scheduled = *found;
+    scheduled.priority = kScheduled;
+    if (!take_waiting(store, *found)) take_waiting(store, scheduled);
     put_ended(store, *found, std::nullopt, Ending::cancelled(now));
     move_in_batch(store, *found, JobStatus::queued, JobStatus::cancelled, now);
     return CancelEffect::cancelled;
@@ -97,14 +129,16 @@ CancelEffect cancel_job(Connection& store, const std::string& id, UnixMs now) {
 RequeueEffect requeue_job(Connection& store, const std::string& id) {
     std::optional<FoundJob> found = find_job(store, id);
     if (!found) return RequeueEffect::none;
-    if (found->status != JobStatus::failed && found->status != JobStatus::cancelled) return RequeueEffect::not_failed;
+    if (!transition(found->status, JobEvent::requeue)) return RequeueEffect::not_failed;
+    std::optional<UnixMs> not_before;
     {
         // What could never be read cannot be computed either.
-        Connection::Use row = store.use("SELECT request IS NULL OR request = '' FROM jobs WHERE seq = ?1");
+        Connection::Use row = store.use("SELECT request IS NULL OR request = '', not_before FROM jobs WHERE seq = ?1");
         if (row.with(found->seq).next() && row.integer(0) != 0) return RequeueEffect::not_failed;
+        not_before = row.moment(1);
     }
     if (found->batch_cancelled) return RequeueEffect::batch_cancelled;
-    found->turn = next_turn(store, found->priority, found->flow);
+    find_turn(store, *found, found->attempts == 0 ? not_before : std::nullopt, wall_clock());
     store.use("UPDATE jobs SET turn = ?2 WHERE seq = ?1").with(found->seq, found->turn).run();
     store.use("DELETE FROM ended WHERE seq = ?1").with(found->seq).run();
     put_waiting(store, *found);

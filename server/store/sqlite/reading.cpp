@@ -7,7 +7,7 @@
 namespace tunewright::server {
 namespace {
 
-constexpr int kSummaryCount = 19;
+constexpr int kSummaryCount = 20;
 
 void fill_summary(const Connection::Use& row, JobSummary& job) {
     job.seq = row.integer(0);
@@ -28,6 +28,7 @@ void fill_summary(const Connection::Use& row, JobSummary& job) {
     job.request_id = row.text(15);
     job.traceparent = row.text(16);
     job.settled = row.integer(17) != 0;
+    job.not_before = row.moment(18);
 }
 
 }  // namespace
@@ -39,7 +40,8 @@ const std::string kSummaryColumns = "j.seq, j.id, j.name, " + kStatus +
                                     kAttempts +
                                     ", j.timeout_s, j.request_hash, coalesce(e.cancel_requested, r.cancel_requested, "
                                     "0), j.owner, b.id, j.batch_index, e.outline, j.request_id, j.traceparent, "
-                                    "j.request IS NULL OR coalesce(b.cancel_requested, 0), r.progress";
+                                    "j.request IS NULL OR coalesce(b.cancel_requested, 0), j.not_before, "
+                                    "r.progress";
 const std::string kRecordColumns = kSummaryColumns + ", j.request, e.result, e.error";
 const std::string kJobTables =
     " FROM jobs j LEFT JOIN ended e ON e.seq = j.seq LEFT JOIN running r ON r.seq = j.seq "
@@ -73,7 +75,7 @@ JobRecord read_record(const Connection::Use& row) {
 JobRecord read_claimed(Connection& store, std::int64_t seq) {
     Connection::Use row = store.use(
         "SELECT j.id, j.name, j.created_at, j.timeout_s, j.request_hash, j.owner, b.id, j.batch_index, j.request_id, "
-        "j.traceparent, j.request FROM jobs j LEFT JOIN batches b ON b.seq = j.batch WHERE j.seq = ?1");
+        "j.traceparent, j.request, j.not_before FROM jobs j LEFT JOIN batches b ON b.seq = j.batch WHERE j.seq = ?1");
     if (!row.with(seq).next()) throw StoreError({StoreFault::Kind::unavailable, "a job that waits is not there"});
     JobRecord job;
     job.seq = seq;
@@ -89,6 +91,7 @@ JobRecord read_claimed(Connection& store, std::int64_t seq) {
     job.request_id = row.text(8);
     job.traceparent = row.text(9);
     job.request = row.text(10);
+    job.not_before = row.moment(11);
     return job;
 }
 
@@ -227,7 +230,8 @@ namespace {
 
 std::optional<UnixMs> next_accepted(Connection& store, int priority) {
     Connection::Use row = store.use(
-        "SELECT j.created_at FROM waiting w JOIN jobs j ON j.seq = w.seq WHERE w.class = ?1 "
+        "SELECT max(j.created_at, coalesce(j.not_before, 0)) FROM waiting w JOIN jobs j ON j.seq = w.seq WHERE w.class "
+        "= ?1 "
         "ORDER BY w.turn, w.seq LIMIT 1");
     if (!row.with(priority).next()) return std::nullopt;
     return row.integer(0);

@@ -352,7 +352,14 @@ BEGIN SELECT RAISE(ABORT, 'a job that runs is its worker''s'); END;
 // Entries of a batch that ended in a state, which are few among many.
 constexpr const char* kStep6 = "CREATE INDEX ended_entries ON ended (status) WHERE NOT single;";
 
-constexpr std::array kSteps{kStep1, kStep2, kStep3, kStep4, kStep5, kStep6};
+// Jobs at a time; and the single jobs of one client are counted, of which those of low priority stand among entries. Of
+// an index WHERE class = 1 every statement with class = ?1 would be compiled anew each time.
+constexpr const char* kStep7 = R"sql(
+ALTER TABLE jobs ADD COLUMN not_before INTEGER;
+CREATE INDEX waiting_clients ON waiting (flow, batch, class) WHERE class > 0 AND batch IS NULL;
+)sql";
+
+constexpr std::array kSteps{kStep1, kStep2, kStep3, kStep4, kStep5, kStep6, kStep7};
 
 }  // namespace
 

@@ -78,8 +78,8 @@ public:
     void accept(NewJob job, Done<Accepted> done) override {
         const std::size_t bytes = job.request.size();
         write<Accepted>(
-            kDurable, [job = std::move(job)](Connection& store) { return accept_job(store, job); }, std::move(done),
-            bytes, Kind::job);
+            kDurable, [this, job = std::move(job)](Connection& store) { return accept_job(store, bounds_, job); },
+            std::move(done), bytes, Kind::job);
     }
     void claim(Claim claim, Done<std::vector<JobRecord>> done) override {
         // Not waiting for the disk: after a power cut the job is queued again, which is where it belongs anyway.
@@ -107,9 +107,18 @@ public:
             kDurable, [id = std::move(id), now](Connection& store) { return cancel_job(store, id, now); },
             std::move(done));
     }
+    void start_due(UnixMs now, Done<std::size_t> done) override {
+        write<std::size_t>(
+            kQuick, [now](Connection& store) { return server::start_due(store, now); }, std::move(done));
+    }
     void requeue(std::string id, Done<RequeueEffect> done) override {
         write<RequeueEffect>(
-            kDurable, [id = std::move(id)](Connection& store) { return requeue_job(store, id); }, std::move(done));
+            kDurable,
+            [this, id = std::move(id)](Connection& store) {
+                bounds_.clear();
+                return requeue_job(store, id);
+            },
+            std::move(done));
     }
     void pause(bool paused, Done<bool> done) override {
         write<bool>(
@@ -254,6 +263,7 @@ private:
     FileLock lock_;
     Reserve reserve_;
     Connection connection_;
+    ClientBounds bounds_;  ///< the writer's
     std::mutex readers_mutex_;
     std::condition_variable reader_free_;
     std::size_t reading_ = 0;

@@ -125,6 +125,9 @@ public:
             });
         });
     }
+    void start_due(UnixMs now, Done<std::size_t> done) override {
+        write(done, [&] { store_.start_due(now, done); });
+    }
     void requeue(std::string id, Done<RequeueEffect> done) override {
         write(done, [&] {
             store_.requeue(std::move(id), [this, done](Outcome<RequeueEffect> outcome) {

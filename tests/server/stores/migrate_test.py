@@ -171,8 +171,10 @@ class SqliteTest(unittest.TestCase):
         self.fill(DATA / "fourth_version.sql")
         done = migrate("sqlite:" + self.path)
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertRegex(done.stdout, r"The schema is at step 6; it was at 4\.")
-        self.assertRegex(migrate("sqlite:" + self.path).stdout, "it was at 6")
+        self.assertRegex(done.stdout, r"The schema is at step \d+; it was at 4\.")
+        newest = done.stdout.split("at step ")[1].split(";")[0]
+        self.assertGreater(int(newest), 4)
+        self.assertIn("it was at %s." % newest, migrate("sqlite:" + self.path).stdout)
 
     def test_one_that_was_killed_is_done_again(self):
         self.fill(DATA / "fourth_version.sql")

@@ -290,7 +290,9 @@ class NginxTest(unittest.TestCase):
     def test_nginx_finds_nothing_wrong(self):
         done = subprocess.run([*self.command, "-t"], capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertNotIn("[warn]", done.stderr)
+        # nginx 1.25 has another word for HTTP/2, which 1.22 of Debian 12 does not know.
+        others = [line for line in done.stderr.splitlines() if '"listen ... http2" directive is deprecated' not in line]
+        self.assertNotIn("[warn]", "\n".join(others))
 
     def test_a_tune_is_answered_by_whichever_replica_is_asked(self):
         for _ in range(6):

@@ -1,7 +1,7 @@
 # Three stages: the binary, the page, and what runs. Everything comes from Debian; npm's packages are pinned by the
 # lock file. What the first two install is in script/bootstrap alone, and is installed before the sources come, so that
 # a change of theirs leaves it as it is. The last installs the libraries that the binary names.
-ARG DEBIAN=bookworm
+ARG DEBIAN=trixie
 FROM debian:$DEBIAN-slim AS binary
 WORKDIR /src
 COPY script/bootstrap script/bootstrap

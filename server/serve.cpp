@@ -34,7 +34,6 @@ namespace tunewright::server {
 namespace {
 
 constexpr std::chrono::seconds kStopPatience{2};  // for computations and for the store, which have been asked to end
-constexpr std::chrono::seconds kMemoryLook{1};
 constexpr std::size_t kLargeBody = 1 << 20, kWaitingComputations = 64;
 constexpr std::size_t kForOthers = 4;  // computations, for clients that have none while others fill the cores
 // Answers with a whole job that are made at the same time; each may take a hundred megabytes for some moments.
@@ -172,8 +171,7 @@ private:
         made.observer.ended = [this](const Ended& ended) {
             metrics_.count(ended.end.status, ended.method.empty() ? "none" : ended.method, ended.seconds);
             log_job(ended);
-            // A hint: who looks for it where nobody asked is the worse for one look.
-            const JobRecord& job = ended.held->job;
+            const JobRecord& job = ended.held->job;  // where nobody asked for a note, waking finds none
             if (job.batch.empty() && job.request.find("\"notify\"") != std::string::npos) notifier_.wake();
         };
         made.observer.dropped = [this] { metrics_.count_dropped(); };
@@ -226,7 +224,7 @@ private:
 
     void watch_memory() {
         memory_.look();
-        timer_.after(kMemoryLook, [this] { watch_memory(); });
+        timer_.after(std::chrono::seconds(1), [this] { watch_memory(); });
     }
 
     static GateSettings gate_settings(const Config& config) {

@@ -211,13 +211,13 @@ private:
         return made;
     }
 
-    /// Half of the memory is for what clients hold: requests and answers on their way.
+    /// Two fifths of the memory are for what clients hold: requests and answers on their way.
     http::Limits limits() const {
         http::Limits made;
         made.connections = connection_limit();
         made.max_body = config_.max_body;
         made.max_batch_body = config_.max_batch_body;
-        made.bodies = made.unsent = memory_.limit() / 4;
+        made.bodies = made.unsent = memory_.limit() / 5;
         made.behind_proxy = config_.behind_proxy;
         return made;
     }

@@ -213,8 +213,8 @@ std::variant<Json, Problem> parse(std::string_view text) {
             413,
             "too-large",
             "The request is too large",
-            "The JSON holds more values than are accepted in one request (some three million numbers, "
-            "or half a million small objects). Send a record as CSV, or leave out rows that say nothing new.",
+            "The JSON holds more values than are accepted in one request (some two million numbers, "
+            "or three hundred thousand small objects). Send a record as CSV, or leave out rows that say nothing new.",
             {},
             {}};
     TreeBuilder builder(text);

@@ -24,8 +24,8 @@ public:
     void look();
     std::size_t limit() const { return limit_; }
     std::size_t taken() const { return taken_; }
-    /// Nothing large should begin: more than nine tenths are taken.
-    bool tight() const { return taken_ > limit_ / 10 * 9; }
+    /// Nothing large should begin: more than eight tenths are taken.
+    bool tight() const { return taken_ > limit_ / 10 * 8; }
 
 private:
     const std::size_t limit_;

@@ -123,7 +123,7 @@ void JobService::submit(Order order, std::function<void(Submission)> done, WaitE
     store_.accept(std::move(job), accepted);
 }
 
-/// Of a full queue: a job that was accepted before under the same key is answered all the same.
+/// The answer of a full queue: a job that was accepted before under the same key, if there is one.
 Submission JobService::submission_of_key(const Order& order) {
     Submission full{Submission::Kind::queue_full, {}, {}};
     if (order.idempotency_key.empty()) return full;
@@ -202,7 +202,7 @@ void JobService::pause(bool paused, Done<bool> done) {
     });
 }
 
-/// What was claimed and no worker has begun waits again.
+/// Claimed jobs that no worker has begun wait again.
 void JobService::give_back_unbegun() {
     for (const auto& held : claims_.withdraw(HeldJob::Clock::now())) outbox_.release(held);
 }

@@ -23,7 +23,7 @@ std::optional<std::size_t> limit_in(const std::string& file) {
     return bytes;
 }
 
-/// Of the control group that the process is in, or of one above it.
+/// The limit of the control group that the process is in, or of one above it.
 std::optional<std::size_t> group_limit() {
     std::ifstream groups("/proc/self/cgroup");
     std::optional<std::size_t> least = limit_in("/sys/fs/cgroup/memory/memory.limit_in_bytes");

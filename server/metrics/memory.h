@@ -1,4 +1,4 @@
-// How much memory the process may take, and how much it has.
+// The memory that the process may take, and the memory that it has.
 #pragma once
 
 #include <atomic>

@@ -26,7 +26,7 @@ private:
     using Place = std::list<Entry>::iterator;
 
 public:
-    /// What one request holds; given back when it goes.
+    /// A request's part of the budget; given back when it goes.
     class Share {
     public:
         Share() = default;
@@ -63,7 +63,7 @@ public:
     /// A share of nothing yet. `give_way` is called once at most, from any thread and under a lock: it only tells the
     /// one whose share it is.
     Share open(std::string client, std::function<void()> give_way);
-    /// What all hold together.
+    /// The sum over all requests.
     std::size_t taken() const;
 
 private:

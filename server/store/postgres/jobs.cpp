@@ -46,7 +46,7 @@ void free_key(Session& session, const NewJob& job) {
         Values().text(job.owner).text(job.idempotency_key));
 }
 
-// Where the jobs of a client are counted one process at a time accepts them: what others are about to commit counts.
+// One process at a time accepts jobs of a client whose jobs are counted: those that others are about to commit count.
 const std::string kCountInTurn =
     "SELECT count(pg_advisory_xact_lock(x'74756e65'::int, hashtext(flow))) FROM "
     "(SELECT DISTINCT flow FROM unnest($1::text[]) AS g (flow) ORDER BY flow OFFSET 0) f";

@@ -61,7 +61,7 @@ public:
     /// The only value of the only row.
     std::int64_t number(std::string_view sql);
     SQLite::Database& database() { return database_; }
-    /// How long a statement waits for other connections.
+    /// The time that a statement waits for other connections.
     void wait_for_others(std::chrono::milliseconds patience) {
         database_.setBusyTimeout(static_cast<int>(patience.count()));
     }

@@ -53,7 +53,7 @@ bool has_room(Connection& store, ClientBounds& bounds, const NewJob& job) {
     return bound++ < job.client_limit;
 }
 
-/// Where the job waits: by its time where that has not come, else by the next turn of its flow.
+/// The job's place in the queue: by its time where that has not come, else by the next turn of its flow.
 void find_turn(Connection& store, Place& job, std::optional<UnixMs> not_before, UnixMs now) {
     const bool later = not_before.value_or(0) > now;
     job.turn = later ? *not_before : next_turn(store, job.priority, job.flow);

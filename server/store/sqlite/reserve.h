@@ -9,7 +9,7 @@ namespace tunewright::server {
 
 class Reserve {
 public:
-    /// Of the database at `path`; nothing is taken yet. What an earlier process took is kept.
+    /// The reserve of the database at `path`; nothing is taken yet. A file that an earlier process left is kept.
     explicit Reserve(const std::string& path);
 
     /// Takes an eighth of the disk, at most 4 MiB, or as much of that as there is.

@@ -317,7 +317,7 @@ std::unique_ptr<JobStore> open_sqlite_store(const std::string& path, SchemaSteps
             try {
                 return std::make_unique<SqliteStore>(path, steps);
             } catch (const SQLite::Exception& error) {
-                // What it lacks may be room for the files beside it, which it reports in many ways.
+                // It may lack room for the files beside it, which it reports in many ways.
                 StoreFault fault = fault_of(error, errno);
                 if (room_of(path).left < kOpening) fault.kind = StoreFault::Kind::full;
                 if (fault.kind != StoreFault::Kind::full || !Reserve(path).release()) throw StoreError(fault);

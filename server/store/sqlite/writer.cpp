@@ -183,7 +183,7 @@ bool SqliteWriter::is_scarce() {
     return reserve_.is_scarce() && connection_.number("PRAGMA freelist_count") < kFewPages;
 }
 
-/// Where there is little room: what the log of changes has grown by goes back to the disk, and the reserve is taken
+/// Makes room on a full disk: what the log of changes has grown by goes back to the disk, and the reserve is taken
 /// again. Where the tables must grow for it half of the reserve helps; another program may be quicker to take that.
 void SqliteWriter::refill() {
     const auto now = std::chrono::steady_clock::now();
@@ -191,7 +191,7 @@ void SqliteWriter::refill() {
     refilled_at_ = now;
     connection_.wait_for_others(kShortWait);
     const auto shorten_log = [this] { return connection_.database().tryExec("PRAGMA wal_checkpoint(TRUNCATE)"); };
-    // Where somebody reads it is done later.
+    // It is done later while somebody reads.
     if (shorten_log() != SQLITE_OK && reserve_.release(false)) shorten_log();
     connection_.wait_for_others(kUsualWait);
     reserve_.fill();

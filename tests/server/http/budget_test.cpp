@@ -1,4 +1,4 @@
-// Who gives way where requests take more memory than there is for all.
+// Requests that take more memory than there is for all, and the one that gives way.
 #include <gtest/gtest.h>
 
 #include <atomic>

@@ -49,9 +49,9 @@ public:
         for (const JobRecord& one : claimed.value_or(std::vector<JobRecord>())) end(one, number % 3 == 0);
     }
 
-    /// What was reported, and since when it may be only better.
+    /// The jobs that were reported; each may be further on than that.
     const std::map<std::string, JobStatus>& there() const { return there_; }
-    /// What was refused, and not only left in doubt.
+    /// The jobs that were refused, and not only left in doubt.
     const std::set<std::string>& refused() const { return refused_; }
 
 private:

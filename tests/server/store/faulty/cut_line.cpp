@@ -29,7 +29,7 @@ bool send_all(int to, const char* bytes, std::size_t count) {
     return true;
 }
 
-/// What has come; 0 at the end.
+/// The number of bytes that came; 0 at the end.
 std::size_t receive(int from, std::array<char, 65536>& bytes) {
     const ssize_t count = ::recv(from, bytes.data(), bytes.size(), 0);
     return count > 0 ? static_cast<std::size_t>(count) : 0;

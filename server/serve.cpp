@@ -211,13 +211,13 @@ private:
         return made;
     }
 
-    /// Two fifths of the memory are for what clients hold: requests and answers on their way.
+    /// A third of the memory is for what clients hold: requests and answers on their way.
     http::Limits limits() const {
         http::Limits made;
         made.connections = connection_limit();
         made.max_body = config_.max_body;
         made.max_batch_body = config_.max_batch_body;
-        made.bodies = made.unsent = memory_.limit() / 5;
+        made.bodies = made.unsent = memory_.limit() / 6;
         made.behind_proxy = config_.behind_proxy;
         return made;
     }
@@ -241,7 +241,7 @@ private:
     void add_routes() {
         router_.guard([this](http::Request& request) {
             auto refusal = gate_.admit(request);
-            if (!refusal && request.method == "POST" && memory_.tight())
+            if (!refusal && request.has_body() && memory_.tight())
                 refusal = http::problem_response(503, "The service has no memory left for now. Try again in a moment.");
             return refusal;
         });

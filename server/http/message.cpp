@@ -69,6 +69,10 @@ bool CaseInsensitive::operator()(std::string_view a, std::string_view b) const {
     return order < 0 || (order == 0 && a.size() < b.size());
 }
 
+bool Request::has_body() const {
+    return has_header("Transfer-Encoding") || (has_header("Content-Length") && header("Content-Length") != "0");
+}
+
 std::string_view Request::header(std::string_view name) const {
     const auto it = headers.find(name);
     return it == headers.end() ? std::string_view{} : std::string_view{it->second};

@@ -63,6 +63,8 @@ struct Request {
     std::string_view header(std::string_view name) const;
 
     bool has_header(std::string_view name) const { return headers.contains(name); }
+    /// True where the head announces a body.
+    bool has_body() const;
 
     /// The path without the query, as sent.
     std::string_view path() const;

@@ -16,7 +16,8 @@ Response ready(const JobService& jobs, const JobStore& store, Gate& gate, const 
     if (!gate.ready())
         return http::problem_response(503, "The file of keys cannot be used, so nobody is admitted; the log says why.");
     if (memory.tight())
-        return http::problem_response(503, "Eight tenths of the memory that the process may take (--memory) are taken.");
+        return http::problem_response(503,
+                                      "Eight tenths of the memory that the process may take (--memory) are taken.");
     return http::json_response(R"({"status":"ready"})");
 }
 

@@ -1,12 +1,17 @@
 #include "server/http/guard/budget.h"
 
 #include <algorithm>
+#include <map>
+#include <string_view>
 
 namespace tunewright::server::http {
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
 // Parts of the whole: what a small request holds at most, and what is kept for such, whoever fills the rest.
 constexpr std::size_t kSmallRequest = 512, kForSmall = 4;
+constexpr std::chrono::seconds kToLeave{1};  // for one that was asked to give way, before another is
 
 }  // namespace
 
@@ -17,59 +22,82 @@ Budget::Share Budget::open(std::string client, std::function<void()> give_way) {
 
 std::size_t Budget::taken() const {
     const std::lock_guard lock(mutex_);
-    return sum_;
+    return arriving_ + answering_;
+}
+
+/// What all together may hold for one that holds so much.
+std::size_t Budget::room(std::size_t bytes) const {
+    return most_ / 2 + (bytes <= most_ / kSmallRequest ? most_ / kForSmall : 0);
 }
 
 bool Budget::grow(Entry& entry, std::size_t bytes, std::chrono::milliseconds patience) {
-    const auto end = std::chrono::steady_clock::now() + patience;
+    const auto end = Clock::now() + patience;
     std::unique_lock lock(mutex_);
-    const bool arriving = entry.give_way != nullptr;
-    bytes = std::min(bytes, most_ / 2 - (arriving ? std::min(most_ / 2, entry.bytes) : 0));
+    bytes = std::min(bytes, most_ / 2 - std::min(most_ / 2, entry.bytes));
     const std::size_t own = entry.bytes + bytes;
-    const std::size_t most = own <= most_ / kSmallRequest ? most_ + most_ / kForSmall : arriving ? most_ / 2 : most_;
-    while (sum_ + bytes > most && !entry.leaving) {
+    while (arriving_ + bytes > room(own) && !entry.leaving) {
         if (Entry* victim = to_give_way(entry.client, own)) {
-            victim->leaving = true;
+            victim->leaving = Clock::now();
             victim->give_way();
-        } else if (freed_.wait_until(lock, end) == std::cv_status::timeout) {
+            freed_.notify_all();  // it may be waiting here itself
+        } else if (freed_.wait_until(lock, std::min(end, Clock::now() + kToLeave)) == std::cv_status::timeout &&
+                   Clock::now() >= end) {
             break;
         }
     }
-    if (entry.leaving || sum_ + bytes > most) return false;
+    if (entry.leaving || arriving_ + bytes > room(own)) return false;
     entry.bytes += bytes;
-    sum_ += bytes;
-    if (bytes > 0) held_[entry.client] += bytes;
+    arriving_ += bytes;
     return true;
 }
 
-void Budget::keep(Entry& entry) {
-    const std::lock_guard lock(mutex_);
-    entry.give_way = nullptr;
+bool Budget::arrived(Entry& entry, std::size_t more, std::chrono::milliseconds patience) {
+    {
+        std::unique_lock lock(mutex_);
+        entry.give_way = nullptr;
+        entry.leaving = {};
+        const std::size_t own = std::min(entry.bytes + more, most_ / 2);
+        const auto fits = [&] { return answering_ + own <= room(own); };
+        if (!freed_.wait_for(lock, patience, fits)) return false;
+        let_go(entry);
+        entry.bytes = own;
+        entry.answering = true;
+        answering_ += own;
+    }
+    freed_.notify_all();
+    return true;
 }
+
+/// Under the lock: what it holds is held no longer.
+void Budget::let_go(Entry& entry) { (entry.answering ? answering_ : arriving_) -= entry.bytes; }
 
 void Budget::close(Place place) {
     {
         const std::lock_guard lock(mutex_);
-        sum_ -= place->bytes;
-        if (const auto held = held_.find(place->client); held != held_.end() && (held->second -= place->bytes) == 0)
-            held_.erase(held);
+        let_go(*place);
         entries_.erase(place);
     }
     freed_.notify_all();
 }
 
-/// Under the lock: none while one that has been asked is still there. For another request of the same client only one
-/// that is more than twice as large goes.
+/// Under the lock: none while one that was asked a moment ago is still there. For another request of the same client
+/// only one that is more than twice as large goes.
 Budget::Entry* Budget::to_give_way(const std::string& client, std::size_t bytes) {
-    if (std::ranges::any_of(entries_, &Entry::leaving)) return nullptr;
-    const auto most = std::ranges::max_element(held_, {}, [](const auto& item) { return item.second; });
-    if (most == held_.end()) return nullptr;
-    Entry* largest = nullptr;
-    for (Entry& entry : entries_)
-        if (entry.client == most->first && entry.give_way && (largest == nullptr || entry.bytes > largest->bytes))
-            largest = &entry;
-    if (largest != nullptr && most->first == client && largest->bytes <= 2 * bytes) return nullptr;
-    return largest;
+    const auto now = Clock::now();
+    if (std::ranges::any_of(entries_, [&](const Entry& one) { return one.leaving && now - *one.leaving < kToLeave; }))
+        return nullptr;
+    // Clients by what they hold in requests that can still give way.
+    std::map<std::string_view, std::pair<std::size_t, Entry*>> clients;
+    for (Entry& entry : entries_) {
+        if (!entry.give_way || entry.leaving) continue;
+        auto& [sum, largest] = clients[entry.client];
+        sum += entry.bytes;
+        if (largest == nullptr || entry.bytes > largest->bytes) largest = &entry;
+    }
+    const auto most = std::ranges::max_element(clients, {}, [](const auto& item) { return item.second.first; });
+    if (most == clients.end()) return nullptr;
+    Entry* largest = most->second.second;
+    return most->first == client && largest->bytes <= 2 * bytes ? nullptr : largest;
 }
 
 }  // namespace tunewright::server::http

@@ -1,12 +1,13 @@
-// The memory that requests take until they are answered: one sum, and which client gives way where it is too much.
+// The memory that requests take until they are answered: half of it for those that arrive, of which one gives way where
+// it is too much, and half for those that are being answered.
 #pragma once
 
 #include <chrono>
 #include <condition_variable>
 #include <functional>
 #include <list>
-#include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -21,7 +22,9 @@ private:
         std::string client;
         std::size_t bytes = 0;
         std::function<void()> give_way;  ///< empty: its request has arrived, and keeps what it holds
-        bool leaving = false;            ///< has been asked to give way
+        bool answering = false;          ///< counts among those that are being answered
+        std::optional<std::chrono::steady_clock::time_point> leaving =
+            {};  ///< since when it has been asked to give way
     };
     using Place = std::list<Entry>::iterator;
 
@@ -39,18 +42,18 @@ public:
         ~Share() {
             if (budget_ != nullptr) budget_->close(place_);
         }
-        /// Holds so many bytes more of a request that arrives; all of those have half of the whole. Where that is too
-        /// much it waits, while of the client that holds most the largest request that is still arriving gives way; if
-        /// that is the same client, to one of half its size or less. Small requests have room of their own, a quarter
-        /// more. False where there was no room within the time, or this one has been asked to give way itself.
+        /// Holds so many bytes more of a request that arrives. Where they are too many it waits, while of the client
+        /// that holds most in requests that arrive the largest gives way; if that is the same client, to one of half
+        /// its size or less. Small requests have room of their own, a quarter of the whole. False where there was no
+        /// room within the time, or this one has been asked to give way itself.
         bool grow(std::size_t bytes, std::chrono::milliseconds patience) {
             return budget_->grow(*place_, bytes, patience);
         }
-        /// The request is whole and gives no way from now on; it holds so many bytes more while it is answered, at most
-        /// half of the whole: where nothing else is being answered there is room for it. False likewise.
+        /// The request is whole and gives no way from now on; it holds so many bytes more while it is answered, in all
+        /// at most half of the whole: where nothing else is being answered there is room for it. False where there was
+        /// none within the time; then it counts as before.
         bool arrived(std::size_t more, std::chrono::milliseconds patience) {
-            budget_->keep(*place_);
-            return more == 0 || budget_->grow(*place_, more, patience);
+            return budget_->arrived(*place_, more, patience);
         }
 
     private:
@@ -68,7 +71,9 @@ public:
 
 private:
     bool grow(Entry& entry, std::size_t bytes, std::chrono::milliseconds patience);
-    void keep(Entry& entry);
+    bool arrived(Entry& entry, std::size_t more, std::chrono::milliseconds patience);
+    void let_go(Entry& entry);
+    std::size_t room(std::size_t bytes) const;
     void close(Place place);
     Entry* to_give_way(const std::string& client, std::size_t bytes);
 
@@ -76,8 +81,7 @@ private:
     mutable std::mutex mutex_;
     std::condition_variable freed_;
     std::list<Entry> entries_;
-    std::map<std::string, std::size_t, std::less<>> held_;  ///< by client; none is 0
-    std::size_t sum_ = 0;                                   ///< of all
+    std::size_t arriving_ = 0, answering_ = 0;  ///< sums of bytes
 };
 
 }  // namespace tunewright::server::http

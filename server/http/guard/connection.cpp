@@ -100,6 +100,7 @@ void Connection::start(const Head& head, std::string_view text) {
     gathers_ = true;
     http_1_0_ = head.http_1_0;
     asked_ = false;
+    gives_way_ = false;
 }
 
 void Connection::expect_body(bool as_it_arrives) {

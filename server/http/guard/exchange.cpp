@@ -136,6 +136,7 @@ void Exchange::answer(httplib::Response& out, const httplib::ContentReader& body
             if (connection_.has_more() && piece.size() < kPiece) return true;
             return count(piece.size()) ? pass_on() : connection_.refuse_body(kNoRoom);
         });
+        if (whole) share_.arrived(0, {});
         return whole && pass_on() && !connection_.body_failed();
     };
     bool whole = true;
@@ -150,6 +151,7 @@ void Exchange::answer(httplib::Response& out, const httplib::ContentReader& body
         const std::size_t more = whole && application_.weight ? application_.weight(request_) : 0;
         if (!share_.arrived(more, limits_.room)) whole = connection_.refuse_body(kNoRoom);
     }
+    if (!whole) std::string().swap(request_.body), share_ = {};
     // The library sets a status of its own where it was not given the whole body.
     Response response = whole ? handled() : Response();
     out.status = 200;

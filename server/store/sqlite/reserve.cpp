@@ -12,7 +12,6 @@ namespace tunewright::server {
 namespace {
 
 constexpr std::size_t kMost = 4 << 20;
-constexpr std::size_t kLeast = 64 << 10;  // what is worth taking
 constexpr std::size_t kShare = 8;
 constexpr std::size_t kScarce = 1 << 20;
 

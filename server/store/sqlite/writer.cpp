@@ -156,10 +156,11 @@ void SqliteWriter::write_group(std::vector<Change>& group) {
     const auto answer = [](Change& change, const std::optional<StoreFault>& fault) {
         survive([&] { change.done(fault); });
     };
+    const int rows = sqlite3_total_changes(connection_.database().getHandle());
     if (!try_commit(group, 0, group.size())) {
         std::size_t bytes = 0;
         for (const Change& change : group) bytes += size_of(change);
-        survive([&] { worked(bytes); });
+        if (sqlite3_total_changes(connection_.database().getHandle()) != rows) survive([&] { worked(bytes); });
         for (Change& change : group) answer(change, std::nullopt);
         return;
     }

@@ -25,10 +25,10 @@ TEST(Budget, TheLargestArrivingRequestOfWhoHoldsMostGivesWay) {
         EXPECT_FALSE(large.grow(1, 0ms)) << "it has been asked to give way";
         large = {};
     });
-    EXPECT_TRUE(other.grow(30, 5s));
+    EXPECT_TRUE(other.grow(70, 5s));
     leaves.join();
     EXPECT_EQ(asked, 2);
-    EXPECT_EQ(budget.taken(), 80U);
+    EXPECT_EQ(budget.taken(), 120U);
 }
 
 TEST(Budget, WhoHoldsMostWaitsForItsOwnUnlessOneIsTwiceAsLarge) {
@@ -62,17 +62,69 @@ TEST(Budget, RequestsThatWaitToBeAnsweredLeaveRoomForOneThatIs) {
     EXPECT_TRUE(all[1].arrived(50, 0ms));
 }
 
+TEST(Budget, WhatIsBeingAnsweredKeepsNoBodyFromArriving) {
+    Budget budget(200);
+    Budget::Share computing = budget.open("greedy", [] {});
+    ASSERT_TRUE(computing.grow(90, 0ms) && computing.arrived(1000, 0ms));
+    Budget::Share other = budget.open("modest", [] {});
+    EXPECT_TRUE(other.grow(100, 0ms));
+}
+
+TEST(Budget, WhoHoldsMuchThatIsAnsweredShieldsNobodyElsesBodies) {
+    Budget budget(200);
+    std::atomic<bool> asked = false;
+    Budget::Share computing = budget.open("one", [] {});
+    ASSERT_TRUE(computing.grow(100, 0ms) && computing.arrived(1000, 0ms));
+    Budget::Share stalled = budget.open("two", [&] { asked = true; });
+    ASSERT_TRUE(stalled.grow(80, 0ms));
+    Budget::Share other = budget.open("three", [] {});
+    std::thread leaves([&] {
+        while (!asked) std::this_thread::sleep_for(1ms);
+        stalled = {};
+    });
+    EXPECT_TRUE(other.grow(60, 5s));
+    leaves.join();
+}
+
+TEST(Budget, OneThatWaitsForRoomIsWokenToGiveWay) {
+    Budget budget(200);
+    Budget::Share first = budget.open("greedy", [] {}), second = budget.open("greedy", [] {});
+    ASSERT_TRUE(first.grow(30, 0ms) && second.grow(40, 0ms));
+    std::thread waits([&] {
+        EXPECT_FALSE(second.grow(40, 60s));
+        second = {};
+    });
+    std::this_thread::sleep_for(50ms);
+    Budget::Share other = budget.open("modest", [] {});
+    EXPECT_TRUE(other.grow(40, 30s));
+    waits.join();
+}
+
+TEST(Budget, OneThatDoesNotLeaveIsNotTheOnlyOneAsked) {
+    Budget budget(200);
+    std::atomic<bool> asked = false;
+    Budget::Share stays = budget.open("greedy", [] {}), leaves = budget.open("greedy", [&] { asked = true; });
+    ASSERT_TRUE(stays.grow(50, 0ms) && leaves.grow(40, 0ms));
+    std::thread left([&] {
+        while (!asked) std::this_thread::sleep_for(1ms);
+        leaves = {};
+    });
+    Budget::Share other = budget.open("modest", [] {});
+    EXPECT_TRUE(other.grow(30, 30s));
+    left.join();
+}
+
 TEST(Budget, SmallRequestsHaveRoomWhoeverFillsTheRest) {
     Budget budget(51'200);
     Budget::Share large = budget.open("greedy", [] {});
     ASSERT_TRUE(large.grow(30'000, 0ms) && large.arrived(30'000, 0ms));
     std::vector<Budget::Share> small;
-    for (int i = 0; i < 128; ++i) {
+    for (int i = 0; i < 384; ++i) {
         small.push_back(budget.open("greedy", [] {}));
         EXPECT_TRUE(small.back().grow(100, 0ms));
     }
     EXPECT_FALSE(small.front().grow(1, 0ms));
-    EXPECT_EQ(budget.taken(), 51'200U + 12'800U);
+    EXPECT_EQ(budget.taken(), 25'600U + 25'600U + 12'800U);
     small.clear();
     large = {};
     EXPECT_EQ(budget.taken(), 0U);

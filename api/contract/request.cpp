@@ -196,7 +196,6 @@ const Description<JobRequest>& job_contract() {
         Description<JobRequest> d("TuningRequest",
                                   "A plant or a recorded test, and how its controllers are to be found and judged.");
         add_labels(d);
-        constexpr double kLongest = 3600;
         d.field("plant", &JobRequest::plant, maybe(plant_model_or_text()),
                 "The plant; exactly one of plant, record and ultimate.")
             .field("record", &JobRequest::record, maybe(object(record_contract())),
@@ -206,18 +205,11 @@ const Description<JobRequest>& job_contract() {
                 "In place of both: ultimate gain and period alone. The rules that need no more are answered, without "
                 "figures of a loop.");
         add_question(d);
-        d.field("timeout_s", &JobRequest::timeout_s, number({.exclusive_minimum = 0, .maximum = kLongest}),
-                "Time allowed for the job; it fails with type timeout after it.", {.unit = "s"})
-            .field("priority", &JobRequest::low_priority, choice<bool>({{"normal", false}, {"low", true}}),
-                   "low: it takes its turn among the entries of batches, after single jobs of normal priority.")
-            .field("not_before", &JobRequest::not_before, maybe(moment()), kNotBeforeSentence)
-            .field("unique", &JobRequest::unique, boolean(), kUniqueSentence)
-            .field("notify", &JobRequest::notify, maybe(object(notify_contract())),
-                   "Whom to tell when the job has ended.")
-            .check_presence([](const Json& value, JobRequest& request, Reader& reader) {
-                check_source(value, kJobSources, "a recorded test, or an ultimate gain and period alone", reader);
-                check_ultimate(value, request, reader);
-            })
+        add_terms(d);
+        d.check_presence([](const Json& value, JobRequest& request, Reader& reader) {
+             check_source(value, kJobSources, "a recorded test, or an ultimate gain and period alone", reader);
+             check_ultimate(value, request, reader);
+         })
             .example({{"name", "TIC-101"},
                       {"plant", {{"type", "fopdt"}, {"K", 2}, {"T", 10}, {"L", 3}}},
                       {"tune", Json::array({Json{{"method", default_method()}, {"Ms", 1.4}, {"Mt", 1.4}}})}});

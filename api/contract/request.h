@@ -10,7 +10,7 @@
 
 namespace tunewright::api {
 
-struct JobRequest {
+struct JobRequest : Terms {
     std::optional<std::string> name;
     std::optional<Units> units;
     std::optional<PlantModel> plant;
@@ -26,11 +26,6 @@ struct JobRequest {
     EvaluateOptions evaluate;
     verdict::GivenSteps given_steps;  ///< of `evaluate`
     std::string uncertainty = "auto";
-    double timeout_s = 60;
-    std::optional<Notify> notify;
-    bool low_priority = false;
-    std::optional<std::int64_t> not_before;  ///< ms since 1970, UTC
-    bool unique = false;
     ReadRecord read;                             ///< of `record`
     std::optional<built::Build> build;           ///< of `implement`
     std::optional<built::Build> baseline_build;  ///< of `baseline_settings`

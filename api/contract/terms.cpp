@@ -3,6 +3,8 @@
 #include <chrono>
 #include <cmath>
 
+#include "api/contract/range/range_request.h"
+#include "api/contract/request.h"
 #include "api/csv/time_stamp.h"
 #include "api/describe/body.h"
 
@@ -11,6 +13,8 @@ namespace {
 
 constexpr std::size_t kMaxUrl = 2000;
 constexpr std::size_t kMaxSecretName = 64;
+constexpr double kLongestTimeout = 3600;  // s
+constexpr int kMaxDaysAhead = 30;         // that a job may wait for its time
 
 }  // namespace
 
@@ -30,6 +34,9 @@ const Description<Notify>& notify_contract() {
     return description;
 }
 
+namespace {
+
+/// A date and a time of day with its zone, ISO 8601, as milliseconds since 1970, UTC.
 Codec<std::int64_t> moment() {
     Codec<std::int64_t> codec;
     codec.read = [](const Json& value, std::int64_t& target, Reader& reader) {
@@ -52,6 +59,29 @@ Codec<std::int64_t> moment() {
     codec.schema = [](SchemaBook&) { return Json{{"type", "string"}, {"format", "date-time"}}; };
     return codec;
 }
+
+}  // namespace
+
+template <class Request>
+void add_terms(Description<Request>& description) {
+    description
+        .field("timeout_s", &Terms::timeout_s, number({.exclusive_minimum = 0, .maximum = kLongestTimeout}),
+               "Time allowed for the job; it fails with type timeout after it.", {.unit = "s"})
+        .field("priority", &Terms::low_priority, choice<bool>({{"normal", false}, {"low", true}}),
+               "low: it takes its turn among the entries of batches, after single jobs of normal priority.")
+        .field("not_before", &Terms::not_before, maybe(moment()),
+               "The job starts at this time or later; a time in the past means at once. ISO 8601 with a zone, such as "
+               "2026-05-04T06:00:00Z; at most " +
+                   std::to_string(kMaxDaysAhead) + " days ahead.")
+        .field("unique", &Terms::unique, boolean(),
+               "true: if a job of this very request waits, runs or has succeeded and is kept, the answer is that job "
+               "and no second one is made. Name, timeout_s and every other member count; notify, priority, not_before "
+               "and unique do not.")
+        .field("notify", &Terms::notify, maybe(object(notify_contract())), "Whom to tell when the job has ended.");
+}
+
+template void add_terms(Description<JobRequest>& description);
+template void add_terms(Description<RangeRequest>& description);
 
 std::optional<Problem> refuse_far(const std::optional<std::int64_t>& not_before) {
     using std::chrono::milliseconds;

@@ -15,11 +15,8 @@ namespace tunewright::api {
 
 template <class T>
 class Description;
-template <class T>
-struct Codec;
 
 constexpr std::size_t kMaxNameLength = 200;  ///< bytes of the name of a job or a batch
-constexpr int kMaxDaysAhead = 30;            ///< that a job may wait for its time
 
 /// Whom to tell when a job or a batch has ended. What a url may be is the operator's business.
 struct Notify {
@@ -29,18 +26,21 @@ struct Notify {
 
 const Description<Notify>& notify_contract();
 
-/// A date and a time of day with its zone, ISO 8601, as milliseconds since 1970, UTC. Of requests alone.
-Codec<std::int64_t> moment();
-/// 422 for a job that is to wait until more than kMaxDaysAhead from now.
-std::optional<Problem> refuse_far(const std::optional<std::int64_t>& not_before);
+/// The part of a request that every job has.
+struct Terms {
+    double timeout_s = 60;
+    std::optional<Notify> notify;
+    bool low_priority = false;
+    std::optional<std::int64_t> not_before;  ///< ms since 1970, UTC
+    bool unique = false;
+};
 
-constexpr const char* kNotBeforeSentence =
-    "The job starts at this time or later; a time in the past means at once. ISO 8601 with a zone, such as "
-    "2026-05-04T06:00:00Z; at most 30 days ahead.";
-constexpr const char* kUniqueSentence =
-    "true: if a job of this very request waits, runs or has succeeded and is kept, the answer is that job and no "
-    "second "
-    "one is made. Name, timeout_s and every other member count; notify, priority, not_before and unique do not.";
+/// The members of Terms, for JobRequest and RangeRequest.
+template <class Request>
+void add_terms(Description<Request>& description);
+
+/// 422 for a job that is to wait longer for its time than the contract allows.
+std::optional<Problem> refuse_far(const std::optional<std::int64_t>& not_before);
 
 /// What the text of a batch's `notify` says; 422 with pointers below /notify.
 std::variant<Notify, Problem> read_notify(std::string_view json);

@@ -20,7 +20,7 @@ T await(const Start& start) {
 /// The same for a callback without a value, as long as somebody waits: false where `left` (asked now and then; may be
 /// empty) says that nobody does. The callback may come later all the same.
 template <class Start>
-bool await_end(const Start& start, const std::function<bool()>& left) {
+bool await_end(const Start& start, const std::function<bool()>& left = {}) {
     constexpr std::chrono::milliseconds look{250};
     const auto promise = std::make_shared<std::promise<void>>();
     std::future<void> end = promise->get_future();

@@ -90,11 +90,9 @@ private:
         if (awaited_.empty())
             std::this_thread::sleep_for(kPause);
         else
-            await_end(
-                [&](const std::function<void()>& ended) {
-                    jobs_.wait(awaited_, kPatience, [ended](const auto&) { ended(); });
-                },
-                {});
+            await_end([&](const std::function<void()>& ended) {
+                jobs_.wait(awaited_, kPatience, [ended](const auto&) { ended(); });
+            });
         return true;
     }
 

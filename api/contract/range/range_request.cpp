@@ -197,7 +197,6 @@ void follow_way(RangeSubject& subject, Reader& reader) {
 const Description<RangeRequest>& range_request_contract() {
     static const auto description = [] {
         using R = RangeRequest;
-        constexpr double kLongest = 3600;
         Description<R> d("RangeRequest",
                          "A loop over its whole operating range: points with plants or records, or equations, to one "
                          "robust setting and a schedule.");
@@ -218,15 +217,9 @@ const Description<RangeRequest>& range_request_contract() {
                 "not given; none: on the models alone.")
             .field("schedule", &R::schedule, object(schedule_wish_contract()),
                    "Limits, and how the controller moves between its rows.", {.no_default = true})
-            .field("runs", &R::runs, boolean(), "With equations: simulate passages across the range.")
-            .field("timeout_s", &R::timeout_s, number({.exclusive_minimum = 0, .maximum = kLongest}),
-                   "Time allowed for the job; it fails with type timeout after it.", {.unit = "s"})
-            .field("priority", &R::low_priority, choice<bool>({{"normal", false}, {"low", true}}),
-                   "low: it takes its turn among the entries of batches, after single jobs of normal priority.")
-            .field("not_before", &R::not_before, maybe(moment()), kNotBeforeSentence)
-            .field("unique", &R::unique, boolean(), kUniqueSentence)
-            .field("notify", &R::notify, maybe(object(notify_contract())), "Whom to tell when the job has ended.")
-            .refuse("record", "A range takes a record for each point: points [{\"at\": 30, \"record\": {...}}, ...].")
+            .field("runs", &R::runs, boolean(), "With equations: simulate passages across the range.");
+        add_terms(d);
+        d.refuse("record", "A range takes a record for each point: points [{\"at\": 30, \"record\": {...}}, ...].")
             .refuse("tune", "A range is designed by its own search; limits and kind of controller stand in schedule.")
             .check_presence(check_range_source)
             .check(check_range)

@@ -61,18 +61,13 @@ struct RangeSubject {
     std::shared_ptr<const range::SteadyBranch> branch;
 };
 
-struct RangeRequest : RangeSubject {
+struct RangeRequest : RangeSubject, Terms {
     std::optional<GivenScheduling> scheduling;
     std::optional<std::vector<GivenRangePoint>> points;
     IdentifyQuestion identify;
     std::optional<bool> over_region;
     ScheduleWish schedule;
     bool runs = true;
-    double timeout_s = 60;
-    std::optional<Notify> notify;
-    bool low_priority = false;
-    std::optional<std::int64_t> not_before;  ///< ms since 1970, UTC
-    bool unique = false;
     RangeQuestion question;         ///< the whole of it for the engine
     std::vector<ReadRecord> reads;  ///< of the points, in their order; the records themselves are in the question
 };

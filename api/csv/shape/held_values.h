@@ -8,7 +8,7 @@
 namespace tunewright::api {
 
 /// Fills the rows of a set point that are NaN: each value holds until the next one, the first from the beginning.
-/// Returns false, and makes `r` empty, if there is no number.
+/// Clears `r` and returns false if no row has a set point.
 bool hold_reference(std::vector<double>& r);
 
 /// For a table made from values with times of their own (pivot.h): a time without u has that of the time before.

@@ -31,7 +31,7 @@ std::size_t still_rows(const std::vector<double>& u) {
 /// True if u moves up to this row by small moves, or by single steps of its grid, and not by a step that somebody made.
 bool creeps(const std::vector<double>& u, std::size_t row) {
     constexpr double kStep = 0.5, kOneOfGrid = 1.5;  // of the whole way; of the grid
-    constexpr std::size_t kFewLevels = 3;            // of which the distance is no grid
+    constexpr std::size_t kFewLevels = 3;            // so few levels show no grid
     if (std::set<double>(u.begin(), u.end()).size() <= kFewLevels) return false;
     double largest = 0;
     for (std::size_t i = 1; i <= row && i < u.size(); ++i) largest = std::max(largest, std::abs(u[i] - u[i - 1]));

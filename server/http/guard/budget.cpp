@@ -7,8 +7,6 @@
 namespace tunewright::server::http {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 // Parts of the whole: what a small request holds at most, and what is kept for such, whoever fills the rest.
 constexpr std::size_t kSmallRequest = 512, kForSmall = 4;
 constexpr std::chrono::seconds kToLeave{1};  // for one that was asked to give way, before another is
@@ -25,7 +23,7 @@ std::size_t Budget::taken() const {
     return arriving_ + answering_;
 }
 
-/// What all together may hold for one that holds so much.
+/// The most that all requests together may hold when one that holds `bytes` asks for room.
 std::size_t Budget::room(std::size_t bytes) const {
     return most_ / 2 + (bytes <= most_ / kSmallRequest ? most_ / kForSmall : 0);
 }

@@ -1,5 +1,5 @@
-// The memory that requests take until they are answered: half of it for those that arrive, of which one gives way where
-// it is too much, and half for those that are being answered.
+// The memory that requests take until they are answered. Half of it is for requests that arrive: when they need more,
+// one of them gives way. The other half is for requests that are being answered.
 #pragma once
 
 #include <chrono>
@@ -14,6 +14,8 @@
 namespace tunewright::server::http {
 
 class Budget {
+    using Clock = std::chrono::steady_clock;
+
 public:
     explicit Budget(std::size_t bytes) : most_(bytes) {}
 
@@ -21,10 +23,9 @@ private:
     struct Entry {
         std::string client;
         std::size_t bytes = 0;
-        std::function<void()> give_way;  ///< empty: its request has arrived, and keeps what it holds
-        bool answering = false;          ///< counts among those that are being answered
-        std::optional<std::chrono::steady_clock::time_point> leaving =
-            {};  ///< since when it has been asked to give way
+        std::function<void()> give_way;                 ///< empty: its request has arrived, and keeps what it holds
+        bool answering = false;                         ///< counts among those that are being answered
+        std::optional<Clock::time_point> leaving = {};  ///< since when it has been asked to give way
     };
     using Place = std::list<Entry>::iterator;
 

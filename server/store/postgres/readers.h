@@ -1,14 +1,12 @@
-// A few connections that only read, handed out to whoever asks.
+// The connections to PostgreSQL that only read.
 #pragma once
 
-#include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <memory>
 #include <mutex>
 #include <type_traits>
-#include <vector>
 
+#include "server/store/pool.h"
 #include "server/store/postgres/session.h"
 
 namespace tunewright::server::postgres {
@@ -21,24 +19,25 @@ public:
     template <class Work>
     std::invoke_result_t<Work, Session&> read(Work work) {
         try {
-            bool fresh = false;
-            std::unique_ptr<Session> session = take(fresh);
-            const Place place(*this);
+            Pool<Session>::Place place(pool_, kPatience);
+            if (!place.is_held()) throw Failure(Failure::Kind::broken, "no connection for reading became free");
+            std::unique_ptr<Session> session = place.connection();
+            const bool fresh = session == nullptr;
             try {
-                if (!session) session = open();
+                if (fresh) session = open();
                 auto found = work(*session);
-                give_back(std::move(session));
+                place.keep(std::move(session));
                 return found;
             } catch (const Failure& failure) {
                 if (failure.kind != Failure::Kind::broken) {
-                    if (session) give_back(std::move(session));
+                    if (session) place.keep(std::move(session));
                     throw;
                 }
                 if (fresh) throw;
-                forget_all();
+                pool_.forget_idle();
                 session = open();
                 auto found = work(*session);
-                give_back(std::move(session));
+                place.keep(std::move(session));
                 return found;
             }
         } catch (const Failure& failure) {
@@ -47,31 +46,15 @@ public:
     }
 
 private:
-    /// One of the places for connections, held while somebody reads.
-    class Place {
-    public:
-        explicit Place(Readers& readers) : readers_(readers) {}
-        ~Place() { readers_.leave(); }
-        Place(const Place&) = delete;
-        Place& operator=(const Place&) = delete;
+    static constexpr std::size_t kPlaces = 4;
+    static constexpr std::chrono::seconds kPatience{5};
 
-    private:
-        Readers& readers_;
-    };
-
-    /// Waits for a place. A connection that is idle, or nothing (then `fresh`: a new one is to be opened).
-    std::unique_ptr<Session> take(bool& fresh);
     std::unique_ptr<Session> open();
-    void give_back(std::unique_ptr<Session> session);
-    void forget_all();
-    void leave();
 
     Address address_;
     Watch& watch_;
+    Pool<Session> pool_{kPlaces};
     std::mutex mutex_;
-    std::condition_variable left_;
-    std::size_t busy_ = 0;
-    std::vector<std::unique_ptr<Session>> idle_;
     std::chrono::steady_clock::time_point next_try_{};
 };
 

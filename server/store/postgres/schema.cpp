@@ -266,8 +266,8 @@ CREATE UNLOGGED TABLE server_life (id uuid NOT NULL, one boolean PRIMARY KEY DEF
 // Entries of a batch that ended in a state, which are few among many.
 constexpr const char* kStep6 = "CREATE INDEX ended_entries ON ended (status, seq) WHERE NOT single";
 
-// Jobs at a time, which wait in a class of their own; and the single jobs of one client are counted, of
-// which those of low priority stand among entries.
+// The time before which a job does not start: until then it waits in a class of its own. And an index by which the
+// single jobs of one client are counted; those of low priority stand among entries of batches.
 constexpr const char* kStep7 = R"sql(
 ALTER TABLE waiting DROP CONSTRAINT waiting_class_check, ADD CHECK (class IN (0, 1, 2));
 ALTER TABLE jobs ADD COLUMN not_before bigint;

@@ -230,9 +230,8 @@ namespace {
 
 std::optional<UnixMs> next_accepted(Connection& store, int priority) {
     Connection::Use row = store.use(
-        "SELECT max(j.created_at, coalesce(j.not_before, 0)) FROM waiting w JOIN jobs j ON j.seq = w.seq WHERE w.class "
-        "= ?1 "
-        "ORDER BY w.turn, w.seq LIMIT 1");
+        "SELECT max(j.created_at, coalesce(j.not_before, 0)) FROM waiting w JOIN jobs j ON j.seq = w.seq "
+        "WHERE w.class = ?1 ORDER BY w.turn, w.seq LIMIT 1");
     if (!row.with(priority).next()) return std::nullopt;
     return row.integer(0);
 }

@@ -352,8 +352,9 @@ BEGIN SELECT RAISE(ABORT, 'a job that runs is its worker''s'); END;
 // Entries of a batch that ended in a state, which are few among many.
 constexpr const char* kStep6 = "CREATE INDEX ended_entries ON ended (status) WHERE NOT single;";
 
-// Jobs at a time; and the single jobs of one client are counted, of which those of low priority stand among entries. Of
-// an index WHERE class = 1 every statement with class = ?1 would be compiled anew each time.
+// The time before which a job does not start, and an index by which the single jobs of one client are counted; those of
+// low priority stand among entries of batches. With an index WHERE class = 1 SQLite would compile every statement with
+// class = ?1 anew each time.
 constexpr const char* kStep7 = R"sql(
 ALTER TABLE jobs ADD COLUMN not_before INTEGER;
 CREATE INDEX waiting_clients ON waiting (flow, batch, class) WHERE class > 0 AND batch IS NULL;

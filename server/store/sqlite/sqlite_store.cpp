@@ -1,15 +1,14 @@
 #include "server/store/open_store.h"
 
 #include <cerrno>
-#include <condition_variable>
 #include <filesystem>
 #include <future>
 #include <limits>
-#include <mutex>
 #include <ostream>
 #include <type_traits>
 
 #include "server/clock.h"
+#include "server/store/pool.h"
 #include "server/store/sqlite/changes.h"
 #include "server/store/sqlite/file.h"
 #include "server/store/sqlite/reading.h"
@@ -224,50 +223,23 @@ private:
     template <class Work>
     std::invoke_result_t<Work, Connection&> read(Work work) {
         try {
-            Reader reader(*this);
-            return work(reader.get());
+            Pool<Connection>::Place place(readers_);
+            std::unique_ptr<Connection> reader = place.connection();
+            if (!reader) reader = std::make_unique<Connection>(path_, SQLite::OPEN_READONLY);
+            auto found = work(*reader);
+            place.keep(std::move(reader));
+            return found;
         } catch (const SQLite::Exception& error) {
             throw StoreError(fault_of(error));
         }
     }
-
-    /// One of the connections for reading, when one is free; a new one while there are few.
-    struct Reader {
-        explicit Reader(SqliteStore& store) : store(store) {
-            std::unique_lock lock(store.readers_mutex_);
-            store.reader_free_.wait(lock, [&] { return store.reading_ < kReaders; });
-            store.reading_++;
-            if (store.readers_.empty()) return;
-            connection = std::move(store.readers_.back());
-            store.readers_.pop_back();
-        }
-        ~Reader() {
-            {
-                const std::lock_guard lock(store.readers_mutex_);
-                store.reading_--;
-                if (connection) store.readers_.push_back(std::move(connection));
-            }
-            store.reader_free_.notify_one();
-        }
-        Reader(const Reader&) = delete;
-        Reader& operator=(const Reader&) = delete;
-        Connection& get() {
-            if (!connection) connection = std::make_unique<Connection>(store.path_, SQLite::OPEN_READONLY);
-            return *connection;
-        }
-        SqliteStore& store;
-        std::unique_ptr<Connection> connection;
-    };
 
     std::string path_;
     FileLock lock_;
     Reserve reserve_;
     Connection connection_;
     ClientBounds bounds_;  ///< the writer's
-    std::mutex readers_mutex_;
-    std::condition_variable reader_free_;
-    std::size_t reading_ = 0;
-    std::vector<std::unique_ptr<Connection>> readers_;
+    Pool<Connection> readers_{kReaders};
     std::unique_ptr<SqliteWriter> writer_;
     Slices<Connection> slices_{[this](std::function<void(Connection&)> apply, Slices<Connection>::Finished done) {
         writer_->submit({std::move(apply), std::move(done), true, true, 0, Kind::gives_room});

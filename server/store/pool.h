@@ -1,0 +1,79 @@
+// A few connections for reading, handed out to whoever asks.
+#pragma once
+
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+namespace tunewright::server {
+
+template <class Connection>
+class Pool {
+public:
+    explicit Pool(std::size_t places) : places_(places) { idle_.reserve(places); }
+
+    /// One of the places, held while somebody reads.
+    class Place {
+    public:
+        explicit Place(Pool& pool) : pool_(pool) {
+            std::unique_lock lock(pool.mutex_);
+            pool.left_.wait(lock, [&] { return pool.busy_ < pool.places_; });
+            enter();
+        }
+        /// Waits no longer than `patience`: connection(), keep() only where it `is_held`.
+        template <class Duration>
+        Place(Pool& pool, Duration patience) : pool_(pool) {
+            std::unique_lock lock(pool.mutex_);
+            if (pool.left_.wait_for(lock, patience, [&] { return pool.busy_ < pool.places_; })) enter();
+        }
+        ~Place() {
+            if (!held_) return;
+            {
+                const std::lock_guard lock(pool_.mutex_);
+                pool_.busy_--;
+            }
+            pool_.left_.notify_one();
+        }
+        Place(const Place&) = delete;
+        Place& operator=(const Place&) = delete;
+
+        bool is_held() const { return held_; }
+        /// The idle connection that came with it; nothing where there was none.
+        std::unique_ptr<Connection> connection() { return std::move(connection_); }
+        /// The connection is idle again.
+        void keep(std::unique_ptr<Connection> connection) {
+            const std::lock_guard lock(pool_.mutex_);
+            pool_.idle_.push_back(std::move(connection));
+        }
+
+    private:
+        void enter() {
+            held_ = true;
+            pool_.busy_++;
+            if (pool_.idle_.empty()) return;
+            connection_ = std::move(pool_.idle_.back());
+            pool_.idle_.pop_back();
+        }
+
+        Pool& pool_;
+        bool held_ = false;
+        std::unique_ptr<Connection> connection_;
+    };
+
+    /// Closes those that are idle.
+    void forget_idle() {
+        const std::lock_guard lock(mutex_);
+        idle_.clear();
+    }
+
+private:
+    const std::size_t places_;
+    std::mutex mutex_;
+    std::condition_variable left_;
+    std::size_t busy_ = 0;
+    std::vector<std::unique_ptr<Connection>> idle_;
+};
+
+}  // namespace tunewright::server

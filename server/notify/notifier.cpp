@@ -13,7 +13,6 @@ namespace tunewright::server {
 namespace {
 
 constexpr std::chrono::milliseconds kWatch{500};  ///< between looks at what is under way
-constexpr std::chrono::minutes kAlone{1};         ///< between looks at a note that only a new start may allow
 constexpr int kGone = 410;
 
 static_assert(Notifier::kHold > 2 * Sender::kLongest);
@@ -204,13 +203,13 @@ void Notifier::give_up(const Delivery& delivery, const std::string& why) {
 /// Another process, or this one when it is started anew, may be allowed what this one is not: a note waits for it as
 /// long as for a receiver.
 void Notifier::leave_to_others(const Delivery& delivery, const std::string& why) {
-    if (settings_.now() - delivery.created_at > std::chrono::milliseconds(kTellingTime).count())
-        return give_up(delivery, why);
+    // By chance, so that not the same process comes first each time.
+    const auto least = std::chrono::duration_cast<std::chrono::milliseconds>(kPoll * (0.3 + 2 * chance()));
+    const auto pause = pause_for_others({0, delivery.created_at, settings_.now(), chance()}, least);
+    if (!pause) return give_up(delivery, why);
     if (!left_some_.exchange(true))
         log_info("ends of jobs that this process may not tell (" + why + ") are left to others");
-    // By chance, so that not the same process comes first each time.
-    const auto soon = std::chrono::duration_cast<std::chrono::milliseconds>(kPoll * (0.3 + 2 * chance()));
-    settle(delivery, store_.shared() ? soon : kAlone, false);
+    settle(delivery, pause, false);
 }
 
 void Notifier::settle(const Delivery& delivery, std::optional<std::chrono::milliseconds> pause, bool tried) {

@@ -20,18 +20,33 @@ constexpr std::array<seconds, 6> kPauses{seconds(5),
                                          std::chrono::hours(5),
                                          std::chrono::hours(10)};
 constexpr double kJitter = 0.1;
+constexpr int kShareOfAge = 8;  // of a note that is left to others
 constexpr seconds kMostAskedFor = std::chrono::hours(1);
+
+milliseconds jittered(milliseconds pause, double chance) {
+    return milliseconds(std::llround(static_cast<double>(pause.count()) * (1 + kJitter * (2 * chance - 1))));
+}
+
+/// The last try comes when the time is over.
+std::optional<milliseconds> within_time(const FailedTry& failed, milliseconds pause) {
+    const milliseconds left(failed.end + milliseconds(kTellingTime).count() - failed.now);
+    if (left.count() <= 0) return std::nullopt;
+    return std::min(pause, left);
+}
 
 }  // namespace
 
 std::optional<milliseconds> pause_after(const FailedTry& failed) {
-    const milliseconds left(failed.end + milliseconds(kTellingTime).count() - failed.now);
-    if (left.count() <= 0) return std::nullopt;
     const auto number = static_cast<std::size_t>(std::clamp<int>(failed.earlier, 0, kPauses.size() - 1));
-    const double factor = 1 + kJitter * (2 * failed.chance - 1);
-    milliseconds pause(std::llround(static_cast<double>(milliseconds(kPauses[number]).count()) * factor));
+    milliseconds pause = jittered(kPauses[number], failed.chance);
     if (failed.retry_after) pause = std::max<milliseconds>(pause, std::min(*failed.retry_after, kMostAskedFor));
-    return std::min(pause, left);
+    return within_time(failed, pause);
+}
+
+std::optional<milliseconds> pause_for_others(const FailedTry& left, milliseconds least) {
+    const milliseconds age(left.now - left.end);
+    const auto pause = std::clamp<milliseconds>(age / kShareOfAge, least, kPauses[1]);
+    return within_time(left, jittered(pause, left.chance));
 }
 
 std::optional<seconds> read_retry_after(std::string_view field, UnixMs now) {

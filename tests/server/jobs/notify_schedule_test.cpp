@@ -42,6 +42,23 @@ TEST(Schedule, EndsADayAfterTheEndWithALastTry) {
     EXPECT_EQ(pause_after({0, kEnd, kEnd + 48 * kHour}), std::nullopt);
 }
 
+TEST(Schedule, ANoteThatIsLeftToOthersIsLookedAtLessAndLessOften) {
+    UnixMs now = kEnd;
+    int looks = 0, in_the_first_minute = 0;
+    for (Pause pause = 0ms; (pause = pause_for_others({0, kEnd, now}, 1s)) && looks < 10'000; looks++) {
+        EXPECT_GE(*pause, now < kEnd + 24 * kHour - 1000 ? 1s : 0ms);
+        EXPECT_LE(*pause, 5min);
+        now += pause->count();
+        in_the_first_minute += now < kEnd + 60'000 ? 1 : 0;
+    }
+    EXPECT_EQ(now, kEnd + 24 * kHour);
+    EXPECT_GE(in_the_first_minute, 10) << "whoever may send it finds it soon";
+    EXPECT_LE(looks, 400) << "it was one a second";
+    EXPECT_EQ(pause_for_others({0, kEnd, kEnd, 0}, 1s), Pause(900ms));
+    EXPECT_EQ(pause_for_others({0, kEnd, kEnd, 1}, 1s), Pause(1100ms));
+    EXPECT_EQ(pause_for_others({0, kEnd, kEnd + 48 * kHour}, 1s), std::nullopt);
+}
+
 TEST(Schedule, RespectsWhatTheReceiverAsksForUpToAnHour) {
     EXPECT_EQ(pause_after({0, kEnd, kEnd, 0.5, 60s}), Pause(60s));
     EXPECT_EQ(pause_after({0, kEnd, kEnd, 0.5, 1s}), Pause(5s));

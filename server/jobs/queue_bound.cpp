@@ -11,23 +11,21 @@ void take(std::size_t& from, std::size_t count) { from -= std::min(from, count);
 
 }  // namespace
 
-bool QueueBound::reserve() {
-    const std::lock_guard lock(mutex_);
-    if (waiting_.single + accepting_ >= single_limit_) return false;
-    accepting_++;
-    return true;
+std::shared_ptr<QueueBound::Place> QueueBound::reserve() {
+    {
+        const std::lock_guard lock(mutex_);
+        if (waiting_.single + accepting_ >= single_limit_) return nullptr;
+        accepting_++;
+    }
+    return std::shared_ptr<Place>(new Place(*this));
 }
 
-void QueueBound::accepted() {
+void QueueBound::decided(bool waits) {
     const std::lock_guard lock(mutex_);
     accepting_--;
+    if (!waits) return;
     waiting_.single++;
     changes_++;
-}
-
-void QueueBound::refused() {
-    const std::lock_guard lock(mutex_);
-    accepting_--;
 }
 
 void QueueBound::gone(std::size_t singles, std::size_t entries) {

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <mutex>
+#include <utility>
 
 #include "server/store/queue.h"
 
@@ -14,10 +16,22 @@ public:
     QueueBound(std::size_t single_limit, std::size_t entry_limit)
         : single_limit_(single_limit), entry_limit_(entry_limit) {}
 
-    /// Takes a place for a single job that is being accepted; false where there is none. Then one of the next two.
-    bool reserve();
-    void accepted();
-    void refused();
+    /// A single job that is being accepted: counted until it waits, is refused, or nobody holds its place any more.
+    class Place {
+    public:
+        explicit Place(QueueBound& bound) : bound_(&bound) {}
+        ~Place() { end(false); }
+        Place(const Place&) = delete;
+        Place& operator=(const Place&) = delete;
+        void end(bool waits) {
+            if (QueueBound* bound = std::exchange(bound_, nullptr)) bound->decided(waits);
+        }
+
+    private:
+        QueueBound* bound_;
+    };
+    /// Nothing where there is no room.
+    std::shared_ptr<Place> reserve();
     /// So many wait no longer.
     void gone(std::size_t singles, std::size_t entries = 0);
     /// Counts so many entries as waiting where there is room for them; else changes nothing.
@@ -30,6 +44,8 @@ public:
     QueueDepth now() const;
 
 private:
+    void decided(bool waits);
+
     std::size_t single_limit_;
     std::size_t entry_limit_;
     mutable std::mutex mutex_;

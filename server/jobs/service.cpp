@@ -69,7 +69,8 @@ Recovery JobService::start() {
 void JobService::submit(Order order, std::function<void(Submission)> done, WaitEnd ended) {
     if (draining_) return done({Submission::Kind::draining, {}, {}});
     if (order.job.unique) order.idempotency_key = kUniqueKey + order.job.request_hash;
-    if (!depth_.reserve()) return done(submission_of_key(order));
+    const auto place = depth_.reserve();
+    if (!place) return done(submission_of_key(order));
     NewJob job;
     job.id = new_id();
     job.name = std::move(order.job.name);
@@ -82,16 +83,16 @@ void JobService::submit(Order order, std::function<void(Submission)> done, WaitE
     job.flow = std::move(order.flow);
     job.origin = std::move(order.origin);
     job.created_at = settings_.now();
-    if (order.job.not_before.value_or(0) > job.created_at) job.not_before = order.job.not_before;
+    job.not_before = order.job.not_before;
     job.priority = order.job.low_priority ? Priority::low : Priority::normal;
     job.notify = target_of(order.job.notify);
     auto request = std::make_shared<std::string>(order.job.request_json);
     job.request = std::move(order.job.request_json);
 
-    const auto accepted = [this, request, wait = order.wait, done = std::move(done),
+    const auto accepted = [this, request, place, wait = order.wait, done = std::move(done),
                            ended = std::move(ended)](Outcome<Accepted> outcome) {
         if (const auto* fault = std::get_if<StoreFault>(&outcome)) {
-            depth_.refused();
+            place->end(false);
             outage_.failed("no job can be accepted", *fault);
             return done({Submission::Kind::store_failed, {}, *fault});
         }
@@ -100,7 +101,7 @@ void JobService::submit(Order order, std::function<void(Submission)> done, WaitE
         Submission submission;
         static_cast<JobSummary&>(submission.job) = std::move(value.job);
         if (value.kind != Accepted::Kind::created) {
-            depth_.refused();
+            place->end(false);
             const bool same = value.kind == Accepted::Kind::existing;
             submission.kind = same ? Submission::Kind::existing : Submission::Kind::conflict;
             if (value.kind == Accepted::Kind::too_many) {
@@ -109,7 +110,7 @@ void JobService::submit(Order order, std::function<void(Submission)> done, WaitE
             }
             return done(std::move(submission));
         }
-        depth_.accepted();
+        place->end(true);
         submission.kind = Submission::Kind::created;
         submission.job.request = std::move(*request);
         // Before a worker of this process can know of the job, so that its end is not missed.
@@ -181,12 +182,13 @@ void JobService::requeue(const std::string& id, Done<RequeueEffect> done) {
     if (!found) return done(RequeueEffect::none);
     if (!transition(found->status, JobEvent::requeue)) return done(RequeueEffect::not_failed);
     const bool entry = !found->batch.empty();
-    if (entry ? !depth_.reserve_entries(1) : !depth_.reserve()) return done(RequeueEffect::queue_full);
-    store_.requeue(id, [this, entry, done = std::move(done)](Outcome<RequeueEffect> outcome) {
+    const auto place = entry ? nullptr : depth_.reserve();
+    if (entry ? !depth_.reserve_entries(1) : !place) return done(RequeueEffect::queue_full);
+    store_.requeue(id, [this, place, entry, done = std::move(done)](Outcome<RequeueEffect> outcome) {
         const auto* effect = std::get_if<RequeueEffect>(&outcome);
         const bool waits = effect != nullptr && *effect == RequeueEffect::requeued;
         if (entry && !waits) depth_.gone(0, 1);
-        if (!entry) waits ? depth_.accepted() : depth_.refused();
+        if (place) place->end(waits);
         done(outcome);
         claims_.arrived();
     });

@@ -44,13 +44,13 @@ std::chrono::milliseconds JobService::tend() {
 
 std::chrono::milliseconds JobService::look() {
     const auto now = HeldJob::Clock::now();
-    store_.start_due(settings_.now(), [this](Outcome<std::size_t> outcome) {
-        if (const auto* fault = std::get_if<StoreFault>(&outcome))
-            outage_.failed("no job can be started at its time", *fault);
-        else if (std::get<std::size_t>(outcome) > 0)
-            claims_.arrived();
-    });
     try {
+        store_.start_due(settings_.now(), [this](Outcome<std::size_t> outcome) {
+            if (const auto* fault = std::get_if<StoreFault>(&outcome))
+                outage_.failed("no job can be started at its time", *fault);
+            else if (std::get<std::size_t>(outcome) > 0)
+                claims_.arrived();
+        });
         if (now >= next_depth_) {
             depth_.refresh(store_);
             claims_.suspects(depth_.now().suspects);

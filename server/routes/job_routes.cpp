@@ -282,6 +282,10 @@ Response not_requeued(const JobService& jobs, const std::string& id, RequeueEffe
     if (effect == RequeueEffect::queue_full) return queue_full(jobs);
     if (effect == RequeueEffect::batch_cancelled)
         return problem_response(409, "The batch of this job was cancelled as a whole. Post its request anew.");
+    if (effect == RequeueEffect::superseded)
+        return problem_response(409,
+                                "A later job of this request, which is unique, has taken the place of this one. Post "
+                                "the request again: the answer is that job.");
     if (effect == RequeueEffect::not_failed)
         return problem_response(409,
                                 "Only a job that failed or was cancelled, and whose request could be read, can be "

@@ -52,10 +52,22 @@ struct NewJob {
     Priority priority = Priority::normal;
     NotifyTarget notify = {};
     JobOrigin origin = {};
-    std::optional<UnixMs> not_before = {};  ///< its time; it is scheduled until then
+    std::optional<UnixMs> not_before = {};  ///< its time; it is scheduled until then, or has none where that is over
     bool unique = false;                    ///< a job of its key that failed or was cancelled gives the key up
     std::size_t client_limit = 0;           ///< single jobs of its flow that may wait or run, this one included; 0: any
 };
+
+/// As the store answers it; `seq` and the time are the store's.
+inline JobSummary summary_of(const NewJob& job) {
+    JobSummary made;
+    made.id = job.id;
+    made.name = job.name;
+    made.created_at = job.created_at;
+    made.timeout_s = job.timeout_s;
+    made.request_hash = job.request_hash;
+    made.owner = job.owner;
+    return made;
+}
 
 struct Accepted {
     /// `existing` and `conflict` only with an idempotency key; `too_many`: the flow has `client_limit` jobs already.
@@ -117,6 +129,7 @@ enum class RequeueEffect {
     requeued,
     not_failed,       ///< it waits, runs or has succeeded
     batch_cancelled,  ///< its batch as a whole was cancelled
+    superseded,       ///< it was unique, and a later job has its key
     queue_full,       ///< no more may wait; no store says so
 };
 
@@ -177,7 +190,8 @@ public:
     /// (release()) is not. From the second on it waits: 1 s, then twice as long each time, at most 5 min.
     virtual void claim(Claim claim, Done<std::vector<JobRecord>> done) = 0;
     /// Scheduled jobs whose time has come wait for their turns, some thousand at most: how many. A shared store goes by
-    /// its own clock where that is behind `now`, and each job is moved by one process.
+    /// its own clock alone, and each job is moved by one process. Nothing is written where none is due, which is read
+    /// at once: throws StoreError.
     virtual void start_due(UnixMs now, Done<std::size_t> done) = 0;
     /// All jobs that the store takes for this worker's, in no order. What the worker holds and the store does not name
     /// is lost; what the store names and the worker does not hold came in an answer that was lost: it releases it.
@@ -188,7 +202,8 @@ public:
     virtual void release(std::int64_t seq, int attempts, Done<bool> done) = 0;
     virtual void cancel(std::string id, UnixMs now, Done<CancelEffect> done) = 0;
     /// A job that failed or was cancelled waits again, as if it had just come; its attempts go on counting. If its time
-    /// has not come it is scheduled again.
+    /// has not come it is scheduled again. One that has given its key up takes it back; not while a later one that has
+    /// the key waits, runs or has succeeded.
     virtual void requeue(std::string id, Done<RequeueEffect> done) = 0;
 };
 

@@ -27,7 +27,8 @@ RemoveEffect remove_job(Session& session, const std::string& id);
 // ---- claims (claims.cpp)
 /// The next jobs in their order, at most `claim.most`.
 std::vector<JobRecord> claim_jobs(Session& session, const Claim& claim);
-std::size_t start_due(Session& session, UnixMs now);
+bool any_due(Session& session);
+std::size_t start_due(Session& session);
 std::vector<Holding> beat_worker(Session& session, const Heartbeat& beat);
 /// Empty where it was not held; else what has become of it: queued, or cancelled. With its id.
 struct Released {

@@ -66,10 +66,15 @@ std::vector<JobRecord> claim_jobs(Session& session, const Claim& claim) {
     return claim_by(session, usual, claim);
 }
 
-std::size_t start_due(Session& session, UnixMs now) {
+bool any_due(Session& session) {
+    static const std::string sql = "SELECT EXISTS (SELECT 1 FROM waiting WHERE class = 2 AND turn <= " + kClock + ")";
+    return session.run(sql)[0][0].as<bool>();
+}
+
+std::size_t start_due(Session& session) {
     static const std::string sql =
-        "WITH due AS MATERIALIZED (SELECT ctid FROM waiting WHERE class = 2 AND turn <= least($1::bigint, " + kClock +
-        ") ORDER BY turn, seq LIMIT 1000 FOR UPDATE SKIP LOCKED), "
+        "WITH due AS MATERIALIZED (SELECT ctid FROM waiting WHERE class = 2 AND turn <= " + kClock +
+        " ORDER BY turn, seq LIMIT 1000 FOR UPDATE SKIP LOCKED), "
         "taken AS (DELETE FROM waiting WHERE ctid = ANY (ARRAY(SELECT ctid FROM due)) RETURNING *), "
         "flows AS MATERIALIZED (SELECT f.class, f.flow, " +
         last_turn("f.class", "f.flow") +
@@ -78,10 +83,11 @@ std::size_t start_due(Session& session, UnixMs now) {
         "turn FROM taken t JOIN jobs j ON j.seq = t.seq JOIN flows f ON f.class = j.class AND f.flow = j.flow), "
         "moved AS (UPDATE jobs j SET turn = p.turn FROM placed p WHERE j.seq = p.seq "
         "RETURNING j.class, j.turn, j.seq), "
-        "queued AS (INSERT INTO waiting (class, turn, seq, flow, batch, attempts, crashes) SELECT m.class, m.turn, "
-        "m.seq, t.flow, t.batch, t.attempts, t.crashes FROM moved m JOIN taken t ON t.seq = m.seq) "
+        "queued AS (INSERT INTO waiting (class, turn, seq, flow, batch, attempts, crashes, not_before) SELECT m.class, "
+        "m.turn, m.seq, t.flow, t.batch, t.attempts, t.crashes, t.not_before FROM moved m JOIN taken t ON t.seq = "
+        "m.seq) "
         "SELECT count(*) FROM moved";
-    return session.run(sql, Values().number(now))[0][0].as<std::size_t>();
+    return session.run(sql)[0][0].as<std::size_t>();
 }
 
 std::vector<Holding> beat_worker(Session& session, const Heartbeat& beat) {

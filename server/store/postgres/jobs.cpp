@@ -14,42 +14,74 @@ namespace {
 /// With a limit ($15) another statement: one for both would be planned anew each time.
 std::string accept_sql(bool limited) {
     const auto if_limited = [limited](const std::string& sql) { return limited ? sql : std::string(); };
-    return "WITH given AS MATERIALIZED (SELECT * FROM unnest($1::text[], $2::text[], $3::float8[], $4::text[], "
-           "$5::text[], $6::text[], $7::text[], $8::text[], $9::bigint[], $10::smallint[], $11::text[], $12::text[], "
-           "$13::text[], $14::bigint[]) WITH ORDINALITY AS g (id, name, timeout_s, request, request_hash, key, owner, "
-           "flow, created_at, class, notify, request_id, traceparent, not_before, place)), "
+    return "WITH given AS MATERIALIZED (SELECT g.*, CASE WHEN g.earliest > " + kClock +
+           " THEN g.earliest END AS not_before" +
+           // What is there already, or comes twice, is not made and counts for nothing.
+           if_limited(
+               ", g.key <> '' AND (row_number() OVER (PARTITION BY g.owner, g.key ORDER BY g.place) > 1 OR "
+               "(SELECT j.seq FROM jobs j WHERE j.owner = g.owner AND j.idempotency_key = g.key) IS NOT NULL) "
+               "AS repeated") +
+           " FROM unnest($1::text[], $2::text[], $3::float8[], $4::text[], $5::text[], $6::text[], $7::text[], "
+           "$8::text[], $9::bigint[], $10::smallint[], $11::text[], $12::text[], $13::text[], $14::bigint[]) "
+           "WITH ORDINALITY AS g (id, name, timeout_s, request, request_hash, key, owner, flow, created_at, class, "
+           "notify, request_id, traceparent, earliest, place)), "
            "flows AS MATERIALIZED (SELECT f.flow, f.class, " +
            last_turn("f.class", "f.flow") + " AS turn" + if_limited(", " + under_way("f.flow") + " AS under_way") +
            " FROM (SELECT DISTINCT flow, class FROM given) f), "
-           "placed AS (SELECT g.*, coalesce(nullif(g.not_before, 0), "
+           "placed AS (SELECT g.*, coalesce(g.not_before, "
            "f.turn + row_number() OVER (PARTITION BY g.flow, g.class ORDER BY g.place)) AS turn" +
-           if_limited(", f.under_way + row_number() OVER (PARTITION BY g.flow ORDER BY g.place) AS under_way") +
+           if_limited(
+               ", f.under_way + count(*) FILTER (WHERE NOT g.repeated) "
+               "OVER (PARTITION BY g.flow ORDER BY g.place) AS under_way") +
            " FROM given g JOIN flows f ON f.flow = g.flow AND f.class = g.class), "
            "made AS (INSERT INTO jobs (id, name, class, turn, owner, flow, created_at, timeout_s, request_hash, "
            "idempotency_key, request, notify, request_id, traceparent, not_before) SELECT id, name, class, turn, "
            "owner, flow, created_at, timeout_s, request_hash, nullif(key, ''), request, nullif(notify, ''), "
-           "request_id, traceparent, nullif(not_before, 0) FROM placed " +
+           "request_id, traceparent, not_before FROM placed " +
            if_limited("WHERE under_way <= $15 ") +
-           "ORDER BY place ON CONFLICT DO NOTHING RETURNING id, seq, class, turn, flow, not_before), "
+           // By key, as every process has it: two that insert the same keys wait for each other in one direction.
+           "ORDER BY owner COLLATE \"C\", key COLLATE \"C\", place ON CONFLICT DO NOTHING "
+           "RETURNING id, seq, class, turn, flow, not_before), "
            "queued AS (INSERT INTO waiting (class, turn, seq, flow) "
            "SELECT CASE WHEN not_before IS NULL THEN class ELSE 2 END, turn, seq, flow FROM made) "
-           "SELECT id, seq FROM made";
+           "SELECT id, seq, not_before FROM made";
 }
 
-/// A job that failed or was cancelled gives its key up to a unique one. Its row is locked: queued again at this moment,
-/// it keeps the key, or comes after this.
-void free_key(Session& session, const NewJob& job) {
+/// A job that failed or was cancelled gives its key up to a unique one, and keeps it behind its id. Its row is locked:
+/// queued again at this moment, it keeps the key, or comes after this.
+void free_key(Session& session, const std::string& owner, const std::string& key) {
     session.run(
         "WITH free AS MATERIALIZED (SELECT e.seq FROM jobs j JOIN ended e ON e.seq = j.seq WHERE j.owner = $1 "
         "AND j.idempotency_key = $2 AND e.status IN ('failed', 'cancelled') FOR UPDATE OF e) "
-        "UPDATE jobs SET idempotency_key = NULL WHERE seq IN (SELECT seq FROM free)",
-        Values().text(job.owner).text(job.idempotency_key));
+        "UPDATE jobs SET idempotency_key = ' ' || id || idempotency_key WHERE seq IN (SELECT seq FROM free)",
+        Values().text(owner).text(key));
 }
 
-// One process at a time accepts jobs of a client whose jobs are counted: those that others are about to commit count.
-const std::string kCountInTurn =
-    "SELECT count(pg_advisory_xact_lock(x'74756e65'::int, hashtext(flow))) FROM "
-    "(SELECT DISTINCT flow FROM unnest($1::text[]) AS g (flow) ORDER BY flow OFFSET 0) f";
+// One process at a time accepts jobs of a client whose jobs are counted, and unique jobs of one key: those that others
+// are about to commit count. It comes before all other locks of accepting, in one order for all.
+const std::string kInTurn =
+    "SELECT count(pg_advisory_xact_lock(x'74756e65'::int, hash)) FROM "
+    "(SELECT DISTINCT hashtext(name) AS hash FROM unnest($1::text[]) AS g (name) ORDER BY hash OFFSET 0) f";
+
+/// Where the job has given its key up it takes it back; false where a later one has it.
+bool take_key_back(Session& session, std::int64_t seq) {
+    const pqxx::result given = session.run(
+        "SELECT owner, substr(idempotency_key, 2 + length(id)) FROM jobs WHERE seq = $1 "
+        "AND starts_with(idempotency_key, ' ' || id)",
+        Values().number(seq));
+    if (given.empty()) return true;
+    const std::string owner = text_of(given[0][0]), key = text_of(given[0][1]);
+    TextArray in_turn;
+    in_turn.add(key);
+    session.run(kInTurn, Values().plain(in_turn.literal()));
+    free_key(session, owner, key);
+    return session
+               .run(
+                   "UPDATE jobs SET idempotency_key = $3 WHERE seq = $1 AND NOT EXISTS "
+                   "(SELECT 1 FROM jobs WHERE owner = $2 AND idempotency_key = $3)",
+                   Values().number(seq).text(owner).text(key))
+               .affected_rows() > 0;
+}
 
 /// The job that stood in the way of this one: that of its key, or itself, accepted before.
 Accepted find_earlier(Session& session, const NewJob& job) {
@@ -132,6 +164,8 @@ constexpr int kLooks = 20;  // at a job that others move meanwhile
 
 std::vector<Accepted> accept_jobs(Session& session, const std::vector<const NewJob*>& jobs) {
     TextArray id, name, timeout, request, hash, key, owner, flow, created, priority, notify, call, trace, not_before;
+    TextArray in_turn;
+    const std::size_t client_limit = jobs.front()->client_limit;  // the same for all of one process
     for (const NewJob* job : jobs) {
         id.add(job->id);
         name.add(job->name);
@@ -147,19 +181,21 @@ std::vector<Accepted> accept_jobs(Session& session, const std::vector<const NewJ
         call.add(job->origin.request_id);
         trace.add(job->origin.traceparent);
         not_before.add_plain(std::to_string(job->not_before.value_or(0)));
-        if (job->unique) free_key(session, *job);
+        if (client_limit > 0) in_turn.add(job->flow);
+        if (job->unique) in_turn.add(job->idempotency_key);
     }
-    const std::size_t client_limit = jobs.front()->client_limit;  // the same for all of one process
-    if (client_limit > 0) session.run(kCountInTurn, Values().plain(flow.literal()));
+    if (in_turn.literal() != "{}") session.run(kInTurn, Values().plain(in_turn.literal()));
+    for (const NewJob* job : jobs)
+        if (job->unique) free_key(session, job->owner, job->idempotency_key);
     Values values;
     for (const TextArray* array : {&id, &name, &timeout, &request, &hash, &key, &owner, &flow, &created, &priority,
                                    &notify, &call, &trace, &not_before})
         values.plain(array->literal());
     if (client_limit > 0) values.number(static_cast<std::int64_t>(client_limit));
     static const std::string plain = accept_sql(false), limited = accept_sql(true);
-    std::map<std::string, std::int64_t> created_jobs;
-    for (const pqxx::row& row : session.run(client_limit > 0 ? limited : plain, values))
-        created_jobs[text_of(row[0])] = row[1].as<std::int64_t>();
+    const pqxx::result made = session.run(client_limit > 0 ? limited : plain, values);
+    std::map<std::string, pqxx::row> created_jobs;
+    for (const pqxx::row& row : made) created_jobs[text_of(row[0])] = row;
     std::vector<Accepted> answers;
     for (const NewJob* job : jobs) {
         const auto found = created_jobs.find(job->id);
@@ -167,16 +203,10 @@ std::vector<Accepted> accept_jobs(Session& session, const std::vector<const NewJ
             answers.push_back(find_earlier(session, *job));
             continue;
         }
-        Accepted& answer = answers.emplace_back();
-        answer.job.seq = found->second;
+        Accepted& answer = answers.emplace_back(Accepted::Kind::created, summary_of(*job));
+        answer.job.seq = found->second[1].as<std::int64_t>();
+        answer.job.not_before = moment(found->second[2]);
         created_jobs.erase(found);  // the same id once more is not created twice
-        answer.job.id = job->id;
-        answer.job.name = job->name;
-        answer.job.created_at = job->created_at;
-        answer.job.timeout_s = job->timeout_s;
-        answer.job.request_hash = job->request_hash;
-        answer.job.owner = job->owner;
-        answer.job.not_before = job->not_before;
     }
     return answers;
 }
@@ -257,6 +287,7 @@ RequeueEffect requeue_job(Session& session, const std::string& id) {
                                  Values().number(*found->batch))
                             .empty())
         return RequeueEffect::none;
+    if (!take_key_back(session, found->seq)) return RequeueEffect::superseded;
     static const std::string sql =
         "WITH gone AS (DELETE FROM ended WHERE seq = $1 AND status IN ('failed', 'cancelled') "
         "RETURNING seq, status, attempts), "

@@ -100,11 +100,12 @@ public:
             },
             std::move(done));
     }
-    void start_due(UnixMs now, Done<std::size_t> done) override {
+    void start_due(UnixMs, Done<std::size_t> done) override {
+        if (!readers_.read(any_due)) return done(std::size_t{0});
         write<std::size_t>(
             kQuick,
-            [now](Work& work) {
-                const std::size_t due = postgres::start_due(work.session, now);
+            [](Work& work) {
+                const std::size_t due = postgres::start_due(work.session);
                 if (due > 0) work.notices.queued();
                 return due;
             },

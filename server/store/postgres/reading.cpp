@@ -9,10 +9,6 @@ namespace {
 
 constexpr int kSummaryCount = 20;
 
-std::optional<UnixMs> moment(const pqxx::field& field) {
-    return field.is_null() ? std::nullopt : std::optional<UnixMs>(field.as<UnixMs>());
-}
-
 /// Processes know the database's clock to some milliseconds each: what one has begun and another has ended is not over
 /// before it came.
 std::optional<UnixMs> moment_after(UnixMs earlier, const pqxx::field& field) {
@@ -66,6 +62,10 @@ const std::string kClaimedColumns =
     "j.seq, j.id, j.name, j.created_at, r.started_at, r.attempts, j.timeout_s, j.request_hash, j.owner, b.id, "
     "j.batch_index, j.request_id, j.traceparent, j.request, j.not_before";
 const std::string kVisible = "(j.batch IS NULL OR b.state <> 'leaving')";
+
+std::optional<UnixMs> moment(const pqxx::field& field) {
+    return field.is_null() ? std::nullopt : std::optional<UnixMs>(field.as<UnixMs>());
+}
 
 std::string text_of(const pqxx::field& field) {
     return field.is_null() ? std::string{} : from_column({field.c_str(), field.size()});

@@ -36,6 +36,8 @@ extern const std::string kBatchTables;
 extern const std::string kBatchGroups;
 BatchSummary read_batch(const pqxx::row& row);
 
+/// Nothing where it is null.
+std::optional<UnixMs> moment(const pqxx::field& field);
 /// "" where it is null.
 std::string text_of(const pqxx::field& field);
 

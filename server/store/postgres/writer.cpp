@@ -122,45 +122,24 @@ Writer::~Writer() {
     changed_.notify_all();
 }
 
-void Writer::accept(Ask<NewJob, Accepted> ask) {
+template <class T>
+void Writer::add(std::vector<T> Group::*place, T item, bool first) {
     {
         const std::lock_guard lock(mutex_);
-        waiting_.accepts.push_back(std::move(ask));
+        std::vector<T>& list = waiting_.*place;
+        list.insert(first ? list.begin() : list.end(), std::move(item));
     }
     changed_.notify_one();
 }
 
+void Writer::accept(Ask<NewJob, Accepted> ask) { add(&Group::accepts, std::move(ask)); }
 void Writer::finish(Ask<JobEnd, bool> ask) {
-    {
-        const std::lock_guard lock(mutex_);
-        waiting_.ends.insert(ask.in.first ? waiting_.ends.begin() : waiting_.ends.end(), std::move(ask));
-    }
-    changed_.notify_one();
+    const bool first = ask.in.first;
+    add(&Group::ends, std::move(ask), first);
 }
-
-void Writer::beat(Ask<Heartbeat, std::vector<Holding>> ask) {
-    {
-        const std::lock_guard lock(mutex_);
-        waiting_.beats.push_back(std::move(ask));
-    }
-    changed_.notify_one();
-}
-
-void Writer::claim(Ask<Claim, std::vector<JobRecord>> ask) {
-    {
-        const std::lock_guard lock(mutex_);
-        waiting_.claims.push_back(std::move(ask));
-    }
-    changed_.notify_one();
-}
-
-void Writer::change(OtherChange change) {
-    {
-        const std::lock_guard lock(mutex_);
-        waiting_.others.push_back(std::move(change));
-    }
-    changed_.notify_one();
-}
+void Writer::beat(Ask<Heartbeat, std::vector<Holding>> ask) { add(&Group::beats, std::move(ask)); }
+void Writer::claim(Ask<Claim, std::vector<JobRecord>> ask) { add(&Group::claims, std::move(ask)); }
+void Writer::change(OtherChange change) { add(&Group::others, std::move(change)); }
 
 bool Writer::stopping() const {
     const std::lock_guard lock(mutex_);

@@ -73,6 +73,8 @@ public:
 private:
     using Clock = std::chrono::steady_clock;
 
+    template <class T>
+    void add(std::vector<T> Group::*place, T item, bool first = false);
     void work();
     /// Empty when it is time to stop, or to look after the connection.
     Group next_group();

@@ -22,6 +22,7 @@ RemoveEffect remove_job(Connection& store, const std::string& id);
 
 // ---- claims.cpp
 std::vector<JobRecord> claim_jobs(Connection& store, const Claim& claim);
+bool any_due(Connection& store, UnixMs now);
 std::size_t start_due(Connection& store, UnixMs now);
 std::vector<Holding> beat_worker(Connection& store, const Heartbeat& beat);
 /// `now` is the end of a job that is cancelled instead.

@@ -85,6 +85,11 @@ std::vector<JobRecord> claim_jobs(Connection& store, const Claim& claim) {
     return claimed;
 }
 
+bool any_due(Connection& store, UnixMs now) {
+    Connection::Use row = store.use("SELECT 1 FROM waiting WHERE class = 2 AND turn <= ?1 LIMIT 1");
+    return row.with(now).next();
+}
+
 std::size_t start_due(Connection& store, UnixMs now) {
     std::vector<Place> due;
     {

@@ -60,6 +60,30 @@ void find_turn(Connection& store, Place& job, std::optional<UnixMs> not_before, 
     if (later) job.priority = kScheduled;
 }
 
+/// A job gives its key up to a unique one, and keeps it behind its id.
+void give_key_up(Connection& store, std::int64_t seq) {
+    store.use("UPDATE jobs SET idempotency_key = ' ' || id || idempotency_key WHERE seq = ?1").with(seq).run();
+}
+
+/// Where the job has given its key up it takes it back; false where a later one has it that has not failed.
+bool take_key_back(Connection& store, std::int64_t seq) {
+    NewJob given;
+    {
+        Connection::Use row = store.use(
+            "SELECT owner, substr(idempotency_key, 2 + length(id)) FROM jobs WHERE seq = ?1 "
+            "AND substr(idempotency_key, 1, 1 + length(id)) = ' ' || id");
+        if (!row.with(seq).next()) return true;
+        given.owner = row.text(0);
+        given.idempotency_key = row.text(1);
+    }
+    if (const std::optional<Accepted> later = find_by_key(store, given)) {
+        if (!transition(later->job.status, JobEvent::requeue)) return false;
+        give_key_up(store, later->job.seq);
+    }
+    store.use("UPDATE jobs SET idempotency_key = ?2 WHERE seq = ?1").with(seq, given.idempotency_key).run();
+    return true;
+}
+
 void move_in_batch(Connection& store, const Place& job, JobStatus from, JobStatus to, UnixMs ended_at = 0) {
     BatchCounts counts;
     counts.move(job.batch, from, to, ended_at);
@@ -73,10 +97,11 @@ Accepted accept_job(Connection& store, ClientBounds& bounds, const NewJob& job) 
     if (!job.idempotency_key.empty()) earlier = find_by_key(store, job);
     if (earlier && !(job.unique && transition(earlier->job.status, JobEvent::requeue))) return *std::move(earlier);
     if (!has_room(store, bounds, job)) return {Accepted::Kind::too_many, {}};
-    if (earlier) store.use("UPDATE jobs SET idempotency_key = NULL WHERE seq = ?1").with(earlier->job.seq).run();
+    if (earlier) give_key_up(store, earlier->job.seq);
     const int priority = static_cast<int>(job.priority);
     Place place{0, priority, 0, job.flow, {}, 0, 0};
     find_turn(store, place, job.not_before, job.created_at);
+    const std::optional<UnixMs> time = place.priority == kScheduled ? job.not_before : std::nullopt;
     const std::string target = job.notify.text();
     store
         .use(
@@ -85,19 +110,13 @@ Accepted accept_job(Connection& store, ClientBounds& bounds, const NewJob& job) 
             "?7, ?8, ?9, nullif(?10, ''), nullif(?11, ''), ?12, ?13, ?14, nullif(?15, 0))")
         .with(job.id, job.name, job.owner, job.flow, priority, place.turn, job.created_at, job.timeout_s,
               job.request_hash, job.idempotency_key, target, job.origin.request_id, job.origin.traceparent, job.request,
-              job.not_before.value_or(0))
+              time.value_or(0))
         .run();
     place.seq = store.database().getLastInsertRowid();
     put_waiting(store, place);
-    Accepted accepted;
+    Accepted accepted{Accepted::Kind::created, summary_of(job)};
     accepted.job.seq = place.seq;
-    accepted.job.id = job.id;
-    accepted.job.name = job.name;
-    accepted.job.created_at = job.created_at;
-    accepted.job.timeout_s = job.timeout_s;
-    accepted.job.request_hash = job.request_hash;
-    accepted.job.owner = job.owner;
-    accepted.job.not_before = job.not_before;
+    accepted.job.not_before = time;
     return accepted;
 }
 
@@ -138,6 +157,7 @@ RequeueEffect requeue_job(Connection& store, const std::string& id) {
         not_before = row.moment(1);
     }
     if (found->batch_cancelled) return RequeueEffect::batch_cancelled;
+    if (!take_key_back(store, found->seq)) return RequeueEffect::superseded;
     find_turn(store, *found, found->attempts == 0 ? not_before : std::nullopt, wall_clock());
     store.use("UPDATE jobs SET turn = ?2 WHERE seq = ?1").with(found->seq, found->turn).run();
     store.use("DELETE FROM ended WHERE seq = ?1").with(found->seq).run();

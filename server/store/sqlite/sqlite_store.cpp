@@ -107,6 +107,7 @@ public:
             std::move(done));
     }
     void start_due(UnixMs now, Done<std::size_t> done) override {
+        if (!read([&](Connection& store) { return any_due(store, now); })) return done(std::size_t{0});
         write<std::size_t>(
             kQuick, [now](Connection& store) { return server::start_due(store, now); }, std::move(done));
     }
@@ -279,15 +280,15 @@ void SqliteStore::reclaim(Reclaim what, Done<Recovery> done) {
         });
 }
 
-}  // namespace
-
-std::unique_ptr<JobStore> open_sqlite_store(const std::string& path, SchemaSteps steps) {
+/// Does `work`, which opens the file; on a full disk once more with the room of the reserve.
+template <class Work>
+auto opening_where_room(const std::string& path, Work work) {
     return opening(path, [&] {
         make_folder(path);
         for (;;) {
             errno = 0;
             try {
-                return std::make_unique<SqliteStore>(path, steps);
+                return work();
             } catch (const SQLite::Exception& error) {
                 // It may lack room for the files beside it, which it reports in many ways.
                 StoreFault fault = fault_of(error, errno);
@@ -298,15 +299,22 @@ std::unique_ptr<JobStore> open_sqlite_store(const std::string& path, SchemaSteps
     });
 }
 
+}  // namespace
+
+std::unique_ptr<JobStore> open_sqlite_store(const std::string& path, SchemaSteps steps) {
+    return opening_where_room(path, [&] { return std::make_unique<SqliteStore>(path, steps); });
+}
+
 void migrate_sqlite(const std::string& path, bool compact, std::ostream& out) {
-    opening(path, [&] {
-        make_folder(path);
+    std::optional<int> had;
+    opening_where_room(path, [&] {
         const FileLock lock(path);
         Connection connection = open_file(path);
         connection.database().exec("PRAGMA journal_mode = WAL");
         const SchemaState state = schema_state(connection.database());
         migrate(connection.database());
-        out << "The schema is at step " << state.known << "; it was at " << state.have << ".\n";
+        if (!had) out << "The schema is at step " << state.known << "; it was at " << state.have << ".\n";
+        had = state.have;
         if (!compact) return;
         const auto before = std::filesystem::file_size(path);
         connection.database().exec("VACUUM");

@@ -7,6 +7,7 @@
 
 #include "server/jobs/service.h"
 #include "server/store/open_store.h"
+#include "tests/server/store/shared_store.h"
 
 namespace tunewright::server {
 namespace {
@@ -106,6 +107,36 @@ TEST_F(ScheduledJobs, AJobThatCameDueWhileNoProcessRanBeginsWithTheNext) {
     service_->drain(0s);
     timer_.stop();
     store_.reset();
+}
+
+/// What is taken back while it is thrown: memory may run out anywhere between the place in the queue and the store.
+TEST_F(ScheduledJobs, APlaceInTheQueueIsGivenBackWhereThereIsNoMemoryForTheJob) {
+    struct OutOfMemory : SharedStore {
+        using SharedStore::SharedStore;
+        void accept(NewJob, Done<Accepted> done) override {
+            const Done<Accepted> dropped = std::move(done);
+            throw std::bad_alloc();
+        }
+        void requeue(std::string, Done<RequeueEffect>) override { throw std::bad_alloc(); }
+    };
+    settings_.queue_limit = 2;
+    start();
+    const std::string failed = submit(request("a", wall_clock() + 3'600'000)).job.id;
+    std::promise<void> cancelled;
+    service_->cancel(failed, [&](const auto&) { cancelled.set_value(); });
+    cancelled.get_future().get();
+    NoticeBoard board;
+    OutOfMemory store(*store_, board);
+    JobService service(store, timer_, settings_);
+    for (int i = 0; i < 5; i++) {
+        Order order;
+        order.job = request("a");
+        EXPECT_THROW(service.submit(
+                         order, [](const Submission&) {}, [](const auto&) {}),
+                     std::bad_alloc);
+        EXPECT_THROW(service.requeue(failed, [](const auto&) {}), std::bad_alloc);
+    }
+    EXPECT_EQ(service.queued(), 0U);
 }
 
 TEST_F(ScheduledJobs, AUniqueJobIsMadeOnce) {

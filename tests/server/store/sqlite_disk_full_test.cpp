@@ -1,6 +1,8 @@
 // A file system without room: reported as such, read as before, and as good as new when there is room again.
 #include <sys/mount.h>
 
+#include <fstream>
+#include <sstream>
 #include <thread>
 
 #include "server/store/open_store.h"
@@ -118,6 +120,29 @@ TEST(SqliteDiskFull, AnEndThatFoundNoRoomIsTakenWhenItIsOfferedAgain) {
     disk.grow();
     EXPECT_TRUE(completed<bool>([&](auto callback) { store->finish(end, callback); }));
     EXPECT_EQ(store->find("a").value().result, end.result);
+}
+
+TEST(SqliteDiskFull, TheSchemaIsBroughtUpToDateAndTheFileWrittenAnewWithTheRoomOfTheReserve) {
+    const TemporaryFolder folder;
+    const SmallDisk disk(folder.path());
+    if (!disk.mounted()) GTEST_SKIP() << kNoMount;
+    {
+        const auto store = open_sqlite_store(folder.file(), SchemaSteps::take);
+        NewJob job;
+        job.id = "a";
+        completed<Accepted>([&](auto callback) { store->accept(job, callback); });
+    }
+    {
+        std::ofstream filler(folder.path() / "filler", std::ios::binary);
+        const std::string page(4096, 'x');
+        while (filler.write(page.data(), static_cast<std::streamsize>(page.size())).flush()) {
+        }
+    }
+    std::ostringstream said;
+    EXPECT_NO_THROW(migrate_sqlite(folder.file(), true, said));
+    EXPECT_EQ(said.str().find("The schema is at step"), said.str().rfind("The schema is at step")) << said.str();
+    EXPECT_NE(said.str().find("The file has"), std::string::npos) << said.str();
+    EXPECT_EQ(run_sqlite(folder.file(), "SELECT count(*) FROM jobs"), "1");
 }
 
 }  // namespace

@@ -119,5 +119,16 @@ TEST(SqliteStore, OneBadChangeDoesNotTakeTheOthersOfItsGroupWithIt) {
     EXPECT_EQ(store->list({}).jobs.size(), 11U);
 }
 
+TEST(SqliteStore, NothingIsWrittenWhereNoJobIsDue) {
+    const TemporaryFolder folder;
+    const auto store = open_sqlite_store(folder.file(), SchemaSteps::take);
+    sqlite3* other = nullptr;
+    ASSERT_EQ(sqlite3_open(folder.file().c_str(), &other), SQLITE_OK);
+    ASSERT_EQ(sqlite3_exec(other, "BEGIN IMMEDIATE", nullptr, nullptr, nullptr), SQLITE_OK);
+    EXPECT_EQ(completed<std::size_t>([&](auto done) { store->start_due(wall_clock(), done); }), 0U)
+        << "while another writes";
+    sqlite3_close(other);
+}
+
 }  // namespace
 }  // namespace tunewright::server

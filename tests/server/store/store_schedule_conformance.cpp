@@ -87,6 +87,13 @@ TEST_P(StoreConformance, AScheduledJobTakesItsTurnWhenItsTimeHasCome) {
     EXPECT_EQ(status("later"), JobStatus::queued);
 }
 
+TEST_P(StoreConformance, ATimeThatIsOverIsNone) {
+    const Accepted accepted = accept(at(job("a"), now() - 1));
+    EXPECT_FALSE(accepted.job.not_before);
+    EXPECT_FALSE(store_->find("a").value().not_before);
+    EXPECT_THAT(claim_all(), ElementsAre("a"));
+}
+
 TEST_P(StoreConformance, TheAgeOfAJobThatWasScheduledCountsFromItsTime) {
     const UnixMs time = now() + 20;
     accept(at(job("a"), time));
@@ -165,9 +172,6 @@ TEST_P(StoreConformance, AUniqueJobIsTheEarlierOneUnlessThatFailedOrWasCancelled
     EXPECT_EQ(again("c"), "b");
     EXPECT_EQ(cancel("b"), CancelEffect::cancelled);
     EXPECT_EQ(again("c"), "c") << "it was cancelled";
-    EXPECT_EQ(requeue("b"), RequeueEffect::requeued) << "which another may wish all the same";
-    EXPECT_EQ(again("d"), "c");
-    cancel("b");
     claim();
     finish("c", JobStatus::succeeded, "{}");
     EXPECT_EQ(again("d"), "c") << "it has succeeded";
@@ -178,6 +182,38 @@ TEST_P(StoreConformance, AUniqueJobIsTheEarlierOneUnlessThatFailedOrWasCancelled
     other.idempotency_key = first.idempotency_key;
     other.owner = "somebody else";
     EXPECT_EQ(accept(other).kind, Accepted::Kind::created);
+}
+
+TEST_P(StoreConformance, AUniqueJobIsNotQueuedAgainWhereALaterOneHasItsPlace) {
+    const auto post = [&](const std::string& id, const std::string& owner = "") {
+        NewJob made = unique(job("a"));
+        made.id = id;
+        made.owner = owner;
+        return accept(made).job.id;
+    };
+    post("a");
+    cancel("a");
+    EXPECT_EQ(requeue("a"), RequeueEffect::requeued) << "nobody has taken its place";
+    EXPECT_EQ(post("b"), "a") << "it is the unique one as before";
+    cancel("a");
+    EXPECT_EQ(post("b"), "b");
+    EXPECT_EQ(requeue("a"), RequeueEffect::superseded) << "the later one waits";
+    EXPECT_EQ(status("a"), JobStatus::cancelled);
+    claim();
+    EXPECT_EQ(requeue("a"), RequeueEffect::superseded) << "it runs";
+    finish("b", JobStatus::succeeded, "{}");
+    EXPECT_EQ(requeue("a"), RequeueEffect::superseded) << "it has succeeded";
+    remove("b");
+    EXPECT_EQ(requeue("a"), RequeueEffect::requeued) << "it is not kept";
+    EXPECT_EQ(post("c"), "a");
+    cancel("a");
+    EXPECT_EQ(post("c"), "c");
+    cancel("c");
+    EXPECT_EQ(requeue("a"), RequeueEffect::requeued) << "the later one was cancelled too";
+    EXPECT_EQ(requeue("c"), RequeueEffect::superseded);
+    EXPECT_EQ(post("d"), "a");
+    EXPECT_EQ(post("d", "somebody else"), "d");
+    EXPECT_EQ(waiting(), 2U);
 }
 
 TEST_P(StoreConformance, OfManyUniqueJobsAtOnceOneIsMade) {
@@ -229,6 +265,30 @@ TEST_P(StoreConformance, AJobThatIsThereIsAnsweredWhateverTheLimit) {
     cancel("a");
     accept(job("c", "x"));
     EXPECT_EQ(accept(unique(limited(job("d", "x"), 1))).kind, Accepted::Kind::too_many);
+}
+
+TEST_P(StoreConformance, RepeatedPostsTakeNoPlaceUnderTheLimit) {
+    const auto keyed = [&](const std::string& id, const std::string& key) {
+        NewJob made = limited(job(id, "x"), 4);
+        made.idempotency_key = key;
+        return made;
+    };
+    accept(keyed("a", "known"));
+    std::vector<NewJob> posts;
+    for (int i = 0; i < 20; i++) posts.push_back(keyed("known" + std::to_string(i), "known"));
+    for (int i = 0; i < 20; i++) posts.push_back(keyed("twice" + std::to_string(i), "twice"));
+    posts.push_back(keyed("b", ""));
+    posts.push_back(keyed("c", "new"));
+    std::vector<std::promise<Accepted::Kind>> answers(posts.size());
+    for (std::size_t i = 0; i < posts.size(); i++)
+        store_->accept(posts[i], [&answers, i](const Outcome<Accepted>& out) {
+            answers[i].set_value(std::get<Accepted>(out).kind);
+        });
+    int too_many = 0;
+    for (auto& answer : answers) too_many += answer.get_future().get() == Accepted::Kind::too_many ? 1 : 0;
+    EXPECT_EQ(too_many, 0) << "a, one of the key that came twice, b and c";
+    EXPECT_EQ(waiting(), 4U);
+    EXPECT_EQ(accept(keyed("d", "")).kind, Accepted::Kind::too_many);
 }
 
 TEST_P(StoreConformance, ManyPostsAtOnceDoNotPassTheLimit) {

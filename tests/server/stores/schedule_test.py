@@ -126,6 +126,21 @@ class Cases:
         self.last.post("/v1/jobs/%s/cancel" % third, "")
         self.assertNotEqual(self.first.post_job(later)["id"], third)
 
+    def test_a_unique_job_is_not_queued_again_beside_the_one_that_took_its_place(self):
+        request = dict(QUICK, name="unique at %s" % time.time(), unique=True, not_before=moment(3600))
+        first = self.first.post_job(request)["id"]
+        self.last.post("/v1/jobs/%s/cancel" % first, "")
+        second = self.last.post_job(request)["id"]
+        for service in self.processes:
+            answer = service.post("/v1/jobs/%s/requeue" % first, "")
+            self.assertEqual((answer.status, answer.media_type), (409, "application/problem+json"))
+            self.assertIn("Post the request again", answer.json["detail"])
+            self.assertEqual(service.post_job(request)["id"], second)
+        self.first.post("/v1/jobs/%s/cancel" % second, "")
+        self.assertEqual(self.last.post("/v1/jobs/%s/requeue" % first, "").status, 202)
+        self.assertEqual(self.first.post_job(request)["id"], first)
+        self.assertEqual(self.first.post("/v1/jobs/%s/requeue" % second, "").status, 409)
+
     def test_unique_and_an_idempotency_key_are_refused_together(self):
         answer = self.first.post("/v1/jobs", dict(QUICK, unique=True), {"Idempotency-Key": "k"})
         self.assertEqual(answer.status, 422)

@@ -6,7 +6,6 @@
 
 #include "server/http/app/problems.h"
 #include "server/http/app/router.h"
-#include "server/http/guard/server.h"
 #include "server/log.h"
 #include "server/routes/routes.h"
 #include "server/store/open_store.h"
@@ -26,8 +25,7 @@ class Desk {
 public:
     explicit Desk(const std::string& listen) : server_(http::Limits(), application()) {
         add_liveness_route(router_);
-        const HostPort address = parse_listen(listen);
-        server_.listen(address.host, address.port);
+        open_port(server_, listen);
         serving_ = std::jthread([this] { server_.run(); });
     }
     ~Desk() {
@@ -75,6 +73,11 @@ std::unique_ptr<JobStore> open_patiently(const Config& config, const std::stop_t
 }
 
 }  // namespace
+
+int open_port(http::Server& server, const std::string& listen) {
+    const HostPort address = parse_listen(listen);
+    return server.listen(address.host, address.port);
+}
 
 std::unique_ptr<JobStore> open_in_lobby(const Config& config, const sigset_t& signals) {
     std::promise<std::unique_ptr<JobStore>> opened;

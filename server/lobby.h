@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "server/config.h"
+#include "server/http/guard/server.h"
 #include "server/store/store.h"
 
 namespace tunewright::server {
@@ -14,5 +15,8 @@ namespace tunewright::server {
 /// meanwhile: the process is to end. Throws as open_store() does, and std::runtime_error where the port cannot be
 /// opened.
 std::unique_ptr<JobStore> open_in_lobby(const Config& config, const sigset_t& signals);
+
+/// Opens the port that HOST:PORT names, as http::Server::listen() does.
+int open_port(http::Server& server, const std::string& listen);
 
 }  // namespace tunewright::server

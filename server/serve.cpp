@@ -106,12 +106,8 @@ public:
     }
 
     int listen() {
-        if (metrics_server_) {
-            const HostPort address = parse_listen(config_.metrics_listen);
-            metrics_server_->listen(address.host, address.port);
-        }
-        const HostPort address = parse_listen(config_.listen);
-        return server_.listen(address.host, address.port);
+        if (metrics_server_) open_port(*metrics_server_, config_.metrics_listen);
+        return open_port(server_, config_.listen);
     }
 
     void start() {
@@ -356,7 +352,7 @@ void wait_for_stop(const sigset_t& signals) {
 
 }  // namespace
 
-int serve(const Config& config) {
+int serve(Config config) {
     // Blocked before any thread exists, the log's too, so that only wait_for_stop sees them.
     const sigset_t signals = stop_signals();
     pthread_sigmask(SIG_BLOCK, &signals, nullptr);
@@ -366,7 +362,9 @@ int serve(const Config& config) {
     } catch (const std::invalid_argument& error) {
         return failed(kBadConfiguration, error.what());
     }
-    for (const std::string& remark : config.remarks) log_warning(remark);
+    config.remarks.push_back(fit_body(config.max_body, memory_limit(config.memory)));
+    for (const std::string& remark : config.remarks)
+        if (!remark.empty()) log_warning(remark);
     std::signal(SIGPIPE, SIG_IGN);  // a receiver or a client that goes is an error of one write
     raise_file_limit();
     keep_small_memory();

@@ -10,6 +10,6 @@ constexpr int kBadConfiguration = 2, kPortFailed = 3, kStoreFailed = 4;
 
 /// Serves until SIGTERM or SIGINT; a second signal ends the process at once. Returns 0 where it stopped as asked;
 /// one of those codes where not, and standard error has the sentence that says why.
-int serve(const Config& config);
+int serve(Config config);
 
 }  // namespace tunewright::server

@@ -48,9 +48,11 @@ struct Request {
     /// body does not come to its end (too large, malformed, too slow, or the client has gone): the answer is then the
     /// transport's.
     std::function<bool(const BodyTaker&)> read_body;
-    std::function<void()> give_back;  ///< the body and the room kept for it are needed no longer; may be empty
-    std::function<bool()> left;       ///< true where the client has gone and nobody waits for the answer; may be empty
-    std::function<bool()> admitted;   ///< false where the caller's key is known no longer; may be empty
+    /// Of the room that is kept for the request so many bytes are still needed; it goes with the last copy of this. May
+    /// be empty.
+    std::function<void(std::size_t bytes)> keep;
+    std::function<bool()> left;      ///< true where the client has gone and nobody waits for the answer; may be empty
+    std::function<bool()> admitted;  ///< false where the caller's key is known no longer; may be empty
     std::string remote_addr;
     std::string client;  ///< whom it counts for where clients share something: the key's name, else the address
     std::optional<std::string> owner;  ///< name of the API key; nothing where none is asked for: everybody sees all

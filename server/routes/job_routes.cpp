@@ -97,14 +97,17 @@ struct Submitted {
     std::shared_ptr<const JobRecord> ended;
 };
 
-/// Where the order says to wait, a job that is created is waited for in the same breath: this thread is woken once.
-/// Nothing where the client has left meanwhile.
-std::optional<Submitted> submit(JobService& jobs, Order order, const std::function<bool()>& left) {
+/// Where the order says to wait, a job that is created is waited for in the same breath: this thread is woken once. The
+/// room for the request is given back in between, when the store has answered. Nothing where the client has left
+/// meanwhile.
+std::optional<Submitted> submit(JobService& jobs, Order order, const http::Request& call) {
     const bool waits = order.wait.count() > 0;
     const auto made = std::make_shared<Submitted>();
     const auto accept = [&](const std::function<void()>& wake) {
-        const auto done = [made, waits, wake](Submission submission) {
+        const auto done = [made, waits, wake, keep = call.keep](Submission submission) {
+            if (waits) std::string().swap(submission.job.request);
             made->submission = std::move(submission);
+            if (keep) keep(0);
             if (!waits || made->submission.kind != Submission::Kind::created) wake();
         };
         jobs.submit(std::move(order), done, [made, wake](const std::shared_ptr<const JobRecord>& job) {
@@ -112,7 +115,7 @@ std::optional<Submitted> submit(JobService& jobs, Order order, const std::functi
             wake();
         });
     };
-    if (!await_end(accept, waits ? left : nullptr)) return std::nullopt;
+    if (!await_end(accept, waits ? call.left : nullptr)) return std::nullopt;
     return std::move(*made);
 }
 
@@ -170,20 +173,13 @@ Response post_job(JobService& jobs, Places& places, const SharedTurns& turns, No
     std::chrono::seconds wait = http::preferred_wait(call.request).value_or(std::chrono::seconds(0));
     std::optional<Places::Place> place;
     if (wait.count() > 0 && !(place = places.take(call.request.client))) wait = {};
-    // The room for the request is given back before the wait for its job; what is large is in the store by then.
-    const bool large = call.request.body.size() > kLarge;
-    const auto give_back = [&] {
-        std::string().swap(call.request.body);
-        if (call.request.give_back) call.request.give_back();
-    };
-    order.wait = large ? std::chrono::seconds(0) : wait;
-    if (!large) give_back();
-    const auto made = submit(jobs, std::move(order), call.request.left);
+    order.wait = wait;
+    std::string().swap(call.request.body);
+    if (call.request.keep) call.request.keep(kStoredCopies * order.job.request_json.size());
+    const auto made = submit(jobs, std::move(order), call.request);
     if (!made) return client_gone();
-    if (large) give_back();
     const auto& [submission, ended] = *made;
-    const bool still_to_wait = large && wait.count() > 0 && submission.kind == Submission::Kind::created;
-    if (submission.kind == Submission::Kind::existing || still_to_wait)
+    if (submission.kind == Submission::Kind::existing)
         return after_wait(jobs, turns.readers, call.request, submission.job.id, wait);
     if (submission.kind != Submission::Kind::created || wait.count() == 0) return submitted(jobs, submission);
     if (ended) return waited(JobView{*ended, std::nullopt}, wait);

@@ -12,16 +12,41 @@ namespace tunewright::server {
 namespace {
 
 constexpr std::size_t kMaxKeyLength = 200;
-constexpr std::size_t kCopies = 2;  // of a body: as it is written again, on the way to the store
-constexpr std::size_t kCells = 5;   // what the numbers of a file take, in its bytes
+constexpr std::size_t kCells = 5;  // what the numbers of a file take, in its bytes
+constexpr std::size_t kTree = 36;  // what JSON takes at most, in its bytes: [{"":0},...]
+
+/// The bytes of the texts in a JSON body, each of which may be a file.
+std::size_t texts_of(std::string_view json) {
+    std::size_t bytes = 0;
+    for (std::size_t end = 0, start = json.find('"'); start < json.size(); start = json.find('"', end + 1)) {
+        end = json.find_first_of("\\\"", start + 1);
+        while (end < json.size() && json[end] == '\\') end = json.find_first_of("\\\"", end + 2);
+        end = std::min(end, json.size());
+        bytes += end - start - 1;
+    }
+    return bytes;
+}
 
 }  // namespace
 
 std::size_t handling_weight(const http::Request& request) {
     const std::size_t bytes = request.body.size();
-    if (!http::sends_json(request)) return (kCopies + kCells) * bytes;
+    if (!http::sends_json(request)) return (kStoredCopies + kCells) * bytes;
     const std::size_t tree = api::tree_size(request.body);
-    return tree > api::kMaxTree ? 0 : kCopies * bytes + tree;  // what is refused takes nothing
+    if (tree > api::kMaxTree) return 0;  // what is refused takes nothing
+    return kStoredCopies * bytes + tree + kCells * texts_of(request.body);
+}
+
+std::string fit_body(std::size_t& max_body, std::size_t memory) {
+    constexpr std::size_t any = 1 + kStoredCopies + kCells;  // what any body takes, in its bytes; JSON more
+    const std::size_t half = memory / 2, fits = half / (any + kTree);
+    const std::size_t asked = max_body, most = fits <= api::kMaxTree / kTree ? fits : (half - api::kMaxTree) / any;
+    if (asked <= most) return {};
+    max_body = most;
+    const auto kib = [](std::size_t bytes) { return std::to_string(bytes >> 10) + "KiB"; };
+    return "--max-body is lowered from " + kib(asked) + " to " + kib(most) +
+           ", the largest whose answer takes no more than half of --memory, " + kib(memory) +
+           ". Give more --memory for larger bodies.";
 }
 
 std::optional<http::Response> refuse_form(const http::Request& request) {

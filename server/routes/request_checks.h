@@ -19,6 +19,13 @@ std::optional<http::Response> refuse_call(const http::Request& request);
 /// way to the store or back.
 std::size_t handling_weight(const http::Request& request);
 
+/// Copies of a request on its way to the store.
+constexpr std::size_t kStoredCopies = 2;
+
+/// Lowers --max-body where the largest body could take more than half of `memory` while it is answered; then a sentence
+/// for the log, else "".
+std::string fit_body(std::size_t& max_body, std::size_t memory);
+
 /// 406 where the client takes no JSON.
 std::optional<http::Response> refuse_form(const http::Request& request);
 

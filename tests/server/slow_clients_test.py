@@ -5,6 +5,7 @@ import json
 import os
 import re
 import socket
+import sqlite3
 import time
 import unittest
 
@@ -175,6 +176,70 @@ class BrokenOffTest(unittest.TestCase):
             self.assertLess(received.count(b'"index":'), 400)
             self.assertFalse(received.endswith(b"0\r\n\r\n"))
             self.assertIn("was deleted meanwhile", service.read_log())
+
+
+class StoreOwesAnAnswerTest(unittest.TestCase):
+    def until_bodies_hold(self, service, expected):
+        end = time.monotonic() + 30
+        while not expected(held := metric(service, "tunewright_http_body_bytes")):
+            self.assertLess(time.monotonic(), end, "bodies hold %d bytes" % held)
+            time.sleep(0.02)
+
+    def test_a_small_body_is_counted_until_the_store_has_answered(self):
+        with Service("--workers", "1", "--drain-timeout", "0") as service, \
+                concurrent.futures.ThreadPoolExecutor(5) as threads:
+            running = service.post_job(LONG)["id"]
+            service.wait_for(running, ("running",))
+            body = dict(CHEAP, name="n" * 200)
+            other = sqlite3.connect(service.store[len("sqlite:"):], timeout=60, isolation_level=None)
+            self.addCleanup(other.close)
+            other.execute("BEGIN IMMEDIATE")  # the store cannot write
+            posts = [threads.submit(service.post_job, body, wait) for wait in (None, 60, 60, 60)]
+            self.until_bodies_hold(service, lambda held: held >= 4 * len(json.dumps(body)))
+            design = service.post("/v1/design", dict(CHEAP, name="x" * 100_000))
+            self.assertIn(design.status, (200, 422), "what waits for the store keeps nobody from being answered")
+            other.execute("ROLLBACK")
+            # The store has them; three calls go on waiting for their ends and hold nothing.
+            first = posts[0].result(30)["id"]
+            self.until_bodies_hold(service, lambda held: held == 0)
+            self.assertFalse(any(post.done() for post in posts[1:]))
+            service.post("/v1/jobs/%s/cancel" % running, "")
+            self.assertEqual([post.result(60)["status"] for post in posts[1:]], ["succeeded"] * 3)
+            self.assertEqual(service.wait_for(first)["status"], "succeeded")
+
+    def test_a_client_that_leaves_while_the_store_owes_an_answer_is_counted_until_then(self):
+        with Service("--workers", "1") as service:
+            other = sqlite3.connect(service.store[len("sqlite:"):], timeout=60, isolation_level=None)
+            self.addCleanup(other.close)
+            other.execute("BEGIN IMMEDIATE")
+            with socket.create_connection(("127.0.0.1", service.port)) as connection:
+                connection.sendall(post("/v1/jobs", CHEAP).replace(b"\r\n", b"\r\nPrefer: wait=60\r\n", 1))
+                self.until_bodies_hold(service, lambda held: held > 0)
+            time.sleep(0.6)  # it is asked every quarter of a second whether it has left
+            self.assertGreater(metric(service, "tunewright_http_body_bytes"), 0)
+            other.execute("ROLLBACK")
+            self.until_bodies_hold(service, lambda held: held == 0)
+            self.assertEqual(len(service.get("/v1/jobs").json["jobs"]), 1)
+
+
+class LargeRecordTest(unittest.TestCase):
+    """A file as a text of JSON, of the shortest numbers that there are."""
+
+    def test_it_takes_no_more_than_its_share(self):
+        memory = 256 * MEGABYTE
+        with Service("--workers", "1", "--memory", "256MiB", "--max-body", "64MiB") as service:
+            self.assertIn("--max-body is lowered from 65536KiB to 8192KiB", service.read_log())
+            self.assertEqual(service.post("/v1/jobs", b"x" * (9 * MEGABYTE)).status, 413)
+            rows = "t,u,y\n" + "".join("%d,%d,%d\n" % (i, i // 100 % 2, i % 10) for i in range(600_000))
+            body = json.dumps({"record": {"csv": rows[:7_500_000]}})
+            self.assertLess(len(body), 8 * MEGABYTE)
+            with concurrent.futures.ThreadPoolExecutor(6) as threads:
+                answers = list(threads.map(lambda _: service.post("/v1/jobs", body).status, range(6)))
+            self.assertLessEqual(set(answers), {200, 202, 422, 503}, answers)
+            with open("/proc/%d/status" % service.process.pid) as status:
+                peak = 1024 * int(re.search(r"VmHWM:\s+(\d+)", status.read()).group(1))
+            print("peak %.0f MiB, %r" % (peak / MEGABYTE, answers))
+            self.assertLess(peak, memory)
 
 
 if __name__ == "__main__":

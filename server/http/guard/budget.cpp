@@ -20,12 +20,16 @@ Budget::Share Budget::open(std::string client, std::function<void()> give_way) {
 
 std::size_t Budget::taken() const {
     const std::lock_guard lock(mutex_);
-    return arriving_ + answering_;
+    return arriving_.all + answering_.all;
 }
 
-/// The most that all requests together may hold when one that holds `bytes` asks for room.
-std::size_t Budget::room(std::size_t bytes) const {
-    return most_ / 2 + (bytes <= most_ / kSmallRequest ? most_ / kForSmall : 0);
+bool Budget::is_small(std::size_t bytes) const { return bytes <= most_ / kSmallRequest; }
+
+/// Whether one that holds `before` of `sum` may hold `own` bytes. Others do not count what small ones hold in the room
+/// that is kept for them.
+bool Budget::fits(const Sum& sum, std::size_t own, std::size_t before) const {
+    const std::size_t kept = most_ / kForSmall, together = sum.all - before + own;
+    return together <= most_ / 2 + (is_small(own) ? kept : std::min(kept, sum.small - (is_small(before) ? before : 0)));
 }
 
 bool Budget::grow(Entry& entry, std::size_t bytes, std::chrono::milliseconds patience) {
@@ -33,7 +37,7 @@ bool Budget::grow(Entry& entry, std::size_t bytes, std::chrono::milliseconds pat
     std::unique_lock lock(mutex_);
     bytes = std::min(bytes, most_ / 2 - std::min(most_ / 2, entry.bytes));
     const std::size_t own = entry.bytes + bytes;
-    while (arriving_ + bytes > room(own) && !entry.leaving) {
+    while (!fits(arriving_, own, entry.bytes) && !entry.leaving) {
         if (Entry* victim = to_give_way(entry.client, own)) {
             victim->leaving = Clock::now();
             victim->give_way();
@@ -43,9 +47,8 @@ bool Budget::grow(Entry& entry, std::size_t bytes, std::chrono::milliseconds pat
             break;
         }
     }
-    if (entry.leaving || arriving_ + bytes > room(own)) return false;
-    entry.bytes += bytes;
-    arriving_ += bytes;
+    if (entry.leaving || !fits(arriving_, own, entry.bytes)) return false;
+    set(entry, own);
     return true;
 }
 
@@ -55,24 +58,35 @@ bool Budget::arrived(Entry& entry, std::size_t more, std::chrono::milliseconds p
         entry.give_way = nullptr;
         entry.leaving = {};
         const std::size_t own = std::min(entry.bytes + more, most_ / 2);
-        const auto fits = [&] { return answering_ + own <= room(own); };
-        if (!freed_.wait_for(lock, patience, fits)) return false;
-        let_go(entry);
-        entry.bytes = own;
+        if (!freed_.wait_for(lock, patience, [&] { return fits(answering_, own, 0); })) return false;
+        set(entry, 0);
         entry.answering = true;
-        answering_ += own;
+        set(entry, own);
     }
     freed_.notify_all();
     return true;
 }
 
-/// Under the lock: what it holds is held no longer.
-void Budget::let_go(Entry& entry) { (entry.answering ? answering_ : arriving_) -= entry.bytes; }
+void Budget::keep(Entry& entry, std::size_t bytes) {
+    {
+        const std::lock_guard lock(mutex_);
+        set(entry, std::min(entry.bytes, bytes));
+    }
+    freed_.notify_all();
+}
+
+/// Under the lock.
+void Budget::set(Entry& entry, std::size_t bytes) {
+    Sum& sum = entry.answering ? answering_ : arriving_;
+    sum.all += bytes - entry.bytes;
+    sum.small += (is_small(bytes) ? bytes : 0) - (is_small(entry.bytes) ? entry.bytes : 0);
+    entry.bytes = bytes;
+}
 
 void Budget::close(Place place) {
     {
         const std::lock_guard lock(mutex_);
-        let_go(*place);
+        set(*place, 0);
         entries_.erase(place);
     }
     freed_.notify_all();

@@ -28,6 +28,9 @@ private:
         std::optional<Clock::time_point> leaving = {};  ///< since when it has been asked to give way
     };
     using Place = std::list<Entry>::iterator;
+    struct Sum {
+        std::size_t all = 0, small = 0;  ///< bytes, and those of small requests
+    };
 
 public:
     /// A request's part of the budget; given back when it goes.
@@ -51,11 +54,13 @@ public:
             return budget_->grow(*place_, bytes, patience);
         }
         /// The request is whole and gives no way from now on; it holds so many bytes more while it is answered, in all
-        /// at most half of the whole: where nothing else is being answered there is room for it. False where there was
-        /// none within the time; then it counts as before.
+        /// at most half of the whole: where nothing else is being answered but small requests there is room for it.
+        /// False where there was none within the time; then it counts as before.
         bool arrived(std::size_t more, std::chrono::milliseconds patience) {
             return budget_->arrived(*place_, more, patience);
         }
+        /// Holds no more than so many bytes from now on.
+        void keep(std::size_t bytes) { budget_->keep(*place_, bytes); }
 
     private:
         friend class Budget;
@@ -73,16 +78,18 @@ public:
 private:
     bool grow(Entry& entry, std::size_t bytes, std::chrono::milliseconds patience);
     bool arrived(Entry& entry, std::size_t more, std::chrono::milliseconds patience);
-    void let_go(Entry& entry);
-    std::size_t room(std::size_t bytes) const;
+    void keep(Entry& entry, std::size_t bytes);
+    void set(Entry& entry, std::size_t bytes);
     void close(Place place);
+    bool is_small(std::size_t bytes) const;
+    bool fits(const Sum& sum, std::size_t own, std::size_t before) const;
     Entry* to_give_way(const std::string& client, std::size_t bytes);
 
     const std::size_t most_;
     mutable std::mutex mutex_;
     std::condition_variable freed_;
     std::list<Entry> entries_;
-    std::size_t arriving_ = 0, answering_ = 0;  ///< sums of bytes
+    Sum arriving_, answering_;
 };
 
 }  // namespace tunewright::server::http

@@ -87,7 +87,6 @@ void Exchange::take(httplib::Request& raw) {
     request_.remote_addr = connection_.address;
     taken_ = true;
     request_.left = [this] { return connection_.gone(); };
-    request_.give_back = [this] { share_ = {}; };
     // What is left is what the library routes by: whether there is a body, and our one handler of each method.
     raw.method = request_.method;
     raw.path = "/";
@@ -121,12 +120,13 @@ std::optional<Response> Exchange::refuse_early() {
 bool Exchange::count(std::size_t bytes) {
     if (streamed_) bytes = std::min(bytes, limits_.arriving - std::min(limits_.arriving, come_));
     come_ += bytes;
-    return share_.grow(bytes, limits_.room);
+    return share_->grow(bytes, limits_.room);
 }
 
 void Exchange::answer(httplib::Response& out, const httplib::ContentReader& body) {
     const std::string& client = request_.client == connection_.address ? connection_.network : request_.client;
-    share_ = bodies_.open(client, [this] { connection_.give_way(); });
+    share_ = std::make_shared<Budget::Share>(bodies_.open(client, [this] { connection_.give_way(); }));
+    request_.keep = [share = share_](std::size_t bytes) { share->keep(bytes); };
     // The library reads in small pieces; they are handed on when there are no more at hand.
     const auto read = [this, &body](const BodyTaker& take) {
         std::string piece;
@@ -136,7 +136,7 @@ void Exchange::answer(httplib::Response& out, const httplib::ContentReader& body
             if (connection_.has_more() && piece.size() < kPiece) return true;
             return count(piece.size()) ? pass_on() : connection_.refuse_body(kNoRoom);
         });
-        if (whole) share_.arrived(0, {});
+        if (whole) share_->arrived(0, {});
         return whole && pass_on() && !connection_.body_failed();
     };
     bool whole = true;
@@ -149,9 +149,9 @@ void Exchange::answer(httplib::Response& out, const httplib::ContentReader& body
             return true;
         });
         const std::size_t more = whole && application_.weight ? application_.weight(request_) : 0;
-        if (!share_.arrived(more, limits_.room)) whole = connection_.refuse_body(kNoRoom);
+        if (!share_->arrived(more, limits_.room)) whole = connection_.refuse_body(kNoRoom);
     }
-    if (!whole) std::string().swap(request_.body), share_ = {};
+    if (!whole) std::string().swap(request_.body), share_->keep(0);
     // The library sets a status of its own where it was not given the whole body.
     Response response = whole ? handled() : Response();
     out.status = 200;
@@ -168,7 +168,7 @@ Response Exchange::handled() {
     named.answer_headers = request_.answer_headers;
     Response response = application_.handle(std::move(request_));
     request_ = std::move(named);
-    share_ = {};
+    share_.reset();
     return response;
 }
 

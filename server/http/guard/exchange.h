@@ -54,7 +54,7 @@ private:
     Answers& answers_;
     const std::atomic<bool>& stopping_;
     Request request_;
-    Budget::Share share_;
+    std::shared_ptr<Budget::Share> share_;
     std::size_t come_ = 0;  ///< of the body, as far as it is held
     Answers::Share held_;   ///< the body of the answer; the library has it until the end of the exchange
     bool taken_ = false;    ///< the library could read the head

@@ -114,6 +114,43 @@ TEST(Budget, OneThatDoesNotLeaveIsNotTheOnlyOneAsked) {
     left.join();
 }
 
+TEST(Budget, WhatIsNeededNoLongerIsThereForOthers) {
+    Budget budget(51'200);
+    Budget::Share first = budget.open("one", [] {}), second = budget.open("two", [] {});
+    ASSERT_TRUE(first.grow(10'000, 0ms) && first.arrived(15'000, 0ms) && second.grow(10'000, 0ms));
+    std::thread ends([&] {
+        std::this_thread::sleep_for(20ms);
+        first.keep(5'000);
+    });
+    EXPECT_TRUE(second.arrived(10'000, 30s)) << "woken, not at the end of its patience";
+    ends.join();
+    EXPECT_EQ(budget.taken(), 25'000U);
+    first.keep(50'000);
+    EXPECT_EQ(budget.taken(), 25'000U) << "it never grows by that";
+}
+
+TEST(Budget, SmallRequestsThatWaitForTheirAnswersKeepNoLargeOneFromItsOwn) {
+    Budget budget(51'200);
+    std::vector<Budget::Share> small;
+    for (int i = 0; i < 128; ++i) {
+        small.push_back(budget.open("many", [] {}));
+        ASSERT_TRUE(small.back().grow(100, 0ms) && small.back().arrived(0, 0ms));
+    }
+    Budget::Share large = budget.open("modest", [] {});
+    ASSERT_TRUE(large.grow(20'000, 0ms));
+    EXPECT_TRUE(large.arrived(1'000'000, 0ms));
+    EXPECT_EQ(budget.taken(), 25'600U + 12'800U);
+    small[0].keep(0);
+    small[0] = {};
+    Budget::Share other = budget.open("other", [] {});
+    ASSERT_TRUE(other.grow(200, 0ms));
+    EXPECT_FALSE(other.arrived(0, 0ms)) << "only the small have that room";
+    small.clear();
+    large = {};
+    other = {};
+    EXPECT_EQ(budget.taken(), 0U);
+}
+
 TEST(Budget, SmallRequestsHaveRoomWhoeverFillsTheRest) {
     Budget budget(51'200);
     Budget::Share large = budget.open("greedy", [] {});

@@ -213,7 +213,8 @@ void SampledRun::note(double t) {
 
 StepResponse SampledRun::result() {
     response_.settles = false;
-    for (int k = 0; k < options_.most_samples && !options_.stop.stop_requested(); ++k) {
+    // One period at least: whoever reads a response that was stopped at once finds its beginning.
+    for (int k = 0; k < options_.most_samples && (k == 0 || !options_.stop.stop_requested()); ++k) {
         sample(k);
         run_period(k);
         const double t = (k + 1) * law_.Ts;

@@ -247,6 +247,20 @@ TEST(SampledResponse, DoesNotRestWhereALimitLeavesAnIntegratorMoving) {
     EXPECT_NEAR(response.nodes.back().y_slope, 0.7, 1e-9);
 }
 
+// Whoever is not waited for any more stops it, at any moment.
+TEST(SampledResponse, OneThatIsStoppedAtOnceHasItsBeginning) {
+    const LinearPlant plant = *LinearPlant::make(kLags);
+    std::stop_source stop;
+    stop.request_stop();
+    SampledOptions options;
+    options.stop = stop.get_token();
+    for (const StepInputs in : {StepInputs{1, 0}, StepInputs{0, 1}}) {
+        const StepResponse response = simulate_sampled(plant, pid(0.9, 0.6, 0.2, 0.2), {}, in, options);
+        EXPECT_FALSE(response.settles);
+        EXPECT_FALSE(response.nodes.empty());
+    }
+}
+
 // A run with a horizon is a run to infinity up to there, wherever that lies between two samples.
 TEST(SampledResponse, IndicesEndExactlyAtTheHorizon) {
     const LinearPlant plant = *LinearPlant::make(kLags);

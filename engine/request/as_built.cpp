@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "engine/evaluation/evaluate.h"
 #include "engine/number_text.h"
@@ -10,11 +11,19 @@
 namespace tunewright {
 namespace {
 
-constexpr double kWorthSaying = 2;  // percent
+constexpr double kMaxUnsaidDifference = 2;  // percent; of the overshoot in percent of the step
+
+constexpr const char* kNotIdeal = "The ideal loop has no such figure.";
+constexpr const char* kNotBuilt = "The loop as built has no such figure.";
 
 Figure percent_above(const Figure& built, const Figure& ideal) {
     if (built && ideal && *ideal != 0) return 100 * (*built / *ideal - 1);
-    return no_figure(built ? "The ideal loop has no such figure." : "The loop as built has no such figure.");
+    return no_figure(built ? kNotIdeal : kNotBuilt);
+}
+
+Figure points_above(const Figure& built, const Figure& ideal) {
+    if (built && ideal) return *built - *ideal;
+    return no_figure(built ? kNotIdeal : kNotBuilt);
 }
 
 Expected<BuiltLoop> loop_of(const Subject& subject, const built::Build& build, const built::Fitted& fitted,
@@ -55,9 +64,16 @@ Expected<AsBuilt> judge_as_built(const Subject& subject, const built::Build& bui
                                  const EvaluateOptions& options, const Evaluation& ideal) {
     auto loop = loop_of(subject, build, fitted, options);
     if (!loop) return loop.error();
-    AsBuilt built{std::move(fitted), std::move(*loop), {}, {}};
+    AsBuilt built{std::move(fitted), std::move(*loop), {}, {}, {}};
     built.Ms_percent = percent_above(built.loop.robustness.Ms, ideal.robustness.Ms);
     built.load_IAE_percent = percent_above(built.loop.performance.load.IAE, ideal.performance.load.IAE);
+    built.overshoot_points =
+        points_above(built.loop.performance.setpoint.overshoot_percent, ideal.performance.setpoint.overshoot_percent);
+    for (const auto& [name, difference] : {std::pair{DifferingFigure::Ms, &built.Ms_percent},
+                                           {DifferingFigure::load_IAE, &built.load_IAE_percent},
+                                           {DifferingFigure::overshoot, &built.overshoot_points}})
+        if (built.loop.robustness.stable && *difference && std::abs(**difference) > kMaxUnsaidDifference)
+            built.differs.push_back(name);
     return built;
 }
 
@@ -87,12 +103,12 @@ void warn_of_difference(Evaluation& evaluation, const AsBuilt& built) {
         return;
     }
     std::string moved;
-    const auto note = [&](const Figure& percent, const char* what) {
-        if (!percent || std::abs(*percent) <= kWorthSaying) return;
+    const auto note = [&](DifferingFigure which, const Figure& percent, const char* what) {
+        if (std::ranges::find(built.differs, which) == built.differs.end()) return;
         moved += (moved.empty() ? "" : " and ") + std::string(what) + " by " + text(*percent, 3) + " %";
     };
-    note(built.Ms_percent, "Ms");
-    note(built.load_IAE_percent, "the load IAE");
+    note(DifferingFigure::Ms, built.Ms_percent, "Ms");
+    note(DifferingFigure::load_IAE, built.load_IAE_percent, "the load IAE");
     if (moved.empty()) return;
     evaluation.warnings.push_back(
         {"differs-as-built", "The controller as it is built, its rounding and its sampling included, moves " + moved +

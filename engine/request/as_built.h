@@ -13,11 +13,15 @@
 
 namespace tunewright {
 
+enum class DifferingFigure { Ms, load_IAE, overshoot };
+
 /// `Ms_percent`, `load_IAE_percent`: by how much the loop as built lies above the entry's ideal one.
 struct AsBuilt {
     built::Fitted fitted;
     BuiltLoop loop;
     Figure Ms_percent, load_IAE_percent;
+    Figure overshoot_points;                    ///< the same of the set-point step's overshoot, in percent of the step
+    std::vector<DifferingFigure> differs = {};  ///< those that lie so far off that it is said
 };
 
 /// Of settings that are known. `ideal`: the evaluation of the entry's controller. Errors: those of evaluating.

@@ -14,14 +14,25 @@
 
 namespace tunewright {
 
+/// The groups of a comparison, the best first.
+enum class StandingGroup {
+    holds,
+    above_limit,  ///< settles, with a larger Ms than was asked of it or of all
+    not_settled,  ///< stable, but a response does not come to rest where it should
+    unstable,
+};
+
 /// How an entry stands in a comparison, and why it stands behind others.
 struct Standing {
+    StandingGroup group = StandingGroup::unstable;
     bool settles = false;   ///< stable, and both responses come to rest where they should
     bool within = true;     ///< the limit on Ms that was asked of this entry, if one was
     Figure Ms;              ///< of the loop as it will run: on the worst plant, in the user's own controller
+    Figure least_limit;     ///< least limit on the Ms of all entries with which it holds; none where no limit does
     Figure excess_percent;  ///< of the load IAE over the least at the same Ms; by it entries rank
+    int order = 0;          ///< from 1: its place where no limit on the Ms of all is set
     std::string why;        ///< what keeps it from the first group; empty where nothing does
-    bool holds() const { return why.empty(); }
+    bool holds() const { return group == StandingGroup::holds; }
 };
 
 /// A controller with its evaluation, or why there is none.

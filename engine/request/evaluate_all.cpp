@@ -11,6 +11,7 @@
 #include "engine/evaluation/evaluation_start.h"
 #include "engine/request/identified_region.h"
 #include "engine/request/optimum_at_ms.h"
+#include "engine/request/ranking.h"
 #include "engine/request/verdict/verdict.h"
 #include "engine/tuning/arrieta/tradeoff_report.h"
 
@@ -75,6 +76,7 @@ Expected<EvaluationResult> evaluate_all(const Subject& subject, const std::vecto
     const verdict::Context context{subject, options, labels,      implement ? implement->Ts : 0,
                                    model,   nullptr, given_steps, control};
     draw_together(result.controllers);
+    ranked(result.controllers, {options.rank_Ms, subject.linear() != nullptr});
     verdict::judge(result.controllers, context);
     result.verdict = verdict::of_all(result.controllers, by_load_IAE(result.controllers), context, false);
     return result;

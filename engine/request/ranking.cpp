@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <tuple>
+#include <utility>
 
 #include "engine/number_text.h"
 
@@ -55,20 +56,23 @@ Standing standing_of(const TuningEntry& entry, std::optional<double> own, const 
     const Evaluation& evaluation = *entry.evaluation;
     Standing standing;
     standing.Ms = judged_Ms(entry);
-    const auto within = [&](double limit, double tolerance) {
-        return standing.Ms && *standing.Ms <= tolerance * limit;
-    };
-    standing.within = !own || within(*own, kOwnTolerance);
+    standing.within = !own || (standing.Ms && *standing.Ms <= kOwnTolerance * *own);
     const std::string restless = terms.over_time ? unrest(evaluation.performance) : "";
     standing.settles = evaluation.robustness.stable && restless.empty();
-    if (!evaluation.robustness.stable)
-        standing.why = "The loop is unstable.";
-    else if (!standing.settles)
-        standing.why = restless;
-    else if (!standing.within)
-        standing.why = above(entry, standing.Ms, *own);
-    else if (!within(terms.rank_Ms, kRankTolerance))
-        standing.why = above(entry, standing.Ms, terms.rank_Ms);
+    standing.least_limit = standing.settles && standing.within && standing.Ms
+                               ? Figure(*standing.Ms / kRankTolerance)
+                               : no_figure("No limit on Ms makes it hold.");
+    const auto behind = [&](StandingGroup group, std::string why) {
+        standing.group = group;
+        standing.why = std::move(why);
+        return standing;
+    };
+    if (!evaluation.robustness.stable) return behind(StandingGroup::unstable, "The loop is unstable.");
+    if (!standing.settles) return behind(StandingGroup::not_settled, restless);
+    if (!standing.within) return behind(StandingGroup::above_limit, above(entry, standing.Ms, *own));
+    if (!standing.least_limit || *standing.least_limit > terms.rank_Ms)
+        return behind(StandingGroup::above_limit, above(entry, standing.Ms, terms.rank_Ms));
+    standing.group = StandingGroup::holds;
     return standing;
 }
 
@@ -95,9 +99,15 @@ bool compared(const std::vector<TuningEntry>& entries) {
 
 auto key(const TuningEntry& entry) {
     const Standing& standing = *entry.standing;
-    const auto& IAE = entry.evaluation->performance.load.IAE;
-    return std::tuple(!entry.evaluation->robustness.stable, !standing.settles, !standing.holds(),
-                      standing.excess_percent.value_or(kInfinity), IAE ? *IAE : kInfinity);
+    return std::tuple(standing.group, standing.excess_percent.value_or(kInfinity),
+                      entry.evaluation->performance.load.IAE.value_or(kInfinity));
+}
+
+// The same without the limits on Ms.
+auto key_without_limits(const TuningEntry& entry) {
+    auto without = key(entry);
+    if (std::get<0>(without) == StandingGroup::above_limit) std::get<0>(without) = StandingGroup::holds;
+    return without;
 }
 
 }  // namespace
@@ -117,7 +127,12 @@ std::vector<int> ranked(std::vector<TuningEntry>& entries, const RankingTerms& t
                                              ? Figure(100 * (*IAE / *optimum - 1))
                                              : no_figure("It was not compared with an optimum.");
     }
-    std::ranges::stable_sort(order, {}, [&](int i) { return key(entries[static_cast<std::size_t>(i)]); });
+    const auto entry_at = [&](int i) -> TuningEntry& { return entries[static_cast<std::size_t>(i)]; };
+    auto by_merit = order;
+    std::ranges::stable_sort(by_merit, {}, [&](int i) { return key_without_limits(entry_at(i)); });
+    for (std::size_t place = 0; place < by_merit.size(); ++place)
+        entry_at(by_merit[place]).standing->order = static_cast<int>(place) + 1;
+    std::ranges::stable_sort(order, {}, [&](int i) { return key(entry_at(i)); });
     return order;
 }
 

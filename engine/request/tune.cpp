@@ -243,6 +243,7 @@ Expected<TuningResult> TuningRun::result() {
     if (result_.model && !result_.ranking.empty())
         result_.model->region = result_.controllers[static_cast<size_t>(result_.ranking.front())].evaluation->region;
     result_.ranking_by = ranking_by(result_.controllers, terms);
+    result_.rank_Ms = terms.rank_Ms;
     const verdict::Context context{*subject_,
                                    request_.evaluate,
                                    request_.labels,
@@ -253,6 +254,7 @@ Expected<TuningResult> TuningRun::result() {
                                    control_};
     verdict::judge(result_.controllers, context);
     result_.verdict = verdict::of_all(result_.controllers, result_.ranking, context, result_.partial);
+    result_.proposed = verdict::proposed(result_.controllers, result_.verdict);
     report(1, "tune", "Done.");
     return std::move(result_);
 }

@@ -59,8 +59,10 @@ struct TuningResult {
     std::vector<TuningEntry> controllers;
     std::vector<int> ranking;  ///< indices into controllers, best first; entries with an error are left out
     std::string ranking_by;
-    bool partial = false;                   ///< cancelled after a feasible design was found
+    std::optional<double> rank_Ms;  ///< the limit on the Ms of all that ranking goes by; none where nothing ranks them
+    bool partial = false;           ///< cancelled after a feasible design was found
     std::vector<verdict::Finding> verdict;  ///< over all entries: which to take
+    std::optional<int> proposed;            ///< the entry to show first; none where no entry has a controller
 };
 
 /// Errors: those of identification; of the single method if all fail; invalid_argument; cancelled.

@@ -99,6 +99,7 @@ Expected<TuningResult> tune_on_ultimate(const TuningRequest& request) {
     if (result.ranking.empty()) return all_failed(result.controllers);
     result.ranking_by = "the order of the methods; without a plant nothing ranks them";
     result.verdict = verdict::of_all_without_loop();
+    result.proposed = verdict::proposed(result.controllers, result.verdict);
     return result;
 }
 

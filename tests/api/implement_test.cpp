@@ -81,6 +81,23 @@ TEST(Implement, MovesOfMoreThanTwoPercentAreWarnedOf) {
     const Json& entry = result["controllers"][0];
     ASSERT_GT(entry["implemented"]["difference"]["Ms_percent"].get<double>(), 2);
     EXPECT_EQ(entry["warnings"].back()["code"], "differs-as-built");
+    // The rule of 2 % on each figure, from the answer's own figures.
+    const Json& built = entry["implemented"];
+    const auto overshoot = [](const Json& loop) {
+        return loop["performance"]["setpoint"]["overshoot_percent"].get<double>();
+    };
+    const double points = built["difference"]["overshoot_points"].get<double>();
+    EXPECT_NEAR(points, overshoot(built) - overshoot(entry), 1e-9);
+    Json far = Json::array();
+    if (std::abs(built["difference"]["Ms_percent"].get<double>()) > 2) far.push_back("Ms");
+    if (std::abs(built["difference"]["load_IAE_percent"].get<double>()) > 2) far.push_back("load_IAE");
+    if (std::abs(points) > 2) far.push_back("overshoot");
+    EXPECT_EQ(built["difference"]["differs"], far);
+}
+
+TEST(Implement, ALoopThatIsBuiltAsDesignedDiffersInNothing) {
+    const Json result = tuned(implement(R"("sample_time": 0.05)") + R"(, "tune": [{"method": "simc"}])");
+    EXPECT_EQ(result["controllers"][0]["implemented"]["difference"]["differs"], Json::array());
 }
 
 TEST(Implement, WhatCannotBeBuiltIsSaidAndTheIdealLoopAnswered) {

@@ -10,6 +10,13 @@ const Description<AsBuilt>& difference_contract() {
         Description<AsBuilt> d("Difference", "How far the loop as built lies above the entry's ideal one.");
         d.field("Ms_percent", &AsBuilt::Ms_percent, figure(), "Of Ms.", {.unit = "%"})
             .field("load_IAE_percent", &AsBuilt::load_IAE_percent, figure(), "Of the load IAE.", {.unit = "%"})
+            .field("overshoot_points", &AsBuilt::overshoot_points, figure(),
+                   "Of the overshoot of a set-point step, in percent of the step.", {.unit = "%"})
+            .field("differs", &AsBuilt::differs,
+                   only_answered(list_of(choice<DifferingFigure>({{"Ms", DifferingFigure::Ms},
+                                                                  {"load_IAE", DifferingFigure::load_IAE},
+                                                                  {"overshoot", DifferingFigure::overshoot}}))),
+                   "The figures that lie more than 2 % off: for them it is another loop. Empty for an unstable loop.")
             .why_null("Not known for this loop.");
         return d;
     }();

@@ -35,6 +35,8 @@ const Description<verdict::Finding>& finding_contract() {
 
 namespace {
 
+Json whole_number(SchemaBook&) { return {{"type", "integer"}}; }
+
 // Reads a member of the entry's evaluation; left out where there is none.
 template <class M>
 void evaluation_field(Description<TuningEntry>& d, const char* name, M Evaluation::*member, const Codec<M>& codec,
@@ -85,8 +87,16 @@ const Description<Standing>& standing_contract() {
     static const auto description = [] {
         using S = Standing;
         Description<S> d("Standing", "How an entry stands among the others: what ranking goes by.");
-        d.field("settles", &S::settles, boolean(),
-                "Stable, and both responses come to rest where they should; on a nonlinear plant its own responses.")
+        using enum StandingGroup;
+        d.field("group", &S::group,
+                only_answered(choice<StandingGroup>({{"holds", holds},
+                                                     {"above_limit", above_limit},
+                                                     {"not_settled", not_settled},
+                                                     {"unstable", unstable}})),
+                "Groups rank in this order. above_limit: it settles, with a larger Ms than was asked of it or of all; "
+                "not_settled: it is stable, but a response does not come to rest where it should.")
+            .field("settles", &S::settles, boolean(),
+                   "Stable, and both responses come to rest where they should; on a nonlinear plant its own responses.")
             .field("Ms", &S::Ms, figure(),
                    "Of the loop as it will run: on the worst plant that it must serve, in the user's own controller.")
             .field("within", &S::within, boolean(),
@@ -96,6 +106,12 @@ const Description<Standing>& standing_contract() {
                 "How far the load IAE lies above the least that a PID reaches on the linear plant at the same Ms, or "
                 "at the nearest Ms where there is an optimum; of a nonlinear plant its own load IAE.",
                 {.unit = "%"})
+            .field(
+                "order", {}, [](const S& standing, Writer& out) { out.integer(standing.order); }, whole_number,
+                "Place, from 1, where no limit on the Ms of all is set: by this order and least_limit a client ranks "
+                "under another limit.")
+            .field("least_limit", &S::least_limit, figure(),
+                   "The least limit on the Ms of all with which the group is holds.")
             .field(
                 "why", {}, [](const S& standing, Writer& out) { out.text(standing.why); }, words().schema,
                 "Why it stands behind those that hold; left out where it holds.", {},
@@ -262,7 +278,7 @@ const Description<TuningEntry>& entry_contract() {
         d.field("optimum_at_Ms", &TuningEntry::optimum_at_Ms, maybe(answer(optimum_contract())),
                 "Beside the least load IAE that a PID reaches at the same Ms, where asked for.")
             .field("standing", &TuningEntry::standing, maybe(answer(standing_contract())),
-                   "How it stands among the others; not of controllers that were sent.");
+                   "How it stands among the others.");
         add_reports(d, true);
         evaluation_field(d, "compute_ms", &Evaluation::compute_ms, number(), "Time that this entry took, ms.");
         d.field(
@@ -290,7 +306,27 @@ void add_ranking(Description<Answer>& d, Callable<const TuningResult&(const Answ
          "Indices into controllers, best first; entries without a controller are left out.")
         .field(
             "ranking_by", {}, [of](const Answer& answer, Writer& out) { out.text(of(answer).ranking_by); },
-            words().schema, "What they are ranked by.");
+            words().schema, "What they are ranked by.")
+        .field(
+            "rank_limits", {},
+            [of](const Answer& answer, Writer& out) {
+                out.begin_object();
+                out.key("Ms");
+                out.number(*of(answer).rank_Ms);
+                out.end_object();
+            },
+            [](SchemaBook&) {
+                return Json{{"type", "object"}, {"properties", {{"Ms", {{"type", "number"}}}}}, {"required", {"Ms"}}};
+            },
+            "The limits that the ranking goes by: those of the request, or their defaults. Left out where nothing "
+            "ranks the entries.",
+            {}, [of](const Answer& answer) { return !of(answer).rank_Ms; })
+        .field(
+            "proposed", {}, [of](const Answer& answer, Writer& out) { out.integer(*of(answer).proposed); },
+            whole_number,
+            "Index of the entry to show first: the one that the verdict says to take, or that comes nearest to today's "
+            "settings; else the first that has a controller.",
+            {}, [of](const Answer& answer) { return !of(answer).proposed; });
 }
 
 }  // namespace
@@ -324,10 +360,7 @@ const Description<ResultAnswer>& result_contract() {
             .field("request_hash", &ResultAnswer::request_hash, words(),
                    "SHA-256 of the request in its canonical spelling.")
             .field(
-                "seed", {}, [](const ResultAnswer&, Writer& out) { out.integer(0); },
-                [](SchemaBook&) {
-                    return Json{{"type", "integer"}};
-                },
+                "seed", {}, [](const ResultAnswer&, Writer& out) { out.integer(0); }, whole_number,
                 "Of random numbers; no method of this version uses any.");
         return d;
     }();

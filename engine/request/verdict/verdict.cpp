@@ -166,4 +166,13 @@ std::vector<Finding> of_all(const std::vector<TuningEntry>& entries, const std::
     return verdict;
 }
 
+std::optional<int> proposed(const std::vector<TuningEntry>& entries, const std::vector<Finding>& of_all) {
+    if (!of_all.empty())
+        if (const auto named = of_all.front().figures.find("entry"); named != of_all.front().figures.end())
+            return static_cast<int>(named->second);
+    const auto first = std::ranges::find_if(entries, [](const TuningEntry& e) { return e.evaluation || e.unjudged; });
+    if (first == entries.end()) return std::nullopt;
+    return static_cast<int>(first - entries.begin());
+}
+
 }  // namespace tunewright::verdict

@@ -47,4 +47,8 @@ std::vector<Finding> of_all_without_loop();
 std::vector<Finding> of_all(const std::vector<TuningEntry>& entries, const std::vector<int>& ranking,
                             const Context& context, bool partial);
 
+/// The entry to show first: the one that the verdict over all names, else the first that has a controller. Empty: none
+/// has one.
+std::optional<int> proposed(const std::vector<TuningEntry>& entries, const std::vector<Finding>& of_all);
+
 }  // namespace tunewright::verdict

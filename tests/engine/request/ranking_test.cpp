@@ -4,10 +4,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
 #include "engine/request/tune.h"
+#include "engine/request/verdict/verdict.h"
 #include "tests/engine/plant/nonlinear_plants.h"
 #include "tests/engine/plant/subject_of.h"
 
@@ -77,6 +79,55 @@ TEST(Ranking, SharpRowsDoNotOutrankTheOptimum) {
     for (const TuningEntry& entry : result->controllers)
         lower += entry.evaluation && holds(entry, 2) && *entry.evaluation->performance.load.IAE < IAE;
     EXPECT_GT(lower, 5);
+}
+
+TEST(Ranking, ATableUnderATighterLimitFollowsFromOrderAndLeastLimit) {
+    const auto ranked_under = [](double Ms) {
+        TuningRequest request = request_for(Fopdt{.K = 2, .T = 10, .L = 3}, {{.method = "all", .options = {}}});
+        request.evaluate.rank_Ms = Ms;
+        return tune(request, {}).value();
+    };
+    const TuningResult wide = ranked_under(2), tight = ranked_under(1.6);
+    EXPECT_EQ(wide.rank_Ms, 2);
+    EXPECT_EQ(tight.rank_Ms, 1.6);
+    std::vector<int> holds;
+    for (const int index : wide.ranking) {
+        const Standing& standing = *wide.controllers[static_cast<std::size_t>(index)].standing;
+        if (standing.least_limit && *standing.least_limit <= 1.6) holds.push_back(index);
+    }
+    std::ranges::sort(holds, {},
+                      [&](int index) { return wide.controllers[static_cast<std::size_t>(index)].standing->order; });
+    ASSERT_GT(holds.size(), 3u);
+    ASSERT_LT(holds.size(), wide.ranking.size());
+    for (std::size_t rank = 0; rank < tight.ranking.size(); ++rank) {
+        const TuningEntry& entry = at_rank(tight, rank);
+        EXPECT_EQ(entry.standing->holds(), rank < holds.size()) << entry.title;
+        EXPECT_EQ(entry.standing->group == StandingGroup::holds, entry.standing->why.empty());
+        if (rank < holds.size()) {
+            EXPECT_EQ(tight.ranking[rank], holds[rank]) << entry.title;
+        }
+    }
+}
+
+TEST(Ranking, TheOrderCountsEveryEntryOnceWhateverTheLimit) {
+    const auto result = tune(request_for(Fopdt{.K = 1, .T = 10, .L = 3}, {{.method = "all", .options = {}}}), {});
+    ASSERT_TRUE(result);
+    std::vector<int> orders;
+    for (const int index : result->ranking)
+        orders.push_back(result->controllers[static_cast<std::size_t>(index)].standing->order);
+    std::ranges::sort(orders);
+    for (std::size_t i = 0; i < orders.size(); ++i) EXPECT_EQ(orders[i], static_cast<int>(i) + 1);
+}
+
+TEST(Ranking, TheEntryToShowFirstIsTheOneThatTheVerdictNames) {
+    const auto result = tune(request_for(Fopdt{.K = 1, .T = 10, .L = 3}, {method("simc"), method("robust", 1.4)}), {});
+    ASSERT_TRUE(result && result->proposed);
+    EXPECT_EQ(*result->proposed, result->verdict.front().figures.at("entry"));
+    // Where the verdict names none, the first with a controller.
+    std::vector<TuningEntry> entries(2);
+    EXPECT_FALSE(verdict::proposed(entries, {}));
+    entries[1].unjudged.emplace();
+    EXPECT_EQ(verdict::proposed(entries, {}), 1);
 }
 
 TEST(Ranking, OnANonlinearPlantTheEquationsDecideWhatSettles) {

@@ -127,6 +127,8 @@ test("what the service concludes of a model is shown, whatever its figures are",
   assert.deepEqual([poor.level, poor.head], ["bad", "A doubtful model: it explains 84.0 % of the record's movement."]);
   const biased = qualityOf({ ...model, grade: "doubtful", fit_percent: 84, warnings }, units);
   assert.match(biased.head, /^A doubtful model: .*; 1 warning\.$/);
+  const other = qualityOf({ ...model, grade: "doubtful", grade_reason: "warning", fit_percent: 99, warnings }, units);
+  assert.equal(other.head, "A doubtful model: 1 warning.", "what explains its record is not said to explain too little");
   assert.equal(qualityOf({ ...model, grade: "good", fit_percent: 46 }, units).level, "good");
 });
 

@@ -31,44 +31,63 @@ const make = (method: string, Ms: number | null, IAE: number | null, extra: Part
     ...extra,
   }) as Entry;
 
+type Group = NonNullable<NonNullable<Entry["standing"]>["group"]>;
+/** As the service ranks: `order` without a limit on the Ms of all, `least`: the least such limit with which it holds. */
+const standing = (order: number, least: number | null, group: Group = "holds", why = ""): Partial<Entry> => {
+  const settles = group === "holds" || group === "above_limit";
+  return { standing: { group, order, least_limit: least, settles, within: true, Ms: least, excess_percent: 0, ...(why ? { why } : {}) } };
+};
 const result: Result = {
   controllers: [
-    make("sharp", 2.5, 3),
-    make("slow", 1.2, 40),
-    make("wild", null, null, { warnings: [{ code: "outside-validity", detail: "L/T is 9." }] }),
+    make("sharp", 2.5, 3, standing(1, 2.5, "above_limit", "Ms is 2.50, above 2.")),
+    make("slow", 1.2, 40, standing(4, 1.2)),
+    make("wild", null, null, {
+      warnings: [{ code: "outside-validity", detail: "L/T is 9." }],
+      ...standing(5, null, "unstable", "The loop is unstable."),
+    }),
     make("refused", null, null, { error: { detail: "It needs an integrating plant." } }),
-    make("best", 1.4, 8),
-    make("baseline", 1.3, 20),
+    make("best", 1.4, 8, standing(2, 1.4)),
+    make("baseline", 1.3, 20, standing(3, 1.3)),
   ],
 };
 const methods = (rows: { entry: Entry }[]): string[] => rows.map((row) => row.entry.method);
-const standing = (Ms: number | null, excess_percent: number | null, why = "", own = true): Partial<Entry> => ({
-  standing: { settles: !why.includes("settle"), within: own, Ms, excess_percent, ...(why ? { why } : {}) },
-});
 
-test("rows rank by the excess over the optimum at their Ms; what does not hold stands below what does", () => {
-  const rows = leagueRows(
-    {
-      controllers: [
-        make("sharp", 1.95, 5, standing(1.95, 25)),
-        make("oscillates", 1.5, 1, standing(1.5, 2, "It does not settle.")),
-        make("beyond", 1.3, 2, standing(2.4, 1, "On the worst plant Ms is 2.4.")),
-        make("missed", 1.5, 2, standing(1.5, 1, "Ms is 1.5, above 1.4.", false)),
-        make("robust", 1.4, 8, standing(1.4, 0)),
-      ],
-    },
-    2,
-  );
-  assert.deepEqual(methods(rows), ["robust", "sharp", "beyond", "missed", "oscillates"]);
+test("what ranks under the reader's limit stands first, in the service's order, and the rest says why it does not", () => {
+  const all: Result = {
+    controllers: [
+      make("sharp", 1.95, 5, standing(3, 1.95)),
+      make("oscillates", 1.5, 1, standing(5, null, "not_settled", "It does not settle.")),
+      make("beyond", 1.3, 2, standing(1, 2.4, "above_limit", "On the worst plant Ms is 2.4.")),
+      make("missed", 1.5, 2, standing(2, null, "above_limit", "Ms is 1.5, above 1.4.")),
+      make("robust", 1.4, 8, standing(4, 1.4)),
+    ],
+  };
+  const rows = leagueRows(all, 2);
+  assert.deepEqual(methods(rows), ["sharp", "robust", "beyond", "missed", "oscillates"]);
   assert.deepEqual(
     rows.map((row) => row.why),
     ["", "", "Ms is above 2.00.", "Ms is 1.5, above 1.4.", "It does not settle."],
   );
+  assert.deepEqual(methods(leagueRows(all, null)), methods(rows), "as the answer itself ranks");
+  assert.deepEqual(methods(leagueRows(all, 1.4)), ["robust", "beyond", "missed", "sharp", "oscillates"]);
+  assert.deepEqual(methods(leagueRows(all, 1.399)).slice(0, 1), ["beyond"], "a limit is the service's to the last digit");
+});
+
+test("an answer of an older service keeps its own ranking", () => {
+  const older = { settles: true, within: true, Ms: 1.4, excess_percent: 0 };
+  const controllers = [
+    make("a", 1.4, 8, { standing: older }),
+    make("b", 3, 2, { standing: { ...older, why: "Ms is 3, above 2." } }),
+    make("c", 1.4, 6, { standing: older }),
+  ];
+  const rows = leagueRows({ controllers, ranking: [2, 0, 1] }, null);
+  assert.deepEqual(rows.map(({ rank, why }) => [rank, why]), [[1, ""], [2, ""], [null, "Ms is 3, above 2."]]);
+  assert.deepEqual(methods(rows), ["c", "a", "b"]);
 });
 
 test("what oscillates without settling is drawn at first only where nothing settles", () => {
-  const calm = make("calm", 1.4, 8, standing(1.4, 0));
-  const wild = make("wild", 1.4, 2, standing(1.4, 0, "It does not settle."));
+  const calm = make("calm", 1.4, 8, standing(1, 1.4));
+  const wild = make("wild", 1.4, 2, standing(2, null, "not_settled", "It does not settle."));
   assert.deepEqual(defaultOverlay({ controllers: [wild, calm, calm], ranking: [1, 2, 0] }), [1, 2]);
   assert.deepEqual(defaultOverlay({ controllers: [wild, calm], ranking: [1, 0] }), [1]);
   assert.deepEqual(defaultOverlay({ controllers: [wild], ranking: [0] }), [0]);
@@ -76,13 +95,14 @@ test("what oscillates without settling is drawn at first only where nothing sett
 
 const columns = leagueColumns(unitNames({ time: "min" }));
 
-test("rows stand by load IAE within the limit, then beyond it, then unstable, then without an answer", () => {
+test("rows stand in the order of the service within the limit, then beyond it, then unstable, then without an answer", () => {
   const rows = leagueRows(result, 2);
   assert.deepEqual(methods(rows), ["best", "baseline", "slow", "sharp", "wild", "refused"]);
   assert.deepEqual(
     rows.map((row) => row.rank),
     [1, null, 2, null, null, null],
   );
+  assert.equal(rows[1]!.why, "Your current settings, for comparison.");
   assert.equal(rows[3]!.why, "Ms is above 2.00.");
   assert.equal(rows[4]!.why, "The loop is unstable.");
   // Another limit, another ranking.

@@ -147,20 +147,21 @@ test("a range says what there is of it", () => {
 });
 
 const robustness = (Ms: number | null): Robustness => ({ stable: Ms !== null, Ms }) as unknown as Robustness;
-const built = (Ms_percent: number | null, load_IAE_percent: number | null): Implemented => ({
+type Differs = NonNullable<Implemented["difference"]["differs"]>;
+const built = (Ms_percent: number | null, load_IAE_percent: number | null, differs: Differs = []): Implemented => ({
   sample_time: 0.5,
   robustness: robustness(1.44),
   performance: { load: { IAE: 8.37 } },
-  difference: { Ms_percent, load_IAE_percent },
+  difference: { Ms_percent, load_IAE_percent, overshoot_points: null, differs },
 });
 
-test("the loop as built stands beside the ideal one; beyond 2 % it is marked, in both directions", () => {
+test("the loop as built stands beside the ideal one; what the service says to differ is marked", () => {
   const ideal = { robustness: robustness(1.4), performance: { load: { IAE: 8.4 } } };
-  assert.deepEqual(builtRows(ideal, built(2.857, -0.36)), [
+  assert.deepEqual(builtRows(ideal, built(2.857, -0.36, ["Ms"])), [
     { label: "Ms", ideal: "1.40", built: "1.44", difference: "+2.9 %", far: true },
     { label: "Load IAE", ideal: "8.40", built: "8.37", difference: "−0.4 %", far: false },
   ]);
-  assert.ok(builtRows(ideal, built(0, -2.01))[1]!.far);
+  assert.ok(builtRows(ideal, built(0, 0.1, ["load_IAE"]))[1]!.far, "as the service says, whatever the figure");
   assert.equal(builtRows(ideal, built(-0.001, null))[0]!.difference, "0.0 %");
   assert.deepEqual(
     builtRows(ideal, built(null, null)).map(({ difference, far }) => [difference, far]),
@@ -171,26 +172,26 @@ test("the loop as built stands beside the ideal one; beyond 2 % it is marked, in
   );
 });
 
-test("the overshoot as built stands beside the ideal loop's, in percent of the step; more than 2 of them are marked and said", () => {
+test("the overshoot as built stands beside the ideal loop's, in percent of the step", () => {
   const over = (percent: number | null) => ({ setpoint: { overshoot_percent: percent } });
-  const loop = (percent: number | null) => ({ ...built(0, 0), performance: over(percent) });
-  const row = (before: number | null, after: number | null) => builtRows({ performance: over(before) }, loop(after))[2];
-  assert.deepEqual(row(4.998, 29.83), { label: "Overshoot (%)", ideal: "5.00", built: "29.8", difference: "+24.8", far: true });
-  assert.deepEqual(row(5, 3.1), { label: "Overshoot (%)", ideal: "5.00", built: "3.10", difference: "−1.9", far: false });
-  assert.deepEqual([row(null, 3), row(5, null)], [undefined, undefined], "what settles nowhere has none");
-  assert.equal(
-    differenceSentence({ performance: over(4.998) }, loop(29.83)),
-    "As built it is another loop: the overshoot 24.8 percentage points higher than the ideal one's.",
-  );
-  assert.equal(differenceSentence({ performance: over(5) }, loop(6.9)), "");
+  const loop = (percent: number, points: number | null, differs: Differs = []): Implemented => {
+    const of = built(0, 0, differs);
+    return { ...of, performance: over(percent), difference: { ...of.difference, overshoot_points: points } };
+  };
+  const row = (before: number, of: Implemented) => builtRows({ performance: over(before) }, of)[2];
+  const far = loop(29.83, 24.832, ["overshoot"]);
+  assert.deepEqual(row(4.998, far), { label: "Overshoot (%)", ideal: "5.00", built: "29.8", difference: "+24.8", far: true });
+  assert.deepEqual(row(5, loop(3.1, -1.9)), { label: "Overshoot (%)", ideal: "5.00", built: "3.10", difference: "−1.9", far: false });
+  assert.equal(row(5, loop(3, null)), undefined, "what settles nowhere has none");
+  assert.equal(differenceSentence(far), "As built it is another loop: the overshoot 24.8 percentage points higher than the ideal one's.");
 });
 
-test("what differs by more than 2 % is said, and what leaves nothing to compare is handed on", () => {
+test("what differs is said as the service concludes, and what leaves nothing to compare is handed on", () => {
   assert.equal(
-    differenceSentence({}, built(5.91, -2.05)),
+    differenceSentence(built(5.91, -2.05, ["Ms", "load_IAE"])),
     "As built it is another loop: Ms 5.9 % higher, the load IAE 2.0 % lower than the ideal one's.",
   );
-  assert.equal(differenceSentence({}, built(1.99, null)), "");
+  assert.equal(differenceSentence(built(5.91, null)), "");
   const warning = (code: string) => ({ code, detail: code });
   const entry = { warnings: ["differs-as-built", "far-from-linear", "unstable-as-built"].map(warning) };
   assert.deepEqual(

@@ -72,12 +72,11 @@ test("one entry in the place of two, and two in the place of one, are found agai
   assert.deepEqual([letGo.index, letGo.origin, letGo.whole, letGo.result.ranking], [1, [0, 1, 3, 4], true, [1]]);
 });
 
-test("the entry to take is shown first; where none is told, the first with a controller", () => {
+test("the entry that the answer proposes is shown first; of an older one that of its verdict", () => {
+  assert.equal(proposedEntry({ ...result, proposed: 1 }), 1);
   assert.equal(proposedEntry(result), 3);
   const { verdict: _told, ...silent } = result;
-  const failed: Entry = { method: "robust", error: { title: "no" } };
-  assert.equal(proposedEntry({ ...silent, controllers: [failed, today] }), 1);
-  assert.equal(proposedEntry({ ...result, controllers: [entry("simc"), alone, alone, failed] }), 0);
+  assert.equal(proposedEntry(silent), 0);
 });
 
 test("what is kept otherwise than it was shown is named", () => {

@@ -70,7 +70,7 @@ export const withHeldPoints = (body: Record<string, unknown>): Record<string, un
 });
 
 /** Members of a job's result that depend on its controllers. */
-export type DesignAnswer = Pick<Result, "controllers" | "verdict" | "ranking" | "ranking_by">;
+export type DesignAnswer = Pick<Result, "controllers" | "verdict" | "ranking" | "ranking_by" | "rank_limits" | "proposed">;
 
 export const designOf = async (body: unknown, signal: AbortSignal): Promise<DesignAnswer> =>
   (await call("POST", "v1/design", body, {}, signal)).data as DesignAnswer;

@@ -102,7 +102,14 @@ export interface Implemented {
   robustness: Robustness;
   performance: { setpoint?: Figures; load?: Figures; noise?: Figures };
   responses?: { setpoint?: Response; load?: Response };
-  difference: { Ms_percent: number | null; load_IAE_percent: number | null; why_null?: WhyNull };
+  difference: {
+    Ms_percent: number | null;
+    load_IAE_percent: number | null;
+    overshoot_points?: number | null;
+    /** For these it is another loop. */
+    differs?: ("Ms" | "load_IAE" | "overshoot")[];
+    why_null?: WhyNull;
+  };
 }
 
 export async function getProducts(): Promise<ProductSummary[]> {

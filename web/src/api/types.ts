@@ -238,6 +238,11 @@ export interface Entry extends Reports {
 
 /** How an entry stands in a comparison: what the service ranks by. */
 export interface Standing {
+  group?: "holds" | "above_limit" | "not_settled" | "unstable";
+  /** Place, from 1, without a limit on the Ms of all. */
+  order?: number;
+  /** The least such limit with which it holds; null: none. */
+  least_limit?: number | null;
   /** Both responses come to rest where they should. */
   settles: boolean;
   /** On the worst plant, in the user's own controller. */
@@ -297,6 +302,8 @@ export interface Model {
   fit_percent: number | null;
   /** How far the service relies on it. */
   grade?: "good" | "usable" | "doubtful";
+  /** Why it is doubtful: it explains too little, or a warning says that it may be another plant. */
+  grade_reason?: "fit" | "warning";
   candidates?: Candidate[];
   choice_reason?: string;
   limit_cycle?: LimitCycle;
@@ -328,6 +335,9 @@ export interface Result {
   verdict?: Finding[];
   ranking?: number[];
   ranking_by?: string;
+  rank_limits?: { Ms: number };
+  /** The entry to show first. */
+  proposed?: number;
   partial?: boolean;
   version?: string;
   request_hash?: string;
@@ -355,38 +365,7 @@ export interface Job {
   error?: Problem;
 }
 
-/** A JSON Schema, as far as method options use it. */
-export interface Schema {
-  type?: string | string[];
-  title?: string;
-  description?: string;
-  default?: unknown;
-  enum?: unknown[];
-  const?: unknown;
-  minimum?: number;
-  maximum?: number;
-  exclusiveMinimum?: number;
-  exclusiveMaximum?: number;
-  properties?: Record<string, Schema>;
-  required?: string[];
-  items?: Schema;
-  oneOf?: Schema[];
-  anyOf?: Schema[];
-  $ref?: string;
-  $defs?: Record<string, Schema>;
-  "x-unit"?: string;
-}
-
-export interface Method {
-  id: string;
-  title: string;
-  formula?: string;
-  formula_mathml?: string;
-  needs?: string;
-  validity?: string;
-  source?: string;
-  options?: Schema;
-}
+export type { Method, OptionSlider, Schema } from "./method.ts";
 
 export interface Example {
   id: string;

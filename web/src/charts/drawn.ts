@@ -47,13 +47,8 @@ function worthDrawing(result: Result): number[] {
   return calm.length > 0 ? calm : drawn;
 }
 
-/** The entry that is shown first: the one that the answer says to take, else the first that has a controller. */
-export function proposedEntry(result: Result): number {
-  const taken = result.verdict?.[0]?.figures?.["entry"];
-  const entry = typeof taken === "number" ? result.controllers[taken] : undefined;
-  if (entry && !entry.error) return taken!;
-  return Math.max(0, result.controllers.findIndex((candidate) => !candidate.error));
-}
+/** The entry that is shown first, as the answer says; of an older answer the one that its verdict names. */
+export const proposedEntry = ({ proposed, verdict }: Result): number => proposed ?? verdict?.[0]?.figures?.["entry"] ?? 0;
 
 /** The best of the ranking and today's settings, at most four, in the order of the entries. */
 export function defaultDrawn(result: Result): number[] {

@@ -97,7 +97,7 @@ export function liveDesign(onSettled: (point: Point) => void): Live {
       const answer = await designOf(questionOf(from, asked.tune!, coarse), abort);
       return designShown(from, asked.tune!, answer, coarse);
     }
-    const body = handQuestion(from, asked.hand, today)!;
+    const body = handQuestion(from, asked, today)!;
     return handShown(from, asked, body, await entriesOf(coarse ? withHeldPoints(body) : body, abort));
   }
 

@@ -52,6 +52,12 @@ const todaysOf = (entries: readonly Entry[]): Entry | undefined => entries.find(
 const sameKind = (turned: Entry, made: readonly Entry[]): number =>
   Math.max(0, made.findIndex((entry) => Boolean(entry.over_region) === Boolean(turned.over_region)));
 
+/** Without what is said over all entries. */
+function withoutComparison(result: Result): Result {
+  const { verdict: _verdict, ranking: _ranking, ranking_by: _by, rank_limits: _limits, proposed: _proposed, request_hash: _hash, ...kept } = result;
+  return kept;
+}
+
 /** An answer of the turned row alone, among the job's other entries, which it does not touch. */
 function amongOthers(from: Turnable, answer: DesignAnswer): Pick<Shown, "result" | "index" | "origin"> {
   const { result, index } = from;
@@ -68,7 +74,7 @@ function amongOthers(from: Turnable, answer: DesignAnswer): Pick<Shown, "result"
     ...after.map((_, at) => result.controllers.length - after.length + at),
   ];
   const alone = before.length === 0 && after.every((entry) => entry.method === "baseline");
-  const { verdict: _verdict, ranking: _ranking, ranking_by: _by, request_hash: _hash, ...kept } = result;
+  const kept = withoutComparison(result);
   return {
     result: { ...kept, ...(alone ? answer : {}), controllers },
     index: first + sameKind(result.controllers[index]!, made),
@@ -99,15 +105,18 @@ export function designShown(from: Turnable, tune: TuneEntry, answer: DesignAnswe
   return { path, request, result, index: at, origin, cost: costOf(made), whole: true };
 }
 
-/** The body for POST /v1/evaluate; null if there is no plant. */
-export function handQuestion(from: Turnable, hand: Controller, today: Controller | null): Record<string, unknown> | null {
+/** The body for POST /v1/evaluate; null if there is no plant. The settings are held to the limit on Ms of the design that
+ * they leave. */
+export function handQuestion(from: Turnable, { tune, hand }: Point, today: Controller | null): Record<string, unknown> | null {
   const subject = callSubject(from.request, from.result);
-  return subject && evaluateBody(from.request, subject, [hand, ...(today ? [today] : [])]);
+  const Ms = tune?.["Ms"] ?? from.result.controllers[from.index]?.options?.["Ms"];
+  const evaluate = { ...from.request.evaluate, ...(typeof Ms === "number" ? { rank_limits: { Ms } } : {}) };
+  return subject && evaluateBody({ ...from.request, evaluate }, subject, [hand!, ...(today ? [today] : [])]);
 }
 
 /** Settings by hand as they are shown: the job's other entries stay, without a verdict over all of them. */
 export function handShown(from: Turnable, point: Point, body: unknown, [entry, today]: Entry[]): Shown {
-  const { request_hash: _hash, verdict: _verdict, ranking: _ranking, ranking_by: _by, ...kept } = from.result;
+  const kept = withoutComparison(from.result);
   const controllers = kept.controllers.map((other, at) =>
     at === from.index
       ? byHand(entry!, from.result.controllers[from.index]!, point)

@@ -11,7 +11,7 @@ import { plotGrid } from "../plot/grid.ts";
 import { swatch } from "../plot/marks.ts";
 import { formatRoute } from "../routes.ts";
 import type { Store, Workspace } from "../store.ts";
-import { leagueColumns, leagueRows, leagueTable as tableOf, orderOf, RANK_MS, sortText } from "../words/league.ts";
+import { leagueColumns, leagueRows, leagueTable as tableOf, orderOf, sortText } from "../words/league.ts";
 import type { LeagueColumn } from "../words/league.ts";
 import { unitNames } from "../words/numbers.ts";
 import { progressCard } from "./cards/progress_card.ts";
@@ -134,7 +134,7 @@ export function compareView(store: Store, announce: (sentence: string) => void, 
 
   function showResult(job: Job, result: Result, workspace: Workspace): void {
     const anew = shown !== result;
-    controls.setLimit(workspace.rankMs ?? job.request?.evaluate?.rank_limits?.Ms ?? RANK_MS);
+    controls.setLimit(workspace.rankMs ?? result.rank_limits?.Ms ?? job.request?.evaluate?.rank_limits?.Ms ?? null);
     if (anew) {
       shown = result;
       const methods = result.controllers.filter((entry) => entry.method !== "baseline");

@@ -2,13 +2,13 @@
 import { closesItself, h, uniqueId } from "../dom.ts";
 import { parseNumber } from "../form/number.ts";
 import type { LeagueColumn } from "../words/league.ts";
-import { RANK_MS } from "../words/league.ts";
 
 export interface LeagueControls {
   element: HTMLElement;
-  limit(): number;
+  /** Null: as the answer ranks. */
+  limit(): number | null;
   /** Without reporting. */
-  setLimit(Ms: number): void;
+  setLimit(Ms: number | null): void;
   onlySettled(): boolean;
   setColumns(columns: LeagueColumn[]): void;
   /** Whether a column is to be seen. */
@@ -24,7 +24,7 @@ export interface LeagueControlEvents {
 }
 
 export function leagueControls(events: LeagueControlEvents): LeagueControls {
-  let limit = RANK_MS;
+  let limit: number | null = null;
   /** What the reader chose otherwise than it stands at first. */
   const chosen = new Map<string, boolean>();
   let columns: LeagueColumn[] = [];
@@ -32,7 +32,6 @@ export function leagueControls(events: LeagueControlEvents): LeagueControls {
     type: "text",
     id: uniqueId("rank-Ms"),
     autocomplete: "off",
-    value: String(RANK_MS),
     "aria-describedby": "rank-error",
   });
   const error = h("span", { class: "error", id: "rank-error", role: "status" });
@@ -69,7 +68,7 @@ export function leagueControls(events: LeagueControlEvents): LeagueControls {
     setLimit(Ms) {
       if (Ms === limit) return;
       limit = Ms;
-      input.value = String(Ms);
+      input.value = Ms === null ? "" : String(Ms);
     },
     onlySettled: () => stable.checked,
     setColumns(next) {

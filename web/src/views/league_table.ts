@@ -17,7 +17,7 @@ export interface LeagueTable {
   element: HTMLElement;
   /** Anew for this result and these columns. `step`: of the set point. */
   build(result: Result, columns: LeagueColumn[], step: number, address: (index: number) => string): void;
-  arrange(order: LeagueOrder, limit: number, onlySettled: boolean): void;
+  arrange(order: LeagueOrder, limit: number | null, onlySettled: boolean): void;
   /** Which rows the plots show. */
   mark(drawn: Drawn[]): void;
 }
@@ -110,7 +110,7 @@ export function leagueTable(events: LeagueEvents): LeagueTable {
 
   function build(next: Result, shown: LeagueColumn[], step: number, address: (index: number) => string): void {
     [result, columns, footnotes] = [next, shown, []];
-    const list = leagueRows(result, Infinity);
+    const list = leagueRows(result, null);
     scales = sparkScales(list, step);
     head.replaceChildren(
       heading("rank", "#", "by the excess over the optimum at the same Ms, of those that settle within Ms", "pin first"),
@@ -134,7 +134,7 @@ export function leagueTable(events: LeagueEvents): LeagueTable {
     if (!same) body.replaceChildren(...elements);
   }
 
-  function arrange(order: LeagueOrder, limit: number, onlySettled: boolean): void {
+  function arrange(order: LeagueOrder, limit: number | null, onlySettled: boolean): void {
     const ranked = leagueRows(result, limit);
     for (const { index, rank, why } of ranked) {
       const cell = rows.get(index)!.rank;

@@ -9,7 +9,7 @@ export interface LeagueRow {
   index: number;
   name: string;
   entry: Entry;
-  /** From 1 among the methods that settle within the limits on Ms; null for others and for today's settings. */
+  /** From 1 among the methods that hold their limits; null for others and for today's settings. */
   rank: number | null;
   /** Why there is no rank, or "". */
   why: string;
@@ -38,9 +38,6 @@ export interface LeagueOrder {
   falling: boolean;
 }
 
-/** Entries above this Ms are not ranked unless the reader says otherwise; the service ranks by the same. */
-export const RANK_MS = 2;
-
 type Part = { why_null?: WhyNull } | undefined;
 
 const NOT_GIVEN = "The service gave no figure.";
@@ -60,13 +57,6 @@ export function excessText(percent: number): string {
 const stable = (entry: Entry): boolean => entry.robustness?.stable === true;
 /** Both responses come to rest where they should. */
 export const settles = (entry: Entry): boolean => entry.standing?.settles ?? stable(entry);
-/** Of the loop as it will run. */
-const rankedMs = (entry: Entry): number => (entry.standing ?? entry.robustness)?.Ms ?? Infinity;
-const excess = (entry: Entry): number => (entry.standing ?? entry.optimum_at_Ms)?.excess_percent ?? Infinity;
-const load = (entry: Entry): number => {
-  const value = entry.performance?.load?.["IAE"];
-  return typeof value === "number" ? value : Infinity;
-};
 
 /** Every column but rank, method and notes, in the order in which they stand. */
 export function leagueColumns(units: UnitNames): LeagueColumn[] {
@@ -176,46 +166,35 @@ export function leagueNames(entries: Entry[]): string[] {
   });
 }
 
-/** Designs at a limit lie there to about 1e-5. */
-const AT_LIMIT = 1.0001;
-
-const GROUPS = ["holds", "beyond", "restless", "unstable", "unanswered"] as const;
-type Group = (typeof GROUPS)[number];
-
-function groupOf(entry: Entry, limit: number): Group {
-  if (entry.error) return "unanswered";
-  if (!stable(entry)) return "unstable";
-  if (!settles(entry)) return "restless";
-  return entry.standing?.within !== false && rankedMs(entry) <= AT_LIMIT * limit ? "holds" : "beyond";
+/** Whether the entry ranks under this limit on the Ms of all; null: the one that its own answer went by. */
+function holds(entry: Entry, limit: number | null): boolean {
+  const { standing, error } = entry;
+  const { least_limit: least, group } = standing ?? {};
+  if (limit === null || least === undefined) return !error && (group ? group === "holds" : stable(entry) && !standing?.why);
+  return least !== null && least <= limit;
 }
 
-/** Rows as the service ranks them, under this limit on Ms: what settles within the limits, by the excess over the
- * optimum at the same Ms and then by load IAE; then what lies beyond them, does not settle, is unstable, has no answer. */
-export function leagueRows(result: Result, limit: number): LeagueRow[] {
+/** Rows in the service's order: first what ranks under this limit on Ms, then the rest, then what has no answer. */
+export function leagueRows(result: Result, limit: number | null): LeagueRow[] {
   const names = leagueNames(result.controllers);
-  const order = result.controllers.map((entry, index) => ({ entry, index, group: groupOf(entry, limit) }));
-  order.sort(
-    (a, b) =>
-      GROUPS.indexOf(a.group) - GROUPS.indexOf(b.group) ||
-      compare(excess(a.entry), excess(b.entry)) ||
-      compare(load(a.entry), load(b.entry)) ||
-      a.index - b.index,
-  );
+  const ranking = result.ranking ?? [];
+  const order = ({ standing }: Entry, index: number): number =>
+    standing?.order ?? (ranking.includes(index) ? ranking.indexOf(index) : Infinity);
+  const rows = result.controllers.map((entry, index) => ({ entry, index, held: holds(entry, limit), order: order(entry, index) }));
+  rows.sort((a, b) => Number(b.held) - Number(a.held) || compare(a.order, b.order));
   let last = 0;
-  return order.map(({ entry, index, group }): LeagueRow => {
-    const ranked = group === "holds" && entry.method !== "baseline";
+  return rows.map(({ entry, index, held }): LeagueRow => {
+    const ranked = held && entry.method !== "baseline";
     if (ranked) last += 1;
-    const why = ranked ? "" : noRank(entry, group, limit);
-    return { index, name: names[index]!, entry, rank: ranked ? last : null, why };
+    return { index, name: names[index]!, entry, rank: ranked ? last : null, why: ranked ? "" : noRank(entry, held, limit) };
   });
 }
 
-function noRank(entry: Entry, group: Group, limit: number): string {
-  if (group === "holds") return "Today's settings are no method.";
-  if (group === "unstable") return "The loop is unstable.";
-  if (group === "unanswered") return "No answer.";
-  if (group === "restless") return entry.standing?.why ?? "The response does not settle.";
-  return entry.standing?.within === false ? (entry.standing.why ?? "") : `Ms is above ${formatNumber(limit)}.`;
+function noRank({ error, standing }: Entry, held: boolean, limit: number | null): string {
+  if (error) return "No answer.";
+  if (held) return "Your current settings, for comparison.";
+  const otherwise = limit !== null && typeof standing?.least_limit === "number";
+  return otherwise ? `Ms is above ${formatNumber(limit)}.` : (standing?.why ?? "");
 }
 
 const compare = (a: number, b: number): number => (a === b ? 0 : a < b ? -1 : 1);

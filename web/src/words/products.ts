@@ -86,55 +86,48 @@ export function rangeWords({ low, high, resolution }: Pick<Product["parameters"]
 export const typedText = (title: string, rows: readonly TypedRow[]): string =>
   [title, ...rows.map(({ label, value, unit }) => `${label} = ${value}${unit ? ` ${unit}` : ""}`)].join("\n");
 
-/** Beyond this share the loop as built is another one. */
-const WORTH_SAYING_PERCENT = 2;
-
 export interface BuiltRow {
   label: string;
   ideal: string;
   built: string;
   difference: string;
-  /** More than 2 % away. */
+  /** So far away that it is another loop. */
   far: boolean;
 }
 
-/** Ms, load IAE and overshoot of the loop as built beside the ideal one's. */
-export function builtRows(ideal: Pick<Entry, "robustness" | "performance">, built: Implemented): BuiltRow[] {
-  const row = (label: string, before: unknown, after: unknown, percent: number | null): BuiltRow => ({
-    label,
-    ideal: formatNumber(before as number | null),
-    built: formatNumber(after as number | null),
-    difference: percent === null ? DASH : `${signed(percent)} %`,
-    far: worthSaying(percent),
-  });
-  const { Ms_percent, load_IAE_percent } = built.difference;
-  return [
-    row("Ms", ideal.robustness?.Ms, built.robustness.Ms, Ms_percent),
-    row("Load IAE", ideal.performance?.load?.["IAE"], built.performance.load?.["IAE"], load_IAE_percent),
-    ...overshootRow(ideal, built),
-  ];
-}
+const FIGURES = ["Ms", "load_IAE", "overshoot"] as const;
+type BuiltFigure = (typeof FIGURES)[number];
 
-const overshootOf = ({ performance }: Pick<Entry, "performance">): number | null => {
-  const percent = performance?.setpoint?.["overshoot_percent"];
-  return typeof percent === "number" ? percent : null;
+const LABELS: Record<BuiltFigure, [label: string, name: string]> = {
+  Ms: ["Ms", "Ms"],
+  load_IAE: ["Load IAE", "the load IAE"],
+  overshoot: ["Overshoot (%)", "the overshoot"],
 };
 
-/** How much more of the step the loop as built overshoots, in percent of the step; null where one of both is unknown. */
-function moreOvershoot(ideal: Pick<Entry, "performance">, built: Implemented): number | null {
-  const [before, after] = [overshootOf(ideal), overshootOf(built)];
-  return before === null || after === null ? null : after - before;
+/** How far the loop as built lies above the ideal one: percent, of the overshoot percentage points. */
+function differenceOf({ difference }: Implemented, figure: BuiltFigure): number | null {
+  if (figure === "overshoot") return difference.overshoot_points ?? null;
+  return difference[`${figure}_percent`];
 }
 
-/** A block without the design's set-point weight or filter may overshoot by far more, at the same Ms. */
-function overshootRow(ideal: Pick<Entry, "performance">, built: Implemented): BuiltRow[] {
-  const more = moreOvershoot(ideal, built);
-  if (more === null) return [];
-  const text = (of: Pick<Entry, "performance">): string => formatPercent(overshootOf(of)!);
-  return [{ label: "Overshoot (%)", ideal: text(ideal), built: text(built), difference: signed(more), far: worthSaying(more) }];
+function figureText({ robustness, performance }: Pick<Entry, "robustness" | "performance">, figure: BuiltFigure): string {
+  if (figure === "Ms") return formatNumber(robustness?.Ms);
+  if (figure === "load_IAE") return formatNumber(performance?.load?.["IAE"] as number | null | undefined);
+  const percent = performance?.setpoint?.["overshoot_percent"];
+  return typeof percent === "number" ? formatPercent(percent) : DASH;
 }
 
-const worthSaying = (percent: number | null): boolean => percent !== null && Math.abs(percent) > WORTH_SAYING_PERCENT;
+/** Ms, load IAE and overshoot of the loop as built beside the ideal one's. A block without the design's set-point weight
+ * or filter may overshoot by far more, at the same Ms. */
+export function builtRows(ideal: Pick<Entry, "robustness" | "performance">, built: Implemented): BuiltRow[] {
+  return FIGURES.flatMap((figure) => {
+    const away = differenceOf(built, figure);
+    if (figure === "overshoot" && away === null) return [];
+    const difference = away === null ? DASH : `${signed(away)}${figure === "overshoot" ? "" : " %"}`;
+    const far = built.difference.differs?.includes(figure) ?? false;
+    return [{ label: LABELS[figure][0], ideal: figureText(ideal, figure), built: figureText(built, figure), difference, far }];
+  });
+}
 
 /** "+2.9", "−0.4", "0.0": tenths of a percent are as much as anybody wants to know. */
 function signed(percent: number): string {
@@ -142,17 +135,13 @@ function signed(percent: number): string {
   return Number(text) === 0 ? text : `${percent > 0 ? "+" : "−"}${text}`;
 }
 
-/** How far the loop as built lies from the ideal one, where that is worth saying; "" where it is not. */
-export function differenceSentence(ideal: Pick<Entry, "performance">, built: Implemented): string {
-  const { Ms_percent, load_IAE_percent } = built.difference;
-  const differences: [name: string, percent: number | null, unit: string][] = [
-    ["Ms", Ms_percent, "%"],
-    ["the load IAE", load_IAE_percent, "%"],
-    ["the overshoot", moreOvershoot(ideal, built), "percentage points"],
-  ];
-  const parts = differences.flatMap(([name, percent, unit]) =>
-    worthSaying(percent) ? [`${name} ${Math.abs(percent!).toFixed(1)} ${unit} ${percent! > 0 ? "higher" : "lower"}`] : [],
-  );
+/** How far the loop as built lies from the ideal one, where the service says that it is another loop; else "". */
+export function differenceSentence(built: Implemented): string {
+  const parts = (built.difference.differs ?? []).map((figure) => {
+    const away = differenceOf(built, figure)!;
+    const unit = figure === "overshoot" ? "percentage points" : "%";
+    return `${LABELS[figure][1]} ${Math.abs(away).toFixed(1)} ${unit} ${away > 0 ? "higher" : "lower"}`;
+  });
   return parts.length === 0 ? "" : `As built it is another loop: ${parts.join(", ")} than the ideal one's.`;
 }
 

@@ -33,6 +33,7 @@ export function qualityOf(model: Model, units: UnitNames): QualityWords {
 }
 
 function headOf(model: Model, level: Level, warnings: number, notes: number): string {
+  if (level === "bad" && model.grade_reason === "warning") return `A doubtful model: ${counted(warnings, "warning")}.`;
   if (level === "bad")
     return `A doubtful model: it explains ${formatNumber(model.fit_percent)} % of the record's movement${warnings > 0 ? `; ${counted(warnings, "warning")}` : ""}.`;
   if (level === "warn") return `Usable with care: ${counted(warnings, "warning")}.`;

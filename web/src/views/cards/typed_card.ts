@@ -117,7 +117,7 @@ const noteList = (heading: string, notes: Notice[]): HTMLElement[] =>
 function judgement(judged: TypedSettings["judged"], time: string): HTMLElement[] {
   if (!judged) return [h("p", { class: "hint" }, "Tried by hand: what stands beside the sliders is the loop with an ideal controller.")];
   const { implemented } = judged;
-  const differs = implemented?.robustness.stable ? differenceSentence(judged, implemented) : "";
+  const differs = implemented ? differenceSentence(implemented) : "";
   const sampling = samplingSentences(implemented, judged.longest_sample_time, time).join(" ");
   return [
     ...builtTroubles(judged).map((warning) =>

@@ -157,6 +157,35 @@ Json to_json(const OptionValue& value) {
     return std::visit([](const auto& content) { return Json(content); }, value);
 }
 
+const char* name_of(DesignFigure figure) {
+    switch (figure) {
+        case DesignFigure::Mks: return "Mks";
+        case DesignFigure::Tf: return "Tf";
+        case DesignFigure::Tf_over_Td: return "Tf_over_Td";
+        case DesignFigure::overshoot_percent: return "overshoot_percent";
+        case DesignFigure::none: break;
+    }
+    return "";
+}
+
+Json to_json(const OptionSlider& slider) {
+    Json json{{"from", slider.from}, {"to", slider.to}};
+    const auto text = [&](const char* name, const std::string& value) {
+        if (!value.empty()) json[name] = value;
+    };
+    if (slider.relative) json["relative"] = true;
+    if (slider.logarithmic) json["logarithmic"] = true;
+    if (slider.step) json["step"] = *slider.step;
+    text("label", slider.label);
+    text("low", slider.low);
+    text("high", slider.high);
+    text("group", slider.group);
+    text("moves_with", slider.moves_with);
+    text("value_of", name_of(slider.value_of));
+    text("reached", name_of(slider.reached));
+    return json;
+}
+
 Json pair_schema(const OptionDescription& option) {
     return {{"type", "array"}, {"items", number_schema(rule_of(option))}, {"minItems", 2}, {"maxItems", 2}};
 }
@@ -205,6 +234,9 @@ Json option_schema(const OptionDescription& option) {
     if (!option.sentence.empty()) schema["description"] = option.sentence;
     if (!option.unit.empty()) schema["x-unit"] = option.unit;
     if (option.default_value) schema["default"] = to_json(*option.default_value);
+    if (option.main) schema["x-main"] = true;
+    if (option.draws) schema["x-draws"] = true;
+    if (option.slider) schema["x-slider"] = to_json(*option.slider);
     return schema;
 }
 

@@ -64,6 +64,10 @@ public:
                                                      "readOnly",
                                                      "format",
                                                      "x-unit",
+                                                     "x-main",
+                                                     "x-draws",
+                                                     "x-slider",
+                                                     "x-written",
                                                      "x-null"};
         for (const auto& [keyword, ignored] : schema.items()) {
             if (!kKnown.contains(keyword))

@@ -215,6 +215,7 @@ void add_profile(OptionSet<T>& set) {
     set.flag(
         &T::profile, "profile",
         "Also return the trade-off of this rule on the model over Ms from 1.4 to 2 and over the levels of Table 2.");
+    set.draws("profile");
     add_reduction(set, "123c, as in the source; half_rule where that does not apply.");
 }
 
@@ -224,6 +225,7 @@ OptionSet<ArrietaMsOptions> Ms_options() {
                        "Largest |S| that the loop on the model shall have, from 1.4 (robust) to 2 (fast); free: no "
                        "limit, the least combined distance from both optima (Ms is then 2 to 2.9).",
                        "free", {.minimum = kArrietaLowestMs, .maximum = kArrietaHighestMs});
+    set.main({"Ms"}).slider("Ms");
     set.choice(
         &ArrietaMsOptions::c3, "c3",
         "Constant c3 of Eq. 9, which serves the Ms between the levels of Table 1. refitted: the quadratic through "
@@ -242,6 +244,7 @@ OptionSet<ArrietaDegradationOptions> degradation_options() {
         "How much of the combined performance may be given up for robustness: 0 is the tuning without a limit on "
         "Ms, 0.25 low, 0.35 medium-low, 0.45 medium-high, 0.55 high. Others are solved for on the model.",
         {.minimum = 0, .maximum = 1});
+    set.slider("degradation");
     set.flag(&O::exact, "exact",
              "true: solve on the model for the Ms from 1.4 to 2 whose degradation is the one asked for, also at the "
              "levels of Table 2 (which are up to 0.02 off for L/T up to 1.5 and 0.1 off at 2); false: the table alone. "

@@ -113,7 +113,7 @@ OptionSet<EmulationOptions> described_options() {
     set.choice(&O::derivative_on, "derivative_on",
                "measurement: of y alone; error: of set point minus y, with the kick of its step.",
                Words<DerivativeOn>{{"measurement", DerivativeOn::measurement}, {"error", DerivativeOn::error}});
-    return set;
+    return set.main({"target", "formulation", "scenarios", "horizon", "bounds"});
 }
 
 }  // namespace tunewright::emulation

@@ -1,5 +1,8 @@
 #include "engine/tuning/method/option_list.h"
 
+#include <algorithm>
+#include <stdexcept>
+
 namespace tunewright {
 
 void OptionList::read(const MethodOptions& given, const std::string& prefix, void* value) const {
@@ -14,6 +17,31 @@ MethodOptions OptionList::given_for(const void* value, const void* other) const 
             binding.write(binding.name, static_cast<const char*>(value) + binding.offset,
                           static_cast<const char*>(other) + binding.offset, given);
     return given;
+}
+
+OptionSlider slider_about_value() {
+    constexpr double kFactor = 5;
+    return {.from = 1 / kFactor, .to = kFactor, .relative = true, .logarithmic = true};
+}
+
+OptionSlider slider_within(const OptionDescription& number) {
+    const auto low = number.minimum ? number.minimum : number.exclusive_minimum;
+    if (!low || !number.maximum) return slider_about_value();
+    constexpr double kInside = 0.01;  // of the range: an end that the option may not have
+    const double inside = number.exclusive_minimum ? kInside * (*number.maximum - *low) : 0;
+    return {.from = *low + inside, .to = *number.maximum};
+}
+
+OptionDescription& OptionList::described(std::string_view path) {
+    std::vector<OptionDescription>* among = &descriptions_;
+    for (;;) {
+        const std::size_t slash = path.find('/');
+        const auto found = std::ranges::find(*among, path.substr(0, slash), &OptionDescription::name);
+        if (found == among->end()) throw std::logic_error("no option " + std::string(path) + " is described");
+        if (slash == std::string_view::npos) return *found;
+        among = &found->fields;
+        path.remove_prefix(slash + 1);
+    }
 }
 
 OptionDescription& OptionList::describe(OptionType type, std::string_view name, std::string_view sentence,

@@ -26,6 +26,12 @@ struct NumberOption {
     std::optional<double> otherwise = {};  ///< what an empty member stands for, where that is one number
 };
 
+/// Evenly between the limits of the number; about its value where it has only a lower limit.
+OptionSlider slider_within(const OptionDescription& number);
+
+/// Logarithmic, a factor in either direction.
+OptionSlider slider_about_value();
+
 /// The words of an enumeration, in the order in which they are listed.
 template <class E>
 using Words = std::vector<std::pair<std::string, E>>;
@@ -74,6 +80,9 @@ public:
     using Member = detail::Member<M>;
 
     const std::vector<OptionDescription>& descriptions() const { return descriptions_; }
+
+    /// The description at this path ("Ms", "filter/Tf"), which there must be; good until the next option.
+    OptionDescription& described(std::string_view path);
 
     /// Fills the struct at `value`, of the type that the members are of, where `given` says something.
     void read(const MethodOptions& given, const std::string& prefix, void* value) const;

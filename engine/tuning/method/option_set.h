@@ -4,6 +4,7 @@
 
 #include <complex>
 #include <cstddef>
+#include <initializer_list>
 #include <map>
 #include <optional>
 #include <string>
@@ -120,6 +121,26 @@ public:
     template <class E>
     OptionSet& embed(E T::*member, const OptionSet<E>& set) {
         list_.embed(at(member), set);
+        return *this;
+    }
+
+    /// The options of these names, described before, decide what comes out.
+    OptionSet& main(std::initializer_list<std::string_view> names) {
+        for (const std::string_view name : names) list_.described(name).main = true;
+        return *this;
+    }
+
+    /// The option adds what a page draws.
+    OptionSet& draws(std::string_view name) {
+        list_.described(name).draws = true;
+        return *this;
+    }
+
+    /// The number at `path` ("Ms", "filter/Tf") is moved by hand; without a slider of its own: evenly between its
+    /// limits, or about its value where it has only a lower one.
+    OptionSet& slider(std::string_view path) { return slider(path, slider_within(list_.described(path))); }
+    OptionSet& slider(std::string_view path, OptionSlider slider) {
+        list_.described(path).slider = std::move(slider);
         return *this;
     }
 

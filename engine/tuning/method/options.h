@@ -25,6 +25,23 @@ enum class OptionType {
     numbers_by_name,  ///< an object of numbers under names that the request chooses
 };
 
+/// The figure of a design that an option asks for, or limits.
+enum class DesignFigure { none, Mks, Tf, Tf_over_Td, overshoot_percent };
+
+/// How a number is moved by hand.
+struct OptionSlider {
+    double from = 0, to = 0;  ///< its ends; `relative`: factors of the value
+    bool relative = false, logarithmic = false;
+    std::optional<double> step = {};  ///< smallest move; empty: the form's own
+    std::string label = {};           ///< empty: the option's name
+    std::string low = {}, high = {};  ///< what its ends mean, in a word or two
+    /// Of the options of one group one is moved: the first that was given, else the last whose value is known.
+    std::string group = {};
+    std::string moves_with = {};                 ///< another option, as long as both have the same value
+    DesignFigure value_of = DesignFigure::none;  ///< of the design: the option's value where nobody gave one
+    DesignFigure reached = DesignFigure::none;   ///< what the design came to, which may be another value
+};
+
 struct OptionDescription {
     std::string name;  ///< as in JSON, e.g. "Ms"
     OptionType type = OptionType::number;
@@ -37,6 +54,9 @@ struct OptionDescription {
     int at_most_fields = 0;  ///< of an object: 0, any number may be given
     bool required = false;   ///< of an object's field
     int most = 100;          ///< of a list: elements, of numbers_by_name: names; at least one
+    bool main = false;       ///< decides what comes out: a form shows it at once, the others on request
+    bool draws = false;      ///< adds what a page draws to the report; a page asks for it by itself
+    std::optional<OptionSlider> slider = {};  ///< of a number that makes sense to be moved
 };
 
 using OptionValue = std::variant<bool, double, std::string>;

@@ -76,7 +76,8 @@ const std::vector<TuningMethod>& method_registry() {
             if (method.weighs_setpoint)
                 method.options.push_back(setpoint_option(
                     method.overshoot ? "overshoot at most 5 %, with an objective that sees the set point b = 1"
-                                     : "the weight of the source"));
+                                     : "the weight of the source",
+                    bool(method.overshoot)));
         return all;
     }();
     return methods;

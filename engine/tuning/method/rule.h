@@ -38,6 +38,7 @@ inline constexpr const char* kControllerOption = "controller";
 template <class T>
 void add_controller(OptionSet<T>& set, const std::vector<ControllerKind>& kinds) {
     set.choice(&T::controller, kControllerOption, "The controller that is tuned.", words_of(kinds));
+    set.main({kControllerOption});
 }
 
 /// Option `reduction {method, horizon}`; `automatic` says what "auto" does for this rule.

@@ -184,7 +184,7 @@ std::vector<Warning> choose_setpoint(const LinearPlant& plant, const SetpointOpt
     return {};
 }
 
-OptionDescription setpoint_option(const std::string& by_default) {
+OptionDescription setpoint_option(const std::string& by_default, bool moved) {
     OptionDescription weight{.name = "weight",
                              .type = OptionType::number,
                              .sentence = "Set-point weight b of the proportional part.",
@@ -199,6 +199,15 @@ OptionDescription setpoint_option(const std::string& by_default) {
         .unit = "%",
         .minimum = 0,
         .maximum = 100};
+    if (moved) {
+        OptionSlider slider{.to = 1, .step = 0.01, .label = "Set-point weight b", .low = "soft", .high = "sharp"};
+        slider.group = kSetpointOption;
+        weight.slider = slider;
+        slider.to = 40, slider.step = 0.5;
+        slider.label = "Set-point overshoot";
+        slider.reached = DesignFigure::overshoot_percent;
+        overshoot.slider = slider;
+    }
     OptionDescription best{.name = "best",
                            .type = OptionType::choice,
                            .sentence = "iae: the b with the least IAE of a set-point step.",

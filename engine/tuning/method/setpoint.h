@@ -30,7 +30,8 @@ inline constexpr const char* kSetpointOption = "setpoint";
 inline constexpr double kDefaultOvershoot = 5;
 
 /// Its description, for every method whose controllers have weights; `by_default` is what they have unless asked.
-OptionDescription setpoint_option(const std::string& by_default);
+/// `moved`: weight and overshoot have sliders, of a method that chooses the weight by itself.
+OptionDescription setpoint_option(const std::string& by_default, bool moved);
 
 SetpointOptions setpoint_options(const MethodOptions& given);
 

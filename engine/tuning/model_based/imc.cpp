@@ -155,6 +155,7 @@ TuningMethod imc_method() {
                    "maclaurin: the first three terms of the controller's series, dead time exact; pade: the dead time "
                    "replaced by a fraction first (1/1 on a first-order model, 1 - L s on a second-order one).",
                    Words<ImcExpansion>{{"maclaurin", ImcExpansion::maclaurin}, {"pade", ImcExpansion::pade}});
+    options.main({"lambda"}).slider("lambda");
     add_reduction(options, "half_rule; tangent (first order) where that does not apply.");
     add_filter(options, "of the derivative part, Td s/(1 + s Tf).");
     method.serve(options, tune_imc);

@@ -63,6 +63,7 @@ TuningMethod improved_simc_method() {
         "Desired closed-loop time constant: larger is slower and more robust. Default: the model's dead time "
         "L for PI, L/2 for PID.",
         {.unit = "time", .exclusive_minimum = 0});
+    options.main({"tau_c"}).slider("tau_c");
     add_reduction(options, "half_rule, as in SIMC; tangent where that does not apply.");
     add_filter(options, "of the derivative part of the ideal form, Td s/(1 + s Tf).");
     method.serve(options, tune_improved_simc);

@@ -85,6 +85,7 @@ TuningMethod lambda_method() {
         &LambdaOptions::lambda, "lambda",
         "Desired closed-loop time constant. Default: the larger of T and L; sqrt(10) L for an integrating plant.",
         {.unit = "time", .exclusive_minimum = 0});
+    options.main({"lambda"}).slider("lambda");
     add_reduction(options, "tangent, half_rule where the step response has no tangent.");
     add_filter(options, "of the derivative part, Td s/(1 + s Tf).");
     method.serve(options, tune_lambda);

@@ -92,6 +92,7 @@ TuningMethod simc_method() {
         "Desired closed-loop time constant: larger is slower and more robust. Default: the model's dead time "
         "L (tight but robust, Ms about 1.6).",
         {.unit = "time", .exclusive_minimum = 0});
+    options.main({"tau_c"}).slider("tau_c");
     add_reduction(options, "half_rule, as in the source; tangent (first order: PI) where that does not apply.");
     add_filter(options, "of the derivative part of the ideal form, Td s/(1 + s Tf).");
     method.serve(options, tune_simc);

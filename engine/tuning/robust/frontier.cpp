@@ -117,8 +117,8 @@ const OptionSet<FrontierOptions>& frontier_options() {
                             {.exclusive_minimum = 1, .maximum = kGreatest})
             .number(&O::take, "take", "The method's own controller is the point whose limit is nearest to this.",
                     {.exclusive_minimum = 1, .maximum = kGreatest})
-            .object(&O::filter, "filter", "Second-order measurement filter, as in robust.", robust::filter_options(),
-                    1);
+            .object(&O::filter, "filter", "Second-order measurement filter, as in robust.", robust::filter_options(), 1)
+            .main({"Ms", "Mt"});
         return set;
     }();
     return options;

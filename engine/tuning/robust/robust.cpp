@@ -191,6 +191,34 @@ Expected<TunedController> tune_on_points(const MeasuredPlant& plant, const Robus
     return result;
 }
 
+void add_sliders(OptionSet<RobustOptions>& set) {
+    OptionSlider limit{.from = 1.1, .to = 2.5, .step = 0.01, .label = "Robustness Ms", .low = "calm", .high = "sharp"};
+    set.slider("Ms", limit);
+    limit.label = "Robustness Mt";
+    limit.moves_with = "Ms";
+    set.slider("Mt", limit);
+    set.slider("Mks", {.from = 0.2,
+                       .to = 2,
+                       .relative = true,
+                       .logarithmic = true,
+                       .label = "Noise limit Mks",
+                       .low = "less noise",
+                       .high = "more noise",
+                       .group = "noise",
+                       .value_of = DesignFigure::Mks});
+    OptionSlider filter = slider_about_value();
+    filter.label = "Noise filter Tf";
+    filter.low = "more noise", filter.high = "less noise";
+    filter.group = "noise";
+    filter.value_of = filter.reached = DesignFigure::Tf;
+    set.slider("filter/Tf", filter);
+    filter.label = "Noise filter Tf/Td";
+    filter.from = 0.02, filter.to = 1;
+    filter.relative = false;
+    filter.value_of = filter.reached = DesignFigure::Tf_over_Td;
+    set.slider("filter/Tf_over_Td", filter);
+}
+
 OptionSet<RobustOptions> described_options(const RobustOptions& defaults) {
     using O = RobustOptions;
     using enum Objective;
@@ -220,6 +248,7 @@ OptionSet<RobustOptions> described_options(const RobustOptions& defaults) {
                "Second-order measurement filter. PID default: Tf = 0.1 Td with a dead time, a right-half-plane zero or "
                "pole excess >= 3, else Tf = 0.05 times the sum of the lags minus the leads. PI default: none.",
                filter_options(), 1);
+    add_sliders(set.main({"Ms", "Mt", "Mks"}));
     return set;
 }
 

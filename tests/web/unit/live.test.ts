@@ -18,7 +18,38 @@ const controller: Controller = {
 };
 const robustness = { stable: true, Ms: 1.4, Mks: 20, gain_crossover: 0.5 } as Entry["robustness"];
 const entryOf = (method: string, more: Partial<Entry> = {}): Entry => ({ method, controller, ...(robustness ? { robustness } : {}), ...more });
-const robust: Method = { id: "robust", title: "Robust", options: { properties: { setpoint: { type: "object" } } } };
+const limit = { from: 1.1, to: 2.5, step: 0.01, low: "calm", high: "sharp" };
+const noise = { logarithmic: true, group: "noise", relative: true, from: 0.2, to: 5 };
+const setpoint = { from: 0, to: 40, group: "setpoint" };
+const ratio = { from: 0.02, to: 1, logarithmic: true, group: "noise", value_of: "Tf_over_Td", reached: "Tf_over_Td" } as const;
+/** As GET /v1/methods describes it. */
+const robust: Method = {
+  id: "robust",
+  title: "Robust",
+  options: {
+    properties: {
+      controller: { type: "string", enum: ["PID", "PI"] },
+      Ms: { type: "number", default: 1.4, "x-slider": limit },
+      Mt: { type: "number", default: 1.4, "x-slider": { ...limit, moves_with: "Ms" } },
+      Mks: { type: "number", "x-slider": { ...noise, to: 2, value_of: "Mks" } },
+      rho: { type: "number", default: 0.5 },
+      filter: {
+        type: "object",
+        properties: {
+          Tf: { type: "number", "x-slider": { ...noise, value_of: "Tf", reached: "Tf" } },
+          Tf_over_Td: { type: "number", "x-slider": ratio },
+        },
+      },
+      setpoint: {
+        type: "object",
+        properties: {
+          weight: { type: "number", "x-slider": { ...setpoint, to: 1 } },
+          overshoot: { type: "number", "x-slider": { ...setpoint, reached: "overshoot_percent" } },
+        },
+      },
+    },
+  },
+};
 const idsOf = (tune: TuneEntry, entry = entryOf("robust"), method: Method = robust): string[] =>
   optionKnobs(tune, entry, method, units).map((knob) => knob.id);
 
@@ -28,7 +59,8 @@ test("a robust design is turned by its limits, its noise and its set point", () 
   assert.deepEqual(idsOf({ method: "robust", Mks: 5, setpoint: { weight: 0.5 } }), ["Ms", "Mks", "setpoint.weight"]);
   assert.deepEqual(idsOf({ method: "robust", filter: { Tf: 0.3 } }), ["Ms", "filter.Tf", "setpoint.overshoot"]);
   const PI = entryOf("robust", { controller: { ...controller, Td: 0, filter: { type: "none" } } });
-  assert.deepEqual(idsOf({ method: "robust", controller: "PI" }, PI, { id: "robust", title: "" }), ["Ms", "Mks"]);
+  assert.deepEqual(idsOf({ method: "robust", controller: "PI" }, PI), ["Ms", "Mks", "setpoint.overshoot"]);
+  assert.deepEqual(idsOf({ method: "robust" }, entryOf("robust"), { id: "robust", title: "" }), [], "of a service that describes none");
   const [Ms] = optionKnobs({ method: "robust" }, entryOf("robust"), robust, units);
   assert.deepEqual([Ms!.lo, Ms!.hi, Ms!.step, Ms!.value], [1.1, 2.5, 0.01, 1.4]);
 });
@@ -59,14 +91,14 @@ test("of the filter's ratio the one asked for is turned, and the design's own is
   assert.deepEqual([time.id, time.value, time.reached!(entry)], ["filter.Tf", 0.5, 0.2]);
 });
 
-test("other methods are turned by their numbers: between their ends, about their value, or about the loop's time", () => {
+test("options are moved as the method describes: between ends, about their value, or about the loop's time", () => {
   const method: Method = {
     id: "m",
     title: "",
     options: {
       properties: {
-        gain_margin: { type: "number", default: 3, maximum: 20, exclusiveMinimum: 1 },
-        tau_c: { type: "number", exclusiveMinimum: 0, "x-unit": "time" },
+        gain_margin: { type: "number", default: 3, maximum: 20, "x-slider": { from: 1.19, to: 20 } },
+        tau_c: { type: "number", "x-unit": "time", "x-slider": { from: 0.2, to: 5, relative: true, logarithmic: true } },
         Ku: { type: "number" },
         kind: { type: "string" },
       },
@@ -82,16 +114,17 @@ test("other methods are turned by their numbers: between their ends, about their
   );
   assert.ok(knobs[1]!.lo < 2 && knobs[1]!.hi > 2, "about 1 over the crossover");
   assert.equal(optionKnobs({ method: "m", tau_c: 7 }, entryOf("m"), method, units)[1]!.value, 7);
-  assert.deepEqual(idsOf({ method: "rimc" }, entryOf("rimc"), { ...method, id: "rimc" }), []);
 });
 
 test("limits go together while they are tied, and parts of an option replace each other", () => {
-  assert.ok(isTied({ method: "robust" }) && isTied({ method: "robust", Ms: 1.6, Mt: 1.6 }));
-  assert.ok(!isTied({ method: "robust", Ms: 1.6 }), "Mt is 1.4 then");
-  assert.deepEqual(withOption({ method: "robust" }, "Ms", 1.7, true), { method: "robust", Ms: 1.7, Mt: 1.7 });
-  assert.deepEqual(withOption({ method: "robust", Mt: 1.3 }, "Ms", 1.7, false), { method: "robust", Ms: 1.7, Mt: 1.3 });
+  const tied = (tune: TuneEntry): boolean => isTied(tune, robust);
+  assert.ok(tied({ method: "robust" }) && tied({ method: "robust", Ms: 1.6, Mt: 1.6 }));
+  assert.ok(!tied({ method: "robust", Ms: 1.6 }), "Mt is 1.4 then");
+  assert.ok(isTied({ method: "robust", Ms: 1.6 }, undefined), "nothing is known of other limits");
+  assert.deepEqual(withOption({ method: "robust" }, "Ms", 1.7, ["Mt"]), { method: "robust", Ms: 1.7, Mt: 1.7 });
+  assert.deepEqual(withOption({ method: "robust", Mt: 1.3 }, "Ms", 1.7), { method: "robust", Ms: 1.7, Mt: 1.3 });
   const weighted: TuneEntry = { method: "robust", setpoint: { weight: 0.4 } };
-  assert.deepEqual(withOption(weighted, "setpoint.overshoot", 10, true)["setpoint"], { overshoot: 10 });
+  assert.deepEqual(withOption(weighted, "setpoint.overshoot", 10)["setpoint"], { overshoot: 10 });
 });
 
 test("settings by hand are those that the controller has, on both sides of the proposal", () => {

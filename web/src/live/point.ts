@@ -1,5 +1,5 @@
 // A design as it was turned: the method's options, or settings by hand; its steps back and forth, and its place in the address.
-import type { Controller, TuneEntry } from "../api/types.ts";
+import type { Controller, Method, TuneEntry } from "../api/types.ts";
 import { HAND, handValue, isTied, withHand, withOption } from "./knobs.ts";
 import type { HandName, Knob } from "./knobs.ts";
 
@@ -44,6 +44,9 @@ const BESIDE_HAND = ["b", "c", "delta_r", "filter.type", "setpoint_filter.T"];
 const at = (whole: TuneEntry | Controller | null | undefined, id: string): unknown =>
   id.split(".").reduce<unknown>((value, part) => (value as Record<string, unknown> | undefined)?.[part], whole ?? {});
 
+/** What an address may name of a method's options. */
+const idsOf = (knobs: readonly Knob[]): string[] => [...new Set(knobs.flatMap(({ id, along = [] }) => [id, ...along]))];
+
 /** What of a point differs from the proposal and its controller, for the address; with all its digits. */
 export function valuesOf(
   point: Point,
@@ -52,7 +55,7 @@ export function valuesOf(
   knobs: readonly Knob[],
 ): Record<string, string> {
   const values: Record<string, string> = {};
-  for (const id of [...knobs.map((knob) => knob.id), ...(knobs.some((knob) => knob.id === "Ms") ? ["Mt"] : [])]) {
+  for (const id of idsOf(knobs)) {
     const value = at(point.tune, id);
     if (typeof value === "number" && value !== at(proposal.tune, id)) values[id] = String(value);
   }
@@ -100,13 +103,12 @@ export function pointOf(
   knobs: readonly Knob[],
 ): Point {
   let { tune } = proposal;
-  const ids = [...new Set([...knobs.map((knob) => knob.id), ...(knobs.some((knob) => knob.id === "Ms") ? ["Mt"] : [])])];
-  for (const id of ids) {
+  for (const id of idsOf(knobs)) {
     const value = numberIn(values, id);
-    if (tune && value !== null) tune = withOption(tune, id, value, false);
+    if (tune && value !== null) tune = withOption(tune, id, value);
   }
   return { tune, hand: (controller && handOf(values, controller)) ?? proposal.hand };
 }
 
-/** Whether Mt goes along when Ms is turned. */
-export const tiedAt = (point: Point): boolean => point.tune === null || isTied(point.tune);
+/** Whether options that may move with another one do. */
+export const tiedAt = (point: Point, method: Method | undefined): boolean => point.tune === null || isTied(point.tune, method);

@@ -52,9 +52,6 @@ export interface TurnedEvents {
   onKeep(request: TuningRequest, index: number): Promise<{ job: Job; index: number } | null>;
 }
 
-/** Of a limit on Ms: an answer within it is not called above. */
-const LIMIT_TOLERANCE = 1e-3;
-
 const same = (a: unknown, b: unknown): boolean => JSON.stringify(a) === JSON.stringify(b);
 
 /** Measured points have no responses over time, hence no front. */
@@ -143,18 +140,11 @@ export function turnedDesign(
     away.hidden = !answer;
     if (!answer) return;
     const { hand } = answer.point;
+    const above = hand && answer.entry.standing?.group === "above_limit" ? answer.entry.standing.why : "";
     keeping.hidden = hand !== null;
     about.textContent = hand
-      ? `${aboveLimit(answer)}Settings by hand have no report and no code; the request asks for their figures.`
+      ? `${above ? `${above} ` : ""}Settings by hand have no report and no code; the request asks for their figures.`
       : "Report and code are the job's own design. Keep this design to have its own.";
-  }
-
-  /** Settings by hand keep to no limit. */
-  function aboveLimit({ entry, point }: Answer): string {
-    const limit = limitAt({ tune: point.tune, hand: null });
-    const Ms = entry.robustness?.Ms;
-    if (limit === null || typeof Ms !== "number" || Ms <= limit * (1 + LIMIT_TOLERANCE)) return "";
-    return `Ms is ${formatNumber(Ms)}, above the limit of ${formatNumber(limit)} that the design keeps to. `;
   }
 
   /** What the curves hold to, besides Ms. */
@@ -164,7 +154,7 @@ export function turnedDesign(
     const { Mt, Mks, filter, objective = "load_iae", controller } = tune;
     const alone = Mks === undefined && objective === "load_iae";
     const kind = controller === "PI" ? "PI" : "PID";
-    const tied = tiedAt({ tune, hand: null }) || typeof Mt !== "number";
+    const tied = tiedAt({ tune, hand: null }, methodOf(base()!)) || typeof Mt !== "number";
     return { kind: alone ? kind : null, terms: { Mt: tied ? "tied" : Mt, ...(filter ? { filter } : {}) } };
   }
 

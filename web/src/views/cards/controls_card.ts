@@ -5,7 +5,7 @@ import { h, passFocus, uniqueId } from "../../dom.ts";
 import { FormErrors } from "../../form/errors.ts";
 import { slider } from "../../form/slider.ts";
 import type { Slider } from "../../form/slider.ts";
-import { DEFAULT_LIMIT, HAND, OVERSHOOT, handKnobs, handValue, optionKnobs, withHand, withOption, wrongValue } from "../../live/knobs.ts";
+import { HAND, handKnobs, handValue, optionKnobs, withHand, withOption, wrongValue } from "../../live/knobs.ts";
 import type { HandName, Knob } from "../../live/knobs.ts";
 import type { Live } from "../../live/live.ts";
 import { tiedAt } from "../../live/point.ts";
@@ -56,7 +56,8 @@ export function controlsCard(live: Live): ControlsCard {
     "Back to the proposal",
   );
   const tie = h("input", { type: "checkbox", checked: true });
-  const tieLabel = h("label", { class: "tie" }, tie, h("span", {}, "Mt = Ms"));
+  const tieText = h("span", {});
+  const tieLabel = h("label", { class: "tie" }, tie, tieText);
   const optionRows = h("div", { class: "knobs" });
   const handTitle = h("h3", {}, "By hand");
   const handRows = h("div", { class: "knobs tight" });
@@ -75,7 +76,7 @@ export function controlsCard(live: Live): ControlsCard {
 
   function turnOption(knob: Knob, value: number): Point {
     const point = now();
-    return { tune: withOption(point.tune!, knob.id, value, tied), hand: null };
+    return { tune: withOption(point.tune!, knob.id, value, tied ? knob.along : []), hand: null };
   }
 
   function turnHand(knob: Knob, value: number): Point {
@@ -137,7 +138,7 @@ export function controlsCard(live: Live): ControlsCard {
   function sayReached(): void {
     const entry = followed ?? shown?.entry;
     for (const { knob, slider: made } of options) {
-      const missed = knob.id === OVERSHOOT && entry !== undefined && missesOvershoot(entry);
+      const missed = knob.figure === "overshoot_percent" && entry !== undefined && missesOvershoot(entry);
       made.setReached(reachedText(knob, askedOf(knob, now())), missed);
       made.speak();
     }
@@ -161,9 +162,11 @@ export function controlsCard(live: Live): ControlsCard {
     if (!shown) return;
     const { entry, method, units } = shown;
     const tune = now().tune;
-    options = tune ? optionKnobs(tune, entry, method, units).map((knob) => make(knob, turnOption, homeOption)) : [];
+    options = tune ? optionKnobs(tune, entry, method, units, tied).map((knob) => make(knob, turnOption, homeOption)) : [];
     optionRows.replaceChildren(...options.map((item) => item.slider.element));
-    if (tune?.method === "robust") options[0]?.slider.element.append(tieLabel);
+    const leader = leading();
+    if (leader) tieText.textContent = `${leader.knob.along!.join(", ")} = ${leader.knob.id}`;
+    leader?.slider.element.append(tieLabel);
     limitMs();
     sayReached();
   }
@@ -175,27 +178,18 @@ export function controlsCard(live: Live): ControlsCard {
     }
   }
 
+  /** The slider with which others move. */
+  const leading = (): Turned | undefined => options.find(({ knob }) => knob.along?.length);
+
   tie.addEventListener("change", () => {
     tied = tie.checked;
     const point = now();
-    const Ms = Number(point.tune?.["Ms"] ?? DEFAULT_LIMIT);
-    if (tied && point.tune) live.settle({ tune: withOption(point.tune, "Ms", Ms, true), hand: null });
-    optionRows.replaceChildren();
+    const leader = leading();
+    const value = leader && askedOf(leader.knob, point);
+    if (tied && leader && point.tune && typeof value === "number") live.settle({ tune: turnOption(leader.knob, value).tune, hand: null });
     makeOptions();
-    if (!tied) showMt(point);
     place(now());
   });
-
-  /** A limit of its own: the slider stands where the tied one stood. */
-  function showMt(point: Point): void {
-    if (options.some((item) => item.knob.id === "Mt")) return;
-    const Ms = options.find((item) => item.knob.id === "Ms");
-    if (!Ms || !point.tune) return;
-    const value = Number(point.tune["Mt"] ?? DEFAULT_LIMIT);
-    const made = make({ ...Ms.knob, id: "Mt", label: "Robustness Mt", value }, turnOption, homeOption);
-    options.splice(1, 0, made);
-    Ms.slider.element.after(made.slider.element);
-  }
 
   /** Sliders where the point is; the one that is being moved stands there already. */
   function place(point: Point): void {
@@ -227,9 +221,9 @@ export function controlsCard(live: Live): ControlsCard {
       [back, moved],
     ]);
     if (!point || !shown) return;
-    if (tiedAt(point) !== tied && !live.held.value && point.tune?.method === "robust" && tied) {
+    if (tied && !live.held.value && !tiedAt(point, shown.method)) {
       tied = tie.checked = false;
-      showMt(point);
+      makeOptions();
     }
     place(point);
   });
@@ -240,7 +234,7 @@ export function controlsCard(live: Live): ControlsCard {
       shown = { point, entry, method, units };
       followed = null;
       const focused = element.contains(document.activeElement);
-      tied = tie.checked = tiedAt(point);
+      tied = tie.checked = tiedAt(point, method);
       makeOptions();
       const hand = entry.controller && entry.method !== "emulation" ? handKnobs(entry.controller, units) : [];
       hands = hand.map((knob) => make(knob, turnHand, homeHand));

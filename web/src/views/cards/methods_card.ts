@@ -26,22 +26,6 @@ export interface MethodsCard {
   endLoop(): void;
 }
 
-/** Options that decide what comes out: shown at once, the others on request. */
-const MAIN_OPTIONS = [
-  "controller",
-  "Ms",
-  "Mt",
-  "Mks",
-  "tau_c",
-  "lambda",
-  "formulation",
-  "target",
-  "scenarios",
-  "horizon",
-  "bounds",
-];
-/** What the page draws, and the service computes only if it is asked to. */
-const DRAWN_OPTIONS = ["curve", "profile"];
 /** More methods than these are searched, not looked through. */
 const SEARCHED_FROM = 10;
 const DEFAULT_TUNE: TuneEntry[] = [{ method: "robust", Ms: 1.4, Mt: 1.4 }];
@@ -110,7 +94,7 @@ export function methodsCard(errors: FormErrors): MethodsCard {
     row.fields = fieldsOf(method.options)
       .filter((spec) => spec.path[0] !== "method")
       .map((spec) => ({ spec, field: optionField(spec, pointer(spec.path), errors) }));
-    const main = row.fields.filter(({ spec }) => MAIN_OPTIONS.includes(spec.path[0]!));
+    const main = row.fields.filter(({ spec }) => method.options?.properties?.[spec.path[0]!]?.["x-main"]);
     const others = row.fields.filter((item) => !main.includes(item));
     row.options = h(
       "div",
@@ -201,8 +185,6 @@ export function methodsCard(errors: FormErrors): MethodsCard {
     setMethods(methods) {
       for (const row of rows) for (const { field } of row.fields) errors.remove(field.control);
       rows = methods.filter((method) => method.id !== "all").map(makeRow);
-      const robustFirst = [...rows].sort((a, b) => Number(b.method.id === "robust") - Number(a.method.id === "robust"));
-      rows = robustFirst;
       const [first, ...others] = rows.map((row) => row.element);
       list.replaceChildren(
         ...(first ? [first] : []),
@@ -236,8 +218,8 @@ export function methodsCard(errors: FormErrors): MethodsCard {
           if (parsed.ok) place(entry, spec.path, parsed.value);
           else faults.push({ pointer: `/tune/${index}/${spec.path.join("/")}`, detail: parsed.sentence });
         }
-        for (const drawn of DRAWN_OPTIONS)
-          if (entry[drawn] === undefined && row.fields.some(({ spec }) => spec.path[0] === drawn)) entry[drawn] = true;
+        for (const [name, option] of Object.entries(row.method.options?.properties ?? {}))
+          if (option["x-draws"]) entry[name] ??= true;
         return entry;
       });
       if (tune.length === 0) faults.push({ pointer: "/tune", detail: "No method is chosen. Choose at least one." });

@@ -167,8 +167,7 @@ private:
         made.observer.ended = [this](const Ended& ended) {
             metrics_.count(ended.end.status, ended.method.empty() ? "none" : ended.method, ended.seconds);
             log_job(ended);
-            const JobRecord& job = ended.held->job;  // where nobody asked for a note, waking finds none
-            if (job.batch.empty() && job.request.find("\"notify\"") != std::string::npos) notifier_.wake();
+            if (ended.held->job.notifies) notifier_.wake();
         };
         made.observer.dropped = [this] { metrics_.count_dropped(); };
         made.observer.limited = [this] { metrics_.count_limited(); };

@@ -48,10 +48,11 @@ struct JobState : JobSummary {
 };
 
 struct JobRecord : JobSummary {
-    std::string request;   ///< "" for an entry of a batch that could not be read
-    std::string result;    ///< "" if none
-    std::string error;     ///< "" if none
-    std::string progress;  ///< as in JobState
+    std::string request;    ///< "" for an entry of a batch that could not be read
+    std::string result;     ///< "" if none
+    std::string error;      ///< "" if none
+    std::string progress;   ///< as in JobState
+    bool notifies = false;  ///< its end is delivered to a target of its own; known of a job that claim() gave
 };
 
 struct JobQuery {

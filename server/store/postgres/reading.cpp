@@ -60,7 +60,7 @@ const std::string kBatch = " LEFT JOIN batches b ON b.seq = j.batch";
 const std::string kJobTables = " FROM jobs j" + kEnded + kRunning + kWaiting + kBatch;
 const std::string kClaimedColumns =
     "j.seq, j.id, j.name, j.created_at, r.started_at, r.attempts, j.timeout_s, j.request_hash, j.owner, b.id, "
-    "j.batch_index, j.request_id, j.traceparent, j.request, j.not_before";
+    "j.batch_index, j.request_id, j.traceparent, j.request, j.not_before, j.notify IS NOT NULL";
 const std::string kVisible = "(j.batch IS NULL OR b.state <> 'leaving')";
 
 std::optional<UnixMs> moment(const pqxx::field& field) {
@@ -112,6 +112,7 @@ JobRecord read_claimed(const pqxx::row& row) {
     job.traceparent = text_of(row[12]);
     job.request = text_of(row[13]);
     job.not_before = moment(row[14]);
+    job.notifies = row[15].as<bool>();
     return job;
 }
 

@@ -19,7 +19,7 @@ extern const std::string kRecordColumns;
 extern const std::string kJobTables;
 /// Columns of a job that has just been claimed, of `runs r`, `jobs j` and `batches b`; and how many.
 extern const std::string kClaimedColumns;
-constexpr int kClaimedCount = 15;
+constexpr int kClaimedCount = 16;
 /// True for jobs that can be seen: those of a batch that is being deleted cannot.
 extern const std::string kVisible;
 /// Of one that waits after crashes: its pause is over, or longer than any, because the clock has been set back since.

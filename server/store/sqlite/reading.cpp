@@ -75,7 +75,8 @@ JobRecord read_record(const Connection::Use& row) {
 JobRecord read_claimed(Connection& store, std::int64_t seq) {
     Connection::Use row = store.use(
         "SELECT j.id, j.name, j.created_at, j.timeout_s, j.request_hash, j.owner, b.id, j.batch_index, j.request_id, "
-        "j.traceparent, j.request, j.not_before FROM jobs j LEFT JOIN batches b ON b.seq = j.batch WHERE j.seq = ?1");
+        "j.traceparent, j.request, j.not_before, j.notify IS NOT NULL FROM jobs j LEFT JOIN batches b ON b.seq = "
+        "j.batch WHERE j.seq = ?1");
     if (!row.with(seq).next()) throw StoreError({StoreFault::Kind::unavailable, "a job that waits is not there"});
     JobRecord job;
     job.seq = seq;
@@ -92,6 +93,7 @@ JobRecord read_claimed(Connection& store, std::int64_t seq) {
     job.traceparent = row.text(9);
     job.request = row.text(10);
     job.not_before = row.moment(11);
+    job.notifies = row.integer(12) != 0;
     return job;
 }
 

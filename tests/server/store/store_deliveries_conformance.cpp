@@ -72,7 +72,9 @@ TEST_P(StoreConformance, ADeliveryNamesItsTargetAndWhatItIsAbout) {
     NewJob plain = noted_job("b");
     plain.notify = {"http://[::1]:8080/", ""};
     for (const NewJob& made : {first, plain}) accept(made);
-    claim_many(2);
+    accept(job("silent"));
+    for (const JobRecord& claimed : claim_many(3))
+        EXPECT_EQ(claimed.notifies, claimed.id != "silent") << "whoever computes it knows whether to wake the notifier";
     finish("a", JobStatus::succeeded, "{}");
     const auto due = take(3000);
     ASSERT_EQ(due.size(), 1U);

@@ -135,12 +135,12 @@ private:
         }
     }
 
-    // A line that does not belong to the table, for `reason`. Many of them are no accident.
-    void unread(const CsvLine& line, std::string reason, const std::string& cure) {
-        ++unread_;
-        const std::string sentence = "Line " + std::to_string(line.number) + reason;
+    // A line that does not belong to the table, for `reason`; `joint` joins that to the line's name. Many of them are
+    // no accident.
+    void unread(const CsvLine& line, const char* joint, std::string reason, const std::string& cure) {
+        const std::string sentence = "Line " + std::to_string(line.number) + joint + reason;
+        if (++unread_ == 1) first_unread_ = sentence;
         if (unread_faults_.size() < kMaxFaults) unread_faults_.push_back({"csv", sentence + cure});
-        reason.erase(0, reason.find_first_not_of(", "));
         skip(line.number, std::move(reason));
     }
 
@@ -164,8 +164,8 @@ private:
     }
 
     void report_width(const CsvLine& line) {
-        unread(line,
-               " has " + std::to_string(line.cells.size()) + " cells and the first line " +
+        unread(line, " ",
+               "has " + std::to_string(line.cells.size()) + " cells and the first line " +
                    std::to_string(layout_.width) + ".",
                " Numbers with a decimal comma need ; or tab as separator, or quotes.");
     }
@@ -298,7 +298,7 @@ private:
 
     void report_cell(const CsvLine& line, Role role, std::string_view text, bool stamps) {
         const bool other_separator = line.cells.size() == 1 && layout_.width > 1;
-        const std::string reason = ", column " + column_name(role) + ": " + in_quotes(text) + " is not " +
+        const std::string reason = "column " + column_name(role) + ": " + in_quotes(text) + " is not " +
                                    (stamps           ? "a time stamp like the first."
                                     : of_words(role) ? "one of the column's two words."
                                                      : "a number.");
@@ -306,8 +306,8 @@ private:
                                            : " Mend the line, or leave the cell blank to drop it.";
         // ON and OFF among numbers mean something, which is not known.
         if (role == kInputRole && switch_word(text))
-            return fault("csv", "Line " + std::to_string(line.number) + reason + cure);
-        unread(line, reason, cure);
+            return fault("csv", "Line " + std::to_string(line.number) + ", " + reason + cure);
+        unread(line, ", ", reason, cure);
     }
 
     void report_size(const CsvLine& line, Role role) {
@@ -349,11 +349,9 @@ private:
         if (layout_.numbered) notes.emplace_back("The first column, which has no heading, numbers the rows.");
         if (auto note = switch_note(low_word_, high_word_); !note.empty()) notes.push_back(std::move(note));
         if (auto note = sign_note(layout_); !note.empty()) notes.push_back(std::move(note));
-        if (unread_ > 0) {
-            const std::string& first = unread_faults_.front().message;
+        if (unread_ > 0)
             record_.unread = std::to_string(unread_) + (unread_ == 1 ? " line" : " lines") + " could not be read and " +
-                             (unread_ == 1 ? "was" : "were") + " left out: " + first.substr(0, first.find(". ")) + ".";
-        }
+                             (unread_ == 1 ? "was" : "were") + " left out: " + first_unread_;
         if (!missing_word_.empty()) notes.push_back(in_quotes(missing_word_) + " and the like are read as no value.");
         record_.u_stepped = options_.u_step.has_value();
         if (const auto u = columns_.at[kInputRole];
@@ -371,6 +369,7 @@ private:
     FoundColumns columns_;
     std::size_t index_ = 0, unread_ = 0;
     std::vector<CsvFault> unread_faults_;
+    std::string first_unread_;
     double spacing_ = 1;
     double r_ = kNoNumber, last_u_ = kNoNumber;  // r_, d_: read, and not yet in a row of the record
     std::vector<double> d_, last_d_;

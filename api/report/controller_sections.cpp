@@ -80,20 +80,25 @@ Html figure_table(const char* caption, const FigureRow (&rows)[n], const std::st
     return table(caption, heads, out);
 }
 
-/// Lines of a verdict, without those that end as one of `said` does.
-Html verdict_lines(const Json& verdict, const Json& said) {
-    Html items;
-    const auto repeats = [&](const std::string& line) {
-        return said.is_array() && std::ranges::any_of(said, [&](const Json& one) {
-                   return line.ends_with(one.value("text", std::string("?")));
-               });
-    };
-    if (!verdict.is_array()) return items;
-    for (const Json& one : verdict) {
-        const std::string line = one.value("text", "");
-        if (!repeats(line)) items += element("li", line, {{"class", one.value("level", "note")}});
-    }
-    return items;
+Html verdict_line(const Json& finding) {
+    return element("li", finding.value("text", ""), {{"class", finding.value("level", "note")}});
+}
+
+bool same_finding(const Json& a, const Json& b) {
+    return a.value("code", "") == b.value("code", "") && a.value("figures", Json()) == b.value("figures", Json());
+}
+
+/// Whether the entry's own verdict holds what this finding about all entries tells: one of its own, the choice of this
+/// entry, or that the only design is not to be entered.
+bool is_own(const Json& finding, const Json& own, const ReportSubject& s) {
+    const std::string code = finding.value("code", "");
+    if (std::ranges::any_of(own, [&](const Json& one) { return same_finding(one, finding); })) return true;
+    if (code == "take")
+        return finding.value("figures", Json::object()).value("entry", -1.0) == static_cast<double>(s.index);
+    const Json& entries = s.result.at("controllers").value();
+    return code == "none" && std::ranges::count_if(entries, [](const Json& entry) {
+                                 return entry.value("method", "") != "baseline";
+                             }) == 1;
 }
 
 std::string value_text(const Json& value) {
@@ -112,7 +117,12 @@ std::string value_text(const Json& value) {
 
 Html verdict_section(const ReportSubject& s) {
     const Json &own = s.entry.at("verdict").value(), &all = s.result.at("verdict").value();
-    const Html lines = verdict_lines(own, {}) + verdict_lines(all, own);
+    Html lines;
+    if (own.is_array())
+        for (const Json& finding : own) lines += verdict_line(finding);
+    if (all.is_array())
+        for (const Json& finding : all)
+            if (!own.is_array() || !is_own(finding, own, s)) lines += verdict_line(finding);
     return section("Verdict", lines.empty() ? lines : element("ul", lines, {{"class", "verdict"}}));
 }
 

@@ -33,6 +33,7 @@ std::vector<double> numbers_at(const Place& place);
 /// What a section is about: places in one document {result, request}.
 struct ReportSubject {
     Place result, request, entry;
+    std::size_t index = 0;       ///< of the entry among the result's controllers
     std::optional<Place> today;  ///< the baseline's entry, where there is one beside the entry
     std::string time, u, y;      ///< labels of the units; "" where not given, but for time
 };

@@ -54,8 +54,8 @@ std::optional<Error> option_fault(const Plan& plan) {
 
 }  // namespace
 
-Expected<Program> pid_algorithm(const SampledPid& pid, const CodeOptions& options) {
-    const Plan plan{pid, options};
+Expected<Program> pid_algorithm(const SampledPid& pid, const CodeOptions& options, bool follows_schedule) {
+    const Plan plan{pid, options, follows_schedule};
     if (const auto fault = timing_fault(plan)) return *fault;
     if (const auto fault = option_fault(plan)) return *fault;
     Program program = Builder(pid, options).build();

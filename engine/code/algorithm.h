@@ -38,7 +38,8 @@ constexpr double kNoLimit = 1e30;  ///< what u_min and u_max are in size where t
 
 /// Errors (invalid_argument or unsupported, `where` names the field): Ts, Tf, slope_samples or limits out of range; the
 /// forward rule unstable at this Ts; a velocity form without integral action, whose u nothing would bring back.
-Expected<Program> pid_algorithm(const SampledPid& pid, const CodeOptions& options);
+/// With `follows_schedule` its notes leave the settings to a schedule, which scheduled_algorithm() puts in front.
+Expected<Program> pid_algorithm(const SampledPid& pid, const CodeOptions& options, bool follows_schedule = false);
 
 /// What the input of the scheduling variable is called in the programs.
 constexpr const char* kSchedulingInput = "scheduling";

@@ -94,6 +94,9 @@ std::string manual_note(const Plan& plan) {
 }
 
 std::string change_note(const Plan& plan) {
+    if (plan.follows_schedule)
+        return "Changes: the limits may be changed between two calls, and u obeys them at once. Change Ts and c only "
+               "with a restart, in manual at the present u; the other settings are the schedule's.";
     std::string names = plan.settings.ideal ? "Kp" : "Kp";
     if (plan.integral) names += plan.settings.ideal ? ", Ti" : ", Ki";
     if (plan.derivative) names += plan.settings.ideal ? ", Td" : ", Kd";

@@ -20,6 +20,7 @@ inline DerivativeRule effective_rule(const SampledPid& pid) {
 struct Plan {
     const SampledPid& pid;
     const CodeOptions& options;
+    bool follows_schedule = false;  ///< its settings are the schedule's, and not the user's to change
     Settings settings = settings_of(pid.gains);
     FilterType filter = pid.gains.filter.type;
     bool integral = pid.gains.Ki != 0;

@@ -171,14 +171,9 @@ Expected<Program> scheduled_algorithm(const Schedule& schedule, const SampledPid
     if (const auto fault = row_fault(schedule)) return *fault;
     SampledPid leading = law;
     leading.gains = to_parallel(controller_of(leading_row(schedule)));
-    auto program = pid_algorithm(leading, options);
+    auto program = pid_algorithm(leading, options, true);
     if (!program) return program;
     Following(*program, schedule).add();
-    for (std::string& note : program->notes)
-        if (note.starts_with("Changes:"))
-            note =
-                "Changes: the limits may be changed between two calls, and u obeys them at once. Change Ts and c "
-                "only with a restart, in manual at the present u; the other settings are the schedule's.";
     program->notes.insert(program->notes.begin(), schedule_note(schedule, named));
     return program;
 }

@@ -6,7 +6,6 @@
 #include "api/json/json.h"
 #include "api/json/writer.h"
 #include "engine/number_text.h"
-#include "engine/tuning/robust/feasibility.h"
 
 namespace tunewright::api {
 namespace {
@@ -42,6 +41,18 @@ std::string to_pointer(const std::string& where) {
     return pointer;
 }
 
+/// "Use Ms = Mt = 1.603": options of one value are named together.
+Cure cure_of(const std::map<std::string, double>& options) {
+    Cure cure{"Use", {options.begin(), options.end()}};
+    for (std::size_t i = 0; i < cure.options.size(); ++i) {
+        const auto& [name, value] = cure.options[i];
+        const bool same = i + 1 < cure.options.size() && cure.options[i + 1].second == value;
+        cure.text += " " + name + " =" + (same ? "" : " " + tunewright::text(value));
+        if (!same && i + 1 < cure.options.size()) cure.text += ",";
+    }
+    return cure;
+}
+
 }  // namespace
 
 Problem to_problem(const Error& error) {
@@ -54,8 +65,7 @@ Problem to_problem(const Error& error) {
         problem.title = row.title;
     }
     if (error.kind == ErrorKind::invalid_argument) problem.type = "invalid-request";
-    if (const auto limit = robust::named_limit(error))
-        problem.cure = Cure{"Use Ms = Mt = " + tunewright::text(*limit), {{"Ms", *limit}, {"Mt", *limit}}};
+    if (!error.cure.empty()) problem.cure = cure_of(error.cure);
     if (!error.where.empty()) problem.errors.push_back({to_pointer(error.where), error.message});
     return problem;
 }

@@ -1,6 +1,7 @@
 // What went wrong, as a value: a kind for programs, a place and a sentence for people.
 #pragma once
 
+#include <map>
 #include <string>
 
 namespace tunewright {
@@ -40,6 +41,7 @@ struct Error {
     ErrorKind kind = ErrorKind::numerical_failure;
     std::string where;    ///< path inside the request, slash separated, e.g. "plant/L"; empty if none
     std::string message;  ///< one or two sentences: name, value, rule, cure
+    std::map<std::string, double> cure = {};  ///< options of the method, by name, with which it works; empty: unknown
 };
 
 }  // namespace tunewright

@@ -11,6 +11,7 @@
 #include "api/contract/result/identified_model.h"
 #include "engine/evaluation/evaluate.h"
 #include "engine/request/identified_region.h"
+#include "engine/tuning/limits.h"
 
 namespace tunewright::api {
 namespace {
@@ -212,7 +213,9 @@ const Description<JobRequest>& job_contract() {
          })
             .example({{"name", "TIC-101"},
                       {"plant", {{"type", "fopdt"}, {"K", 2}, {"T", 10}, {"L", 3}}},
-                      {"tune", Json::array({Json{{"method", default_method()}, {"Ms", 1.4}, {"Mt", 1.4}}})}});
+                      {"tune",
+                       Json::array({Json{
+                           {"method", default_method()}, {"Ms", limits::kDefaultMs}, {"Mt", limits::kDefaultMt}}})}});
         add_checks(d);
         return d;
     }();

@@ -5,6 +5,7 @@
 #include "engine/range/design_range.h"
 #include "engine/range/limit_remarks.h"
 #include "engine/range/schedule/look.h"
+#include "engine/tuning/limits.h"
 
 namespace tunewright::range {
 namespace {
@@ -38,7 +39,7 @@ Expected<RangeDesign> judge_schedule(const RangeProblem& problem, const Schedule
     ScheduleDesign& given = design.schedule.emplace();
     given.schedule = schedule;
     const double excess = std::max(largest_excess(*curve), std::expm1(verified->excess));
-    given.holds_limits = excess <= kAllowedRelativeExcess;
+    given.holds_limits = excess <= limits::kMaxRelativeExcessJudged;
     if (!given.holds_limits) design.warnings.push_back(schedule_above_limit(*curve, excess, places));
     given.worst_relative_IAE = largest_relative_IAE(*curve);
     given.within_allowance = given.worst_relative_IAE <= 1 + problem.options.allowance;

@@ -9,13 +9,13 @@
 
 #include "engine/range/curves.h"
 #include "engine/range/search/places.h"
+#include "engine/tuning/limits.h"
 #include "engine/warning.h"
 
 namespace tunewright::range {
 
-/// Relative excess over a limit above which it counts as exceeded where settings are judged.
-constexpr double kAllowedRelativeExcess = 5e-5;
-inline bool exceeds_limit(const RangeCurve& curve) { return largest_excess(curve) > kAllowedRelativeExcess; }
+/// On some plant of the curve by more than the plants between those of a design may.
+inline bool exceeds_limit(const RangeCurve& curve) { return largest_excess(curve) > limits::kMaxRelativeExcessJudged; }
 
 /// The one of Ms and Mt that comes nearest to its limit or lies farthest beyond it; null for a curve without places.
 const WorstPlace* worst_limit(const RangeCurve& curve);

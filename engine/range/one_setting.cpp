@@ -10,6 +10,7 @@
 #include "engine/number_text.h"
 #include "engine/range/one_setting_problem.h"
 #include "engine/range/schedule/look.h"
+#include "engine/tuning/limits.h"
 #include "engine/tuning/robust/sqp.h"
 #include "engine/tuning/robust/verified_search.h"
 
@@ -21,7 +22,6 @@ using robust::DesignPoint;
 constexpr double kNowhere = std::numeric_limits<double>::infinity();
 constexpr double kCompareTolerance = 1e-3;  // of simulations that only compare starts
 constexpr double kPriceTolerance = 1e-5;    // of those that are reported
-constexpr double kAllowedOnGrid = 2e-5;     // of a limit, relative, on the independent grid
 constexpr double kSameDesign = 0.03;        // of each logarithm: another start that leads nowhere else
 constexpr int kRounds = 4;                  // of searches under tighter limits
 constexpr int kRegionRounds = 10;           // of adding the worst plants inside regions
@@ -69,7 +69,7 @@ Expected<std::vector<DesignPoint>> starts(const std::vector<Place*>& points, con
     const RunControl quiet{.stop = control.stop, .progress = {}, .now_ms = {}};
     const auto integrated =
         robust::verified_search(robust::SearchKind::fast, problem, std::nullopt, nullptr, quiet, nullptr);
-    if (!integrated) return in_words_of_range(integrated.error());
+    if (!integrated) return placed_in_options(integrated.error());
     std::vector<std::pair<double, DesignPoint>> found;
     const auto consider = [&](DesignPoint x) {
         const double least = 1.01 * robust::kMinTd / middle_reference(points);
@@ -220,7 +220,7 @@ Expected<VerifiedEnd> verified_end(const std::vector<Place*>& points, const Join
     for (int round = 0; round < kRounds; ++round) {
         const DesignPoint x = joint.settings(end.v, 0, nullptr);
         const double excess = largest_excess(points, x);
-        if (excess <= 0.5 * kAllowedOnGrid) return VerifiedEnd{x, end.stopped};
+        if (excess <= 0.5 * limits::kMaxRelativeExcessVerified) return VerifiedEnd{x, end.stopped};
         if (!std::isfinite(excess)) break;
         search.margin += 1.5 * excess + 1e-6;
         end = search_jointly(joint, end.v, search, {});

@@ -3,17 +3,18 @@
 #include <algorithm>
 
 #include "engine/number_text.h"
+#include "engine/tuning/limits.h"
 
 namespace tunewright {
 namespace {
 
-constexpr double kNoticeable = 1.01;  // of a limit, before a warning
+bool exceeds(double worst_Ms, double limit) { return worst_Ms > (1 + limits::kMaxRelativeExcessShownOfWorst) * limit; }
 
 }  // namespace
 
 bool breaks_limit(const Evaluation& evaluation, std::optional<double> Ms_limit) {
     if (!evaluation.region) return false;
-    return !evaluation.region->worst_Ms || (Ms_limit && *evaluation.region->worst_Ms > kNoticeable * *Ms_limit);
+    return !evaluation.region->worst_Ms || (Ms_limit && exceeds(*evaluation.region->worst_Ms, *Ms_limit));
 }
 
 void warn_of_region(Evaluation& evaluation, std::optional<double> Ms_limit, bool identified) {
@@ -23,16 +24,11 @@ void warn_of_region(Evaluation& evaluation, std::optional<double> Ms_limit, bool
             if (warning.code == "unstable-in-region") warning.level = WarningLevel::bad;
     if (!evaluation.region || !evaluation.region->worst_Ms || !Ms_limit) return;
     const double worst = *evaluation.region->worst_Ms;
-    if (worst <= kNoticeable * *Ms_limit) return;
+    if (!exceeds(worst, *Ms_limit)) return;
     evaluation.warnings.push_back(
         {"above-limit-in-region",
          "On the worst plant of the region Ms is " + text(worst) + ", above the " + text(*Ms_limit) + " asked for.",
          identified && worst > kFar * *Ms_limit ? WarningLevel::bad : WarningLevel::warning});
-}
-
-std::string with_variant(const std::string& title, const std::string& variant) {
-    if (title.ends_with(')')) return title.substr(0, title.size() - 1) + ", " + variant + ")";
-    return title + " (" + variant + ")";
 }
 
 void say_choice(Evaluation& held, const Evaluation& nominal) {

@@ -26,9 +26,6 @@ bool breaks_limit(const Evaluation& evaluation, std::optional<double> Ms_limit);
 /// shows is the answer's own doubt, not only the user's: then the warnings may be of level bad.
 void warn_of_region(Evaluation& evaluation, std::optional<double> Ms_limit, bool identified);
 
-/// "Robust optimum (PI)" and "region" make "Robust optimum (PI, region)".
-std::string with_variant(const std::string& title, const std::string& variant);
-
 /// The design that holds on the region stands before the one on the model alone, and says why.
 void say_choice(Evaluation& held, const Evaluation& nominal);
 

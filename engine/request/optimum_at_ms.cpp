@@ -6,12 +6,11 @@
 
 #include "engine/evaluation/evaluate.h"
 #include "engine/number_text.h"
+#include "engine/tuning/limits.h"
 #include "engine/tuning/method/rule.h"
 
 namespace tunewright {
 namespace {
-
-constexpr double kGreatestMs = 4;  // of the method robust
 
 OptimumAtMs none(const std::string& reason) { return {no_figure(reason), no_figure(reason)}; }
 
@@ -39,8 +38,9 @@ Expected<double> RobustOptima::load_IAE_at(double Ms, const RunControl& control)
 OptimumAtMs RobustOptima::compare_at_Ms(const Evaluation& evaluation, const RunControl& control) {
     const auto& Ms = evaluation.robustness.Ms;
     if (!Ms) return none("The loop has no Ms, so there is nothing to compare at.");
-    if (*Ms <= 1 || *Ms > kGreatestMs)
-        return none("Ms is " + text(*Ms) + "; optima are computed for Ms above 1 and up to " + text(kGreatestMs) + ".");
+    if (*Ms <= 1 || *Ms > limits::kMaxMs)
+        return none("Ms is " + text(*Ms) + "; optima are computed for Ms above 1 and up to " + text(limits::kMaxMs) +
+                    ".");
     const auto optimum = load_IAE_at(*Ms, control);
     if (!optimum) return none(optimum.error().message);
     OptimumAtMs answer{*optimum, {}};

@@ -30,7 +30,7 @@ Expected<std::vector<PlannedRow>> plan_rows(const std::vector<MethodRequest>& re
         }
         const TuningMethod* method = find_method(requests[i].method);
         if (!method) return unknown_method(requests[i].method, where);
-        planned.push_back({method, requests[i].options, method->title, {}, where});
+        planned.push_back({method, requests[i].options, "", {}, where});
     }
     if (planned.empty())
         return Error{ErrorKind::invalid_argument, "tune", "tune is empty; name at least one method, such as robust."};
@@ -83,11 +83,12 @@ bool contradicts(const MethodOptions& variant, const MethodOptions& given) {
     });
 }
 
-std::string row_title(const TuningMethod& method, const std::string& variant) {
-    return variant.empty() ? method.title : method.title + " (" + variant + ")";
-}
-
 }  // namespace
+
+std::string PlannedRow::title(const std::string& besides) const {
+    const std::string all = variant + (variant.empty() || besides.empty() ? "" : ", ") + besides;
+    return all.empty() ? method->title : method->title + " (" + all + ")";
+}
 
 std::vector<PlannedRow> comparison_rows(const MethodOptions& given) {
     std::vector<PlannedRow> rows;
@@ -95,7 +96,7 @@ std::vector<PlannedRow> comparison_rows(const MethodOptions& given) {
         if (!method.compared) continue;
         const auto known = known_options(given, method);
         if (!known) {
-            rows.push_back({&method, {}, method.title, known.error(), {}, true});
+            rows.push_back({&method, {}, "", known.error(), {}, true});
             continue;
         }
         const std::size_t before = rows.size();
@@ -103,17 +104,12 @@ std::vector<PlannedRow> comparison_rows(const MethodOptions& given) {
             if (contradicts(variant.options, *known)) continue;
             MethodOptions options = variant.options;
             for (const auto& [path, value] : known->values()) options.set(path, value);
-            rows.push_back({&method,
-                            std::move(options),
-                            row_title(method, variant.name),
-                            {},
-                            {},
-                            true,
-                            method.holds_family || known->has("Ms")});
+            rows.push_back(
+                {&method, std::move(options), variant.name, {}, {}, true, method.holds_family || known->has("Ms")});
         }
         if (rows.size() > before) continue;
         const auto controller = known->text(kControllerOption);
-        rows.push_back({&method, *known, row_title(method, controller.value_or("")), {}, {}, true});
+        rows.push_back({&method, *known, controller.value_or(""), {}, {}, true});
     }
     return rows;
 }
@@ -129,6 +125,8 @@ Error all_failed(const std::vector<TuningEntry>& entries) {
     }
     Error error = *entries.front().error;
     if (reasons.size() == 1) return error;
+    const auto cured = std::ranges::find_if(entries, [](const TuningEntry& one) { return !one.error->cure.empty(); });
+    if (cured != entries.end()) error.cure = cured->error->cure;
     error.message = "No method gave a controller.";
     for (const auto& [methods, reason] : reasons) error.message.append(" ").append(methods).append(": ").append(reason);
     return error;

@@ -25,11 +25,14 @@ struct MethodRequest {
 struct PlannedRow {
     const TuningMethod* method = nullptr;
     MethodOptions options;
-    std::string title;             ///< the method's, in "all" with its variant in brackets
+    std::string variant;           ///< in "all": the method's variant that the row is of, by its name
     std::optional<Error> refusal;  ///< an option that was given does not suit the method (unsupported)
     std::string where;             ///< its place in the request, "tune/2"
     bool of_all = false;
     bool Ms_asked = true;  ///< false: the limit on Ms is a variant's, of a rule that promises nothing
+
+    /// The method's title with its variant and with what else tells entries apart: "Robust optimum (PI, region)".
+    std::string title(const std::string& besides = "") const;
 };
 
 /// In the request's order, "all" expanded. Errors: invalid_argument for an unknown method or none.

@@ -7,12 +7,10 @@
 #include <utility>
 
 #include "engine/number_text.h"
+#include "engine/tuning/limits.h"
 
 namespace tunewright {
 namespace {
-
-constexpr double kOwnTolerance = 1.01;     // of the limit that a method was asked for: what a warning overlooks too
-constexpr double kRankTolerance = 1.0001;  // of the limit on all: designs at a limit lie there to about 1e-5
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -56,11 +54,11 @@ Standing standing_of(const TuningEntry& entry, std::optional<double> own, const 
     const Evaluation& evaluation = *entry.evaluation;
     Standing standing;
     standing.Ms = judged_Ms(entry);
-    standing.within = !own || (standing.Ms && *standing.Ms <= kOwnTolerance * *own);
+    standing.within = !own || (standing.Ms && *standing.Ms <= (1 + limits::kMaxRelativeExcessShownOfWorst) * *own);
     const std::string restless = terms.over_time ? unrest(evaluation.performance) : "";
     standing.settles = evaluation.robustness.stable && restless.empty();
     standing.least_limit = standing.settles && standing.within && standing.Ms
-                               ? Figure(*standing.Ms / kRankTolerance)
+                               ? Figure(*standing.Ms / (1 + limits::kMaxRelativeExcessRanked))
                                : no_figure("No limit on Ms makes it hold.");
     const auto behind = [&](StandingGroup group, std::string why) {
         standing.group = group;

@@ -132,7 +132,7 @@ TuningEntry Rows::entry(const PlannedRow& planned, const std::optional<TuningPro
                         const RunControl& control, bool& partial) {
     TuningEntry entry;
     entry.method = planned.method->id;
-    entry.title = planned.title;
+    entry.title = planned.title();
     entry.source = planned.method->source;
     const auto& on_points = planned.method->options_on_points;
     entry.options = with_defaults(problem || on_points.empty() ? planned.method->options : on_points, planned.options);
@@ -178,8 +178,8 @@ MadeRow Rows::of(const PlannedRow& planned, const RunControl& control) {
     held.over_region = true;
     const Figure &cost = held.evaluation->performance.load.IAE, &alone = first.evaluation->performance.load.IAE;
     if (cost && alone && *alone > 0) held.region_cost = *cost / *alone;
-    held.title = with_variant(held.title, "region");
-    first.title = with_variant(first.title, "model alone");
+    held.title = planned.title("region");
+    first.title = planned.title("model alone");
     say_choice(*held.evaluation, *first.evaluation);
     made.entries.insert(made.entries.begin(), std::move(held));
     return made;

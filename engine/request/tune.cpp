@@ -177,7 +177,7 @@ bool TuningRun::tune_rows(const std::vector<PlannedRow>& planned, double from, d
     run_each(control_.spread, static_cast<int>(planned.size()), [&](int index) {
         if (stopped()) return;
         const auto row = static_cast<std::size_t>(index);
-        progress.begin(row, planned[row].title);
+        progress.begin(row, planned[row].title());
         made[row] = rows_->of(planned[row], progress.of(row));
         progress.end(row, *made[row]);
     });

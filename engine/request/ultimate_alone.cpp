@@ -60,7 +60,7 @@ Expected<TunedController> tuned(const UltimateTest& test, const PlannedRow& row)
 TuningEntry entry_of(const UltimateTest& test, const PlannedRow& row) {
     TuningEntry entry;
     entry.method = row.method->id;
-    entry.title = row.title;
+    entry.title = row.title();
     entry.source = row.method->source;
     entry.options = with_defaults(row.method->options, row.options);
     auto found = tuned(test, row);

@@ -1,6 +1,8 @@
 // The commands about one loop: from a plant or a record to settings, a report or a program.
 #include <algorithm>
 
+#include "engine/number_text.h"
+#include "engine/tuning/limits.h"
 #include "server/cli/command_tree.h"
 #include "server/cli/commands.h"
 
@@ -61,7 +63,9 @@ void add_tune_options(CLI::App& app, TuneCommand& command) {
             ->take_all()
             ->expected(1)
             ->allow_extra_args(false);
-    app.add_option("--Ms", command.words.Ms, "Limit of Ms and of Mt, in (1, 4]")->type_name("NUMBER");
+    app.add_option("--Ms", command.words.Ms,
+                   "Limit of Ms and of Mt, in (1, " + text(limits::kMaxMs) + "]; default " + text(limits::kDefaultMs))
+        ->type_name("NUMBER");
     app.add_option("--baseline", command.words.baseline, "Today's settings in the ideal form: \"Kp Ti Td\"")
         ->type_name("TEXT");
     add_record_options(app, command.words.record);

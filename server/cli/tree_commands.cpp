@@ -164,7 +164,7 @@ void write_manual(const CLI::App& app, std::ostream& out) {
            ".TP\n.B 4\nThe service cannot open its store.\n"
            ".SH EXAMPLES\n"
            ".EX\n"
-           "tunewright tune \\-\\-plant \"2 e^(\\-3s)/(10s+1)\" \\-\\-Ms 1.4 \\-\\-plot\n"
+           "tunewright tune \\-\\-plant \"2 e^(\\-3s)/(10s+1)\" \\-\\-Ms 1.6 \\-\\-plot\n"
            "tunewright tune step.csv \\-\\-u valve \\-\\-y level\n"
            "tunewright examples 3 | tunewright tune \\- \\-\\-table\n"
            "tunewright serve \\-\\-listen 127.0.0.1:8080\n"

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "api/describe/reader.h"
+#include "api/service.h"
+#include "engine/tuning/limits.h"
 
 namespace tunewright::api {
 namespace {
@@ -35,6 +37,20 @@ std::vector<OptionDescription> described() {
     OptionDescription methods = option("methods", OptionType::list);
     methods.fields = {option("method", OptionType::text)};
     return {bounds, Tf, poles, scenarios, methods};
+}
+
+TEST(MethodOptions, TheDescriptionOfRobustHasTheEnginesLimits) {
+    const Json described = Json::parse(methods_json());
+    for (const Json& method : described["methods"]) {
+        if (method["id"] != "robust") continue;
+        const Json& options = method["options"]["properties"];
+        EXPECT_EQ(options["Ms"]["default"], limits::kDefaultMs);
+        EXPECT_EQ(options["Ms"]["maximum"], limits::kMaxMs);
+        EXPECT_EQ(options["Mt"]["default"], limits::kDefaultMt);
+        EXPECT_EQ(options["Mt"]["maximum"], limits::kMaxMt);
+        return;
+    }
+    FAIL() << "the method robust is not described";
 }
 
 struct Outcome {

@@ -14,7 +14,6 @@
 #include "api/contract/terms.h"
 #include "api/csv/record.h"
 #include "api/json/json.h"
-#include "engine/tuning/robust/feasibility.h"
 
 namespace tunewright::api {
 
@@ -39,8 +38,6 @@ const std::string& default_method() {
     static const std::string id = "robust";
     return id;
 }
-// No search ends here.
-std::optional<double> robust::named_limit(const Error&) { return std::nullopt; }
 }  // namespace tunewright
 
 namespace {

@@ -9,6 +9,7 @@
 #include "api/contract/request.h"
 #include "engine/range/experiments.h"
 #include "engine/request/range/ask_range.h"
+#include "engine/tuning/limits.h"
 
 namespace tunewright::api {
 
@@ -40,7 +41,7 @@ struct GivenRow {
 
 struct ScheduleWish {
     ControllerKind controller = ControllerKind::PID;
-    double Ms = 1.4, Mt = 1.4;
+    double Ms = limits::kDefaultMs, Mt = limits::kDefaultMt;
     RobustFilterOptions filter;
     range::Aim aim = range::Aim::worst;
     double allowance = 0.05;

@@ -10,6 +10,7 @@
 #include "engine/range/limit_remarks.h"
 #include "engine/range/schedule/knots.h"
 #include "engine/range/schedule/look.h"
+#include "engine/tuning/limits.h"
 
 namespace tunewright::range {
 namespace {
@@ -75,7 +76,7 @@ private:
             const auto verified = verify(places_, own_, schedule, least_price ? end.log_price + kPriceRoom : allowed_);
             if (!verified) return verified.error();
             keep_better(best, schedule, *verified, end.stopped);
-            const bool held = verified->excess <= kAllowedLogExcess;
+            const bool held = verified->excess <= limits::kMaxRelativeExcessVerified;
             const bool good = held && verified->worst.empty();
             if (end.stopped || (good && !add_worst_inside(schedule, joint.places))) return best;
             if (good) best.reset();  // plants inside a region have joined, on which it does not hold
@@ -135,7 +136,7 @@ private:
     void keep_better(std::optional<ScheduleDesign>& best, const Schedule& schedule, const Verified& verified,
                      bool stopped) const {
         ScheduleDesign design{.schedule = schedule,
-                              .holds_limits = verified.excess <= kAllowedLogExcess,
+                              .holds_limits = verified.excess <= limits::kMaxRelativeExcessVerified,
                               .within_allowance = verified.log_price <= allowed_,
                               .worst_relative_IAE = std::exp(verified.log_price),
                               .partial = stopped,
@@ -229,7 +230,7 @@ Expected<ScheduleDesign> same_everywhere(const Places& places, const OwnOptima& 
     const double allowed = std::log1p(options.allowance);
     const auto verified = verify(places, own, design.schedule, allowed);
     if (!verified) return verified.error();
-    design.holds_limits = verified->excess <= kAllowedRelativeExcess;
+    design.holds_limits = verified->excess <= limits::kMaxRelativeExcessJudged;
     design.within_allowance = verified->log_price <= allowed;
     design.worst_relative_IAE = std::exp(verified->log_price);
     return design;

@@ -7,6 +7,7 @@
 #include "engine/expected.h"
 #include "engine/range/schedule/own_optima.h"
 #include "engine/range/search/places.h"
+#include "engine/tuning/limits.h"
 
 namespace tunewright::range {
 
@@ -32,9 +33,6 @@ Expected<Look> look_between(const Places& places, const OwnOptima& own, const st
 /// Where the plants or the settings bend, ascending: the points, and the rows within the range. What is largest over
 /// the range is largest there or between.
 std::vector<double> bends_of(const RangeModel& model, const Schedule& schedule);
-
-/// Of ln of a limit: what a verified schedule may exceed it by.
-constexpr double kAllowedLogExcess = 2e-5;
 
 struct Verified {
     double excess = -1;         ///< ln of the largest of Ms, Mt, Mks over its limit

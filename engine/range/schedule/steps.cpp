@@ -6,6 +6,7 @@
 #include "engine/range/one_setting_problem.h"
 #include "engine/range/schedule/design_schedule.h"
 #include "engine/range/schedule/look.h"
+#include "engine/tuning/limits.h"
 
 namespace tunewright::range {
 namespace {
@@ -42,7 +43,7 @@ public:
             own_.renew(places_);
             const auto verified = verify(places_, own_, design.schedule, std::log1p(options_.allowance));
             if (!verified) return verified.error();
-            design.holds_limits = verified->excess <= kAllowedLogExcess;
+            design.holds_limits = verified->excess <= limits::kMaxRelativeExcessVerified;
             design.worst_relative_IAE = std::exp(verified->log_price);
             design.within_allowance = design.worst_relative_IAE <= 1 + options_.allowance;
             design.partial = places_.control().stop.stop_requested();

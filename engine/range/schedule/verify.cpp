@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "engine/range/schedule/look.h"
+#include "engine/tuning/limits.h"
 
 namespace tunewright::range {
 namespace {
@@ -110,7 +111,7 @@ Expected<Verified> verify(const Places& places, const OwnOptima& own, const Sche
     }
     Verified result{.excess = looks.largest(&Look::excess), .log_price = looks.largest(&Look::log_price), .worst = {}};
     const bool little = result.excess <= kSmallExcess && result.log_price <= allowed;
-    if (!little) result.worst = looks.tops(&Look::excess, kAllowedLogExcess);
+    if (!little) result.worst = looks.tops(&Look::excess, limits::kMaxRelativeExcessVerified);
     const auto dear = looks.tops(&Look::log_price, allowed);
     result.worst.insert(result.worst.end(), dear.begin(), dear.end());
     return result;

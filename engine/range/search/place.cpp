@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/tuning/limits.h"
 #include "engine/tuning/robust/family.h"
 #include "engine/tuning/robust/verified_search.h"
 
@@ -15,7 +16,6 @@ using robust::DesignPoint;
 constexpr int kMostRounds = 10;           // of adding the worst plant found inside a region
 constexpr std::size_t kFewMembers = 4;    // all of them are kept
 constexpr double kFarFromLimits = -0.02;  // of ln of a limit's ratio: a member below it is not active
-constexpr double kAllowedAside = 5e-5;    // relative, of a limit on a member that was set aside
 constexpr double kJustAboveLeast = 1.01;  // times the least Td: where a PI stands in for a PID
 
 }  // namespace
@@ -106,7 +106,7 @@ bool Place::add_worst_inside(const DesignPoint& x, const std::stop_token& stop) 
 /// A setting that differs much from the place's own optimum comes near other limits than that does.
 bool Place::take_back_exceeded(const DesignPoint& x) {
     const auto exceeded = std::ranges::stable_partition(set_aside_, [&](const LinearPlant& plant) {
-        return robust::excess_on(plant, problem_, x, {}) <= kAllowedAside;
+        return robust::excess_on(plant, problem_, x, {}) <= limits::kMaxRelativeExcessJudged;
     });
     if (exceeded.empty()) return false;
     model_.members.insert(model_.members.end(), exceeded.begin(), exceeded.end());

@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <string_view>
 
 #include "engine/number_text.h"
+#include "engine/tuning/limits.h"
 #include "engine/tuning/robust/robust.h"
 
 namespace tunewright::range {
 namespace {
-
-constexpr double kTiedFilter = 0.1;  // Tf over Td (robust::filter_rule)
 
 /// The contract's rule at one point of the range.
 Expected<robust::FilterRule> rule_at(const LinearPlant& plant, const RangeOptions& options, bool pid) {
@@ -30,23 +28,14 @@ Expected<robust::FilterRule> common_rule(const RangeModel& model, const RangeOpt
         if (rule->Tf_over_Td) return robust::FilterRule{.Tf = {}, .Tf_over_Td = rule->Tf_over_Td};
         if (rule->Tf) common.Tf = std::min(*rule->Tf, common.Tf.value_or(INFINITY));
     }
-    if (pid && !common.Tf) common.Tf_over_Td = kTiedFilter;
+    if (pid && !common.Tf) common.Tf_over_Td = limits::kDefaultTf_over_Td;
     return common;
 }
 
 }  // namespace
 
-Error in_words_of_range(Error error) {
-    const auto instead = [&](std::string_view of, std::string_view cure) {
-        const auto at = error.message.find(of);
-        if (at != std::string::npos) error.message.replace(at, of.size(), cure);
-    };
+Error placed_in_options(Error error) {
     if (error.where.starts_with("filter")) error.where = "options/" + error.where;
-    instead("Fix the filter with filter {\"Tf\": ...}, or limit the control activity with Mks.",
-            "Fix the filter with schedule.filter {\"Tf\": ...}, or give the plant its dead time.");
-    instead("Give filter {", "Give schedule.filter {");
-    instead("Try another search or a filter with a longer Tf.",
-            "Give schedule.filter a longer Tf, or part the range where its plants change most.");
     return error;
 }
 
@@ -60,7 +49,7 @@ Expected<DesignRules> design_rules(const RangeModel& model, const RangeOptions& 
                      "controller without integral action."};
     rules.sign = first->nominal ? robust::first_sign(*first->nominal) : first->measured->gain_sign();
     const auto filter = common_rule(model, options, rules.pid);
-    if (!filter) return in_words_of_range(filter.error());
+    if (!filter) return placed_in_options(filter.error());
     rules.filter = *filter;
     return rules;
 }
@@ -92,7 +81,7 @@ Expected<Place*> Places::find(double at, bool from_neighbour) {
     if (!place->problem().measured)
         if (auto error = robust::without_optimum(place->problem())) {
             error->message = "At " + named(at) + ": " + error->message;
-            return in_words_of_range(*error);
+            return placed_in_options(*error);
         }
     const Place* neighbour = nullptr;
     if (from_neighbour && after != places_.end()) neighbour = after->second.get();
@@ -102,7 +91,7 @@ Expected<Place*> Places::find(double at, bool from_neighbour) {
     }
     if (auto error = place->find_optimum(control_, neighbour ? &neighbour->optimum() : nullptr)) {
         error->message = "At " + named(at) + ": " + error->message;
-        return in_words_of_range(*error);
+        return placed_in_options(*error);
     }
     return places_.emplace(at, std::move(place)).first->second.get();
 }

@@ -16,9 +16,8 @@ namespace tunewright::range {
 /// gives at a point. Errors: as robust::filter_rule, and unstable_plant for a zero at s = 0.
 Expected<DesignRules> design_rules(const RangeModel& model, const RangeOptions& options);
 
-/// An error of a design at one plant with the fields and the cures that a range has: its filter is the options', and it
-/// has neither Mks nor a choice of searches.
-Error in_words_of_range(Error error);
+/// An error of a design at one plant, with the place that its filter has in a range.
+Error placed_in_options(Error error);
 
 class Places {
 public:

@@ -15,11 +15,18 @@ struct Limits {
     std::optional<double> Ms, Mt, Mks;
 };
 
-/// Where a peak stands: on the loop alone, on it as it is built, on the worst of several plants.
+/// The loop of which a peak is known: the ideal one, that of the user's controller, or either on the worst of several
+/// plants.
+enum class PeakLoop { ideal, as_built, worst_plant, ideal_on_worst_plant };
+
 struct PlacedPeak {
     double value = 0;
-    std::string where;  ///< "", " on your controller as it is built", " on the worst plant" or of the ideal loop on it
+    PeakLoop loop = PeakLoop::ideal;
+    bool on_worst_plant() const { return loop == PeakLoop::worst_plant || loop == PeakLoop::ideal_on_worst_plant; }
 };
+
+/// What follows the figure in a sentence: "" or " on the worst plant".
+std::string words_of(PeakLoop loop);
 
 /// An entry that has an evaluation.
 struct Case {

@@ -4,6 +4,7 @@
 
 #include "engine/identification/model_grade.h"
 #include "engine/request/verdict/findings.h"
+#include "engine/tuning/limits.h"
 
 namespace tunewright::verdict {
 namespace {
@@ -62,7 +63,7 @@ Found too_sharp(const Case& c) {
     return Draft("too-sharp", Level::bad)
         .say("Too sharp for a plant that changes: Ms ")
         .number("Ms", worst->value)
-        .say(worst->where + ".");
+        .say(words_of(worst->loop) + ".");
 }
 
 Found above_limit(const Case& c) {
@@ -72,12 +73,13 @@ Found above_limit(const Case& c) {
         return Draft("above-limit", Level::warning)
             .say(std::string("Above the limit that was asked for: ") + name + " ")
             .number(name, peak.value)
-            .say(peak.where + " instead of ")
+            .say(words_of(peak.loop) + " instead of ")
             .number(std::string(name) + "_limit", limit)
             .say(".");
     };
     const auto beyond = [](const PlacedPeak& peak, double limit) {
-        return peak.value > limit * (1 + (peak.where.ends_with("plant") ? kHeldOnWorst : kReached));
+        return peak.value > limit * (1 + (peak.on_worst_plant() ? limits::kMaxRelativeExcessShownOfWorst
+                                                                : limits::kMaxRelativeExcessShown));
     };
     if (worst && limits.Ms && beyond(*worst, *limits.Ms)) return broken("Ms", *worst, *limits.Ms);
     if (Mt && limits.Mt && beyond(*Mt, *limits.Mt)) return broken("Mt", *Mt, *limits.Mt);
@@ -91,7 +93,7 @@ Found little_margin(const Case& c) {
     return Draft("little-margin", Level::warning)
         .say("Fast, with little margin left: Ms ")
         .number("Ms", worst->value)
-        .say(worst->where + ".");
+        .say(words_of(worst->loop) + ".");
 }
 
 Found oscillatory(const Case& c) {
@@ -100,7 +102,7 @@ Found oscillatory(const Case& c) {
     return Draft("oscillatory", Level::warning)
         .say("It oscillates before it settles: Mt ")
         .number("Mt", Mt->value)
-        .say(Mt->where + ".");
+        .say(words_of(Mt->loop) + ".");
 }
 
 Found doubtful_model(const Case& c) {
@@ -182,7 +184,7 @@ std::vector<ActiveLimit> active_limits(const Case& c) {
     const Limits limits = c.limits();
     const Robustness& r = c.robustness();
     const auto reached = [](const std::optional<double>& value, const std::optional<double>& limit) {
-        return value && limit && std::abs(*value / *limit - 1) <= kReached;
+        return value && limit && std::abs(*value / *limit - 1) <= limits::kMaxRelativeExcessShown;
     };
     std::vector<ActiveLimit> active;
     if (reached(r.Ms, limits.Ms)) active.push_back({"Ms", *r.Ms, r.omega_Ms, ""});

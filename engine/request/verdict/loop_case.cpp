@@ -6,20 +6,28 @@ namespace tunewright::verdict {
 
 namespace {
 
-constexpr const char* kAsBuilt = " on your controller as it is built";
-
 std::optional<double> above(std::optional<double> value, double floor) {
     return value && *value > floor ? value : std::nullopt;
 }
 
 /// Of the loop that runs; of the ideal one where nothing else is known.
 std::optional<PlacedPeak> running(const Figure& runs, const Figure& ideal, bool built) {
-    if (runs) return PlacedPeak{*runs, built ? kAsBuilt : ""};
-    if (ideal) return PlacedPeak{*ideal, ""};
+    if (runs) return PlacedPeak{*runs, built ? PeakLoop::as_built : PeakLoop::ideal};
+    if (ideal) return PlacedPeak{*ideal};
     return {};
 }
 
 }  // namespace
+
+std::string words_of(PeakLoop loop) {
+    switch (loop) {
+        case PeakLoop::ideal: return "";
+        case PeakLoop::as_built: return " on your controller as it is built";
+        case PeakLoop::worst_plant: return " on the worst plant";
+        case PeakLoop::ideal_on_worst_plant: return " of the ideal loop on the worst plant";
+    }
+    return "";
+}
 
 const Performance& performance_of(const TuningEntry& entry) {
     return entry.as_built ? entry.as_built->loop.performance : entry.evaluation->performance;
@@ -46,7 +54,7 @@ std::optional<PlacedPeak> Case::worst_Ms() const {
     if (!evaluation.region) return largest;
     const Figure& worst = evaluation.region->worst_Ms;
     if (worst && (!largest || *worst > largest->value))
-        largest = {*worst, built() ? " of the ideal loop on the worst plant" : " on the worst plant"};
+        largest = {*worst, built() ? PeakLoop::ideal_on_worst_plant : PeakLoop::worst_plant};
     return largest;
 }
 

@@ -1,4 +1,5 @@
 #include "engine/request/verdict/findings.h"
+#include "engine/tuning/limits.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +18,7 @@ void say_within(Draft& draft, const std::string& name, const Figure& value, cons
     if (!value) return;
     if (!limit) {
         draft.say(" " + name + " is ").number(name, *value).say(".");
-    } else if (*value <= *limit * (1 + kReached)) {
+    } else if (*value <= *limit * (1 + limits::kMaxRelativeExcessShown)) {
         draft.say(" " + name + " (").number(name, *value).say(") is within its limit.").figure(name + "_limit", *limit);
     }
 }

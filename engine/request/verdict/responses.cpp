@@ -1,5 +1,6 @@
 #include "engine/request/verdict/cures.h"
 #include "engine/request/verdict/findings.h"
+#include "engine/tuning/limits.h"
 #include "engine/tuning/method/setpoint.h"
 
 #include <cmath>
@@ -95,7 +96,7 @@ Found overshoot(const Case& c) {
     else if (limit)
         draft.say(", more than the ").number("design_percent", *limit, "%").say(" of the design");
     draft.say(".");
-    say_cure(draft, c, limit.value_or(kDefaultOvershoot));
+    say_cure(draft, c, limit.value_or(limits::kDefaultMaxOvershootPercent));
     return draft;
 }
 

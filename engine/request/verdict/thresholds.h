@@ -1,14 +1,9 @@
-// Every threshold on which a finding or its level depends, with its reason; the grade of a record's model is concluded
-// in identification/model_grade.h. docs/verdicts.md lists them for users.
+// Every threshold on which a finding or its level depends, with its reason; when a limit holds stands in
+// tuning/limits.h, the grade of a record's model is concluded in identification/model_grade.h. docs/verdicts.md lists
+// them for users.
 #pragma once
 
 namespace tunewright::verdict {
-
-// Limits that were asked for
-
-/// A limit counts as reached within this relative distance; beyond it, as broken. On several plants the worst of them
-/// is searched for, and the limit is held to the second.
-inline constexpr double kReached = 2e-3, kHeldOnWorst = 1e-2;
 
 // Margins
 

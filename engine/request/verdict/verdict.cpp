@@ -1,4 +1,5 @@
 #include "engine/request/verdict/findings.h"
+#include "engine/tuning/limits.h"
 
 #include <algorithm>
 #include <cmath>
@@ -77,7 +78,7 @@ double asked_limit(const std::vector<TuningEntry>& entries) {
 /// Little margin is nothing against an entry where it was asked for.
 Level level_for_choice(const TuningEntry& entry, double asked_Ms) {
     const Figure& Ms = entry.standing ? entry.standing->Ms : Figure{};
-    const bool as_asked = Ms && *Ms <= asked_Ms * (1 + kReached);
+    const bool as_asked = Ms && *Ms <= asked_Ms * (1 + limits::kMaxRelativeExcessShown);
     Level level = Level::good;
     for (const Finding& finding : entry.verdict)
         if (finding.head && !(as_asked && finding.code == "little-margin")) level = std::max(level, finding.level);

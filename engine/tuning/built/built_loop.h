@@ -8,12 +8,13 @@
 #include "engine/controller/sampled/sampled_pid.h"
 #include "engine/loop/sampled/held_plant.h"
 #include "engine/plant/linear/linear_plant.h"
+#include "engine/tuning/limits.h"
 
 namespace tunewright::built {
 
 struct Limits {
-    double Ms = 1.4, Mt = 1.4;  ///< > 1
-    std::optional<double> Mks;  ///< of max |C S|
+    double Ms = limits::kDefaultMs, Mt = limits::kDefaultMt;  ///< > 1
+    std::optional<double> Mks;                                ///< of max |C S|
 };
 
 /// A controller with what its program adds; without `Ts` (0) it is the continuous law of the gains.

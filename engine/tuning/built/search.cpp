@@ -27,7 +27,6 @@ constexpr double kNearTolerance = 1e-4;
 constexpr int kMaxCorrections = 6;
 // Of M - 1: where limits bound the gain from both sides, the last grid may differ and leave no gain; then the next.
 constexpr double kMargins[] = {1e-5, 1e-4, 1e-3};
-constexpr double kHolds = 1e-6;                      // relative excess over a limit that counts as none
 constexpr double kLowerGains[] = {0.95, 0.85, 0.7};  // where a loop at its limits swings, less gain may cost less
 
 // The net over both times on which other valleys than the start's are looked for. A resonance makes some that a simplex
@@ -122,7 +121,7 @@ Settings Search::confirmed(double Ti, double Td) {
             if (!is_stable(*plant, built)) return {0, Ti, Td, kInfinity};
             excess = std::max(excess, peaks_of(*plant, built).excess(limits_));
         }
-        if (excess <= kHolds) return found;
+        if (excess <= limits::kMaxRelativeExcessSearched) return found;
         limits = within(limits, 2 * excess);
     }
     found.load_IAE = kInfinity;

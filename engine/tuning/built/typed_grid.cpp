@@ -9,7 +9,6 @@ namespace tunewright::built {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kHolds = 1e-6;         // relative excess over a limit that counts as none
 constexpr double kCoarse = 0.004;       // of a value: larger steps are worth a look at the neighbours too
 constexpr int kFarSteps = 2;            // so many steps beyond floor and ceiling, where they are coarse
 constexpr int kMostGains = 6;           // steps of the gain that are tried below the first
@@ -109,7 +108,8 @@ std::optional<Fitted> Grid::held(const product::Settings& settings) const {
     auto fitted = fit(build_, settings);
     if (!fitted) return std::nullopt;
     for (const LinearPlant* plant : plants_)
-        if (!is_stable(*plant, fitted->law) || peaks_of(*plant, fitted->law).excess(limits_) > kHolds)
+        if (!is_stable(*plant, fitted->law) ||
+            peaks_of(*plant, fitted->law).excess(limits_) > limits::kMaxRelativeExcessSearched)
             return std::nullopt;
     return std::move(*fitted);
 }

@@ -1,7 +1,9 @@
 #include <algorithm>
 
+#include "engine/number_text.h"
 #include "engine/tuning/arrieta/arrieta.h"
 #include "engine/tuning/emulation/emulation.h"
+#include "engine/tuning/limits.h"
 #include "engine/tuning/method/method.h"
 #include "engine/tuning/method/setpoint.h"
 #include "engine/tuning/model_based/gain_phase_margin.h"
@@ -75,7 +77,8 @@ const std::vector<TuningMethod>& method_registry() {
         for (TuningMethod& method : all)
             if (method.weighs_setpoint)
                 method.options.push_back(setpoint_option(
-                    method.overshoot ? "overshoot at most 5 %, with an objective that sees the set point b = 1"
+                    method.overshoot ? "overshoot at most " + text(limits::kDefaultMaxOvershootPercent) +
+                                           " %, with an objective that sees the set point b = 1"
                                      : "the weight of the source",
                     bool(method.overshoot)));
         return all;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/reduction/reduction.h"
+#include "engine/tuning/limits.h"
 #include "engine/tuning/method/method.h"
 #include "engine/tuning/method/option_set.h"
 
@@ -24,7 +25,7 @@ struct ReductionOptions {
 
 /// Filter of a PID: Tf where it is given, else Tf_over_Td Td; 0 for none.
 struct FilterOptions {
-    double Tf_over_Td = 0.1;  ///< N = 10
+    double Tf_over_Td = limits::kDefaultTf_over_Td;
     std::optional<double> Tf = {};
 };
 

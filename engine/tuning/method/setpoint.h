@@ -26,9 +26,6 @@ struct SetpointOptions {
 /// The name of the option beside a method's own.
 inline constexpr const char* kSetpointOption = "setpoint";
 
-/// Largest overshoot, in percent, of the method robust where the request says nothing.
-inline constexpr double kDefaultOvershoot = 5;
-
 /// Its description, for every method whose controllers have weights; `by_default` is what they have unless asked.
 /// `moved`: weight and overshoot have sliders, of a method that chooses the weight by itself.
 OptionDescription setpoint_option(const std::string& by_default, bool moved);

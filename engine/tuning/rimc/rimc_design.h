@@ -5,6 +5,7 @@
 
 #include "engine/controller/imc_controller.h"
 #include "engine/plant/plant.h"
+#include "engine/tuning/limits.h"
 #include "engine/tuning/model_based/imc.h"
 
 namespace tunewright {
@@ -13,7 +14,7 @@ namespace tunewright {
 /// fractional approximation asks for.
 struct RimcFilter {
     bool linear_fraction = false;
-    double Tf_over_Td = 0.1;
+    double Tf_over_Td = limits::kDefaultTf_over_Td;
 };
 
 /// Eqs. 19-23 for this model (T > 0, L >= 0) and lambda > 0:

@@ -1,3 +1,4 @@
+#include "engine/tuning/limits.h"
 #include "engine/tuning/robust/robust.h"
 
 #include <algorithm>
@@ -13,11 +14,9 @@ namespace {
 
 using namespace robust;
 
-constexpr int kMaxRounds = 5;            // of adding the worst plants found inside the regions
-constexpr int kSamples = 48;             // of a region, looked at before the worst is followed
-constexpr double kAllowedInside = 5e-5;  // relative excess over a limit inside a region
-constexpr double kHold = 0.5;            // of a sample: the mean delay of the hold
-constexpr double kTiedFilter = 0.1;  // Tf/Td where the plant suggests no filter time but the sampling bounds the gain
+constexpr int kMaxRounds = 5;  // of adding the worst plants found inside the regions
+constexpr int kSamples = 48;   // of a region, looked at before the worst is followed
+constexpr double kHold = 0.5;  // of a sample: the mean delay of the hold
 
 /// The plant as a sampled program sees it, nearly: later by half a sample and by the computation. An ideal design for
 /// it is where the search starts; with any sampling it has a finite optimum.
@@ -57,7 +56,7 @@ std::function<double(double)> filter_time(const TuningProblem& tuning, const Rob
     if (own.fixed) return [Tf = *own.fixed](double) { return Tf; };
     const auto rule = filter_rule(tuning, options.filter, options.controller == ControllerKind::PID);
     if (!rule && !sampled) return {};
-    const FilterRule held = rule ? *rule : FilterRule{.Tf = {}, .Tf_over_Td = kTiedFilter};
+    const FilterRule held = rule ? *rule : FilterRule{.Tf = {}, .Tf_over_Td = limits::kDefaultTf_over_Td};
     if (held.Tf) return [Tf = std::max(*held.Tf, own.shortest)](double) { return Tf; };
     if (held.Tf_over_Td)
         return [ratio = *held.Tf_over_Td, least = own.shortest](double Td) { return std::max(ratio * Td, least); };
@@ -78,7 +77,7 @@ std::vector<LinearPlant> worst_as_built(const PlantFamily& family, const built::
         const auto ends = region.ends();
         starts.insert(starts.end(), ends.begin(), ends.end());
         const WorstCase worst = find_worst_case(region, excess, starts, control.stop);
-        if (!(worst.cost > kAllowedInside)) continue;
+        if (!(worst.cost > limits::kMaxRelativeExcessJudged)) continue;
         if (auto plant = LinearPlant::make(region.at(worst.z))) found.push_back(std::move(*plant));
     }
     return found;

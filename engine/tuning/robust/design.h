@@ -11,6 +11,7 @@
 #include "engine/controller/pid.h"
 #include "engine/plant/frequency_response.h"
 #include "engine/plant/linear/linear_plant.h"
+#include "engine/tuning/limits.h"
 
 namespace tunewright::robust {
 
@@ -29,8 +30,7 @@ struct FilterRule {
 };
 
 struct Limits {
-    double Ms = 1.4;
-    double Mt = 1.4;
+    double Ms = limits::kDefaultMs, Mt = limits::kDefaultMt;
     std::optional<double> Mks;
     bool m_circle = false;  ///< one circle around the circles of Ms and Mt in their place
 };

@@ -8,11 +8,10 @@
 #include "engine/loop/peaks.h"
 #include "engine/loop/stability.h"
 #include "engine/loop/worst_case.h"
+#include "engine/tuning/limits.h"
 
 namespace tunewright::robust {
 namespace {
-
-constexpr double kAllowedInside = 5e-5;  // relative, of a limit between the plants on which it is held
 
 Error both_signs() {
     return {ErrorKind::no_feasible_controller, "",
@@ -62,7 +61,7 @@ std::vector<LinearPlant> worst_inside(const PlantFamily& family, const DesignPro
         if (region.dimension() == 0) continue;
         for (const auto& starts : {region.spread(kRegionSamples), region.ends()}) {
             const WorstCase worst = find_worst_case(region, cost, starts, stop);
-            if (!(worst.cost > kAllowedInside)) continue;
+            if (!(worst.cost > limits::kMaxRelativeExcessJudged)) continue;
             if (auto plant = LinearPlant::make(region.at(worst.z))) found.push_back(std::move(*plant));
         }
     }

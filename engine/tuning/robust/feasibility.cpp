@@ -1,9 +1,7 @@
 #include "engine/tuning/robust/feasibility.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -12,6 +10,7 @@
 #include "engine/loop/stability.h"
 #include "engine/number_text.h"
 #include "engine/numerics/extremum.h"
+#include "engine/tuning/limits.h"
 #include "engine/tuning/robust/sqp.h"
 #include "engine/tuning/robust/starts.h"
 #include "engine/tuning/robust/sweep/sweep.h"
@@ -176,11 +175,14 @@ bool has_no_finite_optimum(const DesignProblem& problem) {
 
 namespace {
 
+/// To three decimals, as the sentence prints it.
+double rounded_up(double limit) { return std::ceil(limit * 1000) / 1000; }
+
 /// The smallest common limit at which a controller is really found, from 1 % above the least peak upward; empty if none
 /// is.
 std::optional<double> workable_limit(DesignProblem problem, const LeastPeak& least) {
     for (double M = least.M * 1.01; M < 4 * least.M; M = 1 + (M - 1) * 1.1) {
-        problem.limits.Ms = problem.limits.Mt = std::ceil(M * 1000) / 1000;
+        problem.limits.Ms = problem.limits.Mt = rounded_up(M);
         if (feasible_near(Sweep(problem, least.reference), least.x)) return problem.limits.Ms;
     }
     return std::nullopt;
@@ -190,8 +192,6 @@ std::string on_plants(const DesignProblem& problem) {
     return problem.others.empty() ? " on this plant"
                                   : " on all " + std::to_string(problem.plants()) + " plants looked at";
 }
-
-constexpr std::string_view kNamesLimit = ". The smallest common limit that works is Ms = Mt = ";
 
 }  // namespace
 
@@ -213,24 +213,18 @@ Error why_infeasible(const DesignProblem& problem, const std::optional<LeastPeak
                 "Controllers within the limits exist, but none whose response could be computed. Check the units of "
                 "the time constants and the dead time: "
                 "they lie very far apart."};
-    constexpr double kGreatest = 4;  // that may be asked for
-    const double named = workable.value_or(least->M * 1.01);
-    return {ErrorKind::no_feasible_controller, "",
-            "No " + name + " controller keeps Ms <= " + text(problem.limits.Ms) +
-                " and Mt <= " + text(problem.limits.Mt) + on_plants(problem) +
-                (problem.limits.Mks ? " with Mks <= " + text(*problem.limits.Mks) : std::string()) +
-                (named > kGreatest ? ", nor was one found for any common limit up to " + text(kGreatest) +
-                                         ". Shorten the dead time, or stabilise the plant by an inner loop."
-                                   : std::string(kNamesLimit) + text(named) + "; use that or more.")};
-}
-
-std::optional<double> named_limit(const Error& error) {
-    const std::size_t at = error.message.find(kNamesLimit);
-    if (error.kind != ErrorKind::no_feasible_controller || at == std::string::npos) return std::nullopt;
-    const char* begin = error.message.data() + at + kNamesLimit.size();
-    double limit = 0;
-    const auto read = std::from_chars(begin, error.message.data() + error.message.size(), limit);
-    return read.ec == std::errc() ? std::optional(limit) : std::nullopt;
+    const double common = workable.value_or(rounded_up(least->M * 1.01));
+    const std::string broken = "No " + name + " controller keeps Ms <= " + text(problem.limits.Ms) +
+                               " and Mt <= " + text(problem.limits.Mt) + on_plants(problem) +
+                               (problem.limits.Mks ? " with Mks <= " + text(*problem.limits.Mks) : std::string());
+    if (common > limits::kMaxMs)
+        return {ErrorKind::no_feasible_controller, "",
+                broken + ", nor was one found for any common limit up to " + text(limits::kMaxMs) +
+                    ". Shorten the dead time, or stabilise the plant by an inner loop."};
+    return {ErrorKind::no_feasible_controller,
+            "",
+            broken + ". The smallest common limit that works is Ms = Mt = " + text(common) + "; use that or more.",
+            {{"Ms", common}, {"Mt", common}}};
 }
 
 }  // namespace tunewright::robust

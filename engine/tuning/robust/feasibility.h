@@ -25,11 +25,8 @@ std::optional<LeastPeak> least_common_peak(const DesignProblem& problem);
 /// leaves a pole excess of one).
 bool has_no_finite_optimum(const DesignProblem& problem);
 
-/// The sentence where there is no controller, with the limit that works; `least`: of the same problem.
+/// Why there is no controller. The cure of a no_feasible_controller is the smallest common limit on Ms and Mt that
+/// works, to three decimals, where there is one that may be asked for. `least`: of the same problem.
 Error why_infeasible(const DesignProblem& problem, const std::optional<LeastPeak>& least);
-
-/// The common limit on Ms and Mt that the sentence of a no_feasible_controller names as its cure; empty where it names
-/// none. Read back from the sentence, which is all that an error carries.
-std::optional<double> named_limit(const Error& error);
 
 }  // namespace tunewright::robust

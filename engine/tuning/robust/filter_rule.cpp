@@ -1,3 +1,4 @@
+#include "engine/tuning/limits.h"
 #include "engine/tuning/robust/robust.h"
 
 #include <algorithm>
@@ -29,7 +30,7 @@ Error no_filter_time(const TuningProblem& problem) {
               : "This plant has neither dead time nor lags, so nothing bounds the speed of a PID and nothing suggests "
                 "a filter time. ";
     return {ErrorKind::unbounded_optimum, "filter",
-            what + "Give filter {\"Tf\": ...}, e.g. the sampling time or the time constant of the sensor."};
+            what + "Give the filter a time constant Tf, such as the sampling time or the time constant of the sensor."};
 }
 
 }  // namespace
@@ -51,7 +52,7 @@ Expected<FilterRule> filter_rule(const TuningProblem& problem, const RobustFilte
     const LinearPlant& plant = problem.linear;
     const bool dead_time = plant.dead_time() > problem.dead_time_std.value_or(0);
     if (dead_time || plant.has_right_half_plane_zero() || plant.pole_excess() >= 3)
-        return FilterRule{.Tf = std::nullopt, .Tf_over_Td = 0.1};
+        return FilterRule{.Tf = std::nullopt, .Tf_over_Td = limits::kDefaultTf_over_Td};
     const double basis = filter_basis(plant);
     if (basis > 0) return FilterRule{.Tf = 0.05 * basis, .Tf_over_Td = std::nullopt};
     return no_filter_time(problem);

@@ -6,6 +6,7 @@
 
 #include "engine/evaluation/evaluate.h"
 #include "engine/number_text.h"
+#include "engine/tuning/limits.h"
 #include "engine/tuning/method/setpoint.h"
 #include "engine/tuning/robust/front.h"
 
@@ -59,7 +60,7 @@ Expected<Frontier> frontier(const TuningProblem& tuning, const FrontierOptions& 
             break;
         }
         IdealPid controller = design->controller;
-        choose_setpoint(tuning.linear, {.overshoot = kDefaultOvershoot}, controller);
+        choose_setpoint(tuning.linear, {.overshoot = limits::kDefaultMaxOvershootPercent}, controller);
         auto point = judged(tuning, Ms, controller);
         if (!point) return point.error();
         answer.points.push_back(std::move(*point));
@@ -101,12 +102,13 @@ Expected<TunedController> tune_frontier(const TuningProblem& tuning, const Front
 
 const OptionSet<FrontierOptions>& frontier_options() {
     static const auto options = [] {
-        constexpr double kGreatest = 4;
         constexpr int kMostPoints = 200;
         OptionSet<FrontierRange> range;
         range
-            .number(&FrontierRange::from, "from", "Lowest limit on Ms.", {.exclusive_minimum = 1, .maximum = kGreatest})
-            .number(&FrontierRange::to, "to", "Highest limit on Ms.", {.exclusive_minimum = 1, .maximum = kGreatest})
+            .number(&FrontierRange::from, "from", "Lowest limit on Ms.",
+                    {.exclusive_minimum = 1, .maximum = limits::kMaxMs})
+            .number(&FrontierRange::to, "to", "Highest limit on Ms.",
+                    {.exclusive_minimum = 1, .maximum = limits::kMaxMs})
             .number(&FrontierRange::points, "points", "How many limits, evenly spaced.",
                     {.minimum = 2, .maximum = kMostPoints});
         using O = FrontierOptions;
@@ -114,9 +116,9 @@ const OptionSet<FrontierOptions>& frontier_options() {
         add_controller(set, {ControllerKind::PID, ControllerKind::PI});
         set.object(&O::Ms, "Ms", "The limits on Ms.", range)
             .number_or_word(&O::Mt, "Mt", "Limit on Mt at every point; tied: the same as on Ms.", "tied",
-                            {.exclusive_minimum = 1, .maximum = kGreatest})
+                            {.exclusive_minimum = 1, .maximum = limits::kMaxMs})
             .number(&O::take, "take", "The method's own controller is the point whose limit is nearest to this.",
-                    {.exclusive_minimum = 1, .maximum = kGreatest})
+                    {.exclusive_minimum = 1, .maximum = limits::kMaxMs})
             .object(&O::filter, "filter", "Second-order measurement filter, as in robust.", robust::filter_options(), 1)
             .main({"Ms", "Mt"});
         return set;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/plant/subject.h"
+#include "engine/tuning/limits.h"
 #include "engine/tuning/robust/robust.h"
 
 namespace tunewright {
@@ -18,8 +19,8 @@ struct FrontierRange {
 struct FrontierOptions {
     ControllerKind controller = ControllerKind::PID;  ///< PI or PID
     FrontierRange Ms = {};
-    std::optional<double> Mt = {};  ///< limit on Mt at every point; empty: tied to that on Ms
-    double take = 1.4;              ///< the method's own controller is the point whose limit is nearest
+    std::optional<double> Mt = {};     ///< limit on Mt at every point; empty: tied to that on Ms
+    double take = limits::kDefaultMs;  ///< the method's own controller is the point whose limit is nearest
     RobustFilterOptions filter = {};
 };
 
@@ -39,9 +40,9 @@ struct Frontier : MethodReport {
 };
 
 /// Every point is the design of the method robust under its limit, searched from its neighbour and checked as any; the
-/// load IAE falls as the limit rises. The set point is weighed for an overshoot of at most kDefaultOvershoot. Limits
-/// hold on all plants of the problem, figures are the nominal plant's. Errors: those of the method robust, where no
-/// point is feasible; cancelled.
+/// load IAE falls as the limit rises. The set point is weighed for an overshoot of at most
+/// limits::kDefaultMaxOvershootPercent. Limits hold on all plants of the problem, figures are the nominal plant's.
+/// Errors: those of the method robust, where no point is feasible; cancelled.
 Expected<Frontier> frontier(const TuningProblem& tuning, const FrontierOptions& options, const RunControl& control);
 
 /// On a plant as requests give it. Error: unsupported for measured points, which have no response over time.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/number_text.h"
+#include "engine/tuning/limits.h"
 #include "engine/tuning/method/setpoint.h"
 #include "engine/tuning/reaction_curve/amigo.h"
 #include "engine/tuning/robust/degenerate_design.h"
@@ -93,10 +94,11 @@ Expected<DesignProblem> nominal_problem(const TuningProblem& tuning, const Robus
 std::optional<Error> without_optimum(const DesignProblem& problem) {
     if (auto error = check_Mks(problem)) return error;
     if (!has_no_finite_optimum(problem)) return std::nullopt;
-    return Error{ErrorKind::unbounded_optimum, "filter",
-                 "On this plant the gain is unbounded within the limits, because no dead time bounds it, so there is "
-                 "no optimum. "
-                 "Fix the filter with filter {\"Tf\": ...}, or limit the control activity with Mks."};
+    return Error{
+        ErrorKind::unbounded_optimum, "filter",
+        "On this plant the gain is unbounded within the limits, because no dead time bounds it, so there is "
+        "no optimum. "
+        "Fix the filter time constant Tf, or give the plant its dead time; a single design may limit Mks instead."};
 }
 
 OptionSet<RobustFilterOptions> filter_options() {
@@ -168,7 +170,7 @@ Expected<TunedController> tune_on_points(const MeasuredPlant& plant, const Robus
                          "gain. Measure higher frequencies."};
     const auto filter = explicit_filter(options.filter, pid_wanted(options));
     if (!filter) return filter.error();
-    const FilterRule tied{.Tf = std::nullopt, .Tf_over_Td = 0.1};
+    const FilterRule tied{.Tf = std::nullopt, .Tf_over_Td = limits::kDefaultTf_over_Td};
     DesignProblem problem = make_problem(options, filter->value_or(pid_wanted(options) ? tied : FilterRule{}));
     problem.measured = &plant;
     problem.sign = plant.gain_sign();
@@ -222,12 +224,12 @@ void add_sliders(OptionSet<RobustOptions>& set) {
 OptionSet<RobustOptions> described_options(const RobustOptions& defaults) {
     using O = RobustOptions;
     using enum Objective;
-    constexpr double kMaxLimit = 4;
     OptionSet<O> set(defaults);
     add_controller(set, {ControllerKind::PID, ControllerKind::PI});
-    set.number(&O::Ms, "Ms", "Largest allowed sensitivity max |S|.", {.exclusive_minimum = 1, .maximum = kMaxLimit});
+    set.number(&O::Ms, "Ms", "Largest allowed sensitivity max |S|.",
+               {.exclusive_minimum = 1, .maximum = limits::kMaxMs});
     set.number(&O::Mt, "Mt", "Largest allowed complementary sensitivity max |T|.",
-               {.exclusive_minimum = 1, .maximum = kMaxLimit});
+               {.exclusive_minimum = 1, .maximum = limits::kMaxMt});
     set.number(&O::Mks, "Mks", "Largest allowed max |C S|: how strongly u may react.", {.exclusive_minimum = 0});
     set.choice(&O::constraint, "constraint",
                "circles: the Ms and the Mt circle. m_circle: the smallest circle around both.",
@@ -245,8 +247,9 @@ OptionSet<RobustOptions> described_options(const RobustOptions& defaults) {
                    {"fast", SearchKind::fast}, {"nelder_mead", SearchKind::nelder_mead}, {"grid", SearchKind::grid}});
     set.flag(&O::surface, "surface", "Also return the least cost over the (Ti, Td) plane.");
     set.object(&O::filter, "filter",
-               "Second-order measurement filter. PID default: Tf = 0.1 Td with a dead time, a right-half-plane zero or "
-               "pole excess >= 3, else Tf = 0.05 times the sum of the lags minus the leads. PI default: none.",
+               "Second-order measurement filter. PID default: Tf = " + text(limits::kDefaultTf_over_Td) +
+                   " Td with a dead time, a right-half-plane zero or "
+                   "pole excess >= 3, else Tf = 0.05 times the sum of the lags minus the leads. PI default: none.",
                filter_options(), 1);
     add_sliders(set.main({"Ms", "Mt", "Mks"}));
     return set;
@@ -262,9 +265,9 @@ TuningMethod robust_method() {
         "minimise the integral of |e| after a load step subject to max |S| <= Ms, max |T| <= Mt and a stable loop";
     method.source = "Garpinger and Hagglund (2008), A software tool for robust PID design, IFAC World Congress";
     method.needs = "any linear plant";
-    method.validity =
-        "Ms, Mt in (1, 4]; a finite optimum needs a dead time, a right-half-plane zero, a fixed filter time or a limit "
-        "on Mks";
+    method.validity = "Ms, Mt in (1, " + text(limits::kMaxMs) +
+                      "]; a finite optimum needs a dead time, a right-half-plane zero, a fixed filter time or a limit "
+                      "on Mks";
     method.serve(described_options({}), tune_robust);
     method.serve_as_built(described_options({}), tune_robust_as_built);
     method.holds_family = true;
@@ -272,7 +275,7 @@ TuningMethod robust_method() {
     method.overshoot = [](const MethodOptions& options) {
         const auto objective = options.text("objective");
         const bool sees_setpoint = objective == "setpoint_iae" || objective == "weighted";
-        return sees_setpoint ? std::nullopt : std::optional(kDefaultOvershoot);
+        return sees_setpoint ? std::nullopt : std::optional(limits::kDefaultMaxOvershootPercent);
     };
     RobustOptions on_points;
     on_points.objective = Objective::load_ie;

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/tuning/limits.h"
 #include "engine/tuning/method/report.h"
 #include "engine/tuning/method/rule.h"
 #include "engine/tuning/robust/design.h"
@@ -18,9 +19,9 @@ struct RobustFilterOptions {
 };
 
 struct RobustOptions {
-    ControllerKind controller = ControllerKind::PID;  ///< PI or PID
-    double Ms = 1.4, Mt = 1.4;                        ///< limits, in (1, 4]
-    std::optional<double> Mks = {};                   ///< limit on max |C S|
+    ControllerKind controller = ControllerKind::PID;          ///< PI or PID
+    double Ms = limits::kDefaultMs, Mt = limits::kDefaultMt;  ///< limits, in (1, kMaxMs]
+    std::optional<double> Mks = {};                           ///< limit on max |C S|
     robust::Constraint constraint = robust::Constraint::circles;
     robust::Objective objective = robust::Objective::load_iae;
     double rho = 0.5;  ///< weight of the load in the weighted objective

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/number_text.h"
+#include "engine/tuning/limits.h"
 #include "engine/tuning/robust/family.h"
 #include "engine/tuning/robust/feasibility.h"
 #include "engine/tuning/robust/search.h"
@@ -14,9 +15,6 @@
 namespace tunewright::robust {
 
 namespace {
-
-// Relative, of Ms and Mt on the independent grid: above it nothing is returned as a success.
-constexpr double kAllowedExcess = 2e-5;
 
 /// The largest relative excess over a limit, on a grid that the search never saw.
 double measured_excess(const DesignProblem& problem, const DesignPoint& x) {
@@ -170,7 +168,7 @@ Expected<Found> checked_search(SearchKind kind, const Sweep& sweep, DesignProble
     double tighter = 0;
     for (int round = 0; round < kRounds; ++round) {
         const double excess = measured_excess(problem, found->x);
-        if (excess <= 0.5 * kAllowedExcess) return *found;
+        if (excess <= 0.5 * limits::kMaxRelativeExcessVerified) return *found;
         if (!std::isfinite(excess) || round + 1 == kRounds) break;
         tighter += 1.5 * excess * problem.limits.Ms / (problem.limits.Ms - 1) + kLeastTightening;
         const DesignProblem narrowed = tightened(problem, std::min(tighter, kMostTightening));
@@ -182,7 +180,7 @@ Expected<Found> checked_search(SearchKind kind, const Sweep& sweep, DesignProble
     }
     return Error{ErrorKind::numerical_failure, "",
                  "The design found does not hold its limits on the independent frequency grid, so it is not returned. "
-                 "Try another search or a filter with a longer Tf."};
+                 "Give the filter a longer time constant Tf; for a single design another search may do."};
 }
 
 /// A PI is a PID too. It may be the better one where Td has come to its end, and under a dead time that repeats what

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "api/report/report.h"
+#include "engine/tuning/limits.h"
 #include "tests/api/support.h"
 
 namespace tunewright::api {
@@ -52,6 +53,11 @@ TEST(RangeCall, TheAnswerFitsTheDocumentAndTheScheduleHoldsItsLimitsAndAllowance
     for (std::size_t i = 0; i < places; ++i) {
         EXPECT_LE(range["curves"]["schedule"]["Ms"][i].get<double>(), 1.4001) << range["curves"]["at"][i];
         EXPECT_LE(range["curves"]["schedule"]["relative_IAE"][i].get<double>(), 1.051) << range["curves"]["at"][i];
+    }
+    for (const Json& worst : range["worst"]["schedule"]) {
+        if (worst["quantity"] == "Ms") {
+            EXPECT_EQ(worst["limit"], limits::kDefaultMs) << "none was asked for";
+        }
     }
     EXPECT_EQ(range["curves"]["K"].front(), 4);
     EXPECT_EQ(range["curves"]["T"].back(), 8);

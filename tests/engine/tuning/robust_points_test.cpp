@@ -25,7 +25,7 @@ FrequencyResponse points_of(const Plant& plant, double low, double high, int n) 
     return points;
 }
 
-Expected<TuningResult> designed(const PlantModel& plant, double M) {
+Expected<TuningResult> designed_on_points(const PlantModel& plant, double M) {
     TuningRequest request;
     request.subject = test::subject_of(plant);
     request.evaluate.points = 0;
@@ -52,8 +52,8 @@ const Known kKnown[] = {
 
 TEST(FrequencyResponse, DesignsAsTheKnownPlantDoes) {
     for (const auto& known : kKnown) {
-        const auto exact = designed(known.plant, known.M);
-        const auto measured = designed(points_of(known.plant, known.low, known.high, 60), known.M);
+        const auto exact = designed_on_points(known.plant, known.M);
+        const auto measured = designed_on_points(points_of(known.plant, known.low, known.high, 60), known.M);
         ASSERT_TRUE(exact.has_value() && measured.has_value()) << known.name;
         const IdealPid& a = std::get<IdealPid>(exact->controllers[0].evaluation->controller);
         const IdealPid& b = std::get<IdealPid>(measured->controllers[0].evaluation->controller);
@@ -69,7 +69,7 @@ TEST(FrequencyResponse, DesignsAsTheKnownPlantDoes) {
 
 TEST(FrequencyResponse, ItsFiguresAreThoseOfTheKnownPlant) {
     for (const auto& known : kKnown) {
-        const auto exact = designed(known.plant, known.M);
+        const auto exact = designed_on_points(known.plant, known.M);
         ASSERT_TRUE(exact.has_value()) << known.name;
         const auto& reference = exact->controllers[0].evaluation->robustness;
         EvaluateOptions options;
@@ -96,7 +96,7 @@ TEST(FrequencyResponse, CountsTheSameUnstablePolesAsTheKnownPlant) {
         const auto linear = LinearPlant::make(known.plant);
         const auto measured = MeasuredPlant::make(points_of(known.plant, known.low, known.high * 4, 200));
         ASSERT_TRUE(measured.has_value()) << known.name;
-        const auto exact = designed(known.plant, known.M);
+        const auto exact = designed_on_points(known.plant, known.M);
         IdealPid pid = std::get<IdealPid>(exact->controllers[0].evaluation->controller);
         const double nominal = pid.Kp;
         for (const double factor : {-1.0, 0.05, 0.3, 1.0, 2.0, 3.0, 5.0, 9.0, 14.0}) {
@@ -113,7 +113,7 @@ TEST(FrequencyResponse, CountsTheSameUnstablePolesAsTheKnownPlant) {
 
 TEST(FrequencyResponse, ABandThatEndsTooEarlyIsRefusedInWords) {
     const Plant plant = Fopdt{.K = 2, .T = 10, .L = 3};
-    const auto design = designed(points_of(plant, 0.005, 0.3, 30), 1.4);
+    const auto design = designed_on_points(points_of(plant, 0.005, 0.3, 30), 1.4);
     ASSERT_FALSE(design.has_value());
     EXPECT_EQ(design.error().kind, ErrorKind::unsupported);
     EXPECT_NE(design.error().message.find("Measure higher frequencies"), std::string::npos);

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "engine/evaluation/evaluate.h"
+#include "engine/number_text.h"
 #include "engine/numerics/extremum.h"
 #include "engine/tuning/robust/quadratic_program.h"
 #include "engine/tuning/robust/sweep/sweep.h"
@@ -125,10 +126,10 @@ TEST(Robust, ATightMksIsMetAtTheCheapestOfItsValleys) {
 
 namespace {
 
-/// The limit that a refusal names as the smallest that works; 0 where it names none.
-double named_by(const Error& refusal) {
-    const auto position = refusal.message.find("Ms = Mt = ");
-    return position == std::string::npos ? 0 : std::stod(refusal.message.substr(position + 10));
+/// The limit that a refusal has as the smallest that works; 0 where it has none.
+double cure_of(const Error& refusal) {
+    const auto Ms = refusal.cure.find("Ms"), Mt = refusal.cure.find("Mt");
+    return Ms != refusal.cure.end() && Mt != refusal.cure.end() && Ms->second == Mt->second ? Ms->second : 0;
 }
 
 }  // namespace
@@ -140,10 +141,11 @@ TEST(Robust, UnstablePlantsHaveASmallestPeakThatWorks) {
         const auto below = design(plant, with({{"Ms", least * 0.97}, {"Mt", least * 0.97}}));
         ASSERT_FALSE(below.has_value()) << L;
         EXPECT_EQ(below.error().kind, ErrorKind::no_feasible_controller);
-        const double named = named_by(below.error());
+        const double named = cure_of(below.error());
         EXPECT_NEAR(named, least * 1.01, 0.02 * least) << below.error().message;
         EXPECT_TRUE(design(plant, with({{"Ms", named}, {"Mt", named}})).has_value())
-            << "the limit that the message names must work";
+            << "the limit that the refusal names must work";
+        EXPECT_NE(below.error().message.find("Ms = Mt = " + text(named)), std::string::npos) << below.error().message;
     }
 }
 
@@ -157,7 +159,7 @@ TEST(Robust, BehindTwoIntegratorsTheSmallestPeakIsThatOfTheIntegratorsAlone) {
         const auto below = design(plant, with({{"Ms", kLeast * 0.99}, {"Mt", kLeast * 0.99}}));
         ASSERT_FALSE(below.has_value());
         EXPECT_EQ(below.error().kind, ErrorKind::no_feasible_controller) << below.error().message;
-        const double named = named_by(below.error());
+        const double named = cure_of(below.error());
         EXPECT_GE(named, kLeast) << below.error().message;
         EXPECT_LE(named, kLeast * 1.03) << below.error().message;
         EXPECT_TRUE(design(plant, with({{"Ms", named}, {"Mt", named}})).has_value()) << named;

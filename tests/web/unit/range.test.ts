@@ -52,12 +52,12 @@ const noParts = {
 };
 const read = (texts: RangeTexts, parts = noParts) => readRange(texts, parts);
 
-test("a request of points comes back from the form as it was, defaults written out", () => {
+test("a request of points comes back from the form as it was; limits that it leaves out are the service's", () => {
   const { request, errors } = read(textsOf(loads));
   assert.deepEqual(errors, []);
   assert.deepEqual(request, {
     ...loads,
-    schedule: { controller: "PI", Ms: 1.4, Mt: 1.4, interpolation: "linear_in_gains", allowance: 0.05 },
+    schedule: { controller: "PI", interpolation: "linear_in_gains", allowance: 0.05 },
   });
 });
 
@@ -83,7 +83,7 @@ test("a plant that is typed over is a text, one that is not stays as it came", (
 test("what is missing or no number is said at its place", () => {
   const texts = textsOf(loads);
   texts.points[0] = { at: "x", text: "" };
-  texts.terms.Ms = "";
+  texts.terms.Ms = "calm";
   texts.terms.rows = "two";
   const pointers = read(texts).errors.map((error) => error.pointer);
   assert.deepEqual(pointers, ["/points/0/at", "/points/0/plant", "/schedule/Ms", "/schedule/rows"]);
@@ -129,7 +129,6 @@ test("equations with their way, and parts without a field, come back", () => {
     aim: "mean",
     controller: "PID",
     Ms: 1.6,
-    Mt: 1.4,
     interpolation: "linear_in_gains",
     allowance: 0.05,
     rows: 3,

@@ -11,7 +11,8 @@ export interface RangeShown {
   designed: RangeContent;
   moved: RangeContent | null;
   rows: readonly ScheduleRow[];
-  Ms: number;
+  /** The limit; null: not known. */
+  Ms: number | null;
   allowance: number;
   units: UnitNames;
 }
@@ -34,12 +35,15 @@ function traceOf(shown: RangeShown, quantity: "Ms" | "relative_IAE"): Trace[] {
 }
 
 /** From the least that is possible to what is drawn, the limit in view. */
-function rangeOfMs(traces: Trace[], limit: number): Range {
+function rangeOfMs(traces: Trace[], limit: number | null): Range {
   const values = traces.flatMap(({ y }) => y.filter((value): value is number => typeof value === "number"));
-  const over = 1 + MOST_OVER_LIMIT * (limit - 1);
-  const top = Math.min(Math.max(limit, ...values), Math.max(over, 2));
+  const over = 1 + MOST_OVER_LIMIT * ((limit ?? 1) - 1);
+  const top = Math.min(Math.max(limit ?? 1, ...values), Math.max(over, 2));
   return [1 - 0.06 * (top - 1), top + 0.12 * (top - 1)];
 }
+
+const limitLine = (limit: number | null): Mark[] =>
+  limit === null ? [] : [{ kind: "level", value: limit, role: "limit", label: `limit ${formatNumber(limit)}` }];
 
 /** One setting may cost many times as much as the schedule: on a logarithmic axis both can be read. */
 const MOST_IAE = 100;
@@ -94,7 +98,7 @@ export function robustnessFrame(shown: RangeShown): Frame {
         traces: Ms,
         marks: [
           ...uprights(shown.rows),
-          { kind: "level", value: shown.Ms, role: "limit", label: `limit ${formatNumber(shown.Ms)}` },
+          ...limitLine(shown.Ms),
         ],
       },
       {

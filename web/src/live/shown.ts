@@ -131,7 +131,7 @@ export function handShown(from: Turnable, point: Point, body: unknown, [entry, t
 
 /** Settings by hand keep the name of what they were moved from, and its limits to be drawn. */
 function byHand(entry: Entry, from: Entry, { tune }: Point): Entry {
-  const limits = Object.entries(tune ?? {}).filter(([name]) => name === "Ms" || name === "Mt");
+  const limits = Object.entries({ ...from.options, ...tune }).filter(([name]) => name === "Ms" || name === "Mt");
   return { ...entry, method: from.method, options: Object.fromEntries(limits), title: `${from.title ?? from.method}, by hand` };
 }
 

@@ -2,13 +2,14 @@
 import { parsePlant } from "../api/plants.ts";
 import type { RangeExample, RangeRequest } from "../api/range.ts";
 import type { Preview } from "../api/records.ts";
-import type { FieldError } from "../api/types.ts";
+import type { FieldError, Method } from "../api/types.ts";
 import { h } from "../dom.ts";
 import { choiceField } from "../form/controls.ts";
 import { equationFields } from "../form/equation_fields.ts";
 import type { FormErrors } from "../form/errors.ts";
 import { recordFields } from "../form/record_fields.ts";
 import { tabs } from "../form/tabs.ts";
+import { robustOf } from "../words/limits.ts";
 import { unitNames } from "../words/numbers.ts";
 import { pointFields } from "./points.ts";
 import { EMPTY_POINTS, readRange, textsOf } from "./request.ts";
@@ -20,6 +21,7 @@ export interface RangeForm {
   read(): { request: RangeRequest; errors: FieldError[] };
   load(request: RangeRequest): void;
   setExamples(examples: RangeExample[]): void;
+  setMethods(methods: readonly Method[]): void;
   /** Which example the form was filled from; "" where from none. */
   choose(id: string): void;
   setBusy(busy: boolean): void;
@@ -181,6 +183,9 @@ export function rangeForm(errors: FormErrors, events: RangeFormEvents): RangeFor
         ...examples.map(({ id, title }) => h("option", { value: id }, title)),
         h("option", { value: EMPTY }, "Nothing: start empty"),
       );
+    },
+    setMethods(methods) {
+      terms.setDefaults(robustOf(methods));
     },
     choose(id) {
       example.input.value = id;

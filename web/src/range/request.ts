@@ -100,10 +100,12 @@ function readWay(texts: WayTexts, faults: Faults): NonNullable<RangeRequest["ran
 
 function readTerms(texts: TermTexts, faults: Faults): NonNullable<RangeRequest["schedule"]> {
   const rows = texts.rows.trim();
+  const limit = (name: "Ms" | "Mt") =>
+    texts[name].trim() === "" ? {} : { [name]: numberOf(texts[name], name, `/schedule/${name}`, faults) };
   return {
     controller: texts.controller,
-    Ms: numberOf(texts.Ms, "Ms", "/schedule/Ms", faults),
-    Mt: numberOf(texts.Mt, "Mt", "/schedule/Mt", faults),
+    ...limit("Ms"),
+    ...limit("Mt"),
     interpolation: texts.interpolation,
     allowance: Number(
       (numberOf(texts.allowance, "The allowance", "/schedule/allowance", faults) / 100).toPrecision(12),
@@ -195,8 +197,8 @@ export function textsOf(request: RangeRequest): RangeTexts {
     },
     terms: {
       controller: controller ?? "PID",
-      Ms: written(Ms, "1.4"),
-      Mt: written(Mt, "1.4"),
+      Ms: written(Ms, ""),
+      Mt: written(Mt, ""),
       interpolation: interpolation ?? "linear_in_gains",
       rows: written(rows, ""),
       allowance: plainSetting(100 * share),

@@ -90,7 +90,7 @@ export function rangeResult(
       designed,
       moved,
       rows: hand.rows(),
-      Ms: about.schedule?.Ms ?? DEFAULT_MS,
+      Ms: limitOn("Ms", designed) ?? about.schedule?.Ms ?? null,
       allowance: about.schedule?.allowance ?? DEFAULT_ALLOWANCE,
       units: unitNames(about.units),
     };
@@ -187,5 +187,8 @@ export function rangeResult(
   };
 }
 
-const DEFAULT_MS = 1.4;
+/** As the answer states it. */
+const limitOn = (quantity: string, { worst }: RangeContent): number | undefined =>
+  [...(worst.schedule ?? []), ...(worst.one ?? [])].find((place) => place.quantity === quantity)?.limit;
+
 const DEFAULT_ALLOWANCE = 0.05;

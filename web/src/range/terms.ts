@@ -1,8 +1,9 @@
 // What is asked of a range: the limits, how the controller follows its schedule, and what loop and signals are called.
-import type { Units } from "../api/types.ts";
+import type { Method, Units } from "../api/types.ts";
 import { h, uniqueId } from "../dom.ts";
 import { choiceField, textField } from "../form/controls.ts";
 import type { FormErrors } from "../form/errors.ts";
+import { defaultOf } from "../words/limits.ts";
 import { INTERPOLATIONS } from "../words/range.ts";
 import type { RangeTexts, TermTexts, WayTexts } from "./request.ts";
 
@@ -12,6 +13,8 @@ export interface TermFields {
   show(terms: TermTexts): void;
   /** Limits over what records leave open belong to records. */
   offerRegion(records: boolean): void;
+  /** What holds where a limit is left empty. */
+  setDefaults(method: Method | undefined): void;
 }
 
 export function termFields(errors: FormErrors): TermFields {
@@ -28,8 +31,8 @@ export function termFields(errors: FormErrors): TermFields {
     },
     errors,
   );
-  const Ms = field("Ms", "Ms", "at most");
-  const Mt = field("Mt", "Mt", "at most");
+  const Ms = field("Ms", "Ms", "at most", "default");
+  const Mt = field("Mt", "Mt", "at most", "default");
   const interpolation = choiceField(
     {
       label: "Between the rows",
@@ -83,6 +86,10 @@ export function termFields(errors: FormErrors): TermFields {
     },
     offerRegion(records) {
       region.hidden = !records;
+    },
+    setDefaults(method) {
+      Ms.input.placeholder = String(defaultOf(method, "Ms") ?? "default");
+      Mt.input.placeholder = String(defaultOf(method, "Mt") ?? "default");
     },
   };
 }

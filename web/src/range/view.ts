@@ -7,6 +7,7 @@ import type { RangeContent, RangeExample, RangeRequest } from "../api/range.ts";
 import { h } from "../dom.ts";
 import { FormErrors } from "../form/errors.ts";
 import { requestMenu } from "../views/request_menu.ts";
+import { shown } from "../store.ts";
 import type { Store } from "../store.ts";
 import type { View } from "../views/start.ts";
 import { EMPTY, rangeForm } from "./form.ts";
@@ -49,6 +50,8 @@ export function rangeView(store: Store, announce: (sentence: string) => void, ev
       void openExample(id);
     },
   });
+  const methods = store.pick((workspace) => workspace.methods);
+  const leave = shown(() => methods.value, form.setMethods);
   const element = h(
     "main",
     { class: "identify range", id: "main" },
@@ -166,6 +169,7 @@ export function rangeView(store: Store, announce: (sentence: string) => void, ev
     heading,
     dispose() {
       calls.drop();
+      leave();
       result.dispose();
     },
     open({ example, job }) {

@@ -11,6 +11,7 @@ import { implementOf } from "../my_controller.ts";
 import { formatRoute } from "../routes.ts";
 import type { Store } from "../store.ts";
 import { age, methodWords, shortPlant } from "../words/job_list.ts";
+import { defaultOf, robustOf } from "../words/limits.ts";
 import { formatNumber } from "../words/numbers.ts";
 import { jobTable, reader, troubleLine } from "./job_actions.ts";
 import { reportLink } from "./report_link.ts";
@@ -282,7 +283,7 @@ function loopsCard(
     id: "loops-ms",
     inputmode: "decimal",
     value: "",
-    placeholder: "default (1.4)",
+    placeholder: "default",
   });
   const limitField = h("div", { class: "field" }, h("label", { for: "loops-ms" }, "Largest Ms"), limit);
   const file = h("input", {
@@ -346,6 +347,8 @@ function loopsCard(
     method.replaceChildren(
       ...store.get().methods.map((item) => h("option", { value: item.id, selected: item.id === chosen }, item.title)),
     );
+    const standard = defaultOf(robustOf(store.get().methods), "Ms");
+    limit.placeholder = standard === null ? "default" : `default (${standard})`;
   };
   listMethods();
   const showOwn = (): void => {

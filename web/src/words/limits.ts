@@ -1,5 +1,5 @@
 // The robustness limits that a result was designed for.
-import type { Entry } from "../api/types.ts";
+import type { Entry, Method } from "../api/types.ts";
 
 export interface Limits {
   Ms: number | null;
@@ -10,13 +10,12 @@ export interface Limits {
 const above = (value: unknown, floor: number): number | null =>
   typeof value === "number" && Number.isFinite(value) && value > floor ? value : null;
 
-/** What the entry's method was asked to hold; `robust` holds 1.4 by default. */
+/** What the entry's method was asked to hold, defaults included: the answer has them all among its options. */
 export function limitsOf(entry: Entry | undefined): Limits {
   const options = entry?.options ?? {};
-  const standard = entry?.method === "robust" ? 1.4 : null;
   return {
-    Ms: above(options["Ms"], 1) ?? standard,
-    Mt: above(options["Mt"], 1) ?? standard,
+    Ms: above(options["Ms"], 1),
+    Mt: above(options["Mt"], 1),
     Mks: above(options["Mks"], 0),
   };
 }
@@ -28,3 +27,12 @@ export function commonLimits(entries: Entry[]): Limits {
     .find((limits) => limits.Ms !== null || limits.Mt !== null || limits.Mks !== null);
   return limited ?? { Ms: null, Mt: null, Mks: null };
 }
+
+/** What an option is where a request leaves it out, as its method describes it; null where that is not known. */
+export function defaultOf(method: Method | undefined, option: string): number | null {
+  const value = method?.options?.properties?.[option]?.default;
+  return typeof value === "number" ? value : null;
+}
+
+/** The method whose limits hold where nothing else is asked for. */
+export const robustOf = (methods: readonly Method[]): Method | undefined => methods.find(({ id }) => id === "robust");

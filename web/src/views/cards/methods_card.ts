@@ -10,6 +10,7 @@ import { typedParts } from "../../form/typed.ts";
 import type { FieldKind, FieldSpec } from "../../form/fields.ts";
 import { asksForAll } from "../../form/tuning_request.ts";
 import { formatRoute } from "../../routes.ts";
+import { defaultOf, robustOf } from "../../words/limits.ts";
 import { mentions } from "../../words/methods.ts";
 import { namedUnit, unitNames } from "../../words/numbers.ts";
 import type { UnitNames } from "../../words/numbers.ts";
@@ -28,7 +29,6 @@ export interface MethodsCard {
 
 /** More methods than these are searched, not looked through. */
 const SEARCHED_FROM = 10;
-const DEFAULT_TUNE: TuneEntry[] = [{ method: "robust", Ms: 1.4, Mt: 1.4 }];
 
 interface Row {
   method: Method;
@@ -43,8 +43,17 @@ interface Row {
 export function methodsCard(errors: FormErrors): MethodsCard {
   let rows: Row[] = [];
   let units = unitNames(undefined);
-  let wanted: TuneEntry[] = DEFAULT_TUNE;
+  /** Null: the default of the contract. */
+  let given: TuneEntry[] | null = null;
   const list = h("div", { class: "methods" }, h("p", { class: "hint" }, "Asking the service for its methods..."));
+  /** The limits of the default are shown as its own. */
+  function wanted(): TuneEntry[] {
+    if (given) return given;
+    const robust = robustOf(rows.map(({ method }) => method));
+    const limits = ["Ms", "Mt"].map((name) => [name, defaultOf(robust, name)]).filter(([, value]) => value !== null);
+    return [{ method: "robust", ...Object.fromEntries(limits) }];
+  }
+
   const element = h(
     "section",
     { class: "card", "aria-labelledby": "methods-title" },
@@ -80,8 +89,8 @@ export function methodsCard(errors: FormErrors): MethodsCard {
   /** In the order of `tune`: as the loaded request had them, then as they stand here. */
   function chosenRows(): Row[] {
     const place = (row: Row): number => {
-      const at = wanted.findIndex((entry) => entry.method === row.method.id);
-      return at < 0 ? wanted.length : at;
+      const at = wanted().findIndex((entry) => entry.method === row.method.id);
+      return at < 0 ? wanted().length : at;
     };
     return rows.filter((row) => row.chosen.checked).sort((a, b) => place(a) - place(b));
   }
@@ -166,9 +175,9 @@ export function methodsCard(errors: FormErrors): MethodsCard {
     for (const row of rows)
       fill(
         row,
-        wanted.find((entry) => entry.method === row.method.id),
+        wanted().find((entry) => entry.method === row.method.id),
       );
-    if (wanted.some((entry) => entry.method !== rows[0]?.method.id))
+    if (wanted().some((entry) => entry.method !== rows[0]?.method.id))
       list.querySelector("details.rules")?.setAttribute("open", "");
     filter();
   }
@@ -176,7 +185,7 @@ export function methodsCard(errors: FormErrors): MethodsCard {
   function load(tune: TuneEntry[] | string | undefined): void {
     typed.forget();
     // A comparison of all methods is a button, not a choice of each.
-    wanted = tune === undefined || asksForAll(tune) ? DEFAULT_TUNE : (tune as TuneEntry[]);
+    given = tune === undefined || asksForAll(tune) ? null : (tune as TuneEntry[]);
     show();
   }
 
@@ -209,7 +218,7 @@ export function methodsCard(errors: FormErrors): MethodsCard {
     },
     read() {
       // Without the service's list the default of the contract holds.
-      if (rows.length === 0) return { tune: wanted, errors: [] };
+      if (rows.length === 0) return { tune: wanted(), errors: [] };
       const faults: FieldError[] = [];
       const tune = chosenRows().map((row, index) => {
         const entry: TuneEntry = { method: row.method.id, ...row.rest };

@@ -1,0 +1,43 @@
+// The limits that a design keeps unless the request names others, and how exactly a limit is held at each step: by the
+// search, by the design that is returned, in a ranking, in what a verdict states. Nothing else defines any of them.
+#pragma once
+
+namespace tunewright::limits {
+
+// ---- defaults
+
+/// Largest peaks of |S| and |T|. Åström and Hägglund, Advanced PID Control (2006), section 4.6: reasonable Ms lie
+/// between 1.2 and 2; Garpinger and Hägglund design for 1.4.
+inline constexpr double kDefaultMs = 1.4, kDefaultMt = kDefaultMs;
+/// The largest limit on Ms or Mt that may be asked for: beyond it the loop hardly differs from an unstable one.
+inline constexpr double kMaxMs = 4, kMaxMt = kMaxMs;
+/// Time constant of the filter of a PID over Td (N = 10), where the plant bounds the gain.
+inline constexpr double kDefaultTf_over_Td = 0.1;
+/// Largest overshoot of a set-point step, percent.
+inline constexpr double kDefaultMaxOvershootPercent = 5;
+
+// ---- largest relative excess over a limit that counts as holding it, from the tightest to the widest
+
+/// Search, on the frequencies that it knows: far below what the next step tells apart, far above rounding.
+inline constexpr double kMaxRelativeExcessSearched = 1e-6;
+/// Verify: the returned design, on its own plants and on frequencies that the search never saw. Peaks that the search
+/// has interpolated differ from those by less.
+inline constexpr double kMaxRelativeExcessVerified = 2e-5;
+/// Judge: the same design on plants between its own, of a confidence region or of a range. A plant beyond it joins
+/// those that the design is made for.
+inline constexpr double kMaxRelativeExcessJudged = 5e-5;
+/// Rank: entries of a comparison, whose peaks have been computed to about 1e-5.
+inline constexpr double kMaxRelativeExcessRanked = 1e-4;
+/// Show: a peak that prints as the limit with three digits is as good as it.
+inline constexpr double kMaxRelativeExcessShown = 2e-3;
+/// Show the worst of several plants, which is found by a search.
+inline constexpr double kMaxRelativeExcessShownOfWorst = 1e-2;
+
+static_assert(kMaxRelativeExcessSearched < kMaxRelativeExcessVerified &&
+                  kMaxRelativeExcessVerified < kMaxRelativeExcessJudged &&
+                  kMaxRelativeExcessJudged < kMaxRelativeExcessRanked &&
+                  kMaxRelativeExcessRanked < kMaxRelativeExcessShown &&
+                  kMaxRelativeExcessShown < kMaxRelativeExcessShownOfWorst,
+              "what one step accepts no later one calls exceeded");
+
+}  // namespace tunewright::limits

@@ -10,11 +10,11 @@ namespace tunewright::server {
 namespace {
 
 void add_output_options(CLI::App& app, OutputWords& words, bool has_table) {
-    CLI::Option* json = app.add_flag("--json", words.json, "Compact JSON, on a terminal too");
+    CLI::Option* json = app.add_flag("--json", words.json, "Compact JSON, even on a terminal");
     CLI::Option* pretty = app.add_flag("--pretty", words.pretty, "JSON with a line for each member");
     json->excludes(pretty);
     if (!has_table) return;
-    CLI::Option* table = app.add_flag("--table", words.table, "The short table, where it is no terminal too");
+    CLI::Option* table = app.add_flag("--table", words.table, "The short table, even into a file or a pipe");
     table->excludes(json)->excludes(pretty);
 }
 
@@ -22,7 +22,7 @@ void add_record_options(CLI::App& app, api::CsvRequest& question) {
     app.add_option("--t", question.t, "CSV: heading or number of the time column")->type_name("COLUMN");
     app.add_option("--u", question.u, "CSV: heading or number of the controller output")->type_name("COLUMN");
     app.add_option("--y", question.y, "CSV: heading or number of the measurement")->type_name("COLUMN");
-    app.add_option("--r", question.r, "CSV: heading or number of the set point, where there is one")
+    app.add_option("--r", question.r, "CSV: heading or number of the set point, if there is one")
         ->type_name("COLUMN");
     app.add_option("--d", question.d, "CSV: heading or number of a measured disturbance; may be repeated")
         ->type_name("COLUMN")
@@ -33,17 +33,17 @@ void add_record_options(CLI::App& app, api::CsvRequest& question) {
     app.add_option("--kind", question.kind, "CSV: auto, step, relay or general")->type_name("WORD");
     app.add_option("--model", question.model, "CSV: auto, fopdt, sopdt, sopdt_zero, ipdt or ipdt_lag")
         ->type_name("WORD");
-    app.add_option("--u-limits", question.u_limits, "CSV: the ends of the actuator, low and high")
+    app.add_option("--u-limits", question.u_limits, "CSV: limits of the actuator, low and high")
         ->expected(2)
         ->type_name("NUMBER");
     app.add_option("--u0", question.u0, "CSV: controller output before the first row")->type_name("NUMBER");
     app.add_option("--y0", question.y0, "CSV: measurement before the first row")->type_name("NUMBER");
-    app.add_option("--u-step", question.u_step, "CSV without u: it stepped at the first row, from and to")
+    app.add_option("--u-step", question.u_step, "CSV without u: the step of u at the first row, from and to")
         ->expected(2)
         ->type_name("NUMBER");
     app.add_option("--run", question.run, "CSV with several runs: which of them, from 1")->type_name("NUMBER");
     app.add_option("--time-unit", question.time_unit,
-                   "Unit of a file's times, where it does not say or says it wrongly; of all times of a plant")
+                   "Unit of the times of a file, if it gives none or a wrong one; unit of the times of a plant")
         ->type_name("UNIT");
     app.add_option("--answer-unit", question.answer_unit, "Unit of the times of the answer; s if not given")
         ->type_name("UNIT");
@@ -56,7 +56,7 @@ void add_tune_options(CLI::App& app, TuneCommand& command) {
     app.add_option("--Ku", command.words.Ku, "In place of a plant: the gain at which the loop oscillates, with --Pu")
         ->type_name("NUMBER");
     app.add_option("--Pu", command.words.Pu, "The period of that oscillation")->type_name("TIME");
-    app.add_option("--K", command.words.K, "The static gain beside them, where it is known")->type_name("NUMBER");
+    app.add_option("--K", command.words.K, "The static gain, if it is known")->type_name("NUMBER");
     if (!command.all)
         app.add_option("--method", command.words.methods, "A tuning method; may be repeated (default: robust)")
             ->type_name("ID")
@@ -69,10 +69,10 @@ void add_tune_options(CLI::App& app, TuneCommand& command) {
     app.add_option("--baseline", command.words.baseline, "Today's settings in the ideal form: \"Kp Ti Td\"")
         ->type_name("TEXT");
     add_record_options(app, command.words.record);
-    CLI::Option* plot = app.add_flag("--plot", command.plot, "The table, and below it the best one's responses drawn");
-    app.add_option("--svg", command.svg, "A file that those responses are drawn into, as SVG")->type_name("FILE");
+    CLI::Option* plot = app.add_flag("--plot", command.plot, "The table, and below it a plot of the best responses");
+    app.add_option("--svg", command.svg, "Write that plot to this file, as SVG")->type_name("FILE");
     app.add_flag("--with-request", command.with_request,
-                 "JSON of the result and its request, from which code and report say whose settings they are");
+                 "JSON with request and result, so that code and report can name the plant");
     add_output_options(app, command.output, true);
     plot->excludes(app.get_option("--json"))->excludes(app.get_option("--pretty"));
 }
@@ -103,9 +103,9 @@ void add_code_words(CLI::App& app, api::CodeWords& words) {
     code_word(app, "form", words, "position or velocity");
     code_word(app, "anti-windup", words, "back_calculation or clamping");
     code_word(app, "tracking-time", words, "Tracking time of back-calculation");
-    code_word(app, "u-min", words, "Least u");
+    code_word(app, "u-min", words, "Smallest u");
     code_word(app, "u-max", words, "Largest u");
-    code_word(app, "rate-limit", words, "Most that u moves in a unit of time");
+    code_word(app, "rate-limit", words, "Largest rate of u, per unit of time");
     code_word(app, "bias", words, "u at the operating point");
     code_word(app, "y0", words, "y at the operating point");
 }
@@ -127,7 +127,7 @@ void add_loop_commands(CommandTree& tree) {
     TuneCommand& comparing = tree.keep<TuneCommand>();
     comparing.all = true;
     add_tune_options(
-        tree.add("compare", "The same by every method that applies, ranked", [&] { return tune(comparing); }),
+        tree.add("compare", "Settings by every method that applies, ranked", [&] { return tune(comparing); }),
         comparing);
 
     RangeCommand& ranging = tree.keep<RangeCommand>();
@@ -144,7 +144,7 @@ void add_loop_commands(CommandTree& tree) {
         ->required();
     add_record_options(identify_app, identifying.question);
     identify_app.add_flag("--traces", identifying.question.traces,
-                          "CSV: answer the record beside the models' free runs too");
+                          "CSV: include the record and the simulated responses of the models");
     add_output_options(identify_app, identifying.output, true);
 
     PlantCommand& typing = tree.keep<PlantCommand>();
@@ -164,14 +164,14 @@ void add_loop_commands(CommandTree& tree) {
     ResultWords& reporting = tree.keep<ResultWords>();
     CLI::App& report_app =
         tree.add("report", "A controller of a result as a page to print, in HTML", [&] { return report(reporting); });
-    add_result_options(report_app, reporting, "File of the request, where the result does not have it");
+    add_result_options(report_app, reporting, "File of the request, if the result does not contain it");
 }
 
 void add_list_commands(CommandTree& tree) {
-    add_list_command(tree, "methods", "The tuning methods with their options", "Id of one of them", methods);
-    add_list_command(tree, "controllers", "The controllers that settings can be converted for", "Id of one of them",
+    add_list_command(tree, "methods", "The tuning methods with their options", "Id of one entry to print", methods);
+    add_list_command(tree, "controllers", "The controllers that settings can be converted for", "Id of one entry to print",
                      controllers);
-    add_list_command(tree, "examples", "Requests to start from", "Id or number of one, to print it for tune", examples);
+    add_list_command(tree, "examples", "Requests to start from", "Id or number of an example to print", examples);
 }
 
 }  // namespace tunewright::server

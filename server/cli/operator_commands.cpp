@@ -21,15 +21,15 @@ void add_key_command(CommandTree& tree) {
     app.add_option("name", words.name, "Name of the owner, to whom jobs belong")->required();
     app.add_option("--keys", words.file, "The file it is added to (default: the line goes to stderr)")
         ->type_name("FILE");
-    app.add_flag("--admin", words.admin, "For whoever runs the service: sees and acts on everybody's jobs");
+    app.add_flag("--admin", words.admin, "For operators: can see and change all jobs");
     app.add_flag("--rotate", words.rotate,
-                 "One more key for a name that has one, which works until its line is deleted");
+                 "Add a second key for the same name; the old one works until its line is deleted");
 }
 
 void add_secret_command(CommandTree& tree) {
     SecretCommand& words = tree.keep<SecretCommand>();
     CLI::App& app =
-        tree.add("secret", "Make a secret that signs what others are told of ends: printed on stdout, kept in a file",
+        tree.add("secret", "Make a secret that signs notifications: printed on stdout, kept in a file",
                  [&] { return make_secret(words); });
     app.add_option("name", words.name, "Its name, which a request gives as notify.secret_id")->required();
     app.add_option("--file", words.file, "The file it is added to (default: the line goes to stderr)")
@@ -44,7 +44,7 @@ int failed(int code, const std::exception& fault) {
 void add_migrate_command(CommandTree& tree) {
     MigrateCommand& words = tree.keep<MigrateCommand>();
     words.store = Config{}.store;
-    CLI::App& app = tree.add("migrate", "Bring the tables of a store up to date, and say what was done", [&] {
+    CLI::App& app = tree.add("migrate", "Migrate the tables of a store and list the changes", [&] {
         try {
             migrate_store(words, std::cout);
         } catch (const std::invalid_argument& error) {
@@ -54,9 +54,9 @@ void add_migrate_command(CommandTree& tree) {
         }
         return 0;
     });
-    option(app, "store", words.store, "The store, as `serve` has it")->capture_default_str();
+    option(app, "store", words.store, "The store, as for `serve`")->capture_default_str();
     app.add_option("--grant", words.grant, "A role of PostgreSQL that may then run the service")->type_name("ROLE");
-    app.add_flag("--compact", words.compact, "Write a SQLite file anew, without what deleted jobs left");
+    app.add_flag("--compact", words.compact, "Rewrite a SQLite file without the space of deleted jobs");
 }
 
 struct HealthWords {
@@ -65,7 +65,7 @@ struct HealthWords {
 
 void add_health_command(CommandTree& tree) {
     HealthWords& words = tree.keep<HealthWords>();
-    CLI::App& app = tree.add("health", "Ask a running service whether it is well: exit code 0 if so",
+    CLI::App& app = tree.add("health", "Check the health of a running service: exit code 0 if it is healthy",
                              [&] { return check_health(words.url.empty() ? health_url(words.listen) : words.url); });
     app.add_option("url", words.url, "Default: /healthz of this machine's service, by TUNEWRIGHT_LISTEN");
     option(app, "listen", words.listen, "HOST:PORT of that service");

@@ -57,11 +57,11 @@ void size(CLI::App& app, const std::string& name, std::size_t& bytes, const std:
 void add_process_options(CLI::App& app, Config& config) {
     option(app, "listen", config.listen, "HOST:PORT; port 0 lets the system choose")->capture_default_str();
     option(app, "metrics-listen", config.metrics_listen,
-           "Another HOST:PORT, for /metrics and probes alone; it asks for no key");
+           "Another HOST:PORT, for /metrics and probes only; it needs no key");
     option(app, "store", config.store, "Where jobs are kept: sqlite:PATH or postgresql://USER@HOST/DATABASE")
         ->capture_default_str();
     option(app, "migrate", config.migrate,
-           "auto: the tables of an older store are brought up to date at the start; manual: by `tunewright migrate`")
+           "auto: an older store is migrated at the start; manual: by `tunewright migrate`")
         ->capture_default_str();
     flag(app, "pooled", config.pooled,
          "PostgreSQL is behind a pooler in transaction mode: no notices, all processes poll");
@@ -69,9 +69,9 @@ void add_process_options(CLI::App& app, Config& config) {
         ->capture_default_str();
     option(app, "workers", config.workers, "Jobs computed at the same time (default: one a core)")
         ->check(CLI::Range(1, 1024));
-    size(app, "memory", config.memory, "512MiB, or as the control group has it",
-         "Memory that the process may take: what clients hold is shared out below it");
-    option(app, "web", config.web, "Folder of the built page (default: web beside the binary's folder)");
+    size(app, "memory", config.memory, "512MiB, or the limit of the control group",
+         "Memory that the process may use; it bounds what is buffered for clients");
+    option(app, "web", config.web, "Folder of the built page (default: web next to the binary's folder)");
     duration(app, "drain-timeout", config.drain_timeout_s, "5s", {0, 3600},
              "Time that running jobs get when the service is stopped");
     option(app, "log-format", config.log_format, "text or json, on standard error")->capture_default_str();
@@ -93,43 +93,43 @@ void add_job_options(CLI::App& app, Config& config) {
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
     duration(app, "lease", config.lease_s, "10s", {0.5, 3600},
-             "Time without a sign of life after which another worker takes a job");
+             "Time without a renewal after which another worker takes a job");
     duration(app, "retention", config.retention_s, "7d", {0, 1e9}, "How long ended jobs are kept; 0: without limit");
     duration(app, "retention-failed", config.retention_failed_s, "as --retention", {0, 1e9},
-             "The same for jobs that failed, where it differs");
+             "The same for failed jobs");
     duration(app, "retention-cancelled", config.retention_cancelled_s, "as --retention", {0, 1e9},
-             "The same for jobs that were cancelled");
+             "The same for cancelled jobs");
     duration(app, "job-timeout", config.job_timeout_s, "60s", {0.1, 3600},
-             "Time for a job that does not say timeout_s");
+             "Time limit of a job without timeout_s");
     duration(app, "max-timeout", config.max_timeout_s, "3600s", {0.1, 3600},
-             "Longest timeout_s that a request may ask for");
+             "Largest timeout_s of a request");
 }
 
 void add_notify_options(CLI::App& app, Config& config) {
     option(app, "notify-target", config.notify_targets,
-           "Where a job's or batch's notify may lead: https://HOST[:PORT][/PATH]; may be repeated (default: nowhere)")
+           "Allowed address of notifications: https://HOST[:PORT][/PATH]; may be repeated (default: none)")
         ->type_name("ORIGIN")
         ->delimiter(',');
     option(app, "notify-secrets", config.notify_secrets,
-           "File of the secrets that sign it, made by `tunewright secret`");
+           "File of the secrets that sign notifications, made by `tunewright secret`");
 }
 
 void add_port_options(CLI::App& app, Config& config) {
     size(app, "max-body", config.max_body, "8MiB", "Largest body of one request; larger ones are answered 413");
     size(app, "max-batch-body", config.max_batch_body, "256MiB", "Largest body of one batch");
-    option(app, "auth", config.auth, "none or keys: what a call below /v1 must show")->capture_default_str();
+    option(app, "auth", config.auth, "none or keys: whether a call below /v1 needs a key")->capture_default_str();
     option(app, "keys", config.keys, "File of keys, made by `tunewright key`");
     flag(app, "allow-anonymous", config.allow_anonymous, "Listen beyond loopback without keys");
     option(app, "rate-limit", config.rate_limit, "Calls a second that one client may make; 0: no limit")
         ->check(number_within(0, 1e6))
         ->capture_default_str();
     option(app, "allowed-host", config.allowed_hosts,
-           "A name by which it is called, beside its address; may be repeated")
+           "A host name of the service, in addition to its address; may be repeated")
         ->type_name("NAME")
         ->delimiter(',');
     option(app, "cors-origin", config.cors_origins, "Another site whose pages may call; may be repeated")
         ->delimiter(',');
-    flag(app, "behind-proxy", config.behind_proxy, "A client is the last address of X-Forwarded-For");
+    flag(app, "behind-proxy", config.behind_proxy, "The client's address is the last one of X-Forwarded-For");
 }
 
 std::vector<std::string> environment() {
@@ -149,7 +149,7 @@ std::vector<std::string> variables_of(const CLI::App& app) {
 
 void add_serve_command(CommandTree& tree) {
     Config& config = tree.keep<Config>();
-    CLI::App& app = tree.add("serve", "Answer over HTTP until SIGTERM or Ctrl-C", [&config] { return serve(config); });
+    CLI::App& app = tree.add("serve", "Run the service until SIGTERM or Ctrl-C", [&config] { return serve(config); });
     app.callback([&app, &config] { config.remarks = strange_variables(environment(), variables_of(app)); });
     add_process_options(app, config);
     add_job_options(app, config);

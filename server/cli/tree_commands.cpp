@@ -158,8 +158,8 @@ void write_manual(const CLI::App& app, std::ostream& out) {
     }
     out << ".SH EXIT STATUS\n"
            ".TP\n.B 0\nAn answer, on standard output.\n"
-           ".TP\n.B 1\nA problem, on standard error: sentences on a terminal, JSON elsewhere.\n"
-           ".TP\n.B 2\nA word of the command line, or a setting of the service, cannot be used.\n"
+           ".TP\n.B 1\nAn invalid or failed request, on standard error: sentences on a terminal, JSON elsewhere.\n"
+           ".TP\n.B 2\nAn argument of the command line, or an option of the service, is invalid.\n"
            ".TP\n.B 3\nThe service cannot open its port.\n"
            ".TP\n.B 4\nThe service cannot open its store.\n"
            ".SH EXAMPLES\n"
@@ -176,7 +176,7 @@ void write_manual(const CLI::App& app, std::ostream& out) {
 void add_tree_commands(CommandTree& tree) {
     CLI::App& app = tree.app();
     std::string& shell = tree.keep<std::string>();
-    tree.add("completion", "What a shell needs to complete the command line",
+    tree.add("completion", "Completion of the command line for a shell",
              [&] {
                  std::ostringstream out;
                  shell == "zsh" ? write_zsh(app, out) : write_bash(app, out);

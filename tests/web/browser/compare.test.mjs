@@ -7,7 +7,7 @@ const tests = browserTests();
 const { withPage, jobOf } = tests;
 
 const PLANT = "#/new/fopdt?K=1.25&T=40&L=8";
-const table = (page) => page.getByRole("region", { name: "League table" });
+const table = (page) => page.getByRole("region", { name: "Comparison table" });
 
 /** Compares all methods on the plant of the address, with today's settings as a row. */
 async function compareAll(page) {
@@ -145,7 +145,7 @@ test("two rows are overlaid in every plot, four at most, by the keyboard alone",
     await page.getByRole("heading", { name: /^Settings to enter/ }).waitFor();
     await tracesShown(page, "Nyquist curve of L", 4);
     assert.ok((await page.locator(".legend-item").count()) <= 8);
-    await page.getByRole("link", { name: "League table" }).click();
+    await page.getByRole("link", { name: "Comparison table" }).click();
     await page.waitForFunction(() => document.querySelectorAll(".league-table tr.drawn").length === 4);
   });
 });
@@ -203,7 +203,7 @@ test("the limit on Ms is the request's on every way in, and a typed one stays af
       await table.first().waitFor();
       assert.equal(await limit.inputValue(), value);
     };
-    await page.getByRole("link", { name: "League table" }).click();
+    await page.getByRole("link", { name: "Comparison table" }).click();
     await stands("1.5");
     await page.reload();
     await stands("1.5");
@@ -285,7 +285,7 @@ test("the trade-off of any chosen rows is computed on request, with the rule's c
     const answered = page.waitForResponse((response) => response.url().endsWith("/v1/evaluate"));
     await tradeoff(page).getByRole("button", { name: "Compute the trade-off" }).click();
     const { controllers } = await (await answered).json();
-    await tradeoff(page).getByRole("heading", { name: "What an allowed degradation gives" }).waitFor();
+    await tradeoff(page).getByRole("heading", { name: "Figures by allowed degradation" }).waitFor();
     const today = controllers.at(-1).tradeoff.plant;
     const columns = await tradeoff(page).locator("thead").first().locator("th").allInnerTexts();
     const at = columns.indexOf("today");

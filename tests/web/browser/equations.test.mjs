@@ -194,7 +194,7 @@ test("other scenarios are drawn on request, and settings by hand answer on the e
 test("the league table takes a nonlinear plant's methods, with their curves together", async () => {
   await withPage("", {}, async (page) => {
     await tuneReactor(page);
-    await page.getByRole("link", { name: "League table" }).click();
+    await page.getByRole("link", { name: "Comparison table" }).click();
     await page.getByRole("heading", { name: "Chosen rows, together" }).waitFor();
     assert.equal(await page.locator(".league tbody tr").count(), 2);
     await tracesShown(page, "Load step at the plant input", 8);

@@ -310,7 +310,7 @@ for (const [name, options] of WINDOWS) {
     await withPage("", options, async (page) => {
       await dropFile(page, ".drop", "step.csv", stepTest);
       await candidatesShown(page);
-      for (const summary of ["How the record is read", "What was found in the record"])
+      for (const summary of ["How the record is read", "Details of the record"])
         await page.getByText(summary).click();
       assert.deepEqual(await accessibilityViolations(page), []);
       assert.equal(await overflow(page), 0);

@@ -75,7 +75,7 @@ test("a file's own settings of today make the batch's table sort by the gain ove
       .setInputFiles({ name: "today.csv", mimeType: "text/csv", buffer: Buffer.from(csv) });
     await page.getByText("3 loops: 3 tuned", { exact: true }).waitFor();
     await page.getByRole("columnheader", { name: "Ti (min)" }).waitFor();
-    await page.getByRole("button", { name: "Greatest gain over today" }).click();
+    await page.getByRole("button", { name: "Largest improvement over today" }).click();
     assert.deepEqual(await page.getByRole("rowheader").allInnerTexts(), ["slow", "near", "none"]);
   });
 });
@@ -131,13 +131,13 @@ test("loops that failed say why; gain and risk order the table", async () => {
   await withPage(`#/batches/${batch.id}`, { width: 834, height: 1194 }, async (page) => {
     await page.getByText("4 loops: 2 tuned, 2 failed", { exact: true }).waitFor();
     assert.match(await page.getByRole("row", { name: /unread/ }).innerText(), /T is missing/);
-    await page.getByRole("button", { name: "Greatest risk" }).click();
+    await page.getByRole("button", { name: "Highest risk" }).click();
     assert.equal((await page.getByRole("rowheader").allInnerTexts())[0], "wild");
-    await page.getByRole("button", { name: "Greatest gain over today" }).click();
+    await page.getByRole("button", { name: "Largest improvement over today" }).click();
     assert.equal((await page.getByRole("rowheader").allInnerTexts())[0], "wild");
     assert.equal(await overflow(page), 0);
     // What could be read runs again, as a batch of its own.
-    await page.getByRole("button", { name: "Try the failed again" }).click();
+    await page.getByRole("button", { name: "Retry the failed jobs" }).click();
     await page.waitForFunction((old) => !location.hash.includes(old), batch.id);
     await page.getByText("1 loop: 0 tuned, 1 failed", { exact: true }).waitFor();
     await page.getByRole("rowheader", { name: "impossible" }).waitFor(); // rows come after the counts

@@ -297,7 +297,7 @@ test("today's settings are typed as the product names them, on Design and on Sta
     await page.getByText("Today's settings in this controller").click();
     await picker(page).getByLabel("PBAND (%)", { exact: true }).fill("150");
     await picker(page).getByLabel("INT (min)", { exact: true }).fill("1,2");
-    await picker(page).getByRole("button", { name: "Set the design against these" }).click();
+    await picker(page).getByRole("button", { name: "Compare the design with these" }).click();
     await page.getByRole("button", { name: "today", exact: true }).waitFor();
     const today = { PBAND: 150, INT: 1.2 };
     let job = await jobOf(page);
@@ -345,7 +345,7 @@ test("settings that are tried by hand are followed by what to type", async () =>
     });
     await slider.focus();
     for (let press = 0; press < 6; press += 1) await page.keyboard.press("Shift+ArrowRight");
-    await typed(page).getByText(/^Settings of what is tried by hand, /).waitFor();
+    await typed(page).getByText(/^Settings of the manual controller, /).waitFor();
     const kp = await page.locator(".by-hand").getByLabel("Kp", { exact: false }).first().inputValue();
     await page.waitForFunction(
       (value) => Math.abs(Number(document.querySelector("table.typed .value").textContent) / Number(value) - 1) < 2e-3,

@@ -168,7 +168,7 @@ const slower = ["time,u,y", ...stepTest.split("\n").slice(1).map((row) => row.re
 
 for (const [what, text, doubt] of [
   ["a plant slower than a day", slower, /The plant comes out slower than a day/],
-  ["any other", milliseconds, /Nothing names the unit of the record's times/],
+  ["any other", milliseconds, /The unit of the record's times is not given/],
 ])
   test(`a unit of time that nobody named is not sent, and its doubt stands beside the result: ${what}`, async () => {
     await withPage("", {}, async (page) => {

@@ -89,13 +89,13 @@ test("a design that takes long says that it follows, and follows when it is let 
       input.value = String(Number(input.value) + 20);
       input.dispatchEvent(new Event("input", { bubbles: true }));
     });
-    await page.getByText("Follows when you let go: this design takes about 1.0 s.").waitFor();
+    await page.getByText("Follows when you release the slider: this design takes about 1.0 s.").waitFor();
     assert.deepEqual([asked.length, await setting(page, "Kp")], [0, Kp]);
-    await page.getByText("What stands below follows when you let go.").waitFor();
+    await page.getByText("The figures below follow when you release the slider.").waitFor();
     await range.evaluate((input) => input.dispatchEvent(new Event("change", { bubbles: true })));
     await page.waitForURL(/Ms=1\.6/);
     await settled();
-    await page.getByText(/Follows when you let go/).waitFor({ state: "hidden" });
+    await page.getByText(/Follows when you release the slider/).waitFor({ state: "hidden" });
     assert.ok((await setting(page, "Kp")) > Kp);
     await assertRequestIsShown(page, post, "let go");
   });
@@ -152,7 +152,7 @@ for (const [what, open] of [
       const kept = await jobOf(page);
       const entry = Number(/entry=(\d+)/.exec(page.url())[1]);
       assert.deepEqual(designAnswered(kept.result.controllers[entry]).settings, turned.settings);
-      assert.equal(await page.getByText("What is kept is not what was shown").count(), 0);
+      assert.equal(await page.getByText("The kept design differs from the one shown").count(), 0);
       await page.goBack();
       await page.waitForURL(new RegExp(first.job));
       await slider(page, "Robustness Ms").waitFor();
@@ -182,7 +182,7 @@ test("a kept design that comes out otherwise says what differs", async () => {
       await route.fulfill({ response, json: job });
     });
     await page.getByRole("button", { name: "Keep this design" }).click();
-    await page.getByText(/What is kept is not what was shown: Kp 2\.\d+ is now 2\.5; the service, version .*, computed it anew\./).waitFor();
+    await page.getByText(/The kept design differs from the one shown: Kp 2\.\d+ is now 2\.5; the service, version .*, recalculated it\./).waitFor();
   });
 });
 

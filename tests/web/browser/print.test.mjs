@@ -8,7 +8,7 @@ import { browserTests, openPage } from "../harness.mjs";
 const tests = browserTests();
 const { withPage } = tests;
 
-const table = (page) => page.getByRole("region", { name: "League table" });
+const table = (page) => page.getByRole("region", { name: "Comparison table" });
 const PLANT = "#/new/fopdt?K=1.25&T=40&L=8";
 const REQUEST = {
   name: "TIC-101 <b>&",

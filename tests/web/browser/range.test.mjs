@@ -177,9 +177,9 @@ test("equations show their runs, and with moved rows run again", async () => {
     await page.keyboard.press("ArrowRight");
     await asked;
     const again = answered(page, (request) => request.runs === true);
-    await page.getByRole("button", { name: "Run the rows as they stand" }).click();
+    await page.getByRole("button", { name: "Run the present rows" }).click();
     assert.ok((await (await again).json()).range.runs.length > 0);
-    await page.getByText("these runs are still the design's").waitFor({ state: "hidden" });
+    await page.getByText("these runs still show the design").waitFor({ state: "hidden" });
     await tracesShown(page, "Run: ramp", 7);
     assert.deepEqual(await accessibilityViolations(page), []);
   });
@@ -204,7 +204,7 @@ test("files of recorded tests become points; faults stand at their rows", async 
     await page.getByText("2 problems to fix").waitFor();
     await cell(page, "Place").nth(0).fill("30");
     await cell(page, "Place").nth(1).fill("100");
-    assert.ok(await page.getByLabel("Hold the limits for every model").isChecked());
+    assert.ok(await page.getByLabel("Keep the limits on every plant").isChecked());
     const asked = answered(page);
     await page.getByRole("button", { name: "Design", exact: true }).click();
     const sent = (await asked).request().postDataJSON();
@@ -233,7 +233,7 @@ test("a fault of the service stands at the row that it is about", async () => {
       await page.getByText("1 problem to fix").waitFor();
       assert.equal(await cell(page, "Plant").nth(1).getAttribute("aria-invalid"), "true");
       // The verdict is of the request before, and says so.
-      const mark = page.getByText("These results are of the last request that was answered");
+      const mark = page.getByText("These results belong to the last answered request");
       await mark.waitFor();
       const colours = page.locator(".range-results > .verdict").evaluate((card) => getComputedStyle(card).filter);
       assert.equal(await colours, "grayscale(1)");
@@ -325,7 +325,7 @@ test("moved rows go with the job under another name and from its screen again, n
     const limit = page.locator(".range-form").getByLabel("Ms", { exact: true });
     await limit.fill("1.7");
     await send.click();
-    await page.getByText("The rows were moved for another request than the form has now.").waitFor();
+    await page.getByText("The rows belong to an earlier request; the form has changed since.").waitFor();
     assert.match(page.url(), /\/range$/);
   });
 });

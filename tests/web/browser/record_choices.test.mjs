@@ -153,7 +153,7 @@ test("a further measured input is identified together with u, and named with wha
       assertNear(plant, AMBIENT, "ambient");
       await candidatesShown(page);
       const found = page.getByRole("region", { name: "Was the test good enough?" });
-      await found.getByText("What was found in the record").click();
+      await found.getByText("Details of the record").click();
       const text = await found.locator("dt", { hasText: "ambient" }).locator("+ dd").innerText();
       const figures = [...text.matchAll(/(\d+(?:\.\d+)?)/g)].map(([figure]) => Number(figure));
       const four = (value) => Number(value.toPrecision(4));

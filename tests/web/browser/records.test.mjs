@@ -173,7 +173,7 @@ test("what was passed over is listed, and another unit of time can be chosen", a
     await dropFile(page, ".drop", "log.csv", log);
     await page.getByRole("heading", { name: "Model candidates" }).waitFor();
     await page.getByText("How the record is read").click();
-    await page.getByText("2 lines passed over").click();
+    await page.getByText("2 lines ignored").click();
     await page.getByText('Line 303: column "Time": "Total" is not a number.').waitFor();
     await page.getByText("The file does not say that these are seconds").waitFor();
     const answered = page.waitForResponse((response) => response.url().endsWith("/v1/identify"));

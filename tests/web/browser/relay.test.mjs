@@ -122,7 +122,7 @@ test("a relay that cannot oscillate says why at its field", async () => {
 
 test("results beside a request that was refused are marked as those of the one before", async () => {
   await withPage("#/relay/fopdt?K=1&T=10&L=2", {}, async (page) => {
-    const mark = page.getByText("These results are of the last request that was answered");
+    const mark = page.getByText("These results belong to the last answered request");
     const results = page.locator(".relay-results");
     await page.getByRole("heading", { name: "The test as it would be recorded" }).waitFor();
     assert.equal(await mark.isVisible(), false);

@@ -11,7 +11,7 @@ async function showRimc(page) {
   await page.getByRole("button", { name: "Tune this model" }).click();
   await page.getByRole("heading", { name: /^Settings to enter/ }).waitFor();
   await page.getByRole("button", { name: "rimc", exact: true }).click();
-  await page.getByRole("heading", { name: "What λ buys: load peak and Ms" }).waitFor();
+  await page.getByRole("heading", { name: "Effect of λ: load peak and Ms" }).waitFor();
 }
 
 const card = (page) => page.getByRole("region", { name: "Revised IMC: speed against robustness" });
@@ -29,12 +29,12 @@ test("the chart shows the curve of this plant with the design on it, and its fig
     await showRimc(page);
     const { result } = await jobOf(page);
     const { rimc } = result.controllers[1];
-    await tracesShown(page, "What λ buys: load peak and Ms", 2);
+    await tracesShown(page, "Effect of λ: load peak and Ms", 2);
     assert.equal(await cell(page, "Ms"), shown(rimc.Ms));
     assert.equal(await cell(page, "Load peak"), shown(rimc.disturbance_peak));
     assert.equal(await cell(page, "Dead time error"), shown(rimc.dead_time_error));
     const labels = await page
-      .getByRole("img", { name: "What λ buys: load peak and Ms" })
+      .getByRole("img", { name: "Effect of λ: load peak and Ms" })
       .locator("text")
       .allTextContents();
     assert.ok(labels.includes(`Ms ${Number(rimc.Ms).toPrecision(3)}`), labels.join());

@@ -67,7 +67,7 @@ test("what a job hands out is the design on the screen: its request at once, its
     const field = page.locator(".controls").getByRole("textbox", { name: "Kp" });
     await field.fill("4");
     await field.press("Enter");
-    await page.getByText(/^Ms is 2\.\d+, above the limit of 1\.50 that the design keeps to\. Settings by hand have no report/).waitFor();
+    await page.getByText(/^Ms is 2\.\d+, above the limit of 1\.50 that the design keeps to\. Manual settings have no report/).waitFor();
     await report.waitFor({ state: "hidden" });
     assert.equal(await page.getByRole("button", { name: "Keep this design" }).isVisible(), false);
     await page.getByRole("button", { name: "Back to the proposal" }).click();
@@ -313,7 +313,7 @@ test("a busy service keeps the last plots and says so; the design follows when i
       );
       await slider(page, "Robustness Ms").focus();
       await page.keyboard.press("PageUp");
-      await page.locator(".controls .trouble").getByText("The last plots stay; trying again in 1 s.").waitFor();
+      await page.locator(".controls .trouble").getByText("The last plots remain; trying again in 1 s.").waitFor();
       await tracesShown(page, "Nyquist curve of L", 1);
       busy = false;
       await page.locator(".controls .trouble").first().waitFor({ state: "hidden" });

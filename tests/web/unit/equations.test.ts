@@ -90,7 +90,7 @@ test("what is missing is said at its field", () => {
       "/plant/output",
     ],
   );
-  assert.match(readEquations(given).errors[0]!.detail, /^T stands twice/);
+  assert.match(readEquations(given).errors[0]!.detail, /^T is used twice/);
   const empty = readEquations({ states: [], parameters: [], single: given.single });
   assert.match(empty.errors[0]!.detail, /no state/);
 });

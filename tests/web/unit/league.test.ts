@@ -102,7 +102,7 @@ test("rows stand in the order of the service within the limit, then beyond it, t
     rows.map((row) => row.rank),
     [1, null, 2, null, null, null],
   );
-  assert.equal(rows[1]!.why, "Your current settings, for comparison.");
+  assert.equal(rows[1]!.why, "Today's settings, for comparison.");
   assert.equal(rows[3]!.why, "Ms is above 2.00.");
   assert.equal(rows[4]!.why, "The loop is unstable.");
   // Another limit, another ranking.

@@ -183,13 +183,13 @@ test("the overshoot as built stands beside the ideal loop's, in percent of the s
   assert.deepEqual(row(4.998, far), { label: "Overshoot (%)", ideal: "5.00", built: "29.8", difference: "+24.8", far: true });
   assert.deepEqual(row(5, loop(3.1, -1.9)), { label: "Overshoot (%)", ideal: "5.00", built: "3.10", difference: "−1.9", far: false });
   assert.equal(row(5, loop(3, null)), undefined, "what settles nowhere has none");
-  assert.equal(differenceSentence(far), "As built it is another loop: the overshoot 24.8 percentage points higher than the ideal one's.");
+  assert.equal(differenceSentence(far), "The implemented loop differs from the ideal one: the overshoot 24.8 percentage points higher.");
 });
 
 test("what differs is said as the service concludes, and what leaves nothing to compare is handed on", () => {
   assert.equal(
     differenceSentence(built(5.91, -2.05, ["Ms", "load_IAE"])),
-    "As built it is another loop: Ms 5.9 % higher, the load IAE 2.0 % lower than the ideal one's.",
+    "The implemented loop differs from the ideal one: Ms 5.9 % higher, the load IAE 2.0 % lower.",
   );
   assert.equal(differenceSentence(built(5.91, null)), "");
   const warning = (code: string) => ({ code, detail: code });
@@ -203,11 +203,11 @@ test("what differs is said as the service concludes, and what leaves nothing to 
 
 test("it is said how the loop was reckoned and how slow it may be sampled", () => {
   assert.deepEqual(samplingSentences(built(0, 0), 3.61, "s"), [
-    "Reckoned with a sample every 0.5 s.",
+    "Evaluated with a sample every 0.5 s.",
     "Sampling up to every 3.61 s keeps Ms within 5 %.",
   ]);
   assert.deepEqual(samplingSentences({ ...built(0, 0), sample_time: null }, null, "s"), [
-    "Reckoned as continuous, because no sample time is known.",
+    "Evaluated as continuous, because no sample time is known.",
   ]);
   assert.match(samplingSentences(built(0, 0), 0.2, "s")[1]!, /^That is slow: up to 0.200 s /);
   assert.deepEqual(samplingSentences(undefined, undefined, "s"), []);
@@ -216,7 +216,7 @@ test("it is said how the loop was reckoned and how slow it may be sampled", () =
 test("evidence names what was not verified, and sends to the manual where not all was read", () => {
   assert.equal(
     evidenceSentence(PRODUCT.evidence),
-    "Read in part, or in third parties' texts. Not verified: filter; clock. Check the settings against your manual before you use them.",
+    "Read in part, or in documents of third parties. Not verified: filter; clock. Check the settings against your manual before you use them.",
   );
   assert.equal(evidenceSentence({ level: "read", read: [], unverified: [], sources: [] }), "Read in the maker's code or text.");
 });
@@ -263,7 +263,7 @@ test("a range needs both ends, the second above the first", () => {
     readSpan(["a", "b"], "Output range", "/u").errors.map((error) => error.pointer),
     ["/u/0", "/u/1"],
   );
-  assert.match(readSpan(["5", "5"], "Output range", "/u").errors[0]!.detail, /write a higher end/);
+  assert.match(readSpan(["5", "5"], "Output range", "/u").errors[0]!.detail, /the end must be higher/);
 });
 
 const MINE: MyController = { product: "acme", name: "Acme PID", needs: ["y_span"], y_span: [0, 200], u_span: [0, 100], sample_time: 0.5 };

@@ -48,14 +48,14 @@ test("a controller that serves many plants has two more figures", () => {
   const rows = figureGroups(unitNames(undefined), true).flatMap((group) => group.rows);
   const row = (label: string): FigureRow => rows.find((candidate) => candidate.label === label)!;
   assert.equal(row("Stable plants (%)").value(on({ stable_fraction: 0.5 })).text, "50");
-  assert.equal(row("Ms at worst").value(on({ worst_Ms: 1.52 })).text, "1.52");
+  assert.equal(row("Worst Ms").value(on({ worst_Ms: 1.52 })).text, "1.52");
   assert.equal(
-    row("Ms at worst").value(on({ why_null: { worst_Ms: "Some are unstable." } })).why,
+    row("Worst Ms").value(on({ why_null: { worst_Ms: "Some are unstable." } })).why,
     "Some are unstable.",
   );
-  assert.equal(row("Ms at worst").value(entry()).text, "");
+  assert.equal(row("Worst Ms").value(entry()).text, "");
   assert.ok(
-    !figureGroups(unitNames(undefined)).some((group) => group.rows.some((item) => item.label === "Ms at worst")),
+    !figureGroups(unitNames(undefined)).some((group) => group.rows.some((item) => item.label === "Worst Ms")),
   );
 });
 

@@ -43,7 +43,7 @@ export function frontFrame(shown: FrontShown, units: UnitNames): Frame {
     ...(today ? [{ kind: "point" as const, ...today, label: "today", look: 2 as const }] : []),
     ...(here ? [{ kind: "point" as const, ...here, label: "", look: 1 as const, handle: shown.here.at !== null }] : []),
   ];
-  const beside = rules.length === 0 ? "" : ` ${rules.length} rules stand beside it.`;
+  const beside = rules.length === 0 ? "" : ` ${rules.length} rules are shown for comparison.`;
   return {
     title: "Robustness against speed",
     description: here

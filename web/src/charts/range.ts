@@ -81,7 +81,7 @@ export function robustnessFrame(shown: RangeShown): Frame {
   const said = [
     ...(scheduled
       ? [
-          `With the schedule Ms is at most ${largest(scheduled, "Ms")} and the IAE ${largest(scheduled, "relative_IAE")} times each place's own optimum.`,
+          `With the schedule Ms is at most ${largest(scheduled, "Ms")} and the IAE ${largest(scheduled, "relative_IAE")} times each operating point's own optimum.`,
         ]
       : []),
     ...(one
@@ -189,7 +189,7 @@ export function passageFrame(passage: RangePassage, parameter: string | null, un
   const target: Trace = { name: parameter ?? "set point", look: "data", x: passage.t, y: passage.target };
   return {
     title: `Run: ${passage.name}`,
-    description: `The equations over ${formatNumber(passage.horizon)} ${units.time}, with the settings changing on the way.`,
+    description: `Run on the equations over ${formatNumber(passage.horizon)} ${units.time}, with scheduled settings.`,
     x: { kind: "linear", label: withUnit("time", units.time) },
     panes: [
       {

@@ -23,7 +23,7 @@ export function rimcFrame(rimc: Rimc, tau: number, lambda: number, units: UnitNa
   ];
   const name = withUnit("λ", units.time);
   return {
-    title: "What λ buys: load peak and Ms",
+    title: "Effect of λ: load peak and Ms",
     description: `At ${name} ${formatNumber(lambda)} a load step moves y by ${formatNumber(peak)} times what it would without control; Ms is ${formatNumber(Ms)}.`,
     x: { kind: "log", label: "λ/τ" },
     panes: [
@@ -56,7 +56,7 @@ export function fullControllerFrame(rimc: Rimc, pid: Response | undefined, units
   ];
   return {
     title: "Load step: PID and full controller",
-    description: "How much of the full controller the PID keeps.",
+    description: "The PID compared with the full controller.",
     x: { kind: "linear", label: withUnit("time", units.time) },
     panes: [
       { y: { kind: "linear", label: withUnit("y", units.y) }, traces: traces("y"), weight: 1.5 },
@@ -112,7 +112,7 @@ export function rimcRows(entry: Entry, units: UnitNames): RimcRow[] {
       "disturbance_peak",
       load?.["peak"],
     ),
-    row(withUnit("Dead time error", units.time), "tolerated for sure", "dead_time_error", null),
+    row(withUnit("Dead time error", units.time), "tolerated with certainty", "dead_time_error", null),
     row(withUnit("Unstable below λ", units.time), "stability limit", "stability_limit", null),
     {
       label: withUnit("Load IAE", product(units.y, units.time)),

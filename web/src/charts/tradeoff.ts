@@ -135,7 +135,7 @@ export function levelsFrame(items: TradeoffItem[], time: string): Frame | null {
   const asked = column(levels, "degradation");
   const reached = plain("reached", 1, levels, "degradation", "Deg");
   return {
-    title: "What an allowed degradation gives",
+    title: "Figures by allowed degradation",
     description: levels
       .map(
         (level) =>
@@ -188,6 +188,6 @@ export const tradeoffRows = (time: string): TradeoffRow[] => [
   { label: withUnit("J_r at best", time), meaning: "if only the set point mattered", name: "J_r_opt" },
   { label: withUnit("J_d at best", time), meaning: "if only the load mattered", name: "J_d_opt" },
   { label: "I_perf", meaning: "J_rd of the rule without a limit on Ms, over this J_rd", name: "I_perf" },
-  { label: "Deg", meaning: "1 − I_perf: what robustness costs; negative is better than that rule", name: "Deg" },
+  { label: "Deg", meaning: "1 − I_perf: the cost of robustness; negative is better than that rule", name: "Deg" },
   { label: "Ms", meaning: "peak of |S|", name: "Ms" },
 ];

@@ -65,7 +65,7 @@ function namedRows<Row extends { name: string }>(
       const detail =
         name === ""
           ? `${what} ${index + 1} has no name. Give it one, for example ${what === "State" ? "h" : "k"}.`
-          : `${name} stands twice. Give one of the two another name.`;
+          : `${name} is used twice. Give one of the two another name.`;
       errors.push({ pointer: pointer(index), detail });
       return [];
     }

@@ -170,7 +170,7 @@ export function openAround(element: Element): void {
   for (let at = element.closest("details"); at; at = at.parentElement?.closest("details") ?? null) at.open = true;
 }
 
-const WHOSE = "These results are of the last request that was answered, not of the form as it stands.";
+const WHOSE = "These results belong to the last answered request, not to the present form.";
 
 /** Said above results that stand beside a form whose last request was refused; they lose their colours meanwhile. */
 export interface StaleMark {

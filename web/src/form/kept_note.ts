@@ -35,7 +35,7 @@ export function keptNote(about: string, onForget: () => void): KeptNote {
     show(parts) {
       const list = keptWords(parts);
       element.hidden = list.length === 0;
-      words.textContent = `Also sent, as it was loaded, without a field here: ${list.join(", ")}.`;
+      words.textContent = `Also sent as loaded, without a field here: ${list.join(", ")}.`;
     },
   };
 }

@@ -96,7 +96,7 @@ export const PLANT_FORMS: PlantForm[] = [
     title: "First order with dead time",
     fields: [
       gain,
-      numberField("T", "time constant: 63 % of the way; negative is unstable", "time", "40"),
+      numberField("T", "time constant, at 63 % of the step response; negative: unstable", "time", "40"),
       deadTime,
       uncertainty,
     ],

@@ -32,7 +32,7 @@ const COLUMN_LABELS: Record<ColumnName, string> = {
 };
 
 const TIME_UNITS = [
-  ["", "as the file says, else seconds"],
+  ["", "as in the file, else seconds"],
   ["ms", "milliseconds"],
   ["s", "seconds"],
   ["min", "minutes"],
@@ -80,10 +80,10 @@ const METHODS = [
   ["two_point", "two points of the step"],
 ] as const;
 
-const FOUND = "found by itself";
+const FOUND = "detected";
 const COLUMN_NAMES = ["t", "u", "y", "r", "d"] as const;
 /** Words for an unchosen column where nothing was found. */
-const UNCHOSEN: Partial<Record<ColumnName, string>> = { r: "none, or found by itself", d: "none" };
+const UNCHOSEN: Partial<Record<ColumnName, string>> = { r: "none, or detected", d: "none" };
 
 const known = (choices: readonly (readonly [string, string])[], value: unknown): string =>
   typeof value === "string" && choices.some(([id]) => id === value) ? value : "auto";
@@ -110,19 +110,19 @@ export function recordFields(errors: FormErrors, all: boolean): RecordFields {
   );
   const run = choiceField({ label: "Run of the file", choices: [["", FOUND]], pointer: () => "/record/run" }, errors);
   run.element.hidden = true;
-  const uStep = optional("u stepped from, to", "where the file has no u: 0 50", "/record/u_step");
+  const uStep = optional("u stepped from, to", "if the file has no u, such as 0 50", "/record/u_step");
   const kind = choiceField({ label: "Kind of test", choices: KINDS, pointer: () => "/record/kind" }, errors);
   const model = choiceField({ label: "Model", choices: MODELS, pointer: () => "/identify/model" }, errors);
   const method = all
     ? choiceField({ label: "Method", choices: METHODS, pointer: () => "/identify/method" }, errors)
     : null;
-  const dt = optional("Sampling time (s)", "where there is no time column", "/record/dt");
+  const dt = optional("Sampling time (s)", "if there is no time column", "/record/dt");
   const numbers: Record<string, Field<HTMLInputElement>> = all
     ? {
         dt,
         u0: optional("u before", "output before the first sample", "/record/u0"),
         y0: optional("y before", "measurement before the first sample", "/record/y0"),
-        shift: optional("Shift", "of relay formulas; 1/Pu if empty", "/identify/shift"),
+        shift: optional("Shift", "for relay formulas; 1/Pu if empty", "/identify/shift"),
       }
     : { dt };
   // Parts of a loaded request that have no field here: sent back as they came.

@@ -19,7 +19,7 @@ const LARGEST_BYTES = 8 * 1024 * 1024;
 /** Why a file cannot be sent; "" where it can. */
 export const tooLarge = ({ name, size }: File): string =>
   size > LARGEST_BYTES
-    ? `${name} has ${(size / 1024 / 1024).toFixed(1)} MiB; 8 MiB is the most that can be sent. Cut the record to the test itself.`
+    ? `${name} has ${(size / 1024 / 1024).toFixed(1)} MiB; at most 8 MiB can be sent. Cut the record to the test itself.`
     : "";
 
 /** One sentence: rows, form, encoding, times. */
@@ -65,7 +65,7 @@ export function previewPanel(preview: Preview): HTMLElement {
       ),
     ),
     skipped.length > 0
-      ? h("details", {}, h("summary", {}, `${counted(skipped.length, "line")} passed over`), h("ul", {}, skipped))
+      ? h("details", {}, h("summary", {}, `${counted(skipped.length, "line")} ignored`), h("ul", {}, skipped))
       : null,
   );
 }

@@ -38,7 +38,7 @@ export function rowList<Texts>(
 
   function append(texts: Texts | null): Row<Texts> {
     const row = make(texts, () => rows);
-    const remove = h("button", { type: "button", class: "quiet remove", title: `Take this ${what} away` }, "×");
+    const remove = h("button", { type: "button", class: "quiet remove", title: `Remove this ${what}` }, "×");
     const name = (): void => remove.setAttribute("aria-label", `Remove ${what} ${nameOf(row.texts())}`);
     remove.addEventListener("click", () => {
       const index = rows.indexOf(row);

@@ -64,6 +64,6 @@ export function readSpan(typed: readonly [string, string], label: string, pointe
   const [low, high] = ends;
   if (errors.length > 0 || !low?.ok || !high?.ok) return { span: null, errors };
   if (low.value < high.value) return { span: [low.value, high.value], errors };
-  const detail = `${label} begins at ${typed[0].trim()}; write a higher end than that.`;
+  const detail = `${label} begins at ${typed[0].trim()}; the end must be higher.`;
   return { span: null, errors: [{ pointer: `${pointer}/1`, detail }] };
 }

@@ -140,7 +140,7 @@ export function liveDesign(onSettled: (point: Point) => void): Live {
     const busy = error instanceof ApiError && (error.status === 429 || error.status === 0 || error.status === 503);
     const wait = (error instanceof ApiError ? error.retryAfter : null) ?? RETRY_S;
     const sentence = error instanceof ApiError ? (error.problem.errors?.[0]?.detail ?? error.message) : String(error);
-    trouble.value = busy ? `${sentence} The last plots stay; trying again in ${wait} s.` : sentence;
+    trouble.value = busy ? `${sentence} The last plots remain; trying again in ${wait} s.` : sentence;
     clearTimeout(retryTimer);
     if (busy) retryTimer = setTimeout(() => retry(), wait * 1000);
   }

@@ -31,7 +31,7 @@ export function rangeJobCard(announce: (sentence: string) => void): RangeJobCard
       title.textContent = schedule ? `Schedule: ${counted(schedule.rows.length, "row")}` : "No schedule";
       body.replaceChildren(
         ...(job.result?.partial
-          ? [h("p", { class: "hint" }, "Stopped early: the best that was found until then.")]
+          ? [h("p", { class: "hint" }, "Stopped early: this is the best result until then.")]
           : []),
         ...(schedule
           ? [
@@ -39,7 +39,7 @@ export function rangeJobCard(announce: (sentence: string) => void): RangeJobCard
               rowsTable(content, units),
             ]
           : [h("p", {}, why_null?.["schedule"] ?? "")]),
-        ...(one ? [h("p", {}, `One setting for all of it: ${settingWords(settingsOfOne(one), units)}.`)] : []),
+        ...(one ? [h("p", {}, `One setting for the whole range: ${settingWords(settingsOfOne(one), units)}.`)] : []),
         h(
           "p",
           { class: "actions" },

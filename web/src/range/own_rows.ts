@@ -135,7 +135,7 @@ export function ownRows(store: Store, announce: (sentence: string) => void): Own
       deviations.length > 0 ? items(deviations) : "",
       deviations.length + remarks.length + ofRows.length > 0 ? h("p", { class: "hint" }, noteTimes(units.time)) : "",
       remarks.length + ofRows.length > 0
-        ? h("details", {}, h("summary", {}, "How it was reckoned"), items([...remarks, ...ofRows]))
+        ? h("details", {}, h("summary", {}, "How this was calculated"), items([...remarks, ...ofRows]))
         : "",
     );
     trouble.hidden = true;

@@ -45,7 +45,7 @@ export function pointFields(errors: FormErrors, active: () => boolean, events: P
     multiple: true,
     accept: ".csv,.txt,.tsv,text/csv,text/plain",
     tabindex: -1,
-    "aria-label": "CSV files of tests, one a point",
+    "aria-label": "CSV files of tests, one per point",
   });
   const choose = h(
     "button",

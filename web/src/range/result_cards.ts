@@ -60,7 +60,7 @@ function showOne(card: HTMLElement, content: RangeContent, units: UnitNames): vo
   const why = content.why_null?.["one"];
   card.hidden = !one && !why;
   card.replaceChildren(
-    h("h2", {}, "One setting for all of it"),
+    h("h2", {}, "One setting for the whole range"),
     ...(one ? oneSetting(one, content, units) : [h("p", {}, why ?? "")]),
   );
   if (one)

@@ -18,17 +18,17 @@ export interface RunsCard {
 }
 
 const NONLINEAR =
-  "The nonlinear controller knows the equations and their states: what the schedule lacks to it is the most that any controller could add.";
+  "The nonlinear controller knows the equations and their states: its lead over the schedule is the most that any controller could gain.";
 
 export function runsCard(announce: (sentence: string) => void, onAgain: () => void): RunsCard {
-  const title = h("h2", { id: uniqueId("runs") }, "Across the range, on the equations");
+  const title = h("h2", { id: uniqueId("runs") }, "Runs across the range, on the equations");
   const choice = choiceField({ label: "Run", choices: [], pointer: () => null }, new FormErrors());
   const facts = h("div", { class: "scroll", role: "region", "aria-label": "Figures of the run", tabindex: 0 });
-  const again = h("button", { type: "button", onclick: () => onAgain() }, "Run the rows as they stand");
+  const again = h("button", { type: "button", onclick: () => onAgain() }, "Run the present rows");
   const old = h(
     "div",
     { class: "trouble", hidden: true },
-    h("p", {}, "The rows were moved; these runs are still the design's."),
+    h("p", {}, "The rows were moved; these runs still show the design."),
     h("p", { class: "actions" }, again),
   );
   const notes = h("ul", { class: "notes quiet-notes" });

@@ -36,13 +36,13 @@ export function termFields(errors: FormErrors): TermFields {
   const interpolation = choiceField(
     {
       label: "Between the rows",
-      hint: "as your controller does it",
+      hint: "the interpolation of your controller",
       choices: INTERPOLATIONS,
       pointer: () => "/schedule/interpolation",
     },
     errors,
   );
-  const rows = field("rows", "Rows", "empty: the fewest", "fewest");
+  const rows = field("rows", "Rows", "empty: as few as possible", "fewest");
   const allowance = field("allowance", "Allowance", "IAE above the optimum");
   allowance.setUnit("%");
   const box = h("input", { type: "checkbox", id: uniqueId("region") });
@@ -50,12 +50,12 @@ export function termFields(errors: FormErrors): TermFields {
     "label",
     { class: "check", for: box.id, hidden: true },
     box,
-    "Hold the limits for every model that the records allow",
+    "Keep the limits on every plant that fits the records",
   );
   const element = h(
     "fieldset",
     { class: "range-terms" },
-    h("legend", {}, "What is asked"),
+    h("legend", {}, "Limits and schedule"),
     h(
       "div",
       { class: "fields" },
@@ -117,7 +117,7 @@ export function wayFields(errors: FormErrors, active: () => boolean): WayFields 
   const from = textField({ label: "From", pointer: own("from") }, errors);
   const to = textField({ label: "To", pointer: own("to") }, errors);
   const box = h("input", { type: "checkbox", id: uniqueId("hold") });
-  const hold = h("label", { class: "check", for: box.id }, box, "The input keeps the output where it is");
+  const hold = h("label", { class: "check", for: box.id }, box, "The input keeps the output constant");
   const element = h(
     "fieldset",
     {},

@@ -28,7 +28,7 @@ export interface RangeEvents {
 
 /** Rows that are shown are not dropped, nor sent with what they were not made for. */
 const ANOTHER_DESIGN =
-  "The rows were moved for another request than the form has now. Press Design for new ones, or undo the change.";
+  "The rows belong to an earlier request; the form has changed since. Press Design for new rows, or undo the change.";
 
 export function rangeView(store: Store, announce: (sentence: string) => void, events: RangeEvents): RangeView {
   const errors = new FormErrors();

@@ -34,7 +34,7 @@ export function batchView(id: string, sort: string, announce: (sentence: string)
   const counts = h("p", { role: "status" });
   const bar = h("progress", { max: 1, "aria-label": "Loops done" });
   const cancel = h("button", { type: "button", onclick: () => void work(() => cancelBatch(id)) }, "Cancel the rest");
-  const again = h("button", { type: "button", onclick: () => void work(tryAgain) }, "Try the failed again");
+  const again = h("button", { type: "button", onclick: () => void work(tryAgain) }, "Retry the failed jobs");
   const csv = h("button", { type: "button", onclick: () => void work(saveCsv) }, "Download CSV");
   const note = h("p", { class: "hint", hidden: true });
   let columns: BatchColumn[] = [];
@@ -42,8 +42,8 @@ export function batchView(id: string, sort: string, announce: (sentence: string)
   const rows = h("tbody");
   const table = jobTable("Loops of the batch", [], rows);
   const shortcuts = [
-    shortcut("gain", "Greatest gain over today"),
-    shortcut("risk", "Greatest risk"),
+    shortcut("gain", "Largest improvement over today"),
+    shortcut("risk", "Highest risk"),
     shortcut("excess", "Farthest above the optimum"),
   ];
   const element = h(

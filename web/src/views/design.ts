@@ -57,7 +57,7 @@ export interface DesignEvents extends JobEvents {
 }
 
 export function designView(store: Store, announce: (sentence: string) => void, events: DesignEvents): View {
-  const league = h("a", { href: "#/" }, "League table");
+  const league = h("a", { href: "#/" }, "Comparison table");
   const { all, trouble, cancel, complain } = jobActions(store, events, "quiet");
   const title = titleCard("Design", announce, league, all);
   const verdict = h("section", { class: "verdict", "aria-label": "Verdict" });
@@ -107,7 +107,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     h("summary", {}, "More: my controller, code, set point against load, how it was computed"),
     h("div", { class: "more-cards" }, own.side, ...reportsAt("below"), ...own.below, computed),
   );
-  const followsLater = h("p", { class: "hint", hidden: true }, "What stands below follows when you let go.");
+  const followsLater = h("p", { class: "hint", hidden: true }, "The figures below follow when you release the slider.");
   const below = h("div", { class: "below" }, followsLater, model, ...reportsAt("above"), notes, more);
   const headRight = h("div", { class: "head-right" }, trouble, verdict, cures.element, progress.element, range.element);
   const element = h("main", { class: "design", id: "main" }, title.element, headRight);

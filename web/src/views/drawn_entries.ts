@@ -78,7 +78,7 @@ export function createLegend(store: Store): Legend {
         ),
         listed.length > MOST_DRAWN ? h("span", { class: "hint" }, `At most ${MOST_DRAWN} are drawn.`) : "",
         entries.length > listed.length
-          ? h("span", { class: "hint" }, `${entries.length - listed.length} more stand in the league table.`)
+          ? h("span", { class: "hint" }, `${entries.length - listed.length} more are in the comparison table.`)
           : "",
       );
       if (focused >= 0) controls()[focused]?.focus();

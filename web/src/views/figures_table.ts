@@ -45,7 +45,7 @@ export function figuresTable(caption: string, columns: TableColumn[], groups: Fi
             h("th", { scope: "row", title: row.meaning }, row.label),
             columns.map((column) => {
               const value = column.entry.error
-                ? { text: "", why: `${column.name} has no answer here.` }
+                ? { text: "", why: `${column.name} has no result for this entry.` }
                 : row.value(column.entry);
               if (value.text !== "") return h("td", {}, value.text);
               return h("td", { title: value.why }, DASH, h("sup", {}, mark(value.why)));

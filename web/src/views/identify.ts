@@ -70,7 +70,7 @@ export function identifyView(
   const text = recordText(
     {
       label: "The record as text",
-      hint: "One row a sample: time, controller output u, measurement y.",
+      hint: "One row per sample: time, controller output u, measurement y.",
       rows: 8,
       wide: true,
       pointer: () => "/record/csv",

@@ -303,7 +303,7 @@ function loopsCard(
     h(
       "span",
       { class: "hint" },
-      "One loop a line: name, K, T, L, and today's Kp, Ti, Td if you have them. Every line is tuned; the answer is a table of settings.",
+      "One loop per line: name, K, T, L, and today's Kp, Ti, Td if you have them. Every line is tuned; the answer is a table of settings.",
     ),
   );
 

@@ -3,7 +3,7 @@ import { h } from "../dom.ts";
 
 export function askInDialog(refused: boolean): Promise<string | null> {
   const input = h("input", { id: "key", type: "password", autocomplete: "off", spellcheck: "false", required: true });
-  const cancel = h("button", { type: "button" }, "Go on without");
+  const cancel = h("button", { type: "button" }, "Continue without a key");
   const form = h(
     "form",
     { method: "dialog" },
@@ -13,7 +13,7 @@ export function askInDialog(refused: boolean): Promise<string | null> {
       { id: "key-help" },
       refused
         ? "That key is not known here. Try another one."
-        : "Whoever runs the service hands keys out. Yours stays in this tab until you close it.",
+        : "The operator of the service issues keys. Yours stays in this tab until you close it.",
     ),
     h("label", { for: "key" }, "Key"),
     input,

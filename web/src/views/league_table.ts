@@ -65,7 +65,7 @@ export function leagueTable(events: LeagueEvents): LeagueTable {
   const element = h(
     "div",
     {},
-    h("div", { class: "league-scroll", tabindex: 0, role: "region", "aria-label": "League table" }, table),
+    h("div", { class: "league-scroll", tabindex: 0, role: "region", "aria-label": "Comparison table" }, table),
     folded,
   );
 
@@ -183,7 +183,7 @@ export function leagueTable(events: LeagueEvents): LeagueTable {
         const item = drawn.find((candidate) => candidate.index === index);
         row.box.checked = item !== undefined;
         row.box.disabled = !drawable(row.entry) || (full && !item);
-        row.box.title = full && !item ? `At most ${MOST_DRAWN} are drawn: take one away first.` : "";
+        row.box.title = full && !item ? `At most ${MOST_DRAWN} are drawn: remove one first.` : "";
         draw(row, item?.look ?? null, item?.name ?? "");
       }
     },

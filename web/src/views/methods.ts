@@ -78,7 +78,7 @@ function articleOf(method: Method, alone: boolean): HTMLElement {
         h(
           "tr",
           {},
-          ["Option", "What it may be", "Default", "Meaning"].map((name) => h("th", { scope: "col" }, name)),
+          ["Option", "Allowed values", "Default", "Meaning"].map((name) => h("th", { scope: "col" }, name)),
         ),
       ),
       h(

@@ -91,7 +91,7 @@ export function ownController(
   }
 
   function showTyped(product: Product, entered: AsEntered, judged: Entry | null): void {
-    const name = tried ? "what is tried by hand" : shown!.name;
+    const name = tried ? "the manual controller" : shown!.name;
     typed.show({ product, name, entered, judged: tried ? null : judged, time: shown!.units.time });
   }
 
@@ -210,7 +210,7 @@ export function ownController(
     const request = shown?.request;
     const implement = implementOf(mine);
     if (!request || !mine) return;
-    if (!settings) return complain(`Nothing is typed yet: write what stands in ${mine.name} now.`);
+    if (!settings) return complain(`Enter the present settings of ${mine.name} first.`);
     if (!implement) return complain("Give the ranges above first.");
     await work(today.button, withBaseline(withImplement(request, implement), typedBaseline(implement, settings)));
   }

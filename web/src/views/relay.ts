@@ -40,7 +40,7 @@ const SETTINGS: {
   value: string;
 }[] = [
   { name: "u_plus", label: "Upper level", hint: "of u, from the operating point", unit: "u", value: "1" },
-  { name: "u_minus", label: "Lower level", hint: "other size than above: a biased test", unit: "u", value: "-1" },
+  { name: "u_minus", label: "Lower level", hint: "another size than the upper level: a biased test", unit: "u", value: "-1" },
   {
     name: "hysteresis",
     label: "Hysteresis",
@@ -53,11 +53,11 @@ const SETTINGS: {
   {
     name: "relay_sample_time",
     label: "Relay sample time",
-    hint: "0: switches at the very instant",
+    hint: "0: switches at the instant of crossing",
     unit: "time",
     value: "0",
   },
-  { name: "record_interval", label: "Record every", hint: "empty: 200 rows a period", unit: "time", value: "" },
+  { name: "record_interval", label: "Record every", hint: "empty: 200 rows per period", unit: "time", value: "" },
   { name: "seed", label: "Seed", hint: "of the noise", unit: "", value: "0" },
 ];
 
@@ -158,7 +158,7 @@ export function relayView(announce: (sentence: string) => void, events: RelayEve
         slot.replaceChildren(plot.element);
       }
       const sentences = [
-        ...(next.reversed ? ["The plant's gain is negative: the relay acts the other way round."] : []),
+        ...(next.reversed ? ["The plant's gain is negative: the relay acts in the opposite direction."] : []),
         ...(next.warnings ?? []).map((warning) => warning.detail),
       ];
       remarks.hidden = sentences.length === 0;

@@ -129,7 +129,7 @@ export function startView(store: Store, events: StartEvents): StartView {
     h(
       "p",
       { class: "lead" },
-      "Describe your process in one of five ways and press its button: you get controller settings, and the proof that the loop will hold with them.",
+      "Describe your process in one of five ways and press its button: you get controller settings and a check of the loop's robustness.",
     ),
     recent,
     status,

@@ -143,8 +143,8 @@ export function turnedDesign(
     const above = hand && answer.entry.standing?.group === "above_limit" ? answer.entry.standing.why : "";
     keeping.hidden = hand !== null;
     about.textContent = hand
-      ? `${above ? `${above} ` : ""}Settings by hand have no report and no code; the request asks for their figures.`
-      : "Report and code are the job's own design. Keep this design to have its own.";
+      ? `${above ? `${above} ` : ""}Manual settings have no report and no code; the request asks for their figures.`
+      : "Report and code still describe the job's design. Keep this design to get its own.";
   }
 
   /** What the curves hold to, besides Ms. */
@@ -217,7 +217,7 @@ export function turnedDesign(
     effect(() => {
       const ms = live.waits.value;
       waits.hidden = ms === 0;
-      waits.textContent = ms === 0 ? "" : `Follows when you let go: this design takes about ${formatNumber(ms / 1000, 2)} s.`;
+      waits.textContent = ms === 0 ? "" : `Follows when you release the slider: this design takes about ${formatNumber(ms / 1000, 2)} s.`;
     }),
     effect(() => showAway(live.answer.value)),
   ];

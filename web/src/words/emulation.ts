@@ -109,7 +109,7 @@ export function emulationFacts(emulation: Emulation, units: UnitNames): [string,
     facts.push([
       "Zero dynamics",
       [
-        emulation.zero_dynamics_stable ? "stable" : "not stable: what the controller hides grows",
+        emulation.zero_dynamics_stable ? "stable" : "unstable: the internal states grow",
         zeros && zeros.length > 0 ? `zeros ${rootWords(zeros)}` : "",
       ]
         .filter(Boolean)

@@ -147,13 +147,13 @@ export function figureGroups(units: UnitNames, region = false, nonlinear = false
       main: true,
       rows: [
         performance("setpoint", withUnit("IAE", error), "IAE", "integrated absolute error"),
-        { label: "Overshoot (%)", meaning: "of the step; in brackets what was asked for", value: overshoot },
+        { label: "Overshoot (%)", meaning: "of the step; in brackets the limit", value: overshoot },
         performance("setpoint", withUnit("Settling", units.time), "settling_time", "last time outside 2 % of the step"),
         performance("setpoint", withUnit("TV of u", units.u), "TV", "total movement of the controller's output"),
       ],
     },
     {
-      title: "Controller, the rest",
+      title: "Controller, other figures",
       main: false,
       rows: [
         {
@@ -171,12 +171,12 @@ export function figureGroups(units: UnitNames, region = false, nonlinear = false
       ],
     },
     {
-      title: "Robustness, the rest",
+      title: "Robustness, other figures",
       main: false,
       rows: [
         robustness(withUnit("Mks", gain), "Mks", "peak of |CS|: how much noise may reach u"),
-        robustness("Gain margin, low", "gain_margin_low", "the loop gain may fall to this share"),
-        robustness(withUnit("Delay margin", units.time), "delay_margin", "so much more dead time is stable"),
+        robustness("Gain margin, low", "gain_margin_low", "the loop gain may fall to this fraction"),
+        robustness(withUnit("Delay margin", units.time), "delay_margin", "the loop is stable with this much more dead time"),
         robustness(`ω of Ms (rad/${units.time})`, "omega_Ms", "where |S| peaks"),
         robustness(`ω of Mt (rad/${units.time})`, "omega_Mt", "where |T| peaks"),
         robustness(`Gain crossover (rad/${units.time})`, "gain_crossover", "where |L| = 1"),
@@ -184,7 +184,7 @@ export function figureGroups(units: UnitNames, region = false, nonlinear = false
       ],
     },
     {
-      title: "Load step, the rest",
+      title: "Load step, other figures",
       main: false,
       rows: [
         performance("load", "ISE", "ISE", "integrated squared error"),
@@ -194,7 +194,7 @@ export function figureGroups(units: UnitNames, region = false, nonlinear = false
       ],
     },
     {
-      title: "Set-point step, the rest",
+      title: "Set-point step, other figures",
       main: false,
       rows: [
         performance("setpoint", "ISE", "ISE", "integrated squared error"),
@@ -207,18 +207,18 @@ export function figureGroups(units: UnitNames, region = false, nonlinear = false
 }
 
 function regionRows(): FigureRow[] {
-  const alone = "It serves one plant only.";
+  const alone = "There is only one plant.";
   return [
     {
       label: "Stable plants (%)",
-      meaning: "of all that this plant may be: a set, its ranges, or what was identified",
+      meaning: "of all plants: the set, the ranges or the confidence region",
       value: ({ region }) =>
         typeof region?.stable_fraction === "number"
           ? { text: formatShare(region.stable_fraction), why: "" }
           : missing(alone),
     },
     {
-      label: "Ms at worst",
+      label: "Worst Ms",
       meaning: "the largest of all these plants",
       value: ({ region }) => numeric(region, "worst_Ms", alone),
     },

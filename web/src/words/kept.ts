@@ -29,6 +29,6 @@ export function keptOtherwise(before: Entry, job: Job, index: number): string {
   const words = differing.map((name) => `${name} ${shown(was.get(name))} is now ${shown(is.get(name))}`).join(", ");
   const why = job.result?.partial
     ? "the search was stopped before its end"
-    : `the service, version ${job.result?.version ?? "unknown"}, computed it anew`;
-  return `What is kept is not what was shown: ${words}; ${why}. The kept design is shown now.`;
+    : `the service, version ${job.result?.version ?? "unknown"}, recalculated it`;
+  return `The kept design differs from the one shown: ${words}; ${why}. The kept design is shown now.`;
 }

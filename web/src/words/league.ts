@@ -91,7 +91,7 @@ export function leagueColumns(units: UnitNames): LeagueColumn[] {
     column(
       "delay_margin",
       withUnit("Delay margin", units.time),
-      "so much more dead time is stable",
+      "the loop is stable with this much more dead time",
       false,
       of(robustness, "delay_margin"),
     ),
@@ -121,7 +121,7 @@ export function leagueColumns(units: UnitNames): LeagueColumn[] {
     column(
       "overshoot",
       "Overshoot (%)",
-      "of the set-point step; in brackets what was asked for",
+      "of the set-point step; in brackets the limit",
       true,
       (entry) => {
         const reached = of(setpoint, "overshoot_percent", NOT_GIVEN, formatPercent)(entry);
@@ -192,7 +192,7 @@ export function leagueRows(result: Result, limit: number | null): LeagueRow[] {
 
 function noRank({ error, standing }: Entry, held: boolean, limit: number | null): string {
   if (error) return "No answer.";
-  if (held) return "Your current settings, for comparison.";
+  if (held) return "Today's settings, for comparison.";
   const otherwise = limit !== null && typeof standing?.least_limit === "number";
   return otherwise ? `Ms is above ${formatNumber(limit)}.` : (standing?.why ?? "");
 }

@@ -3,7 +3,7 @@ import type { Method, Schema } from "../api/types.ts";
 
 export interface OptionRow {
   name: string;
-  /** What it may be: "number in (1, 4]", "P, PI or PID". */
+  /** Allowed values: "number in (1, 4]", "P, PI or PID". */
   values: string;
   standard: string;
   meaning: string;

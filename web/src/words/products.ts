@@ -142,7 +142,7 @@ export function differenceSentence(built: Implemented): string {
     const unit = figure === "overshoot" ? "percentage points" : "%";
     return `${LABELS[figure][1]} ${Math.abs(away).toFixed(1)} ${unit} ${away > 0 ? "higher" : "lower"}`;
   });
-  return parts.length === 0 ? "" : `As built it is another loop: ${parts.join(", ")} than the ideal one's.`;
+  return parts.length === 0 ? "" : `The implemented loop differs from the ideal one: ${parts.join(", ")}.`;
 }
 
 /** Of an entry's warnings those that leave no loop to compare: unstable as built, or not to be built at all. */
@@ -160,8 +160,8 @@ export function samplingSentences(
   if (built)
     sentences.push(
       period === null
-        ? "Reckoned as continuous, because no sample time is known."
-        : `Reckoned with a sample every ${formatParameter(period)} ${time}.`,
+        ? "Evaluated as continuous, because no sample time is known."
+        : `Evaluated with a sample every ${formatParameter(period)} ${time}.`,
     );
   if (typeof longest !== "number") return sentences;
   sentences.push(
@@ -174,7 +174,7 @@ export function samplingSentences(
 
 const EVIDENCE: Record<string, string> = {
   read: "Read in the maker's code or text",
-  partly: "Read in part, or in third parties' texts",
+  partly: "Read in part, or in documents of third parties",
   unverified: "Not verified",
 };
 

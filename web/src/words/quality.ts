@@ -45,7 +45,7 @@ export function timeUnitDoubt(model: Model): string {
   const doubtful = model.warnings?.find((warning) => warning.code === "time-unit-doubtful");
   if (doubtful) return doubtful.detail;
   if (model.data_quality?.["time_unit_assumed"] !== true) return "";
-  return "Nothing names the unit of the record's times: they are taken as seconds. If they are milliseconds, every time here is a thousand times too long.";
+  return "The unit of the record's times is not given: seconds are assumed. If they are milliseconds, every time here is a thousand times too long.";
 }
 
 const counted = (count: number, name: string): string => `${count} ${name}${count === 1 ? "" : "s"}`;
@@ -142,7 +142,7 @@ function inputWords(model: Model, units: UnitNames): string {
   if (values.length === 0) return "";
   const unit = units.u ? ` ${units.u}` : "";
   const range = `from ${formatParameter(minimum(values))} to ${formatParameter(maximum(values))}${unit}`;
-  if (changes.length === 0) return `u stands at ${formatParameter(values[0]!)}${unit} from the first sample on.`;
+  if (changes.length === 0) return `u is constant at ${formatParameter(values[0]!)}${unit} from the first sample on.`;
   const test = testWords(model);
   if (model.data_quality?.["closed_loop"]) return `${test.charAt(0).toUpperCase()}${test.slice(1)}: the controller moved u ${range}.`;
   if (changes.length > 1) return `u changes ${changes.length} times, ${range}.`;

@@ -53,7 +53,7 @@ export function handVerdict(schedule: Schedule): Finding {
       level: "bad",
       text: `With these ${rows} the limits do not hold everywhere in the range.`,
     };
-  const cost = IAE === null ? "" : ` Its IAE is at most ${formatNumber(IAE)} times each place's own optimum.`;
+  const cost = IAE === null ? "" : ` Its IAE is at most ${formatNumber(IAE)} times each operating point's own optimum.`;
   return schedule.within_allowance
     ? {
         code: "hand-holds",
@@ -104,7 +104,7 @@ export function runFacts(run: Partial<RangeRun>, units: UnitNames): [string, str
     [withUnit("Largest error", units.y), formatNumber(run.largest_error)],
     [withUnit("Largest bump", units.u), formatNumber(run.largest_bump)],
     ["Switches", run.switches === undefined ? DASH : String(run.switches)],
-    ["Met a limit", yes(run.limited)],
+    ["Reached a limit", yes(run.limited)],
     ["Settled", run.ended ? `ended early: ${run.ended}` : yes(run.settled)],
   ];
 }

@@ -53,7 +53,7 @@ export function equationsCard(errors: FormErrors, active: () => boolean, events:
     h(
       "p",
       { class: "hint" },
-      "One row a state, in numbers, states, parameters and the input: + − * / ^, a < b ? c : d, exp log sqrt sin cos tan tanh abs min max. The values need only be near the operating point; the steady state there is looked for.",
+      "One row per state, in numbers, states, parameters and the input: + − * / ^, a < b ? c : d, exp log sqrt sin cos tan tanh abs min max. The values need only be near the operating point; the service finds the steady state.",
     ),
     fields.element,
     h(
@@ -73,7 +73,7 @@ export function equationsCard(errors: FormErrors, active: () => boolean, events:
       h(
         "p",
         { class: "hint" },
-        "You know the balances, and they are not linear: every controller is tuned on their linearisation and tried on the equations themselves. The method emulation is tuned on the equations too.",
+        "You know the nonlinear equations of the process: every controller is tuned on their linearisation and simulated on the equations. The method emulation is tuned on the equations too.",
       ),
       choice.element,
     ),

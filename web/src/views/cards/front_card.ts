@@ -41,7 +41,7 @@ export function frontCard(
   onKnown: () => void,
 ): FrontCard {
   // Every rule is a search or a formula of its own: about as much work as everything else of this screen together.
-  const rulesButton = h("button", { type: "button", class: "quiet", onclick: () => void askRules() }, "Rules beside it");
+  const rulesButton = h("button", { type: "button", class: "quiet", onclick: () => void askRules() }, "Rules for comparison");
   const element = h("div", { class: "front" });
   let plot: Plot | null = null;
   let subject: FrontSubject | null = null;

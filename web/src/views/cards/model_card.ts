@@ -46,7 +46,7 @@ export function modelCard(errors: FormErrors, active: () => boolean, events: Mod
     h(
       "p",
       { class: "hint" },
-      "You know how the process answers: its gain, lag and dead time, or its transfer function.",
+      "You know how the process responds: its gain, lag and dead time, or its transfer function.",
     ),
     fields.elements,
     h("div", { class: "actions" }, h("button", { type: "submit", class: "primary" }, "Tune this model")),

@@ -54,7 +54,7 @@ export function myControllerCard(
   const sampling = textField(
     {
       label: "Sample time",
-      hint: "Empty: the product's own where it is known.",
+      hint: "Empty: the product's default, if known.",
       pointer: () => "/implement/sample_time",
     },
     errors,

@@ -19,12 +19,12 @@ export function ownTodayCard(
   onSet: (settings: Record<string, SettingValue> | undefined) => void,
 ): OwnTodayCard {
   const fields = productFields(errors, () => true);
-  const button = h("button", { type: "button", onclick: read }, "Set the design against these");
+  const button = h("button", { type: "button", onclick: read }, "Compare the design with these");
   const element = h(
     "details",
     { class: "own-today", hidden: true },
     h("summary", {}, "Today's settings in this controller"),
-    h("p", { class: "hint" }, "As they stand in it now; what is left empty has the maker's default."),
+    h("p", { class: "hint" }, "The present settings; an empty field means the maker's default."),
     fields.element,
     h("div", { class: "actions" }, button),
   );

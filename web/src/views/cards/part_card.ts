@@ -52,7 +52,7 @@ export function partCard(errors: FormErrors, onMove: () => void, onRelease: () =
   const to = edge("to", "Use up to");
   const all = h("button", { type: "button", class: "quiet", onclick: () => useAll() }, "Use all of it");
   const steps = h("div", { class: "steps", hidden: true });
-  const title = h("h2", { id: uniqueId("part"), class: "visually-hidden" }, "Which part counts");
+  const title = h("h2", { id: uniqueId("part"), class: "visually-hidden" }, "Part of the record to use");
   const element = h("section", { class: "part", "aria-labelledby": title.id }, title, from.element, to.element, all, steps);
 
   function useAll(): void {

@@ -82,7 +82,7 @@ const traps = ({ traps }: Product): HTMLElement[] =>
   traps.length === 0
     ? []
     : [
-        h("h3", {}, "What goes wrong easily"),
+        h("h3", {}, "Pitfalls"),
         h(
           "ul",
           { class: "notes" },

@@ -41,7 +41,7 @@ export function qualityCard(): QualityCard {
         h(
           "details",
           { open },
-          h("summary", {}, "What was found in the record"),
+          h("summary", {}, "Details of the record"),
           h(
             "dl",
             {},

@@ -44,7 +44,7 @@ export function recordCard(errors: FormErrors, events: RecordCardEvents): Record
   const csv = recordText(
     {
       label: "or paste it",
-      hint: "One row a sample: time, controller output u, measurement y.",
+      hint: "One row per sample: time, controller output u, measurement y.",
       placeholder: "t,u,y\n0,0,20.1\n1,5,20.1\n2,5,20.3",
       rows: 4,
       wide: true,

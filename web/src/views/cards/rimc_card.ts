@@ -32,7 +32,7 @@ export function rimcCard(announce: (sentence: string) => void, retune: (lambda: 
   const lambda = slider(
     {
       label: "λ",
-      hint: "Left is faster, right more robust. The design follows when you let go.",
+      hint: "Left is faster, right more robust. The design follows when you release the slider.",
       log: true,
       pointer: () => null,
       spoken: (value) => `lambda ${formatNumber(value)}${shown ? ` ${shown.units.time}${figuresAt(value)}` : ""}`,

@@ -172,7 +172,7 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
     "section",
     { class: "card", "aria-labelledby": "today-title" },
     h("h2", { id: "today-title" }, "Today's settings ", h("span", { class: "optional" }, "optional")),
-    h("p", { class: "hint" }, "What the controller runs with now: drawn and counted beside every proposal."),
+    h("p", { class: "hint" }, "The present settings of the controller: every proposal is compared with them."),
     h("div", { class: "fields" }, form.element, ...slots.map((slot) => slot.element), delta.element, filter.element),
     own.element,
     kept.element,

@@ -46,7 +46,7 @@ export function tradeoffCard(announce: (sentence: string) => void): TradeoffCard
       h(
         "p",
         { class: "hint" },
-        "What a controller gives up: J_r and J_d are its errors after a set-point and a load step, beside the least that each could be alone. Deg is what its robustness costs. The curves are the tuning rule of Arrieta, Vilanova and Alfaro on this plant.",
+        "J_r and J_d are the errors of a controller after a set-point step and a load step, compared with the least that each could be alone. Deg is the cost of robustness. The curves are the tuning rule of Arrieta, Vilanova and Alfaro on this plant.",
       ),
       h("div", { class: "actions" }, button),
       trouble,

@@ -76,12 +76,12 @@ export function typedCard(announce: (sentence: string) => void, ...below: HTMLEl
       const open = rest.querySelector("details")?.open ?? false;
       rest.replaceChildren(
         ...judgement(judged, time),
-        ...noteList("What this block cannot do, or does otherwise", deviations),
+        ...noteList("Where this product differs", deviations),
         ...(entered.notes.length > 0 ? [h("p", { class: "hint" }, noteTimes(time))] : []),
         h("p", { class: "evidence" }, h("strong", {}, "Evidence. "), evidenceSentence(product.evidence)),
         remarks.length === 0
           ? ""
-          : h("details", { open }, h("summary", {}, "How it was reckoned"), noteItems(remarks)),
+          : h("details", { open }, h("summary", {}, "How this was calculated"), noteItems(remarks)),
       );
       trouble.hidden = true;
       body.hidden = false;
@@ -115,7 +115,7 @@ const noteList = (heading: string, notes: Notice[]): HTMLElement[] =>
 
 /** The loop as built beside the ideal one, with what has to be said of it first. */
 function judgement(judged: TypedSettings["judged"], time: string): HTMLElement[] {
-  if (!judged) return [h("p", { class: "hint" }, "Tried by hand: what stands beside the sliders is the loop with an ideal controller.")];
+  if (!judged) return [h("p", { class: "hint" }, "Manual settings: the figures next to the sliders are those of the loop with an ideal controller.")];
   const { implemented } = judged;
   const differs = implemented ? differenceSentence(implemented) : "";
   const sampling = samplingSentences(implemented, judged.longest_sample_time, time).join(" ");
@@ -126,7 +126,7 @@ function judgement(judged: TypedSettings["judged"], time: string): HTMLElement[]
     ...(differs ? [h("p", { class: "trouble" }, differs)] : []),
     implemented
       ? builtTable(builtRows(judged, implemented))
-      : h("p", { class: "hint" }, "How the loop runs on it is not known here: only the settings were converted."),
+      : h("p", { class: "hint" }, "The implemented loop was not evaluated: only the settings were converted."),
     ...(sampling ? [h("p", { class: "hint" }, sampling)] : []),
   ];
 }
@@ -136,8 +136,8 @@ function builtTable(rows: BuiltRow[]): HTMLElement {
   return h(
     "table",
     { class: "figures built" },
-    h("caption", { class: "visually-hidden" }, "The loop as built beside the ideal one"),
-    h("thead", {}, h("tr", {}, h("td", {}), head("ideal"), head("as built"), head("difference"))),
+    h("caption", { class: "visually-hidden" }, "The implemented loop compared with the ideal one"),
+    h("thead", {}, h("tr", {}, h("td", {}), head("ideal"), head("implemented"), head("difference"))),
     h(
       "tbody",
       {},

@@ -29,7 +29,7 @@ export function ultimateCard(errors: FormErrors, onTune: () => void): UltimateCa
     h(
       "p",
       { class: "hint" },
-      "You raised a proportional gain until the loop oscillated, and know nothing else. Rules give settings; how robust the loop is they cannot say.",
+      "You raised a proportional gain until the loop oscillated, and know nothing else. Rules give settings, but the robustness of the loop is unknown.",
     ),
     h(
       "details",

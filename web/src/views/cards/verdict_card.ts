@@ -45,14 +45,14 @@ function failedHead(job: Job): string {
   if (kind.endsWith("no-feasible-controller")) return "No controller meets these limits.";
   if (kind.endsWith("unstable-plant")) return "No controller of this kind stabilises the plant.";
   if (kind.endsWith("not-identifiable")) return "The record determines no model.";
-  if (kind.endsWith("timeout")) return "The time allowed was over.";
+  if (kind.endsWith("timeout")) return "The time limit was reached.";
   return "No controller was found.";
 }
 
 /** For a job that ended without any controller. */
 export function showFailure(card: HTMLElement, job: Job): void {
   const cancelled = job.status === "cancelled";
-  const silent = cancelled ? "Nothing is kept of it; the request is." : "The service gave no reason.";
+  const silent = cancelled ? "No result is kept, but the request is." : "The service gave no reason.";
   const faults = (job.error?.errors ?? []).filter((fault) => fault.detail !== job.error?.detail);
   card.className = "verdict bad";
   card.replaceChildren(

@@ -78,12 +78,12 @@ def stated(limits: dict[str, float]) -> dict[str, list[str]]:
     return {
         "methods.md": [f"| `Ms`, `Mt` | {Ms}, {Mt} | limits, in (1, {greatest}] |",
                        f"| `{{\"overshoot\": {limits['kDefaultMaxOvershootPercent']:g}}}` |",
-                       f"Tf = {limits['kDefaultTf_over_Td']:g} Td where the plant",
+                       f"Tf is {limits['kDefaultTf_over_Td']:g} Td if the plant",
                        f"more than {limits['kMaxRelativeExcessJudged']:g}".replace("e-05", "e-5")],
         "range.md": [f"| `Ms`, `Mt` | {Ms} | limits, in (1, {greatest}], everywhere in the range |"],
         "tutorial.md": [f"| {Ms} | calm (the default) |"],
         "uncertain.md": [f"`robust` keeps Ms at {Ms} on"],
-        "verdicts.md": [f"above the limit that was asked for: by {shown}, on the worst plant by {of_worst}",
+        "verdicts.md": [f"is above its limit by {shown}, on the worst plant by {of_worst}",
                         f"(reached to {shown})"],
     }
 

@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "engine/plant/linear/linear_plant.h"
+#include "tests/long_or_quick.h"
 #include "tests/records/record_form.h"
 
 namespace tunewright::records {
@@ -48,8 +49,10 @@ TEST(MadeRecords, AStepThatBeginsAtRestKeepsItsGainWhateverItsLags) {
 }
 
 TEST(MadeRecords, OfEveryFamilyTestAndNoiseOnce) {
+    // No factor in common with the numbers of families, tests and noises: each meets each.
+    const int step = long_or_quick(7, 37);
     int records = 0, silent = 0, designed = 0, above = 0, unstable = 0;
-    for (std::uint64_t seed = 1; seed <= 4 * kFamilies * kTests * kNoises; seed += 7) {
+    for (std::uint64_t seed = 1; seed <= 4 * kFamilies * kTests * kNoises; seed += static_cast<std::uint64_t>(step)) {
         const MadeRecord made = make_record(seed);
         const Judgement j = judge(made);
         ++records;
@@ -62,7 +65,7 @@ TEST(MadeRecords, OfEveryFamilyTestAndNoiseOnce) {
         EXPECT_TRUE(j.Ms_true) << seed << " " << made.text() << "\n" << j.detail;
     }
     EXPECT_LE(unstable, 0.003 * designed);
-    EXPECT_EQ(records, 503);
+    EXPECT_GE(records, 3500 / step);
     EXPECT_LE(silent, 0.01 * records);
     EXPECT_LE(above, 0.015 * designed);
 }
@@ -116,7 +119,8 @@ TEST(MadeRecords, AGainOfTheSignThatARelayExcludesIsBad) {
 TEST(MadeRecords, OfEveryFormNoneIsWrongInSilence) {
     for (const Form form : {Form::several_runs, Form::countdown, Form::damaged_cells, Form::two_inputs}) {
         int records = 0, silent = 0, unstable = 0, answered = 0;
-        for (std::uint64_t seed = 2; seed <= kFamilies * kTests * kNoises; seed += 23) {
+        const auto step = static_cast<std::uint64_t>(long_or_quick(23, 61));
+        for (std::uint64_t seed = 2; seed <= kFamilies * kTests * kNoises; seed += step) {
             const MadeRecord made = make_record(seed, form);
             const Judgement j = judge_as_sent(made);
             ++records;
@@ -124,7 +128,7 @@ TEST(MadeRecords, OfEveryFormNoneIsWrongInSilence) {
             silent += j.wrong_in_silence();
             unstable += j.designed && !j.warned_badly && !j.Ms_true;
         }
-        EXPECT_EQ(records, 39);
+        EXPECT_GE(records, long_or_quick(39, 15));
         EXPECT_GE(answered, 0.6 * records) << name_of(form);
         EXPECT_LE(silent, 1) << name_of(form);
         // There are to be none.

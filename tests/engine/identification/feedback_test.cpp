@@ -11,6 +11,7 @@
 #include "engine/plant/linear/linear_plant.h"
 #include "tests/engine/identification/record_files.h"
 #include "tests/engine/identification/simulated_record.h"
+#include "tests/long_or_quick.h"
 #include "tests/records/closed_loop_records.h"
 
 namespace tunewright {
@@ -184,9 +185,10 @@ double gain_of(const Plant& plant) {
 
 /// Of answers about self-regulating plants: the gain within a tenth, or three of its standard errors.
 TEST(Feedback, GainsFromSetPointMovesAreRightWithinTheirErrors) {
+    const int seeds = long_or_quick(60, 24);
     int right = 0, answers = 0;
-    for (unsigned seed = 1; seed <= 60; ++seed) {
-        const SimulatedTest test = simulated_loop(seed, LoopTest::set_points_with_r);
+    for (int seed = 1; seed <= seeds; ++seed) {
+        const SimulatedTest test = simulated_loop(static_cast<unsigned>(seed), LoopTest::set_points_with_r);
         if (test.plant.integrating) continue;
         const auto model = identify(test.record, {}, {});
         if (!model) continue;
@@ -195,7 +197,7 @@ TEST(Feedback, GainsFromSetPointMovesAreRightWithinTheirErrors) {
         ++answers;
         right += off <= 0.1 * std::abs(test.plant.K) || off <= 3 * model->standard_errors.at("K") ? 1 : 0;
     }
-    EXPECT_GE(answers, 40);
+    EXPECT_GE(answers, 2 * seeds / 3);
     EXPECT_GE(right, 0.93 * answers) << right << " of " << answers;
 }
 

@@ -9,6 +9,7 @@
 
 #include "engine/identification/identify.h"
 #include "engine/plant/linear/linear_plant.h"
+#include "tests/long_or_quick.h"
 #include "tests/records/switched_on_records.h"
 
 namespace tunewright {
@@ -85,10 +86,10 @@ bool warns_of_gain(const IdentifiedModel& model) {
 /// With u moved in or before the first row, from 0 or from `rest`, the level of rest is not in the record. Nothing is
 /// wrong in silence then; from 0 on, nearly all are right.
 TEST(SwitchedOn, InTheFirstRowNothingIsWrongInSilence) {
-    constexpr unsigned kSeeds = 12;
+    const auto seeds = static_cast<unsigned>(long_or_quick(12, 5));
     for (const double rest : {0.0, 0.5}) {
         int right = 0, answers = 0;
-        for (unsigned seed = 36; seed < 36 + kSeeds; ++seed) {
+        for (unsigned seed = 36; seed < 36 + seeds; ++seed) {
             ColdStart cold = random_cold_start(seed);
             cold.on_row = 0;
             Record record = cold.record();

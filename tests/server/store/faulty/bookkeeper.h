@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <cstdlib>
 #include <future>
 #include <map>
 #include <memory>
@@ -17,15 +16,13 @@
 #include <vector>
 
 #include "server/store/store.h"
+#include "tests/long_or_quick.h"
 #include "tests/server/store/faulty/memory.h"
 
 namespace tunewright::server {
 
-/// A tenth of the points of a test, spread over them; all of them where TUNEWRIGHT_FAULTS is "all".
-inline int fault_points(int all) {
-    const char* wanted = std::getenv("TUNEWRIGHT_FAULTS");
-    return wanted != nullptr && std::string(wanted) == "all" ? all : all / 10;
-}
+/// A tenth of the points of a test, spread over them; all of them in a long run.
+inline int fault_points(int all) { return long_or_quick(all, all / 10); }
 
 class Bookkeeper {
 public:

@@ -211,6 +211,7 @@ Codec<std::vector<double>> trace() {
 Codec<std::vector<double>> times_trace() {
     Codec<std::vector<double>> codec = trace();
     codec.write = [](const std::vector<double>& values, Writer& out) { out.times(values); };
+    codec.schema = [](SchemaBook&) { return Json{{"type", "array"}, {"items", {{"type", "number"}}}}; };
     return codec;
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include "api/describe/answers.h"
+
 namespace tunewright::api {
 namespace {
 
@@ -166,6 +168,12 @@ Json Members::build_schema(SchemaBook& book) const {
     Json properties = properties_schema(book, reads, required);
     Json out{{"type", "object"}, {"title", name_}, {"description", sentence_}, {"properties", std::move(properties)}};
     if (!required.empty()) out["required"] = std::move(required);
+    if (reads) {
+        Json& written = out[kWritten] = Json::array();
+        if (!tag_field_.empty()) written.push_back(tag_field_);
+        for (const Member& member : members_)
+            if (member.codec->writes() && !member.codec->skips()) written.push_back(member.name);
+    }
     out["additionalProperties"] = false;
     if (!example_.is_null()) out["examples"] = Json::array({example_});
     return out;

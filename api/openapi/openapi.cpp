@@ -1,3 +1,6 @@
+#include <set>
+#include <string>
+
 #include "api/contract/plant/typed.h"
 #include "api/contract/preview.h"
 #include "api/contract/product/product.h"
@@ -8,6 +11,7 @@
 #include "api/contract/request.h"
 #include "api/contract/result/identified_model.h"
 #include "api/contract/result/result.h"
+#include "api/describe/answers.h"
 #include "api/embed/files.h"
 #include "api/service.h"
 
@@ -32,6 +36,34 @@ void add_refusals(Json& operation, bool changes) {
     if (!operation.contains("requestBody")) return;
     add("413", "TooLarge");
     add("415", "WrongMediaType");
+}
+
+/// Collects the names of the components that `part` refers to, directly or through others.
+void collect_references(const Json& part, const Json& schemas, std::set<std::string>& names) {
+    if (part.is_object() && part.contains("$ref")) {
+        const auto target = part["$ref"].get<std::string>();
+        const std::string name = target.substr(target.rfind('/') + 1);
+        if (schemas.contains(name) && names.insert(name).second) collect_references(schemas[name], schemas, names);
+    }
+    if (!part.is_structured()) return;
+    for (const auto& inner : part) collect_references(inner, schemas, names);
+}
+
+/// A type that only answers have has all members that answers always write, and no defaults; one that requests may have
+/// too keeps the mark.
+void require_what_is_written(Json& document) {
+    Json& schemas = document["components"]["schemas"];
+    std::set<std::string> asked;
+    for (const auto& item : document["paths"])
+        for (const auto& operation : item)
+            if (operation.is_object() && operation.contains("requestBody"))
+                collect_references(operation["requestBody"], schemas, asked);
+    for (auto& [name, schema] : schemas.items()) {
+        if (!schema.contains(kWritten) || asked.contains(name)) continue;
+        if (!schema[kWritten].empty()) schema["required"] = schema[kWritten];
+        schema.erase(kWritten);
+        for (auto& property : schema["properties"]) property.erase("default");
+    }
 }
 
 }  // namespace
@@ -74,6 +106,7 @@ std::string openapi_json() {
         twin_answer_contract().schema(book);
         Json& schemas = document["components"]["schemas"];
         for (auto& [name, schema] : book.components.items()) schemas[name] = schema;
+        require_what_is_written(document);
 
         for (auto& [path, item] : document["paths"].items())
             for (auto& [method, operation] : item.items())

@@ -1,6 +1,5 @@
 // The user's own controller: which product, with which spans and sample time. The browser keeps it for later designs.
-import type { Implement, Need, ProductSummary, SettingValue, Span } from "./api/products.ts";
-import type { TypedBaseline } from "./api/types.ts";
+import type { Implement, Need, ProductSummary, SettingValue, Span, TypedBaseline } from "./api/types.ts";
 import type { UnitNames } from "./words/numbers.ts";
 import { productTitle } from "./words/products.ts";
 
@@ -86,7 +85,7 @@ export function named(mine: MyController | null, products: readonly ProductSumma
   if (!mine || !product) return mine;
   const name = productTitle(product);
   const same = mine.name === name && JSON.stringify(mine.needs) === JSON.stringify(product.needs);
-  return same ? mine : { ...mine, name, needs: product.needs };
+  return same ? mine : { ...mine, name, needs: product.needs as Need[] };
 }
 
 /** Today's settings in it: a baseline names spans and sample time as `implement` does. */

@@ -2,8 +2,7 @@
 import { notConnected, sentenceOf, whenBack } from "./api/client.ts";
 import { getJob, getRecentJobs, postJob } from "./api/jobs.ts";
 import { isRangeRequest } from "./api/range.ts";
-import type { Batch } from "./api/job_lists.ts";
-import type { FieldError, IdentifyRequest, Job, TuningRequest, Units } from "./api/types.ts";
+import type { Batch, FieldError, IdentifyRequest, Job, TuningRequest, Units } from "./api/types.ts";
 import { h } from "./dom.ts";
 import type { TuneSubject } from "./form/tuning_request.ts";
 import type { JobFlow } from "./job_flow.ts";

@@ -2,8 +2,7 @@
 // shown of it follows once per frame, and only where the part that it shows has changed.
 import { computed, effect, signal, untracked } from "@preact/signals-core";
 import type { ReadonlySignal } from "@preact/signals-core";
-import type { ProductSummary } from "./api/products.ts";
-import type { Example, IdentifyRequest, Job, Method } from "./api/types.ts";
+import type { Example, IdentifyRequest, Job, Method, ProductSummary } from "./api/types.ts";
 import type { MyController } from "./my_controller.ts";
 import type { Route } from "./routes.ts";
 

@@ -30,7 +30,9 @@ void loop_field(Description<AsBuilt>& d, const char* name, M BuiltLoop::*member,
     d.field(
         name, {}, [member, codec](const AsBuilt& built, Writer& out) { codec.write(built.loop.*member, out); },
         codec.schema, sentence, {},
-        [member, codec](const AsBuilt& built) { return codec.skip && codec.skip(built.loop.*member); });
+        codec.skip ? Callable<bool(const AsBuilt&)>(
+                         [member, codec](const AsBuilt& built) { return codec.skip(built.loop.*member); })
+                   : Callable<bool(const AsBuilt&)>());
 }
 
 }  // namespace

@@ -151,8 +151,8 @@ const Description<RangePassage>& range_passage_contract() {
              "step up, step down, stairs or ramp.")
             .field("horizon", {}, [](const P& p, Writer& out) { out.number(p.passage.horizon); }, number().schema,
                    "How long it lasts.", {.unit = "time"})
-            .field("t", {}, [](const P& p, Writer& out) { times_trace().write(longer(p).t, out); }, trace().schema,
-                   "Times of both runs; one that ended early has fewer.", {.unit = "time"})
+            .field("t", {}, [](const P& p, Writer& out) { times_trace().write(longer(p).t, out); },
+                   times_trace().schema, "Times of both runs; one that ended early has fewer.", {.unit = "time"})
             .field(
                 "target", {}, [](const P& p, Writer& out) { trace().write(longer(p).target, out); }, trace().schema,
                 "The set point of y; along a parameter the parameter.")

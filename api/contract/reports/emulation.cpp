@@ -4,6 +4,7 @@
 
 #include "api/contract/controller.h"
 #include "api/contract/plant/plant.h"
+#include "api/describe/answers.h"
 
 namespace tunewright::api {
 namespace {
@@ -116,7 +117,7 @@ const Description<LevelOneRow>& level_one_contract() {
             .field("error", &R::error, words_if_any(), "Why there are none.")
             .field("J", &R::J, nullable_number(), "As of the answer.")
             .field("ended", &R::ended, words_if_any(), "Why its run ended before the horizon.")
-            .field("t", &R::t, trace_if_any(), "Time, first scenario.", {.unit = "time"})
+            .field("t", &R::t, abscissa_if_any(), "Time, first scenario.", {.unit = "time"})
             .field("y", &R::y, trace_if_any(), "Output, absolute.", {.unit = "y"})
             .field("u", &R::u, trace_if_any(), "Input, absolute.", {.unit = "u"})
             .why_null("There is no run to the horizon.");
@@ -136,7 +137,7 @@ const Description<EmulatedScenario>& scenario_contract() {
             .field("u_rest", &S::u_rest, only_answered(number()), "Input there.", {.unit = "u"})
             .field("limited", &S::limited, only_answered(boolean()), "Whether limits clip the nonlinear controller.")
             .field("ended", &S::ended, words_if_any(), "Why the PID's run ended before the horizon.")
-            .field("t", &S::t, trace_if_any(), "Time.", {.unit = "time"})
+            .field("t", &S::t, abscissa_if_any(), "Time.", {.unit = "time"})
             .field("y_nl", &S::y_nl, trace_if_any(), "Output under the nonlinear controller.", {.unit = "y"})
             .field("u_nl", &S::u_nl, trace_if_any(), "Input under it.", {.unit = "u"})
             .field("y", &S::y, trace_if_any(), "Output under the PID.", {.unit = "y"})
@@ -152,7 +153,7 @@ void first_scenario(Description<EmulationReport>& d, const char* name, std::vect
     d.field(
         name, {},
         [member](const EmulationReport& report, Writer& out) { trace().write(report.scenarios.front().*member, out); },
-        trace().schema, sentence, {.unit = unit},
+        member == &EmulatedScenario::t ? abscissa().schema : trace().schema, sentence, {.unit = unit},
         [member](const EmulationReport& report) {
             return report.scenarios.empty() || (report.scenarios.front().*member).empty();
         });

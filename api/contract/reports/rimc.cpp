@@ -2,6 +2,7 @@
 
 #include "api/contract/reports/reports.h"
 #include "api/contract/result/evaluation.h"
+#include "api/describe/answers.h"
 
 namespace tunewright::api {
 namespace {
@@ -13,7 +14,7 @@ const Description<DisturbancePeakCurve>& curve_contract() {
             "DisturbancePeakCurve",
             "The load response's peak and Ms of this design over its parameter, on the model; scaled, so that "
             "they depend on L/T alone.");
-        d.field("lambda_over_tau", &C::lambda_over_tau, trace(), "lambda over the model's T.")
+        d.field("lambda_over_tau", &C::lambda_over_tau, abscissa(), "lambda over the model's T.")
             .field("DP_over_kp", &C::DP_over_kp, trace(), "Peak of y after a unit load step over the model's gain.")
             .field("Ms", &C::Ms, trace(), "Largest |S|.");
         return d;

@@ -1,6 +1,7 @@
 #include "api/contract/result/evaluation.h"
 
 #include "api/contract/plant/plant.h"
+#include "api/describe/answers.h"
 
 namespace tunewright::api {
 namespace {
@@ -95,7 +96,7 @@ const Description<NoisePerformance>& noise_contract() {
 const Description<Trace>& trace_contract() {
     static const auto description = [] {
         Description<Trace> d("Trace", "A response, six significant digits.");
-        d.field("t", &Trace::t, trace(), "Time from the step.", {.unit = "time"})
+        d.field("t", &Trace::t, abscissa(), "Time from the step.", {.unit = "time"})
             .field("y", &Trace::y, trace(), "Measurement.", {.unit = "y"})
             .field("u", &Trace::u, trace(), "Controller output.", {.unit = "u"});
         return d;
@@ -217,7 +218,7 @@ const Description<FrequencyTraces>& frequency_contract() {
     static const auto description = [] {
         using F = FrequencyTraces;
         Description<F> d("Frequency", "The loop over frequency, six significant digits.");
-        d.field("omega", &F::omega, trace(), "Angular frequency.", {.unit = "rad/time"})
+        d.field("omega", &F::omega, abscissa(), "Angular frequency.", {.unit = "rad/time"})
             .field("L", {}, write_loop_gain, loop_gain_schema, "Loop gain P C; the phase is unwrapped.")
             .field("S_abs", &F::S_abs, trace(), "|S|.")
             .field("T_abs", &F::T_abs, trace(), "|T|.")

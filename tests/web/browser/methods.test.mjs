@@ -1,6 +1,9 @@
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import path from "node:path";
 import test from "node:test";
-import { accessibilityViolations, browserTests } from "../harness.mjs";
+import { contractTypes } from "../../../web/generate_contract.mjs";
+import { accessibilityViolations, browserTests, root } from "../harness.mjs";
 
 const tests = browserTests();
 const { withPage } = tests;
@@ -54,4 +57,14 @@ test("the methods' formulas are mathematics, each equation whole; without MathML
     const text = await page.locator(".method-formula pre").innerText();
     assert.equal(text, methods.find(({ id }) => id === "haalman").formula.replaceAll("; ", "\n"));
   });
+});
+
+test("the page's types are those of the service's own document", async () => {
+  const document = await (await fetch(`${tests.service.base}/openapi.json`)).json();
+  const kept = readFileSync(path.join(root, "web/src/api/contract.gen.ts"), "utf8");
+  assert.equal(await contractTypes(document), kept, "make them anew: web/generate_contract.mjs says how");
+  const { Standing } = document.components.schemas;
+  delete Standing.properties.group;
+  Standing.required = Standing.required.filter((name) => name !== "group");
+  assert.notEqual(await contractTypes(document), kept, "another document has other types");
 });

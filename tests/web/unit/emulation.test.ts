@@ -1,7 +1,6 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import type { Emulation } from "../../../web/src/api/reports.ts";
-import type { Entry, Result, TuningRequest } from "../../../web/src/api/types.ts";
+import type { Emulation, Entry, Result, TuningRequest } from "../../../web/src/api/types.ts";
 import { drawnEntries } from "../../../web/src/charts/drawn.ts";
 import { costOf, emulationFrame } from "../../../web/src/charts/emulation.ts";
 import { hasLinear, responseFrame } from "../../../web/src/charts/responses.ts";

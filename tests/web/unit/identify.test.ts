@@ -1,12 +1,11 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import { withTraces } from "../../../web/src/api/experiments.ts";
-import type { Candidate, IdentifyRequest, Model, TuningRequest } from "../../../web/src/api/types.ts";
+import { withTraces } from "../../../web/src/api/plants.ts";
+import type { Candidate, IdentifyRequest, Model, Preview, TuningRequest } from "../../../web/src/api/types.ts";
 import { bareRecordFrame, identifiedFrame } from "../../../web/src/charts/identified.ts";
 import { held } from "../../../web/src/charts/record.ts";
 import { columnChoices, csvOf, samplesOf } from "../../../web/src/form/record_fields.ts";
 import { formWords, timeWords } from "../../../web/src/form/record_preview.ts";
-import type { Preview } from "../../../web/src/api/records.ts";
 import { stepParts } from "../../../web/src/charts/record.ts";
 import { serviceChoice, structureOf, tuneSubject } from "../../../web/src/form/tuning_request.ts";
 import { readTest } from "../../../web/src/record_at_hand.ts";

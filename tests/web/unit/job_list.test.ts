@@ -1,7 +1,7 @@
 // Jobs in lists: short plants, ages, orders.
 import assert from "node:assert/strict";
 import test from "node:test";
-import type { ListedJob } from "../../../web/src/api/job_lists.ts";
+import type { ListedJob } from "../../../web/src/api/types.ts";
 import { curlOf } from "../../../web/src/views/request_menu.ts";
 import { age, batchColumns, gain, risk, shortPlant, sorted } from "../../../web/src/words/job_list.ts";
 

@@ -1,8 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import { codePath } from "../../../web/src/api/products.ts";
-import type { AsEntered, Implemented, Product, ProductParameter, ProductSummary } from "../../../web/src/api/products.ts";
-import type { Robustness } from "../../../web/src/api/types.ts";
+import type { AsEntered, Implemented, Product, ProductParameter, ProductSummary, Robustness } from "../../../web/src/api/types.ts";
 import { readSettings, settingFields, typedSettings } from "../../../web/src/form/product_settings.ts";
 import { readSpan } from "../../../web/src/form/span_fields.ts";
 import { withImplement } from "../../../web/src/form/tuning_request.ts";

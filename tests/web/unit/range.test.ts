@@ -1,7 +1,8 @@
+import type { RangeContent, ScheduleRow } from "../../../web/src/api/types.ts";
 import assert from "node:assert/strict";
 import test from "node:test";
 import { isRangeRequest } from "../../../web/src/api/range.ts";
-import type { RangeContent, RangeRequest, ScheduleRow } from "../../../web/src/api/range.ts";
+import type { RangeRequest } from "../../../web/src/api/range.ts";
 import { passageFrame, plantFrame, robustnessFrame, settingsFrame } from "../../../web/src/charts/range.ts";
 import { atSharedFields, plantText, readRange, textsOf } from "../../../web/src/range/request.ts";
 import type { RangeTexts } from "../../../web/src/range/request.ts";

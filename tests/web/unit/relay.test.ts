@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import type { RelayAnswer } from "../../../web/src/api/experiments.ts";
+import type { RelayAnswer } from "../../../web/src/api/types.ts";
 import { relayFrame } from "../../../web/src/charts/relay.ts";
 import { formatRoute, parseRoute } from "../../../web/src/routes.ts";
 import { unitNames } from "../../../web/src/words/numbers.ts";

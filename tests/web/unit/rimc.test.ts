@@ -1,7 +1,6 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import type { Rimc } from "../../../web/src/api/reports.ts";
-import type { Entry, Result, TuningRequest } from "../../../web/src/api/types.ts";
+import type { Entry, Result, Rimc, TuningRequest } from "../../../web/src/api/types.ts";
 import { fullControllerFrame, interpolate, rimcFrame, rimcRows } from "../../../web/src/charts/rimc.ts";
 import { withLambda } from "../../../web/src/form/tuning_request.ts";
 import { unitNames } from "../../../web/src/words/numbers.ts";

@@ -1,11 +1,10 @@
 // Figures of given controllers on a plant, at once; and what a method does over its whole range.
 import { call } from "./client.ts";
 import { deleteJob, postJobAndWait } from "./jobs.ts";
-import type { Tradeoff } from "./reports.ts";
-import type { Controller, Entry, Plant } from "./types.ts";
+import type { Controller, Entry, Plant, Tradeoff } from "./types.ts";
 
 /** What the service adds to a controller is not part of its settings. */
-export const settingsOf = ({ action: _action, why_null: _why, ...settings }: Controller): Controller => settings;
+export const settingsOf = ({ action: _action, ...settings }: Controller): Controller => settings;
 
 /** The figures and responses of one controller for this set-point step, to that horizon. */
 export async function stepOf(

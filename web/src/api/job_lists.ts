@@ -2,59 +2,8 @@
 import { call, getText } from "./client.ts";
 import type { TextFile } from "./client.ts";
 import { getJob } from "./jobs.ts";
-import type { Controller, JobStatus, Plant, TuningRequest, Units } from "./types.ts";
+import type { Batch, JobList, ListedJob, TuningRequest } from "./types.ts";
 import { isFinal } from "./types.ts";
-
-interface JobFigures {
-  Ms?: number | null;
-  load_IAE?: number | null;
-}
-
-/** What an ended job was about, and what came out. */
-export interface Outline extends JobFigures {
-  plant?: Plant;
-  /** The plant was found in a record. */
-  record?: boolean;
-  units?: Units;
-  /** How many controllers. */
-  entries?: number;
-  /** The best one's, to which the figures and settings belong. */
-  method?: string;
-  controller?: Controller;
-  /** Texts to type into the user's own controller, each with its unit. */
-  to_type?: Record<string, string>;
-  worst_Ms?: number | null;
-  excess_percent?: number | null;
-  today?: JobFigures;
-  error?: string;
-  /** Of a job about an operating range. */
-  range?: { scheduling: string; points: number; rows: number };
-}
-
-export interface ListedJob {
-  id: string;
-  name: string | null;
-  status: JobStatus;
-  created_at: string;
-  batch?: string;
-  index?: number;
-  outline?: Outline;
-}
-
-export interface JobList {
-  jobs: ListedJob[];
-  /** The address of the next page. */
-  next: string | null;
-}
-
-export interface Batch {
-  id: string;
-  name: string | null;
-  status: "receiving" | "queued" | "running" | "ended";
-  total: number;
-  counts: Record<JobStatus, number>;
-  created_at: string;
-}
 
 const PAGE = 200;
 const batchPath = (id: string): string => `v1/batches/${encodeURIComponent(id)}`;

@@ -1,6 +1,6 @@
 // Starting, following and cancelling a job.
 import { call, sentenceOf, waitAfter } from "./client.ts";
-import { withTraces } from "./experiments.ts";
+import { withTraces } from "./plants.ts";
 import { isFinal } from "./types.ts";
 import type { Example, Job, Method, TuningRequest } from "./types.ts";
 

@@ -2,9 +2,7 @@
 import { call } from "./client.ts";
 import { settingsOf } from "./evaluate.ts";
 import { deleteJob, postJobAndWait } from "./jobs.ts";
-import type { Implement } from "./products.ts";
-import type { Front } from "./reports.ts";
-import type { Controller, Entry, Model, Plant, Result, TuningRequest } from "./types.ts";
+import type { Controller, Entry, Frontier, Implement, Model, Plant, Result, TuningRequest } from "./types.ts";
 
 /** What a call is about: a plant, or the model of a record with its region, so that the record is not identified again. */
 export type CallSubject = { plant: Plant } | { model: Partial<Model> };
@@ -98,8 +96,8 @@ export interface FrontTerms {
 }
 
 /** The least load IAE under each limit on Ms. */
-export async function frontOf(plant: Plant, terms: FrontTerms, signal: AbortSignal): Promise<Front> {
-  return (await call("POST", "v1/frontier", { plant, ...terms }, {}, signal)).data as Front;
+export async function frontOf(plant: Plant, terms: FrontTerms, signal: AbortSignal): Promise<Frontier> {
+  return (await call("POST", "v1/frontier", { plant, ...terms }, {}, signal)).data as Frontier;
 }
 
 const LONGEST_WAIT_S = 20;
@@ -112,7 +110,7 @@ export async function besideOf(
   plant: Plant,
   fronts: readonly FrontTerms[],
   rules: boolean,
-): Promise<{ fronts: (Front | null)[]; rules: Entry[] }> {
+): Promise<{ fronts: (Frontier | null)[]; rules: Entry[] }> {
   const asked = fronts.map((terms) => ({ method: "frontier", ...terms }));
   const tune = [...asked, ...(rules ? [{ method: "all" }] : [])];
   const job = await postJobAndWait({ plant, tune, evaluate: { points: 0 } }, LONGEST_WAIT_S);

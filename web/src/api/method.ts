@@ -1,4 +1,4 @@
-// A tuning method and its options, as GET /v1/methods describes them.
+// The options of a tuning method, as GET /v1/methods describes them.
 
 /** A JSON Schema, as far as method options use it. */
 export interface Schema {
@@ -42,15 +42,4 @@ export interface OptionSlider {
   moves_with?: string;
   value_of?: "Mks" | "Tf" | "Tf_over_Td" | "overshoot_percent";
   reached?: "Mks" | "Tf" | "Tf_over_Td" | "overshoot_percent";
-}
-
-export interface Method {
-  id: string;
-  title: string;
-  formula?: string;
-  formula_mathml?: string;
-  needs?: string;
-  validity?: string;
-  source?: string;
-  options?: Schema;
 }

@@ -1,22 +1,6 @@
-// What a typed plant means, and a plant's formula: the service reads and writes both.
+// What a typed plant means, and its formula; what a relay test on a plant would show, and the model that a recorded test gives.
 import { call } from "./client.ts";
-import type { Plant } from "./types.ts";
-
-export interface PlantQuestion {
-  text?: string;
-  plant?: Plant;
-  /** The label in which the answer's times are. */
-  units?: { time?: string };
-}
-
-export interface PlantAnswer {
-  plant?: Plant;
-  /** MathML; none where there is a fault. */
-  formula?: string;
-  /** As it would be typed; "" for a plant that has no such text. */
-  text?: string;
-  fault?: string;
-}
+import type { IdentifyRequest, Model, Plant, PlantAnswer, PlantQuestion, RecordedTest, RelayAnswer, RelayRequest } from "./types.ts";
 
 /** A fault is an answer here, because most of what stands in a field while somebody types is unfinished. */
 export async function parsePlant(question: PlantQuestion): Promise<PlantAnswer> {
@@ -38,4 +22,23 @@ export function formulaText(plant: Plant): Promise<string | undefined> {
     known.set(key, formula);
   }
   return formula;
+}
+
+export async function simulateRelay(request: RelayRequest): Promise<RelayAnswer> {
+  return (await call("POST", "v1/experiments/relay", request)).data as RelayAnswer;
+}
+
+interface AboutRecord {
+  record?: RecordedTest;
+  identify?: Record<string, unknown>;
+}
+
+/** The request, with the traces of the models if it is about a record: the page draws the record beside its models. */
+export function withTraces<Request extends AboutRecord>(request: Request): Request {
+  return request.record ? { ...request, identify: { ...request.identify, traces: true } } : request;
+}
+
+/** The model that the service finds in the record, with its traces. */
+export async function identify(request: IdentifyRequest): Promise<Model> {
+  return ((await call("POST", "v1/identify", withTraces(request))).data as { model: Model }).model;
 }

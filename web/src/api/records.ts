@@ -1,42 +1,6 @@
 // What a file of a recorded test is read as: the service tells it before anything is computed.
 import { call } from "./client.ts";
-import type { FieldError, RecordedTest } from "./types.ts";
-
-export interface PreviewColumn {
-  heading: string;
-  guess: "t" | "u" | "y" | "r" | "-";
-  confidence: number;
-  unit: string;
-  first: string;
-  min?: number;
-  max?: number;
-  thumbnail: number[];
-}
-
-export interface Preview {
-  columns: PreviewColumn[];
-  rows: number;
-  separator: string;
-  decimal: string;
-  encoding: string;
-  time?: {
-    unit: string;
-    assumed: boolean;
-    from: number;
-    to: number;
-    dt: number;
-    gaps: number;
-    duplicates: number;
-  };
-  /** The runs, if the times begin again. */
-  runs: { first_line: number; last_line: number; rows: number; from: number; to: number; tests: boolean }[];
-  /** The run that is read, from 1, if there are several. */
-  run?: number;
-  skipped: { line: number; reason: string }[];
-  skipped_lines: number;
-  notes: string[];
-  problems: FieldError[];
-}
+import type { Preview, RecordedTest } from "./types.ts";
 
 /** The problems' pointers are those of a request with a record. */
 const previewed = (data: unknown): Preview => {

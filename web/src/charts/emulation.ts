@@ -1,6 +1,5 @@
 // What the PID follows and how: y and u under the nonlinear controller, the emulating PID and chosen classical settings.
-import type { Emulation, EmulationScenario } from "../api/reports.ts";
-import type { Plant } from "../api/types.ts";
+import type { EmulatedScenario, Emulation, Plant } from "../api/types.ts";
 import { extent } from "../plot/axis.ts";
 import type { Frame, Look, Mark, Trace } from "../plot/frame.ts";
 import { scenarioWords } from "../words/emulation.ts";
@@ -29,17 +28,18 @@ export function emulationFrame(
   own: OwnRun | null = null,
 ): Frame | null {
   const shown = emulation.scenarios?.[scenario] ?? onlyScenario(emulation);
-  if (!shown || shown.t.length < 2) return null;
+  if (!shown?.t || shown.t.length < 2) return null;
+  const { t, y_nl = [], u_nl = [] } = shown;
   const traces = (signal: "y" | "u"): Trace[] => {
     const followed = shown[signal];
     return [
-      ...(followed ? [{ name: "PID", look: 1 as const, x: shown.t, y: followed }] : []),
-      { name: "nonlinear controller", look: 3, x: shown.t, y: signal === "y" ? shown.y_nl : shown.u_nl },
+      ...(followed ? [{ name: "PID", look: 1 as const, x: t, y: followed }] : []),
+      { name: "nonlinear controller", look: 3, x: t, y: signal === "y" ? y_nl : u_nl },
       ...(scenario === 0 ? chosen : []).flatMap(({ index, name }, position): Trace[] => {
         const item = emulation.level1?.[index];
         const values = item?.[signal];
         const look = LEVEL_ONE_LOOKS[position] ?? "data";
-        return values ? [{ name, look, x: item?.t ?? shown.t, y: values }] : [];
+        return values ? [{ name, look, x: item?.t ?? t, y: values }] : [];
       }),
       ...(own ? [{ name: "by hand", look: 2 as const, x: own.t, y: own[signal] }] : []),
     ];
@@ -66,9 +66,9 @@ export function emulationFrame(
 }
 
 /** Of an answer that gives the nonlinear controller's run alone. */
-function onlyScenario(emulation: Emulation): EmulationScenario | null {
+function onlyScenario(emulation: Emulation): EmulatedScenario | null {
   const { t, y_nl, u_nl } = emulation;
-  return t && y_nl && u_nl ? { setpoint_step: NaN, y_rest: NaN, u_rest: NaN, t, y_nl, u_nl } : null;
+  return t && y_nl && u_nl ? { setpoint_step: NaN, y_rest: NaN, u_rest: NaN, limited: false, t, y_nl, u_nl } : null;
 }
 
 /** Limits of the input that u comes near; others would squeeze its movement. */
@@ -86,18 +86,19 @@ function limitsNear(plant: Plant | undefined, traces: Trace[]): Mark[] {
 }
 
 /** The cost of a run beside the nonlinear controller's in one scenario, by the trapezoidal rule; null where samples are missing. */
-export function costOf(emulation: Emulation, scenario: EmulationScenario, run: OwnRun): number | null {
+export function costOf(emulation: Emulation, scenario: EmulatedScenario, run: OwnRun): number | null {
   const { wy = 1, wu = 1 } = emulation.weights ?? {};
-  const squares = scenario.t.map((time, index) => {
+  const { t = [], y_nl = [], u_nl = [] } = scenario;
+  const squares = t.map((time, index) => {
     const pair = (["y", "u"] as const).map((signal) => {
-      const wanted = signal === "y" ? scenario.y_nl[index] : scenario.u_nl[index];
+      const wanted = signal === "y" ? y_nl[index] : u_nl[index];
       const value = interpolate(run.t, run[signal], time);
       return typeof wanted === "number" && value !== null ? (wanted - value) ** 2 : NaN;
     });
     return wy * pair[0]! + wu * pair[1]!;
   });
   const cost = squares.slice(1).reduce((sum, value, at) => {
-    return sum + ((value + squares[at]!) / 2) * (scenario.t[at + 1]! - scenario.t[at]!);
+    return sum + ((value + squares[at]!) / 2) * (t[at + 1]! - t[at]!);
   }, 0);
   return Number.isFinite(cost) ? cost : null;
 }

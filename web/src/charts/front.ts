@@ -1,6 +1,5 @@
 // Robustness against speed: the least load IAE under each limit on Ms, and where designs and rules lie beside it.
-import type { Front } from "../api/reports.ts";
-import type { Entry } from "../api/types.ts";
+import type { Entry, Frontier } from "../api/types.ts";
 import type { Frame, Mark, Trace } from "../plot/frame.ts";
 import { formatNumber, product, withUnit } from "../words/numbers.ts";
 import type { UnitNames } from "../words/numbers.ts";
@@ -8,8 +7,8 @@ import { entryNames } from "./drawn.ts";
 
 export interface FrontShown {
   /** By the controllers that may be had; null where there is none or it is not known yet. */
-  PID: Front | null;
-  PI: Front | null;
+  PID: Frontier | null;
+  PI: Frontier | null;
   /** The design; `at`: the limit that it was made for, null for settings by hand and rules. */
   here: { entry: Entry; at: number | null };
   today: Entry | null;
@@ -26,7 +25,7 @@ const IAEof = (entry: Entry): number | null => {
 };
 
 export function frontFrame(shown: FrontShown, units: UnitNames): Frame {
-  const curve = (name: string, look: Trace["look"], front: Front | null): Trace[] =>
+  const curve = (name: string, look: Trace["look"], front: Frontier | null): Trace[] =>
     front && front.points.length > 1
       ? [{ name, look, x: front.points.map((p) => p.Ms), y: front.points.map((p) => scaled(p.load_IAE, shown.load)) }]
       : [];

@@ -1,6 +1,6 @@
 // What an operating range looks like over its scheduling variable: Ms and IAE, the settings, the plant; and the runs over
 // time.
-import type { Column, RangeContent, RangePassage, RangeRun, RangeTraces, ScheduleRow } from "../api/range.ts";
+import type { Column, RangeContent, RangePassage, RangeRun, RangeTraces, ScheduleRow } from "../api/types.ts";
 import type { Range } from "../plot/axis.ts";
 import type { Frame, Mark, Pane, Trace } from "../plot/frame.ts";
 import { formatNumber, quotient, withUnit } from "../words/numbers.ts";

@@ -1,5 +1,5 @@
 // A simulated relay test: y between the relay's thresholds, over u.
-import type { RelayAnswer } from "../api/experiments.ts";
+import type { RelayAnswer } from "../api/types.ts";
 import type { Frame, Mark } from "../plot/frame.ts";
 import { formatNumber, withUnit } from "../words/numbers.ts";
 import type { UnitNames } from "../words/numbers.ts";

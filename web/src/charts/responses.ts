@@ -1,5 +1,5 @@
 // Set-point and load responses: y over u on one time axis.
-import type { TuningRequest } from "../api/types.ts";
+import type { Figures, TuningRequest } from "../api/types.ts";
 import { extent } from "../plot/axis.ts";
 import type { Frame, Mark, Trace } from "../plot/frame.ts";
 import { formatNumber, unitNames, withUnit } from "../words/numbers.ts";
@@ -76,7 +76,7 @@ function describe(kind: "setpoint" | "load", drawn: Drawn[], time: string, y: st
   const sentences = drawn.map((item) => {
     const figures = item.entry.performance?.[kind];
     const number = (name: string): string => {
-      const value = figures?.[name];
+      const value = (figures as Figures | undefined)?.[name];
       return formatNumber(typeof value === "number" ? value : null);
     };
     return kind === "setpoint"

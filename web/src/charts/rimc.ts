@@ -1,6 +1,5 @@
 // Revised IMC: what the parameter lambda buys. The load response's peak and Ms over lambda/tau, the present design marked.
-import type { Rimc } from "../api/reports.ts";
-import type { Entry, Response } from "../api/types.ts";
+import type { Entry, Response, Rimc } from "../api/types.ts";
 import type { Frame, Mark, Trace } from "../plot/frame.ts";
 import { formatNumber, product, quotient, withUnit } from "../words/numbers.ts";
 import type { UnitNames } from "../words/numbers.ts";

@@ -1,5 +1,5 @@
 // Servo against regulation: what a controller pays for robustness, beside what the tuning rule of Arrieta et al. does on this plant.
-import type { Tradeoff, TradeoffFigures, TradeoffPoint } from "../api/reports.ts";
+import type { Tradeoff, TradeoffFigures, TradeoffPoint } from "../api/types.ts";
 import { extent } from "../plot/axis.ts";
 import type { Range } from "../plot/axis.ts";
 import type { Frame, Mark, Trace } from "../plot/frame.ts";
@@ -13,7 +13,9 @@ export interface TradeoffItem {
 type Profile = NonNullable<Tradeoff["profile"]>;
 type Name = "J_r" | "J_d" | "J_rd" | "I_perf" | "Deg" | "Ms" | "Ms_design" | "degradation";
 
-const column = (points: TradeoffPoint[], name: Name): (number | null)[] => points.map((point) => point[name] ?? null);
+const at = (point: TradeoffPoint, name: Name): number | null => (point as Partial<Record<Name, number>>)[name] ?? null;
+
+const column = (points: TradeoffPoint[], name: Name): (number | null)[] => points.map((point) => at(point, name));
 
 /** What the curves are drawn on: the first-order model; the plant's own figures where there is no model. */
 export const figuresOf = (item: TradeoffItem): TradeoffFigures | undefined =>
@@ -30,7 +32,7 @@ export const isKnown = ({ tradeoff }: TradeoffItem): boolean =>
 export function whyUnknown(item: TradeoffItem): string {
   const { tradeoff } = item;
   if (!tradeoff || isKnown(item)) return "";
-  const reasons = [tradeoff, tradeoff.model, tradeoff.plant].flatMap((part) => Object.values(part?.why_null ?? {}));
+  const reasons = [tradeoff.model, tradeoff.plant].flatMap((part) => Object.values(part?.why_null ?? {}));
   return reasons[0] ?? "There is no trade-off of this controller.";
 }
 
@@ -171,8 +173,8 @@ const plain = (name: string, look: Trace["look"], list: TradeoffPoint[], x: Name
 
 /** A curve in the plane, run through by a parameter; points without one are left out. */
 function curve(name: string, look: Trace["look"], list: TradeoffPoint[], x: Name, y: Name, along: Name): Trace {
-  const kept = list.filter((point) => typeof point[along] === "number");
-  return { ...plain(name, look, kept, x, y), parameter: kept.map((point) => point[along]!) };
+  const kept = list.filter((point) => at(point, along) !== null);
+  return { ...plain(name, look, kept, x, y), parameter: kept.map((point) => at(point, along)!) };
 }
 
 export interface TradeoffRow {

@@ -3,8 +3,7 @@
 import { ApiError, whenBack } from "../api/client.ts";
 import { latest } from "../api/latest.ts";
 import { parsePlant } from "../api/plants.ts";
-import type { PlantAnswer, PlantQuestion } from "../api/plants.ts";
-import type { Plant } from "../api/types.ts";
+import type { Plant, PlantAnswer, PlantQuestion } from "../api/types.ts";
 import { h, uniqueId } from "../dom.ts";
 import { quotient } from "../words/numbers.ts";
 import type { UnitNames } from "../words/numbers.ts";

@@ -1,5 +1,5 @@
 // Today's settings in a product's own form: its parameters as fields, named and united as in the maker's software.
-import type { Product, SettingValue } from "../api/products.ts";
+import type { Product, SettingValue } from "../api/types.ts";
 import { h } from "../dom.ts";
 import { choiceField, textField } from "./controls.ts";
 import type { Field } from "./controls.ts";

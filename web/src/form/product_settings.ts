@@ -1,6 +1,5 @@
 // Settings of a product as its parameters' fields have them: which fields there are, what is typed as values, and back.
-import type { Product, ProductParameter, SettingValue } from "../api/products.ts";
-import type { FieldError } from "../api/types.ts";
+import type { FieldError, Product, ProductParameter, SettingValue } from "../api/types.ts";
 import { exactText } from "../words/numbers.ts";
 import { parseNumber } from "./number.ts";
 

@@ -1,7 +1,6 @@
 // How a record is to be read and identified: columns, kind, model, method. The same fields on Start and on Identify.
-import type { FieldError, RecordedTest } from "../api/types.ts";
+import type { FieldError, Preview, RecordedTest } from "../api/types.ts";
 import { h } from "../dom.ts";
-import type { Preview } from "../api/records.ts";
 import { choiceField, textField } from "./controls.ts";
 import type { Field } from "./controls.ts";
 import type { FormErrors } from "./errors.ts";
@@ -171,7 +170,7 @@ export function recordFields(errors: FormErrors, all: boolean): RecordFields {
         else faults.push({ pointer: "/record/u_step", detail: "Write two numbers, from and to, such as 0 50." });
       }
       if (timeUnit.input.value) record.time_unit = timeUnit.input.value;
-      if (kind.input.value !== "auto") record.kind = kind.input.value;
+      if (kind.input.value !== "auto") record.kind = kind.input.value as NonNullable<RecordedTest["kind"]>;
       if (method && method.input.value !== "auto") identify["method"] = method.input.value;
       for (const [name, field] of Object.entries(numbers)) {
         if (field.input.value.trim() === "") continue;

@@ -1,6 +1,7 @@
 // What a file was read as, before anything is computed: its columns with what they hold, its times, the lines passed over.
-import type { Preview, PreviewColumn } from "../api/records.ts";
+import type { Preview, PreviewColumn } from "../api/types.ts";
 import { h, svgElement } from "../dom.ts";
+import { extent } from "../plot/axis.ts";
 import { spark } from "../plot/spark.ts";
 import { formatNumber, formatParameter } from "../words/numbers.ts";
 
@@ -78,8 +79,7 @@ const held = ({ first, min, max, unit }: PreviewColumn): string => {
 
 function drawn({ thumbnail }: PreviewColumn): SVGElement | null {
   if (thumbnail.length < 2) return null;
-  const low = Math.min(...thumbnail);
-  const high = Math.max(...thumbnail);
+  const [low, high] = extent([thumbnail], "linear");
   const margin = high > low ? 0 : 1;
   const x = thumbnail.map((_, index) => index);
   return svgElement(

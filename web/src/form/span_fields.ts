@@ -1,6 +1,5 @@
 // A range as its two ends, each a field of its own under one name.
-import type { Span } from "../api/products.ts";
-import type { FieldError } from "../api/types.ts";
+import type { FieldError, Span } from "../api/types.ts";
 import { h } from "../dom.ts";
 import { textField } from "./controls.ts";
 import type { FormErrors } from "./errors.ts";

@@ -1,17 +1,6 @@
 // Tuning requests that the page makes from answers: a candidate of Identify as what is to be tuned, the same request with
 // another lambda for one of its entries, and the same subject by every method.
-import type { Implement } from "../api/products.ts";
-import type {
-  Candidate,
-  Entry,
-  IdentifyRequest,
-  Model,
-  Plant,
-  Result,
-  TuneEntry,
-  TuningRequest,
-  TypedBaseline,
-} from "../api/types.ts";
+import type { Candidate, Entry, IdentifyRequest, Implement, Model, Plant, Result, TuneEntry, TuningRequest, TypedBaseline } from "../api/types.ts";
 
 /** What a candidate that was chosen on Identify is tuned as: its record where that leads to the same model again, else its plant. */
 export type TuneSubject =

@@ -1,8 +1,7 @@
 // The form of a range: points or equations, the way the plant varies, what is asked.
 import { parsePlant } from "../api/plants.ts";
 import type { RangeExample, RangeRequest } from "../api/range.ts";
-import type { Preview } from "../api/records.ts";
-import type { FieldError, Method } from "../api/types.ts";
+import type { FieldError, Method, Preview } from "../api/types.ts";
 import { h } from "../dom.ts";
 import { choiceField } from "../form/controls.ts";
 import { equationFields } from "../form/equation_fields.ts";

@@ -1,7 +1,8 @@
 // A schedule that a hand moves: its rows now, the newest curves of them, and the way back to the design.
+import type { RangeContent, ScheduleRow } from "../api/types.ts";
 import { latest } from "../api/latest.ts";
 import { designRange } from "../api/range.ts";
-import type { RangeContent, RangeRequest, ScheduleRow } from "../api/range.ts";
+import type { RangeRequest } from "../api/range.ts";
 import { givenRequest, movedRow, overRegion, sameRows } from "./schedule.ts";
 import type { ShownRange } from "./schedule.ts";
 

@@ -1,5 +1,5 @@
 // Handles of a schedule's rows on a plot: each a slider along the axis, for the pointer, the finger and the keys.
-import type { RangeTraces, ScheduleRow } from "../api/range.ts";
+import type { RangeTraces, ScheduleRow } from "../api/types.ts";
 import { interpolate } from "../charts/rimc.ts";
 import { h, setAttribute } from "../dom.ts";
 import type { Layout, PaneBox } from "../plot/layout.ts";

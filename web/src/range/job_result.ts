@@ -1,6 +1,5 @@
 // A job about an operating range, on the job's screen: its schedule as a table and the way to its own screen.
-import type { RangeContent } from "../api/range.ts";
-import type { Job } from "../api/types.ts";
+import type { Job, RangeContent } from "../api/types.ts";
 import { h, uniqueId } from "../dom.ts";
 import { formatRoute } from "../routes.ts";
 import { codeCard } from "../views/cards/code_card.ts";

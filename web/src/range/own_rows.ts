@@ -2,8 +2,7 @@
 import { ApiError, sentenceOf } from "../api/client.ts";
 import { latest } from "../api/latest.ts";
 import { getProduct, scheduleSettingsFor } from "../api/products.ts";
-import type { Implement, Product, TypedSchedule } from "../api/products.ts";
-import type { RangeContent, ScheduleRow } from "../api/range.ts";
+import type { Implement, Product, RangeContent, ScheduleRow, TypedSchedule } from "../api/types.ts";
 import { breakable, h } from "../dom.ts";
 import { FormErrors } from "../form/errors.ts";
 import { implementOf, inUnits, rememberMine } from "../my_controller.ts";

@@ -1,6 +1,6 @@
 // The points of a range: a row for each, with its place and a plant in one line, or the file of a test recorded there.
 import { previewFile } from "../api/records.ts";
-import type { Preview } from "../api/records.ts";
+import type { Preview } from "../api/types.ts";
 import { h } from "../dom.ts";
 import { textField } from "../form/controls.ts";
 import type { FormErrors } from "../form/errors.ts";

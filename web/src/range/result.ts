@@ -1,6 +1,7 @@
 // What a range's design shows: verdict, plots with the rows as handles, schedule, one setting, runs, points. A row that
 // is moved is answered while it moves.
-import type { RangeContent, RangeRequest } from "../api/range.ts";
+import type { RangeContent } from "../api/types.ts";
+import type { RangeRequest } from "../api/range.ts";
 import { plantFrame, robustnessFrame, settingsFrame } from "../charts/range.ts";
 import type { RangeShown } from "../charts/range.ts";
 import { h } from "../dom.ts";

@@ -1,6 +1,5 @@
 // What a range comes to besides its schedule: the verdict, the one setting, its price at each point, remarks.
-import type { OneSetting, RangeContent } from "../api/range.ts";
-import type { Plant } from "../api/types.ts";
+import type { OneSetting, Plant, RangeContent } from "../api/types.ts";
 import { h, uniqueId } from "../dom.ts";
 import { DASH, formatNumber, formatSetting, product, withMinus, withUnit } from "../words/numbers.ts";
 import type { UnitNames } from "../words/numbers.ts";

@@ -1,5 +1,5 @@
 // The runs of equations across their range: one passage at a time, by the schedule and by one setting.
-import type { RangeContent, RangePassage } from "../api/range.ts";
+import type { RangeContent, RangePassage } from "../api/types.ts";
 import { passageFrame, runsOf } from "../charts/range.ts";
 import { h, uniqueId } from "../dom.ts";
 import { choiceField } from "../form/controls.ts";
@@ -89,7 +89,7 @@ export function runsCard(announce: (sentence: string) => void, onAgain: () => vo
       const base = designed.runs ?? [];
       // Of moved rows there is no run with one setting: that stays the design's.
       passages = moved?.runs
-        ? moved.runs.map((run) => ({ ...run, one: base.find(({ name }) => name === run.name)?.one ?? null }))
+        ? moved.runs.map((run) => ({ ...run, one: base.find(({ name }) => name === run.name)?.one }))
         : base;
       element.hidden = passages.length === 0;
       old.hidden = !moved || moved.runs !== undefined;

@@ -1,5 +1,6 @@
 // A schedule in the hand: where its rows may go, what is asked while one moves, and what is said of it. No DOM.
-import type { RangeContent, RangeRequest, ScheduleRow } from "../api/range.ts";
+import type { RangeContent, ScheduleRow } from "../api/types.ts";
+import type { RangeRequest } from "../api/range.ts";
 import { formatNumber } from "../words/numbers.ts";
 import { placeWords } from "../words/range.ts";
 

@@ -1,5 +1,5 @@
 // The schedule as a table: its rows can be typed over; how it stands is said above it.
-import type { RangeContent, ScheduleRow } from "../api/range.ts";
+import type { RangeContent, ScheduleRow } from "../api/types.ts";
 import { h, passFocus, uniqueId } from "../dom.ts";
 import { textField } from "../form/controls.ts";
 import type { Field } from "../form/controls.ts";

@@ -1,9 +1,10 @@
 // Range: a loop over its whole operating range. Points or equations in; one setting, a schedule to move, and runs out.
+import type { RangeContent } from "../api/types.ts";
 import { ApiError } from "../api/client.ts";
 import { getJob } from "../api/jobs.ts";
 import { latest } from "../api/latest.ts";
 import { designRange, getRangeExamples, isRangeRequest } from "../api/range.ts";
-import type { RangeContent, RangeExample, RangeRequest } from "../api/range.ts";
+import type { RangeExample, RangeRequest } from "../api/range.ts";
 import { h } from "../dom.ts";
 import { FormErrors } from "../form/errors.ts";
 import { requestMenu } from "../views/request_menu.ts";

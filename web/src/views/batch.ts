@@ -1,6 +1,6 @@
 // A batch: how far it is, and a line for each of its loops, in the order of what should be looked at first.
 import { batchCsv, cancelBatch, getBatch, hasEnded, jobsOfBatch, postAgain } from "../api/job_lists.ts";
-import type { Batch, ListedJob } from "../api/job_lists.ts";
+import type { Batch, ListedJob } from "../api/types.ts";
 import { h } from "../dom.ts";
 import { download } from "../plot/export.ts";
 import { formatRoute } from "../routes.ts";

@@ -2,8 +2,7 @@
 import { ApiError, sentenceOf } from "../api/client.ts";
 import { stepOf } from "../api/evaluate.ts";
 import { latest } from "../api/latest.ts";
-import type { Emulation, EmulationScenario, Tuned } from "../api/reports.ts";
-import type { Controller, Entry, Plant } from "../api/types.ts";
+import type { Controller, EmulatedScenario, Emulation, Entry, Plant, Tuned } from "../api/types.ts";
 import type { OwnRun } from "../charts/emulation.ts";
 import { h, passFocus } from "../dom.ts";
 import { FormErrors } from "../form/errors.ts";
@@ -18,7 +17,7 @@ export interface HandSettings {
   /** Back to the entry's own settings; hides itself where the service cannot try others. */
   show(entry: Entry, plant: Plant | undefined, units: UnitNames): void;
   /** Which set-point step is tried; one with its own start or parameters cannot be. */
-  setScenario(scenario: EmulationScenario | undefined): void;
+  setScenario(scenario: EmulatedScenario | undefined): void;
   /** What the last settings did, in a sentence. */
   say(sentence: string): void;
   dispose(): void;
@@ -28,7 +27,7 @@ type Sought = "Kp" | "Ti" | "Td";
 interface Asked {
   plant: Plant;
   controller: Controller;
-  scenario: EmulationScenario;
+  scenario: EmulatedScenario;
   horizon: number;
 }
 
@@ -41,7 +40,7 @@ export interface HandEvents {
 
 export function handSettings({ onRun, onTry }: HandEvents): HandSettings {
   let shown: { entry: Entry; plant: Plant; units: UnitNames } | null = null;
-  let scenario: EmulationScenario | undefined;
+  let scenario: EmulatedScenario | undefined;
   const errors = new FormErrors();
   const trouble = h("p", { class: "trouble", role: "status", hidden: true });
   const said = h("p", { class: "hint" });

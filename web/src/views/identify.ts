@@ -1,6 +1,6 @@
 // Identify: a recorded test, the models that explain it, whether it was good enough, and which part of it counts.
 import { ApiError } from "../api/client.ts";
-import { identify } from "../api/experiments.ts";
+import { identify } from "../api/plants.ts";
 import { previewRecord } from "../api/records.ts";
 import { latest, newest } from "../api/latest.ts";
 import type { FieldError, IdentifyRequest, Model } from "../api/types.ts";

@@ -1,10 +1,9 @@
 // Jobs: what the service keeps, to be found again, duplicated, tried again or deleted; batches, and a CSV of loops as one.
 import { ApiError, sentenceOf } from "../api/client.ts";
 import { deleteBatch, hasEnded, listBatches, listJobs, nextJobs, postLoops } from "../api/job_lists.ts";
-import type { Batch, JobList, ListedJob } from "../api/job_lists.ts";
+import type { Batch, Job, JobList, ListedJob } from "../api/types.ts";
 import { cancelJob, deleteJob, getJob, postJob } from "../api/jobs.ts";
 import { isFinal } from "../api/types.ts";
-import type { Job } from "../api/types.ts";
 import { h } from "../dom.ts";
 import { parseNumber } from "../form/number.ts";
 import { implementOf } from "../my_controller.ts";

@@ -1,8 +1,7 @@
 // Relay test: what one would show on a plant, how to make it, and its record for Identify.
-import { simulateRelay } from "../api/experiments.ts";
-import type { RelayAnswer, RelayPlan, RelayRequest, RelaySettings } from "../api/experiments.ts";
+import { simulateRelay } from "../api/plants.ts";
+import type { FieldError, IdentifyRequest, RelayAnswer, RelayPlan, RelayRequest, RelaySettings, Units } from "../api/types.ts";
 import { latest } from "../api/latest.ts";
-import type { FieldError, IdentifyRequest, Units } from "../api/types.ts";
 import { relayFrame } from "../charts/relay.ts";
 import { h, uniqueId } from "../dom.ts";
 import { textField } from "../form/controls.ts";
@@ -150,7 +149,7 @@ export function relayView(announce: (sentence: string) => void, events: RelayEve
       menu.show("v1/experiments/relay", asked);
       results.hidden = false;
       markStale(false);
-      const frame = relayFrame(next, asked.relay.hysteresis ?? 0, units);
+      const frame = relayFrame(next, asked.relay?.hysteresis ?? 0, units);
       if (plot) plot.update(frame);
       else {
         plot = createPlot(frame, announce);

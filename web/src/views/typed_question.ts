@@ -1,9 +1,8 @@
 // What to ask the service for the settings of an entry, or of a controller that is tried by hand, in the user's own product.
 import { evaluateAsBuilt } from "../api/live.ts";
 import { getProduct, settingsFor } from "../api/products.ts";
-import type { AsEntered, Implement, Product } from "../api/products.ts";
+import type { AsEntered, Controller, Entry, Implement, Product, TuningRequest } from "../api/types.ts";
 import type { CallSubject } from "../api/live.ts";
-import type { Controller, Entry, TuningRequest } from "../api/types.ts";
 
 export interface TypedQuestion {
   implement: Implement & { product: string };

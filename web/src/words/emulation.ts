@@ -1,6 +1,5 @@
 // Two-level tuning in words: the settings of both levels, what the optimum costs and how sharp it is.
-import type { Emulation, EmulationScenario, LevelOne, Tuned } from "../api/reports.ts";
-import type { Entry } from "../api/types.ts";
+import type { EmulatedScenario, Emulation, Entry, LevelOneRow, Tuned } from "../api/types.ts";
 import { rootWords } from "./linear_model.ts";
 import { formatNumber, formatParameter, formatSetting, quotient } from "./numbers.ts";
 import type { UnitNames } from "./numbers.ts";
@@ -25,7 +24,7 @@ const ORIGINS: Record<string, string> = {
   linear: "on the linear model",
 };
 
-function levelOneRow(item: LevelOne, index: number): LevelRow {
+function levelOneRow(item: LevelOneRow, index: number): LevelRow {
   const { controller } = item;
   const why = item.error || item.ended || item.why_null?.["J"] || "There is no J of these settings.";
   return {
@@ -130,7 +129,7 @@ export function targetWords(beta: number[]): string {
 }
 
 /** "set point +10, T from 380". */
-export function scenarioWords(scenario: EmulationScenario): string {
+export function scenarioWords(scenario: EmulatedScenario): string {
   const signed =
     scenario.setpoint_step > 0 ? `+${formatSetting(scenario.setpoint_step)}` : formatSetting(scenario.setpoint_step);
   const others = [
@@ -141,7 +140,7 @@ export function scenarioWords(scenario: EmulationScenario): string {
 }
 
 /** What is special about a scenario's run, in sentences; "" for nothing. */
-export function scenarioNotes(scenario: EmulationScenario): string {
+export function scenarioNotes(scenario: EmulatedScenario): string {
   return [
     scenario.limited ? "A limit of the input clips the nonlinear controller here." : "",
     scenario.ended ? `The PID's run ends early: ${scenario.ended}` : "",

@@ -1,5 +1,5 @@
 // The figures of an entry, in the order and with the names and units in which they are read.
-import type { Entry, WhyNull } from "../api/types.ts";
+import type { Entry, Figures, WhyNull } from "../api/types.ts";
 import { formatNumber, formatPercent, formatShare, product, quotient, withUnit } from "./numbers.ts";
 import type { UnitNames } from "./numbers.ts";
 
@@ -85,7 +85,7 @@ export function figureGroups(units: UnitNames, region = false, nonlinear = false
   const controller = (label: string, name: string, meaning: string, absent: string): FigureRow => ({
     label,
     meaning,
-    value: (entry) => numeric(entry.controller, name, absent),
+    value: (entry) => numeric(entry.controller as Figures | undefined, name, absent),
   });
   const robustness = (label: string, name: string, meaning: string): FigureRow => ({
     label,

@@ -1,9 +1,8 @@
 // Jobs in lists: their cells in words, and the orders that a batch can stand in.
-import type { ListedJob, Outline } from "../api/job_lists.ts";
+import type { Controller, ListedJob, Outline, Plant } from "../api/types.ts";
 import { DASH, formatNumber, formatParameter, formatSetting, quotient, unitNames, withUnit } from "./numbers.ts";
 import type { UnitNames } from "./numbers.ts";
 import { plantTitle, plantWords } from "./plant.ts";
-import type { Controller, Plant } from "../api/types.ts";
 
 const MINUTE = 60;
 const HOUR = 60 * MINUTE;
@@ -31,7 +30,7 @@ export function shortPlant(outline: Outline | undefined): string {
   const below = denominator(plant);
   if (below === null || typeof plant["K"] !== "number")
     return plant.type === "nonlinear" ? plantWords(plant, unitNames(outline.units)) : plantTitle(plant.type);
-  const delay = plant.L ? ` e^(−${shownFactor(plant.L)}s)` : "";
+  const delay = typeof plant["L"] === "number" && plant["L"] !== 0 ? ` e^(−${shownFactor(plant["L"])}s)` : "";
   return `${formatParameter(plant["K"])}${delay}${below === "" ? "" : `/${below}`}`;
 }
 

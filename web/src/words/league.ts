@@ -75,7 +75,7 @@ export function leagueColumns(units: UnitNames): LeagueColumn[] {
         ? { value: null, text: "", why: part(entry)?.why_null?.[name] ?? "The loop is unstable." }
         : figureOf(part(entry), name, absent, format);
   };
-  const controller = (entry: Entry): Part => entry.controller;
+  const controller = (entry: Entry): Part => entry.controller as Part;
   const robustness = (entry: Entry): Part => entry.robustness;
   const loadStep = (entry: Entry): Part => entry.performance?.load;
   const setpoint = (entry: Entry): Part => entry.performance?.setpoint;

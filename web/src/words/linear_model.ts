@@ -1,5 +1,5 @@
 // The linear model of a nonlinear plant as people read it: a transfer function of its state-space form, with poles and zeros.
-import type { Complex, Plant } from "../api/types.ts";
+import type { Plant } from "../api/types.ts";
 import { formatParameter } from "./numbers.ts";
 
 export interface TransferFunction {
@@ -89,8 +89,8 @@ const others = (roots: Pair[], k: number): Pair =>
   roots.reduce((product: Pair, root, j) => (j === k ? product : times(product, minus(roots[k]!, root))), [1, 0]);
 
 /** "−1.14, −7.604" or "−2 ± 1i"; "none". */
-export function rootWords(roots: Complex[]): string {
-  const pairs = roots.map((root): Pair => (typeof root === "number" ? [root, 0] : root));
+export function rootWords(roots: readonly (number | readonly [number, number])[]): string {
+  const pairs = roots.map((root): Pair => (typeof root === "number" ? [root, 0] : [root[0], root[1]]));
   const words = pairs.flatMap(([re, im]) => {
     if (im < 0) return [];
     return [im === 0 ? formatParameter(re) : `${formatParameter(re)} ± ${formatParameter(im)}i`];

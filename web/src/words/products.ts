@@ -1,6 +1,5 @@
 // Controllers as they are built, in words: what a search finds, the rows to type, the loop beside the ideal one, evidence.
-import type { AsEntered, Evidence, Implemented, Need, Product, ProductSummary } from "../api/products.ts";
-import type { Entry, Notice } from "../api/types.ts";
+import type { AsEntered, Entry, Evidence, Implemented, Need, Notice, Product, ProductSummary } from "../api/types.ts";
 import { DASH, formatNumber, formatParameter, formatPercent } from "./numbers.ts";
 
 /** Lower case, without what separates words in names. */

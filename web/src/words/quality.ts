@@ -54,7 +54,7 @@ const listOf = (value: unknown): string[] =>
   Array.isArray(value) ? value.filter((item): item is string => typeof item === "string") : [];
 
 function rowsOf(model: Model, units: UnitNames): [string, string][] {
-  const quality = model.data_quality ?? {};
+  const quality: Record<string, unknown> = model.data_quality ?? {};
   const rows: [string, string][] = [];
   const number = (name: string): number | null =>
     typeof quality[name] === "number" && Number.isFinite(quality[name]) ? quality[name] : null;

@@ -1,6 +1,6 @@
 // What an operating range comes to, in words: how its schedule stands, its settings, its points, its runs.
-import type { OneSetting, RangeContent, RangeRequest, RangeRun, Schedule, WorstPlace } from "../api/range.ts";
-import type { Finding } from "../api/types.ts";
+import type { RangeRequest } from "../api/range.ts";
+import type { Finding, OneSetting, RangeContent, RangeRun, Schedule, WorstPlace } from "../api/types.ts";
 import { DASH, formatNumber, formatSetting, product, quotient, withUnit } from "./numbers.ts";
 import type { UnitNames } from "./numbers.ts";
 
@@ -52,6 +52,7 @@ export function handVerdict(schedule: Schedule): Finding {
       code: "hand-exceeds",
       level: "bad",
       text: `With these ${rows} the limits do not hold everywhere in the range.`,
+      figures: {},
     };
   const cost = IAE === null ? "" : ` Its IAE is at most ${formatNumber(IAE)} times each operating point's own optimum.`;
   return schedule.within_allowance
@@ -59,18 +60,20 @@ export function handVerdict(schedule: Schedule): Finding {
         code: "hand-holds",
         level: "good",
         text: `These ${rows} hold the limits everywhere, within the allowance.${cost}`,
+        figures: {},
       }
     : {
         code: "hand-costs",
         level: "warning",
         text: `These ${rows} hold the limits, but cost more than the allowance.${cost}`,
+        figures: {},
       };
 }
 
 export function verdictOf(content: RangeContent): Finding {
   if (content.verdict) return content.verdict;
   if (content.schedule) return handVerdict(content.schedule);
-  return { code: "none", level: "bad", text: content.why_null?.["schedule"] ?? "There is no schedule for this range." };
+  return { code: "none", level: "bad", text: content.why_null?.["schedule"] ?? "There is no schedule for this range.", figures: {} };
 }
 
 const QUANTITIES: Record<WorstPlace["quantity"], string> = {

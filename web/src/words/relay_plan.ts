@@ -1,5 +1,5 @@
 // The proposed relay test in sentences.
-import type { RelayPlan } from "../api/experiments.ts";
+import type { RelayPlan } from "../api/types.ts";
 import { formatNumber, formatParameter } from "./numbers.ts";
 import type { UnitNames } from "./numbers.ts";
 

@@ -1,6 +1,5 @@
 // Two-level tuning on Design: the classical settings, the PID that follows the nonlinear controller, and how well it does.
-import type { EmulationScenario, Tuned } from "../../api/reports.ts";
-import type { Controller, Entry, Plant } from "../../api/types.ts";
+import type { Controller, EmulatedScenario, Entry, Plant, Tuned } from "../../api/types.ts";
 import { costOf, emulationFrame, LEVEL_ONE_LOOKS } from "../../charts/emulation.ts";
 import type { OwnRun } from "../../charts/emulation.ts";
 import { h, uniqueId } from "../../dom.ts";
@@ -62,14 +61,14 @@ export function emulationCard(
     charts.element,
   );
 
-  const scenarioShown = (): EmulationScenario | undefined =>
+  const scenarioShown = (): EmulatedScenario | undefined =>
     shown?.entry.emulation?.scenarios?.[Number(scenario.input.value) || 0];
 
   /** Beside the same sum over the emulating PID's own samples, so that both are as exact. */
   function sayCost(): void {
     const emulation = shown?.entry.emulation;
     const at = scenarioShown();
-    if (!own || !emulation || !at?.y || !at.u) return hand.say("");
+    if (!own || !emulation || !at?.t || !at.y || !at.u) return hand.say("");
     const [tried, best] = [costOf(emulation, at, own), costOf(emulation, at, { t: at.t, y: at.y, u: at.u })];
     hand.say(tried === null ? "" : `J of this scenario ${formatNumber(tried)}; of the optimum ${formatNumber(best)}`);
   }

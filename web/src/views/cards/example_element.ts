@@ -9,7 +9,7 @@ export function exampleElement(example: Example, tune: (all: boolean) => void): 
     "div",
     { class: "example" },
     h("h3", {}, example.title),
-    example.description || example.source ? h("p", { class: "hint" }, example.description ?? example.source) : null,
+    h("p", { class: "hint" }, example.description),
     h(
       "p",
       { class: "actions" },

@@ -1,8 +1,7 @@
 // The front under the sliders: the design is a point on it that can be dragged.
 import { besideOf, frontOf } from "../../api/live.ts";
 import type { FrontTerms } from "../../api/live.ts";
-import type { Front } from "../../api/reports.ts";
-import type { Entry, Plant } from "../../api/types.ts";
+import type { Entry, Frontier, Plant } from "../../api/types.ts";
 import { frontFrame } from "../../charts/front.ts";
 import { h } from "../../dom.ts";
 import { createPlot } from "../../plot/plot.ts";
@@ -47,7 +46,7 @@ export function frontCard(
   let subject: FrontSubject | null = null;
   let key = "";
   let ruled = "";
-  let fronts: { PID: Front | null; PI: Front | null } = { PID: null, PI: null };
+  let fronts: { PID: Frontier | null; PI: Frontier | null } = { PID: null, PI: null };
   let rules: Entry[] = [];
   let here: { entry: Entry; at: number | null; today: Entry | null } | null = null;
   let calls = new AbortController();
@@ -64,7 +63,7 @@ export function frontCard(
 
   /** Curves and rules come after the screen is there; without them the point stands alone. */
   async function ask(next: FrontSubject, ending: AbortSignal): Promise<void> {
-    const take = (controller: "PI" | "PID", front: Front | null): void => {
+    const take = (controller: "PI" | "PID", front: Frontier | null): void => {
       if (ending.aborted) return;
       fronts = { ...fronts, [controller]: front };
       draw();

@@ -1,6 +1,5 @@
 // "My controller": which product, and what its formulas have to know of the loop.
-import type { Need, ProductSummary } from "../../api/products.ts";
-import type { FieldError } from "../../api/types.ts";
+import type { FieldError, Need, ProductSummary } from "../../api/types.ts";
 import { h, uniqueId } from "../../dom.ts";
 import { combobox } from "../../form/combobox.ts";
 import type { Choice } from "../../form/combobox.ts";
@@ -81,7 +80,7 @@ export function myControllerCard(
 
   function choose(choice: Choice | null): void {
     const product = products.find((item) => item.id === choice?.id);
-    chosen = product ? { product: product.id, name: productTitle(product), needs: product.needs } : null;
+    chosen = product ? { product: product.id, name: productTitle(product), needs: product.needs as Need[] } : null;
     show();
     change();
   }

@@ -1,6 +1,5 @@
 // Today's settings as they stand in the user's own controller, to set a design against.
-import type { Product, SettingValue } from "../../api/products.ts";
-import type { TypedBaseline } from "../../api/types.ts";
+import type { Product, SettingValue, TypedBaseline } from "../../api/types.ts";
 import { h } from "../../dom.ts";
 import type { FormErrors } from "../../form/errors.ts";
 import { productFields } from "../../form/product_fields.ts";

@@ -1,5 +1,5 @@
 // What is known of a product: its law as a formula, how it computes, what goes wrong easily, and where that was read.
-import type { Product, ProductParameter } from "../../api/products.ts";
+import type { Product, ProductParameter } from "../../api/types.ts";
 import { breakable, h, mathElement, uniqueId } from "../../dom.ts";
 import { lawFormulas } from "../../form/law.ts";
 import { evidenceSentence, productTitle, rangeWords } from "../../words/products.ts";

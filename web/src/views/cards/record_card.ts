@@ -1,8 +1,7 @@
 // "A recorded test": a CSV file dropped, chosen or pasted. The service finds and reads the columns; nothing is parsed here.
 import { newest } from "../../api/latest.ts";
 import { previewFile, previewRecord } from "../../api/records.ts";
-import type { Preview } from "../../api/records.ts";
-import type { FieldError, RecordedTest } from "../../api/types.ts";
+import type { FieldError, Preview, RecordedTest } from "../../api/types.ts";
 import { h } from "../../dom.ts";
 import type { FormErrors } from "../../form/errors.ts";
 import { csvOf, recordFields } from "../../form/record_fields.ts";

@@ -1,5 +1,5 @@
 // "Settings to enter": the chosen controller in the form that the user's controller has.
-import type { Entry } from "../../api/types.ts";
+import type { Entry, WhyNull } from "../../api/types.ts";
 import { h, uniqueId } from "../../dom.ts";
 import { filterWords } from "../../words/figures.ts";
 import { formatSetting, plainSetting, quotient, withUnit } from "../../words/numbers.ts";
@@ -13,6 +13,9 @@ export interface Setting {
   unit: string;
   value: number | null;
 }
+
+/** Of any form. */
+type EquivalentSettings = { b?: number; why_null?: WhyNull } & Partial<Record<"Kp" | "Ki" | "Kd" | "Ti" | "Td", number | null>>;
 
 /** The settings of one form, or the sentence why that form does not exist. */
 export function settingsOf(entry: Entry, form: SettingsForm, units: UnitNames): Setting[] | string {
@@ -34,15 +37,15 @@ export function settingsOf(entry: Entry, form: SettingsForm, units: UnitNames): 
     const delta: Setting[] =
       form === "npid" && typeof delta_r === "number" ? [{ name: "delta_r", unit: units.y, value: delta_r }] : [];
     return [
-      { name: "Kp", unit: gain, value: controller.Kp },
-      { name: "Ti", unit: units.time, value: controller.Ti },
+      { name: "Kp", unit: gain, value: controller.Kp ?? null },
+      { name: "Ti", unit: units.time, value: controller.Ti ?? null },
       { name: "Td", unit: units.time, value: controller.Td ?? 0 },
       ...delta,
       ...filter,
       ...weights(controller.b),
     ];
   }
-  const equivalent = entry.equivalents?.[form];
+  const equivalent: EquivalentSettings | null | undefined = entry.equivalents?.[form];
   if (!equivalent || typeof equivalent.Kp !== "number") {
     const why = equivalent?.why_null ?? entry.equivalents?.why_null;
     return (

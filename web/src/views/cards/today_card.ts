@@ -1,7 +1,6 @@
 // Units and today's settings: both optional.
 import { getProduct } from "../../api/products.ts";
-import type { SettingValue } from "../../api/products.ts";
-import type { Baseline, FieldError, Filter, Units } from "../../api/types.ts";
+import type { Baseline, FieldError, Filter, SettingValue, Units } from "../../api/types.ts";
 import { h } from "../../dom.ts";
 import { choiceField, textField } from "../../form/controls.ts";
 import type { FormErrors } from "../../form/errors.ts";

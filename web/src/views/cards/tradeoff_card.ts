@@ -1,8 +1,7 @@
 // Servo against regulation on Design and Compare: charts and figures of controllers that have them, computed on request for others.
 import { sentenceOf } from "../../api/client.ts";
 import { tradeoffProfile, tradeoffsOf } from "../../api/evaluate.ts";
-import type { Tradeoff } from "../../api/reports.ts";
-import type { Entry, Plant } from "../../api/types.ts";
+import type { Entry, Plant, Tradeoff } from "../../api/types.ts";
 import {
   degradationFrame,
   isKnown,

@@ -1,6 +1,5 @@
 // The settings as they stand in the product's own list: what to type, what the block makes of it, and what it cannot be.
-import type { AsEntered, Product } from "../../api/products.ts";
-import type { Entry, Notice } from "../../api/types.ts";
+import type { AsEntered, Entry, Notice, Product } from "../../api/types.ts";
 import { breakable, h, uniqueId } from "../../dom.ts";
 import {
   builtRows,

@@ -9,7 +9,7 @@ import { timeUnitDoubt } from "../../words/quality.ts";
 export const LEVEL_CLASS: Record<Finding["level"], string> = { good: "good", note: "", warning: "warn", bad: "bad" };
 
 /** Of results that were kept before the service had verdicts. */
-const NO_VERDICT: Finding = { code: "none", level: "note", text: "Tuned by an older version: tune again for a verdict." };
+const NO_VERDICT: Finding = { code: "none", level: "note", text: "Tuned by an older version: tune again for a verdict.", figures: {} };
 
 const said = (finding: Finding): HTMLElement =>
   h("span", { class: LEVEL_CLASS[finding.level], "data-code": finding.code }, `${withMinus(finding.text)} `);

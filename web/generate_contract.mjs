@@ -1,0 +1,85 @@
+// Writes src/api/contract.gen.ts, the types of the contract, from the service's own document on standard input:
+//     curl -s http://127.0.0.1:8080/openapi.json | npm run --silent contract
+// A test compares the file with the document of the service as it is built. What the page does not use, and sentences, stay out.
+import { readFileSync, writeFileSync } from "node:fs";
+import { fileURLToPath } from "node:url";
+import openapiTS, { astToString } from "openapi-typescript";
+
+/** What calls of the page send and get; what these refer to comes along. */
+const USED = [
+  "Batch", "ControllerProduct", "ControllerSummary", "DesignAnswer", "EvaluateAnswer", "Example", "Frontier", "IdentifyAnswer",
+  "IdentifyRequest", "Job", "JobList", "MethodDescription", "PlantAnswer", "PlantQuestion", "PreviewAnswer", "Problem",
+  "RangeExample", "RangeRequest", "RangeResult", "RelayAnswer", "RelayRequest", "ScheduleSettingsAnswer", "SettingsAnswer",
+  "TuningRequest", "TuningResult",
+];
+
+/** Types that the page fills by a description and reads by name, each with the member that tells its kind. */
+const OPEN = { Plant: "type", PlantModel: "type", Method: "method" };
+
+const SHAPE = ["$ref", "type", "enum", "const", "additionalProperties", "items", "oneOf", "anyOf", "properties", "required"];
+
+/** The shape alone. What answers always have is required. */
+function shapeOf(schema) {
+  if (Array.isArray(schema)) return schema.map(shapeOf);
+  if (typeof schema !== "object" || schema === null) return schema;
+  if (schema.$ref) return { $ref: schema.$ref };
+  const shape = {};
+  for (const name of SHAPE) {
+    if (!(name in schema)) continue;
+    const part = schema[name];
+    shape[name] =
+      name === "properties" ? Object.fromEntries(Object.entries(part).map(([member, of]) => [member, shapeOf(of)])) : shapeOf(part);
+  }
+  const pair = schema.minItems === 2 && schema.maxItems === 2;
+  if (pair) Object.assign(shape, { minItems: 2, maxItems: 2 });
+  if (schema["x-written"]) shape.required = [...new Set([...(shape.required ?? []), ...schema["x-written"]])];
+  return shape;
+}
+
+const nameOf = (reference) => reference.split("/").at(-1);
+
+/** One object with the members of all the union's: whoever reads one looks at its kind. */
+function merged(union, schemas) {
+  const parts = union.oneOf.map(({ $ref }) => schemas[nameOf($ref)]);
+  const names = [...new Set(parts.flatMap(({ properties }) => Object.keys(properties)))];
+  const member = (name) => {
+    const shapes = [...new Set(parts.flatMap(({ properties }) => JSON.stringify(properties[name]) ?? []))].map((text) => JSON.parse(text));
+    return shapes.length === 1 ? shapes[0] : { anyOf: shapes };
+  };
+  const required = names.filter((name) => parts.every((part) => part.required?.includes(name)));
+  return { type: "object", properties: Object.fromEntries(names.map((name) => [name, member(name)])), required, additionalProperties: false };
+}
+
+/** The names that are used, with all that they refer to. */
+function reached(schemas) {
+  const names = new Set();
+  const take = (part) => {
+    if (typeof part !== "object" || part === null) return;
+    if (part.$ref) visit(nameOf(part.$ref));
+    Object.values(part).forEach(take);
+  };
+  const visit = (name) => {
+    if (names.has(name)) return;
+    if (!schemas[name]) throw new Error(`The document has no ${name}.`);
+    names.add(name);
+    take(schemas[name]);
+  };
+  USED.forEach(visit);
+  return names;
+}
+
+export async function contractTypes(document) {
+  const schemas = Object.fromEntries(Object.entries(document.components.schemas).map(([name, schema]) => [name, shapeOf(schema)]));
+  for (const [name, kind] of Object.entries(OPEN))
+    schemas[name] = { type: "object", properties: { [kind]: { type: "string" } }, required: [kind], additionalProperties: true };
+  schemas.Controller = merged(schemas.Controller, schemas);
+  const names = reached(schemas);
+  const used = Object.fromEntries(Object.entries(schemas).filter(([name]) => names.has(name)));
+  const small = { openapi: document.openapi, info: { title: "", version: "" }, paths: {}, components: { schemas: used } };
+  const text = astToString(await openapiTS(small, { exportType: true, rootTypes: true, rootTypesNoSchemaPrefix: true, arrayLength: true }));
+  const types = text.replaceAll(/ *\/\*\*.*?\*\/\n/gs, "").replaceAll(/^export type (paths|webhooks|operations|\$defs) = .*;\n/gm, "");
+  return `// Made by generate_contract.mjs from the service's /openapi.json; not to be edited.\n${types.replaceAll("    ", "  ")}`;
+}
+
+if (process.argv[1] === fileURLToPath(import.meta.url))
+  writeFileSync(new URL("src/api/contract.gen.ts", import.meta.url), await contractTypes(JSON.parse(readFileSync(0, "utf8"))));

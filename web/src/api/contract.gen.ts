@@ -1,0 +1,1507 @@
+// Made by generate_contract.mjs from the service's /openapi.json; not to be edited.
+export type components = {
+  schemas: {
+    Problem: {
+      type: string;
+      title: string;
+      status: number;
+      detail: string;
+      instance?: string;
+      errors?: components["schemas"]["Fault"][];
+      cure?: {
+        text: string;
+        options: {
+          [key: string]: number;
+        };
+      };
+      record?: {
+        samples: number;
+        t: number[];
+        u: number[];
+        y: number[];
+        r?: number[];
+      };
+    };
+    Fault: {
+      pointer: string;
+      detail: string;
+    };
+    JobStatus: "queued" | "running" | "succeeded" | "failed" | "cancelled";
+    Progress: {
+      fraction: number;
+      stage: string;
+      message: string;
+      best?: {
+        controller?: components["schemas"]["Controller"];
+        load_IAE?: number | null;
+        Ms?: number | null;
+        Mt?: number | null;
+      } | null;
+    };
+    JobSummary: {
+      id: string;
+      name: string | null;
+      owner?: string;
+      status: components["schemas"]["JobStatus"];
+      batch?: string;
+      index?: number;
+      created_at: string;
+      started_at?: string | null;
+      finished_at?: string | null;
+      attempts?: number;
+      not_before?: string;
+      outline?: components["schemas"]["JobOutline"];
+      links?: {
+        [key: string]: string;
+      };
+    };
+    JobOutline: {
+      plant?: {
+        type: string;
+      } & {
+        [key: string]: unknown;
+      };
+      record?: boolean;
+      units?: {
+        [key: string]: string;
+      };
+      entries?: number;
+      method?: string;
+      controller?: components["schemas"]["Controller"];
+      to_type?: {
+        [key: string]: string;
+      };
+      Ms?: number | null;
+      worst_Ms?: number | null;
+      load_IAE?: number | null;
+      excess_percent?: number | null;
+      today?: {
+        Ms?: number | null;
+        load_IAE?: number | null;
+      };
+      range?: {
+        scheduling?: string;
+        points?: number;
+        rows?: number;
+      };
+      error?: string;
+    };
+    Job: {
+      id: string;
+      name: string | null;
+      status: components["schemas"]["JobStatus"];
+      batch?: string;
+      index?: number;
+      progress?: components["schemas"]["Progress"] | null;
+      created_at: string;
+      started_at?: string | null;
+      finished_at?: string | null;
+      attempts?: number;
+      not_before?: string;
+      outline?: components["schemas"]["JobOutline"];
+      request: components["schemas"]["TuningRequest"] | components["schemas"]["RangeRequest"] | null;
+      result?: components["schemas"]["TuningResult"] | components["schemas"]["RangeResult"];
+      error?: components["schemas"]["Problem"];
+      partial?: boolean;
+      links?: {
+        [key: string]: string;
+      };
+    };
+    JobList: {
+      jobs: components["schemas"]["JobSummary"][];
+      next: string | null;
+    };
+    Batch: {
+      id: string;
+      name: string | null;
+      status: "receiving" | "queued" | "running" | "ended";
+      total: number;
+      counts: {
+        queued: number;
+        running: number;
+        succeeded: number;
+        failed: number;
+        cancelled: number;
+      };
+      progress: {
+        fraction: number;
+      };
+      cancel_requested: boolean;
+      created_at: string;
+      finished_at: string | null;
+      links: {
+        [key: string]: string;
+      };
+    };
+    MethodDescription: {
+      id: string;
+      title: string;
+      formula: string;
+      formula_mathml: string;
+      needs: string;
+      validity: string;
+      source: string;
+      options: {
+        [key: string]: unknown;
+      };
+    };
+    Example: {
+      id: string;
+      title: string;
+      description: string;
+      request: components["schemas"]["TuningRequest"];
+    };
+    RangeExample: {
+      id: string;
+      title: string;
+      description: string;
+      request: components["schemas"]["RangeRequest"];
+    };
+    TuningRequest: {
+      name?: string;
+      units?: components["schemas"]["Units"];
+      plant?: components["schemas"]["PlantModel"] | components["schemas"]["TypedPlant"];
+      record?: components["schemas"]["Record"];
+      ultimate?: components["schemas"]["UltimateTest"];
+      identify?: components["schemas"]["Identify"];
+      tune?: components["schemas"]["Method"][] | "all";
+      baseline?: components["schemas"]["Controller"] | components["schemas"]["BaselineSettings"];
+      implement?: components["schemas"]["Implement"];
+      evaluate?: components["schemas"]["Evaluate"];
+      uncertainty?: "auto" | "none" | "identified";
+      timeout_s?: number;
+      priority?: "normal" | "low";
+      not_before?: string;
+      unique?: boolean;
+      notify?: components["schemas"]["Notify"];
+    };
+    Units: {
+      time?: string;
+      u?: string;
+      y?: string;
+    };
+    PlantModel: {
+      type: string;
+    } & {
+      [key: string]: unknown;
+    };
+    Plant: {
+      type: string;
+    } & {
+      [key: string]: unknown;
+    };
+    TypedPlant: string;
+    Record: {
+      t?: number[];
+      dt?: number;
+      u?: number[];
+      y?: number[];
+      r?: number[];
+      d?: components["schemas"]["MeasuredDisturbance"][];
+      csv?: string;
+      columns?: components["schemas"]["Columns"];
+      time_unit?: string;
+      kind?: "auto" | "step" | "several_steps" | "relay" | "general";
+      u0?: number;
+      y0?: number;
+      u_limits?: [
+        number,
+        number
+      ];
+      u_step?: [
+        number,
+        number
+      ];
+      run?: number;
+      from?: number;
+      to?: number;
+    };
+    MeasuredDisturbance: {
+      name: string;
+      values: number[];
+    };
+    Columns: {
+      t?: string | number;
+      u?: string | number;
+      y?: string | number;
+      r?: string | number;
+      d?: (string | number)[];
+    };
+    UltimateTest: {
+      Ku: number;
+      Pu: number;
+      K?: number;
+    };
+    Identify: {
+      model?: "auto" | "fopdt" | "sopdt" | "sopdt_zero" | "ipdt" | "ipdt_lag";
+      method?: "auto" | "output_error" | "relay_fourier" | "two_point";
+      shift?: number;
+      traces?: boolean;
+    };
+    Method: {
+      method: string;
+    } & {
+      [key: string]: unknown;
+    };
+    Controller: {
+      form: "ideal" | "parallel" | "series" | "npid";
+      Kp: number;
+      Ti?: (number | null) | number;
+      Td?: number;
+      setpoint_filter?: components["schemas"]["SetpointFilter"];
+      b: number | 1;
+      c: number | 0;
+      filter: components["schemas"]["Filter"];
+      action?: "reverse" | "direct";
+      Ki?: number;
+      Kd?: number;
+      b_equivalent?: number;
+      delta_r?: number;
+    };
+    SetpointFilter: {
+      T: number;
+    };
+    Filter: {
+      type?: "none" | "derivative" | "measurement_first_order" | "measurement_second_order";
+      Tf?: number;
+      N?: number;
+    };
+    ParallelController: {
+      form: "parallel";
+      Kp: number;
+      Ki: number;
+      Kd: number;
+      setpoint_filter?: components["schemas"]["SetpointFilter"];
+      b: number;
+      c: number;
+      filter: components["schemas"]["Filter"];
+      action?: "reverse" | "direct";
+    };
+    SeriesController: {
+      form: "series";
+      Kp: number;
+      Ti: number | null;
+      Td: number;
+      setpoint_filter?: components["schemas"]["SetpointFilter"];
+      b: number;
+      c: number;
+      filter: components["schemas"]["Filter"];
+      action?: "reverse" | "direct";
+      b_equivalent?: number;
+    };
+    BaselineSettings: {
+      product: string;
+      settings: {
+        [key: string]: number | string | boolean;
+      };
+      y_span?: [
+        number,
+        number
+      ];
+      u_span?: [
+        number,
+        number
+      ];
+      sample_time?: number;
+    };
+    Implement: {
+      product?: string;
+      y_span?: [
+        number,
+        number
+      ];
+      u_span?: [
+        number,
+        number
+      ];
+      sample_time?: number;
+      integral?: "backward" | "forward" | "trapezoidal";
+      derivative?: "backward" | "filtered";
+      algorithm?: "position" | "velocity";
+      computation_delay?: number;
+      u_resolution?: number;
+      y_resolution?: number;
+      dead_band?: number;
+    };
+    Evaluate: {
+      setpoint_step?: number;
+      load_step?: number;
+      horizon?: "auto" | number;
+      points?: number;
+      actuator?: components["schemas"]["Actuator"];
+      noise?: components["schemas"]["Noise"];
+      tradeoff?: boolean;
+      rank_limits?: {
+        Ms?: number;
+      };
+      optimum_at_Ms?: boolean;
+    };
+    Actuator: {
+      min: number;
+      max: number;
+    };
+    Noise: {
+      std?: number;
+      sample_time?: number;
+    };
+    Notify: {
+      url: string;
+      secret_id?: string;
+    };
+    TuningResult: {
+      units?: components["schemas"]["Units"];
+      model?: components["schemas"]["Model"];
+      operating_point?: components["schemas"]["OperatingPoint"];
+      linear_model?: components["schemas"]["Plant"];
+      controllers: components["schemas"]["Entry"][];
+      verdict: components["schemas"]["Finding"][];
+      ranking: number[];
+      ranking_by: string;
+      rank_limits?: {
+        Ms: number;
+      };
+      proposed?: number;
+      partial: boolean;
+      version: string;
+      request_hash: string;
+      seed: number;
+    };
+    Model: {
+      plant: components["schemas"]["Plant"];
+      fit_percent: number;
+      grade?: "good" | "usable" | "doubtful";
+      grade_reason?: "fit" | "warning";
+      standard_errors: {
+        [key: string]: number | null;
+      };
+      covariance?: components["schemas"]["Covariance"];
+      alternatives: components["schemas"]["Plant"][];
+      disturbances?: components["schemas"]["Disturbance"][];
+      limit_cycle?: components["schemas"]["LimitCycle"];
+      frequency_points?: components["schemas"]["FrequencyPoint"][];
+      ultimate_point?: components["schemas"]["UltimatePoint"];
+      excited_band?: components["schemas"]["ExcitedBand"];
+      region?: components["schemas"]["Region"];
+      choice_reason?: string;
+      candidates?: components["schemas"]["Candidate"][];
+      fit?: components["schemas"]["Fit"];
+      data_quality?: components["schemas"]["DataQuality"];
+      warnings: components["schemas"]["Warning"][];
+    };
+    Covariance: {
+      names: string[];
+      matrix: number[][];
+      reach?: number[];
+    };
+    Disturbance: {
+      name: string;
+      plant: components["schemas"]["Plant"];
+      standard_errors: {
+        [key: string]: number | null;
+      };
+      share: number;
+    };
+    LimitCycle: {
+      Pu: number;
+      Au: number;
+      phi_u: number;
+      periods: number;
+      shift?: components["schemas"]["ShiftedPoint"];
+      fit_rms?: number;
+      describing_function?: components["schemas"]["UltimatePoint"];
+      t_plus?: number;
+      t_minus?: number;
+      y_max?: number;
+      y_min?: number;
+    };
+    ShiftedPoint: {
+      sigma: number;
+      A: number;
+      phi: number;
+    };
+    UltimatePoint: {
+      Ku: number;
+      Pu: number;
+    };
+    FrequencyPoint: {
+      omega: number;
+      re: number;
+      im: number;
+      std: number;
+    };
+    ExcitedBand: {
+      omega_low: number;
+      omega_high: number;
+    };
+    Region: {
+      stable_fraction: number;
+      worst_Ms: number | null;
+      worst_plant: components["schemas"]["Plant"];
+      why_null?: {
+        [key: string]: string;
+      };
+    };
+    Candidate: {
+      plant: components["schemas"]["Plant"];
+      fit_percent: number;
+      criterion: number;
+      standard_errors: {
+        [key: string]: number | null;
+      };
+      y_model?: (number | null)[];
+    };
+    Fit: {
+      t: number[];
+      u: (number | null)[];
+      y: (number | null)[];
+      y_model: (number | null)[];
+    };
+    DataQuality: {
+      kind: "step" | "several_steps" | "relay" | "general";
+      test: string;
+      samples: number;
+      samples_dropped: number;
+      sample_time: number;
+      irregular: boolean;
+      noise_std: number;
+      quantisation: number;
+      steps: number;
+      cycles?: number;
+      settled: boolean;
+      u0: number;
+      y0: number;
+      u_limits?: [
+        number,
+        number
+      ];
+      pretest?: components["schemas"]["PreTest"];
+      gaps?: components["schemas"]["MissingPart"];
+      missing?: components["schemas"]["MissingPart"];
+      repeated_times: number;
+      backward_times: number;
+      time_unit_assumed?: boolean;
+      saturation?: components["schemas"]["Saturation"][];
+      outliers?: components["schemas"]["Outliers"];
+      closed_loop?: components["schemas"]["ClosedLoop"];
+      notes: string[];
+    };
+    PreTest: {
+      samples: number;
+      duration: number;
+      drift: number;
+      at_rest: boolean;
+    };
+    MissingPart: {
+      count: number;
+      longest: number;
+      at: number;
+    };
+    Saturation: {
+      level: number;
+      fraction: number;
+    };
+    Outliers: {
+      count: number;
+      rows: number[];
+    };
+    ClosedLoop: {
+      evidence: string;
+      used: "set_point" | "switched_on" | "outside_moves" | "none";
+      share: number;
+      set_point_moves?: number;
+    };
+    Warning: {
+      code: string;
+      detail: string;
+      level?: "warning" | "bad";
+    };
+    OperatingPoint: {
+      states: {
+        [key: string]: number;
+      };
+      u: number;
+      y: number;
+    };
+    Entry: {
+      method?: string;
+      title?: string;
+      source?: string;
+      options?: {
+        [key: string]: unknown;
+      };
+      over_region?: boolean;
+      region_cost?: number;
+      verdict: components["schemas"]["Finding"][];
+      warnings?: components["schemas"]["Warning"][];
+      reduced_model?: components["schemas"]["Plant"];
+      controller?: components["schemas"]["Controller"];
+      equivalents?: components["schemas"]["Equivalents"];
+      robustness?: components["schemas"]["Robustness"];
+      nonlinear?: components["schemas"]["Nonlinear"];
+      performance?: components["schemas"]["Performance"];
+      responses?: components["schemas"]["Responses"];
+      linear?: components["schemas"]["StepResponse"];
+      frequency?: components["schemas"]["Frequency"];
+      verification?: components["schemas"]["Verification"];
+      region?: components["schemas"]["Region"];
+      longest_sample_time?: number | null;
+      as_entered?: components["schemas"]["SettingsAnswer"];
+      implemented?: components["schemas"]["Implemented"];
+      surface?: components["schemas"]["CostSurface"];
+      frontier?: components["schemas"]["Frontier"];
+      rimc?: components["schemas"]["Rimc"];
+      optimum_at_Ms?: components["schemas"]["OptimumAtMs"];
+      standing?: components["schemas"]["Standing"];
+      tradeoff?: components["schemas"]["Tradeoff"];
+      emulation?: components["schemas"]["Emulation"];
+      compute_ms?: number;
+      error?: components["schemas"]["Problem"];
+    };
+    Finding: {
+      code: string;
+      level: "good" | "note" | "warning" | "bad";
+      text: string;
+      figures: {
+        [key: string]: number | null;
+      };
+    };
+    Equivalents: {
+      parallel: components["schemas"]["ParallelController"];
+      series: components["schemas"]["SeriesController"] | null;
+      why_null?: {
+        [key: string]: string;
+      };
+    };
+    Robustness: {
+      stable: boolean;
+      Ms: number | null;
+      omega_Ms: number | null;
+      Mt: number | null;
+      omega_Mt: number | null;
+      Mks: number | null;
+      gain_margin: number | null;
+      gain_margin_low: number | null;
+      phase_margin_deg: number | null;
+      delay_margin: number | null;
+      gain_crossover: number | null;
+      phase_crossover: number | null;
+      binding?: string;
+      tolerates: {
+        gain: [
+          number | null,
+          number | null
+        ];
+        extra_dead_time: number | null;
+        why_null?: {
+          [key: string]: string;
+        };
+      };
+      why_null?: {
+        [key: string]: string;
+      };
+    };
+    Nonlinear: {
+      delta_r: number;
+      sector: [
+        number,
+        number
+      ];
+      stable_without_integral: boolean;
+      circle_criterion: boolean;
+      popov_criterion: boolean;
+      popov_q: number | null;
+      limit_cycle_predicted: boolean;
+      limit_cycle_amplitude: number | null;
+      limit_cycle_omega: number | null;
+      statement: string;
+      why_null?: {
+        [key: string]: string;
+      };
+    };
+    Performance: {
+      setpoint: components["schemas"]["SetpointPerformance"];
+      load: components["schemas"]["LoadPerformance"];
+      noise?: components["schemas"]["NoisePerformance"];
+    };
+    SetpointPerformance: {
+      IAE: number | null;
+      ISE: number | null;
+      ITAE: number | null;
+      overshoot_percent: number | null;
+      rise_time: number | null;
+      rise_time_5_95: number | null;
+      settling_time: number | null;
+      TV: number | null;
+      first_move: number | null;
+      why_null?: {
+        [key: string]: string;
+      };
+    };
+    LoadPerformance: {
+      IAE: number | null;
+      ISE: number | null;
+      ITAE: number | null;
+      peak: number | null;
+      recovery_time: number | null;
+      TV: number | null;
+      why_null?: {
+        [key: string]: string;
+      };
+    };
+    NoisePerformance: {
+      u_std: number | null;
+      gain: number | null;
+      why_null?: {
+        [key: string]: string;
+      };
+    };
+    Responses: {
+      setpoint: components["schemas"]["Trace"];
+      load: components["schemas"]["Trace"];
+      settles: boolean;
+    };
+    Trace: {
+      t: number[];
+      y: (number | null)[];
+      u: (number | null)[];
+    };
+    StepResponse: {
+      performance: components["schemas"]["Performance"];
+      responses?: components["schemas"]["Responses"];
+    };
+    Frequency: {
+      omega: number[];
+      L: {
+        re: (number | null)[];
+        im: (number | null)[];
+        phase_deg: (number | null)[];
+      };
+      S_abs: (number | null)[];
+      T_abs: (number | null)[];
+      CS_abs: (number | null)[];
+    };
+    Verification: {
+      setpoint_errors: components["schemas"]["IndexErrors"];
+      load_errors: components["schemas"]["IndexErrors"];
+      iae_step_halving: number | null;
+      load_error_keeps_sign: boolean | null;
+      ie_identity: number | null;
+      ms_grid_difference: number | null;
+      stability_methods_agree: boolean | null;
+      why_null?: {
+        [key: string]: string;
+      };
+    };
+    IndexErrors: {
+      IAE: number | null;
+      ISE: number | null;
+      ITAE: number | null;
+      TV: number | null;
+      why_null?: {
+        [key: string]: string;
+      };
+    };
+    SettingsAnswer: {
+      settings: {
+        [key: string]: number | string | boolean;
+      };
+      units: {
+        [key: string]: string;
+      };
+      as_typed: {
+        [key: string]: string;
+      };
+      realised: components["schemas"]["Controller"];
+      notes: {
+        code: string;
+        detail: string;
+      }[];
+    };
+    Implemented: {
+      sample_time: number | null;
+      robustness: components["schemas"]["Robustness"];
+      performance: components["schemas"]["Performance"];
+      responses?: components["schemas"]["Responses"];
+      difference: components["schemas"]["Difference"];
+    };
+    Difference: {
+      Ms_percent: number | null;
+      load_IAE_percent: number | null;
+      overshoot_points: number | null;
+      differs: ("Ms" | "load_IAE" | "overshoot")[];
+      why_null?: {
+        [key: string]: string;
+      };
+    };
+    CostSurface: {
+      Ti: (number | null)[];
+      Td: (number | null)[];
+      cost: (number | null)[][];
+    };
+    Frontier: {
+      points: components["schemas"]["FrontierPoint"][];
+      infeasible_below: number | null;
+      compute_ms: number;
+    };
+    FrontierPoint: {
+      Ms: number;
+      controller: components["schemas"]["Controller"];
+      load_IAE: number | null;
+      setpoint_IAE: number | null;
+      overshoot_percent: number | null;
+      Mks: number | null;
+      TV: number | null;
+      achieved: {
+        Ms?: number | null;
+        Mt?: number | null;
+      };
+      why_null?: {
+        [key: string]: string;
+      };
+    };
+    Rimc: {
+      lambda: number;
+      Ms: number | null;
+      disturbance_peak: number | null;
+      dead_time_error: number | null;
+      stability_limit: number | null;
+      full_controller: components["schemas"]["FullController"] | null;
+      disturbance_peak_curve?: components["schemas"]["DisturbancePeakCurve"];
+      why_null?: {
+        [key: string]: string;
+      };
+    };
+    FullController: {
+      robustness: components["schemas"]["Robustness"];
+      load: components["schemas"]["LoadPerformance"];
+      responses?: components["schemas"]["Responses"];
+    };
+    DisturbancePeakCurve: {
+      lambda_over_tau: number[];
+      DP_over_kp: (number | null)[];
+      Ms: (number | null)[];
+    };
+    OptimumAtMs: {
+      IAE: number | null;
+      excess_percent: number | null;
+      why_null?: {
+        [key: string]: string;
+      };
+    };
+    Standing: {
+      group: "holds" | "above_limit" | "not_settled" | "unstable";
+      settles: boolean;
+      Ms: number | null;
+      within: boolean;
+      excess_percent: number | null;
+      order: number;
+      least_limit: number | null;
+      why?: string;
+      why_null?: {
+        [key: string]: string;
+      };
+    };
+    Tradeoff: {
+      fopdt?: components["schemas"]["Plant"];
+      constants?: string;
+      Ms_design?: number;
+      model: components["schemas"]["TradeoffFigures"];
+      plant: components["schemas"]["TradeoffFigures"];
+      profile?: components["schemas"]["TradeoffProfile"];
+    };
+    TradeoffFigures: {
+      J_r: number | null;
+      J_d: number | null;
+      J_rd: number | null;
+      J_r_opt: number | null;
+      J_d_opt: number | null;
+      I_perf: number | null;
+      Deg: number | null;
+      Ms: number | null;
+      why_null?: {
+        [key: string]: string;
+      };
+    };
+    TradeoffProfile: {
+      by_Ms: components["schemas"]["TradeoffAtMs"][];
+      by_degradation: components["schemas"]["TradeoffAtLevel"][];
+    };
+    TradeoffAtMs: {
+      Ms_design: number;
+      Ms: number;
+      J_r: number;
+      J_d: number;
+      J_rd: number;
+      I_perf: number;
+      Deg: number;
+    };
+    TradeoffAtLevel: {
+      degradation: number;
+      Ms: number;
+      J_r: number;
+      J_d: number;
+      J_rd: number;
+      I_perf: number;
+      Deg: number;
+    };
+    Emulation: {
+      formulation: string;
+      J: number;
+      J_y: number | null;
+      J_u: number;
+      weights: {
+        wy?: number;
+        wu?: number;
+      };
+      horizon: number;
+      active_bounds: components["schemas"]["ActiveBound"][];
+      bounds: {
+        [key: string]: [
+          number,
+          number
+        ];
+      };
+      flatness: {
+        [key: string]: number | null;
+      };
+      flatness_alone: {
+        [key: string]: number | null;
+      };
+      relative_degree: number;
+      zero_dynamics_stable: boolean;
+      zeros: (number | [
+        number,
+        number
+      ])[];
+      target: {
+        beta?: number[];
+      };
+      fit: components["schemas"]["EmulationFit"];
+      level1: components["schemas"]["LevelOneRow"][];
+      scenarios: components["schemas"]["EmulatedScenario"][];
+      t?: number[];
+      y_nl?: (number | null)[];
+      u_nl?: (number | null)[];
+      why_null?: {
+        [key: string]: string;
+      };
+    };
+    ActiveBound: {
+      parameter: string;
+      bound: "low" | "high";
+      value: number;
+    };
+    EmulationFit: {
+      u_left: number;
+      y_left: number;
+      adequate: boolean;
+      sentence: string;
+    };
+    LevelOneRow: {
+      method: string;
+      test: "step" | "relay" | "linear";
+      title: string;
+      model?: components["schemas"]["Plant"];
+      controller?: components["schemas"]["Controller"];
+      error?: string;
+      J: number | null;
+      ended?: string;
+      t?: number[];
+      y?: (number | null)[];
+      u?: (number | null)[];
+      why_null?: {
+        [key: string]: string;
+      };
+    };
+    EmulatedScenario: {
+      setpoint_step: number;
+      initial?: {
+        [key: string]: number | null;
+      };
+      parameters?: {
+        [key: string]: number | null;
+      };
+      y_rest: number;
+      u_rest: number;
+      limited: boolean;
+      ended?: string;
+      t?: number[];
+      y_nl?: (number | null)[];
+      u_nl?: (number | null)[];
+      y?: (number | null)[];
+      u?: (number | null)[];
+    };
+    DesignAnswer: {
+      model?: components["schemas"]["Model"];
+      operating_point?: components["schemas"]["OperatingPoint"];
+      linear_model?: components["schemas"]["Plant"];
+      controllers: components["schemas"]["Entry"][];
+      verdict: components["schemas"]["Finding"][];
+      ranking: number[];
+      ranking_by: string;
+      rank_limits?: {
+        Ms: number;
+      };
+      proposed?: number;
+    };
+    RangeRequest: {
+      name?: string;
+      units?: components["schemas"]["Units"];
+      scheduling?: components["schemas"]["Scheduling"];
+      points?: components["schemas"]["GivenRangePoint"][];
+      plant?: components["schemas"]["PlantModel"] | components["schemas"]["TypedPlant"];
+      range?: components["schemas"]["RangeOfEquations"];
+      identify?: components["schemas"]["Identify"];
+      uncertainty?: "none" | "identified";
+      schedule?: components["schemas"]["ScheduleWish"];
+      runs?: boolean;
+      timeout_s?: number;
+      priority?: "normal" | "low";
+      not_before?: string;
+      unique?: boolean;
+      notify?: components["schemas"]["Notify"];
+    };
+    Scheduling: {
+      name?: string;
+      unit?: string;
+    };
+    GivenRangePoint: {
+      at: number;
+      plant?: components["schemas"]["PlantModel"] | components["schemas"]["TypedPlant"];
+      record?: components["schemas"]["Record"];
+    };
+    RangeOfEquations: {
+      along?: "output" | "input" | "parameter";
+      parameter?: string;
+      from: number;
+      to: number;
+      hold_output?: boolean;
+    };
+    ScheduleWish: {
+      controller?: "PID" | "PI";
+      Ms?: number;
+      Mt?: number;
+      filter?: components["schemas"]["RangeFilter"];
+      aim?: "worst" | "mean";
+      allowance?: number;
+      rows?: number;
+      interpolation?: "steps" | "linear_in_gains" | "linear_in_times";
+      hysteresis?: number;
+      between?: "parameters" | "frequency_response";
+      b?: number;
+      given?: components["schemas"]["GivenRow"][];
+    };
+    RangeFilter: {
+      Tf?: number;
+      Tf_over_Td?: number;
+    };
+    GivenRow: {
+      at: number;
+      Kp: number;
+      Ti: number;
+      Td?: number;
+      Tf?: number;
+      b?: number;
+    };
+    RangeResult: {
+      units?: components["schemas"]["Units"];
+      range: components["schemas"]["Range"];
+      compute_ms: number;
+      partial: boolean;
+      version: string;
+      request_hash: string;
+    };
+    Range: {
+      scheduling: {
+        name: string;
+        unit?: string;
+        from: number;
+        to: number;
+      };
+      stated: string;
+      points: components["schemas"]["RangePoint"][];
+      one: components["schemas"]["OneSetting"] | null;
+      schedule: components["schemas"]["Schedule"] | null;
+      curves: components["schemas"]["RangeCurves"];
+      worst: components["schemas"]["RangeWorst"];
+      verdict?: components["schemas"]["Finding"];
+      runs?: components["schemas"]["RangePassage"][];
+      warnings: components["schemas"]["Warning"][];
+      why_null?: {
+        [key: string]: string;
+      };
+    };
+    RangePoint: {
+      at: number;
+      plant: components["schemas"]["Plant"];
+      model?: components["schemas"]["Model"];
+      u?: number;
+      y?: number;
+    };
+    OneSetting: {
+      controller: components["schemas"]["Controller"];
+      worst_relative_IAE: number;
+      mean_relative_IAE: number;
+      worst_at: number;
+      points: components["schemas"]["PlacePrice"][];
+    };
+    PlacePrice: {
+      at: number;
+      own: components["schemas"]["Controller"];
+      own_IAE: number;
+      IAE: number | null;
+      relative_IAE: number | null;
+      Ms: number | null;
+      Mt: number | null;
+      why_null?: {
+        [key: string]: string;
+      };
+    };
+    Schedule: {
+      interpolation: "steps" | "linear_in_gains" | "linear_in_times";
+      hysteresis: number;
+      rows: components["schemas"]["ScheduleRow"][];
+      holds_limits: boolean;
+      within_allowance: boolean;
+      worst_relative_IAE: number | null;
+      longest_sample_time: number | null;
+    };
+    ScheduleRow: {
+      at: number;
+      Kp: number;
+      Ti: number;
+      Td: number;
+      Tf: number;
+      b: number;
+    };
+    RangeCurves: {
+      at: number[];
+      K: (number | null)[];
+      T: (number | null)[];
+      L: (number | null)[];
+      u?: (number | null)[];
+      y?: (number | null)[];
+      one?: components["schemas"]["RangeTraces"];
+      schedule?: components["schemas"]["RangeTraces"];
+    };
+    RangeTraces: {
+      Ms: (number | null)[];
+      Mt: (number | null)[];
+      relative_IAE: (number | null)[];
+      Kp?: (number | null)[];
+      Ti?: (number | null)[];
+      Td?: (number | null)[];
+    };
+    RangeWorst: {
+      one?: components["schemas"]["WorstPlace"][];
+      schedule?: components["schemas"]["WorstPlace"][];
+    };
+    WorstPlace: {
+      quantity: "Ms" | "Mt" | "relative_IAE";
+      at: number;
+      value: number | null;
+      limit: number;
+      why_null?: {
+        [key: string]: string;
+      };
+    };
+    RangePassage: {
+      name: string;
+      horizon: number;
+      t: number[];
+      target: (number | null)[];
+      one?: components["schemas"]["RangeRun"];
+      schedule?: components["schemas"]["RangeRun"];
+      nonlinear: components["schemas"]["RangeNonlinearRun"] | null;
+      why_null?: {
+        [key: string]: string;
+      };
+    };
+    RangeRun: {
+      y: (number | null)[];
+      u: (number | null)[];
+      at: (number | null)[];
+      Kp: (number | null)[];
+      IAE: number;
+      largest_error: number;
+      largest_bump: number;
+      switches: number;
+      limited: boolean;
+      settled: boolean;
+      ended?: string;
+      warnings: components["schemas"]["Warning"][];
+    };
+    RangeNonlinearRun: {
+      y: (number | null)[];
+      u: (number | null)[];
+      tau: number;
+      IAE: number;
+      limited: boolean;
+      settled: boolean;
+      ended?: string;
+    };
+    EvaluateAnswer: {
+      operating_point?: components["schemas"]["OperatingPoint"];
+      linear_model?: components["schemas"]["Plant"];
+      controllers: components["schemas"]["Entry"][];
+      verdict: components["schemas"]["Finding"][];
+    };
+    IdentifyRequest: {
+      name?: string;
+      units?: components["schemas"]["Units"];
+      record: components["schemas"]["Record"];
+      identify?: components["schemas"]["Identify"];
+    };
+    IdentifyAnswer: {
+      model: components["schemas"]["Model"];
+    };
+    PlantQuestion: {
+      units?: components["schemas"]["Units"];
+      text?: components["schemas"]["TypedPlant"];
+      plant?: components["schemas"]["Plant"] | components["schemas"]["TypedPlant"];
+      unfinished?: boolean;
+    };
+    PlantAnswer: {
+      plant?: components["schemas"]["Plant"];
+      formula?: string;
+      text?: string;
+      fault?: string;
+    };
+    PreviewAnswer: {
+      columns: components["schemas"]["PreviewColumn"][];
+      rows: number;
+      separator: string;
+      decimal: string;
+      encoding: string;
+      time?: components["schemas"]["PreviewTime"];
+      runs: components["schemas"]["PreviewRun"][];
+      run?: number;
+      skipped: components["schemas"]["SkippedLine"][];
+      skipped_lines: number;
+      notes: string[];
+      problems: components["schemas"]["ReadingProblem"][];
+    };
+    PreviewColumn: {
+      heading: string;
+      guess: string;
+      confidence: number;
+      unit: string;
+      first: string;
+      min?: number;
+      max?: number;
+      thumbnail: (number | null)[];
+    };
+    PreviewTime: {
+      unit: string;
+      assumed: boolean;
+      from: number;
+      to: number;
+      dt: number;
+      gaps: number;
+      duplicates: number;
+    };
+    PreviewRun: {
+      first_line: number;
+      last_line: number;
+      rows: number;
+      from: number;
+      to: number;
+      tests: boolean;
+    };
+    SkippedLine: {
+      line: number;
+      reason: string;
+    };
+    ReadingProblem: {
+      pointer: string;
+      detail: string;
+    };
+    RelayRequest: {
+      name?: string;
+      units?: components["schemas"]["Units"];
+      plant: components["schemas"]["Plant"] | components["schemas"]["TypedPlant"];
+      relay?: components["schemas"]["Relay"];
+    };
+    Relay: {
+      u_plus?: number;
+      u_minus?: number;
+      hysteresis?: number;
+      noise_std?: number;
+      relay_sample_time?: number;
+      record_interval?: number;
+      cycles?: number;
+      seed?: number;
+      shift?: number;
+    };
+    RelayAnswer: {
+      record: components["schemas"]["RelayRecord"];
+      limit_cycle: components["schemas"]["LimitCycle"];
+      reversed: boolean;
+      plan: components["schemas"]["RelayPlan"];
+      warnings: components["schemas"]["Warning"][];
+    };
+    RelayRecord: {
+      kind: "relay";
+      t: number[];
+      u: number[];
+      y: number[];
+      u0: 0;
+      y0: 0;
+    };
+    RelayPlan: {
+      u_plus: number;
+      u_minus: number;
+      hysteresis: number;
+      amplitude: number;
+      expected_period: number;
+      cycles: number;
+      duration: number;
+      record_interval: number;
+      reason: string;
+    };
+    ControllerSummary: {
+      id: string;
+      maker: string;
+      name: string;
+      form: string;
+      needs: string[];
+      evidence: string;
+      parameters: string[];
+    };
+    ControllerProduct: {
+      id: string;
+      maker: string;
+      name: string;
+      form: string;
+      needs: string[];
+      law: string;
+      gain_basis: string;
+      parameters: components["schemas"]["ControllerParameter"][];
+      filter?: string;
+      setpoint_weights: components["schemas"]["ControllerWeights"];
+      action: components["schemas"]["ControllerAction"];
+      algorithm: components["schemas"]["ControllerAlgorithm"];
+      gain_scheduling?: components["schemas"]["GainScheduling"];
+      traps: string[];
+      evidence: components["schemas"]["ControllerEvidence"];
+      example: components["schemas"]["ControllerExample"];
+    };
+    ControllerParameter: {
+      name: string;
+      label: string;
+      unit: string;
+      role: string;
+      formula: string;
+      low: number | null;
+      high: number | null;
+      resolution: number | null;
+      off: number | null;
+      written: boolean;
+      remark?: string;
+      default?: number | string | boolean;
+      choices?: {
+        value: number | string | boolean;
+        b?: number;
+        c?: number;
+      }[];
+    };
+    ControllerWeights: {
+      b: number | null;
+      c: number | null;
+      text?: string;
+    };
+    ControllerAction: {
+      by: string;
+      name?: string;
+      text?: string;
+      direct?: number | string | boolean;
+    };
+    ControllerAlgorithm: {
+      integral: string;
+      derivative: string;
+      form: string;
+      published: boolean;
+      sample_time: number | null;
+      clock_fixed: boolean;
+      sample_time_text?: string;
+      anti_windup?: string;
+      text?: string;
+    };
+    GainScheduling: {
+      sets: number | null;
+      interpolation?: "steps" | "linear_in_gains" | "linear_in_times";
+      detail: string;
+      source: string;
+    };
+    ControllerEvidence: {
+      level: string;
+      read: string[];
+      unverified: string[];
+      sources: string[];
+    };
+    ControllerExample: {
+      sample_time: number | null;
+      controller: components["schemas"]["Controller"];
+      y_span: number[];
+      u_span: number[];
+      settings: {
+        [key: string]: number | string | boolean;
+      };
+    };
+    ScheduleSettingsAnswer: {
+      rows: components["schemas"]["SettingsRow"][];
+      notes: {
+        code: string;
+        detail: string;
+      }[];
+    };
+    SettingsRow: {
+      at: number;
+      typing: components["schemas"]["SettingsAnswer"];
+    };
+  };
+  responses: never;
+  parameters: never;
+  requestBodies: never;
+  headers: never;
+  pathItems: never;
+};
+export type Problem = components['schemas']['Problem'];
+export type Fault = components['schemas']['Fault'];
+export type JobStatus = components['schemas']['JobStatus'];
+export type Progress = components['schemas']['Progress'];
+export type JobSummary = components['schemas']['JobSummary'];
+export type JobOutline = components['schemas']['JobOutline'];
+export type Job = components['schemas']['Job'];
+export type JobList = components['schemas']['JobList'];
+export type Batch = components['schemas']['Batch'];
+export type MethodDescription = components['schemas']['MethodDescription'];
+export type Example = components['schemas']['Example'];
+export type RangeExample = components['schemas']['RangeExample'];
+export type TuningRequest = components['schemas']['TuningRequest'];
+export type Units = components['schemas']['Units'];
+export type PlantModel = components['schemas']['PlantModel'];
+export type Plant = components['schemas']['Plant'];
+export type TypedPlant = components['schemas']['TypedPlant'];
+export type Record = components['schemas']['Record'];
+export type MeasuredDisturbance = components['schemas']['MeasuredDisturbance'];
+export type Columns = components['schemas']['Columns'];
+export type UltimateTest = components['schemas']['UltimateTest'];
+export type Identify = components['schemas']['Identify'];
+export type Method = components['schemas']['Method'];
+export type Controller = components['schemas']['Controller'];
+export type SetpointFilter = components['schemas']['SetpointFilter'];
+export type Filter = components['schemas']['Filter'];
+export type ParallelController = components['schemas']['ParallelController'];
+export type SeriesController = components['schemas']['SeriesController'];
+export type BaselineSettings = components['schemas']['BaselineSettings'];
+export type Implement = components['schemas']['Implement'];
+export type Evaluate = components['schemas']['Evaluate'];
+export type Actuator = components['schemas']['Actuator'];
+export type Noise = components['schemas']['Noise'];
+export type Notify = components['schemas']['Notify'];
+export type TuningResult = components['schemas']['TuningResult'];
+export type Model = components['schemas']['Model'];
+export type Covariance = components['schemas']['Covariance'];
+export type Disturbance = components['schemas']['Disturbance'];
+export type LimitCycle = components['schemas']['LimitCycle'];
+export type ShiftedPoint = components['schemas']['ShiftedPoint'];
+export type UltimatePoint = components['schemas']['UltimatePoint'];
+export type FrequencyPoint = components['schemas']['FrequencyPoint'];
+export type ExcitedBand = components['schemas']['ExcitedBand'];
+export type Region = components['schemas']['Region'];
+export type Candidate = components['schemas']['Candidate'];
+export type Fit = components['schemas']['Fit'];
+export type DataQuality = components['schemas']['DataQuality'];
+export type PreTest = components['schemas']['PreTest'];
+export type MissingPart = components['schemas']['MissingPart'];
+export type Saturation = components['schemas']['Saturation'];
+export type Outliers = components['schemas']['Outliers'];
+export type ClosedLoop = components['schemas']['ClosedLoop'];
+export type Warning = components['schemas']['Warning'];
+export type OperatingPoint = components['schemas']['OperatingPoint'];
+export type Entry = components['schemas']['Entry'];
+export type Finding = components['schemas']['Finding'];
+export type Equivalents = components['schemas']['Equivalents'];
+export type Robustness = components['schemas']['Robustness'];
+export type Nonlinear = components['schemas']['Nonlinear'];
+export type Performance = components['schemas']['Performance'];
+export type SetpointPerformance = components['schemas']['SetpointPerformance'];
+export type LoadPerformance = components['schemas']['LoadPerformance'];
+export type NoisePerformance = components['schemas']['NoisePerformance'];
+export type Responses = components['schemas']['Responses'];
+export type Trace = components['schemas']['Trace'];
+export type StepResponse = components['schemas']['StepResponse'];
+export type Frequency = components['schemas']['Frequency'];
+export type Verification = components['schemas']['Verification'];
+export type IndexErrors = components['schemas']['IndexErrors'];
+export type SettingsAnswer = components['schemas']['SettingsAnswer'];
+export type Implemented = components['schemas']['Implemented'];
+export type Difference = components['schemas']['Difference'];
+export type CostSurface = components['schemas']['CostSurface'];
+export type Frontier = components['schemas']['Frontier'];
+export type FrontierPoint = components['schemas']['FrontierPoint'];
+export type Rimc = components['schemas']['Rimc'];
+export type FullController = components['schemas']['FullController'];
+export type DisturbancePeakCurve = components['schemas']['DisturbancePeakCurve'];
+export type OptimumAtMs = components['schemas']['OptimumAtMs'];
+export type Standing = components['schemas']['Standing'];
+export type Tradeoff = components['schemas']['Tradeoff'];
+export type TradeoffFigures = components['schemas']['TradeoffFigures'];
+export type TradeoffProfile = components['schemas']['TradeoffProfile'];
+export type TradeoffAtMs = components['schemas']['TradeoffAtMs'];
+export type TradeoffAtLevel = components['schemas']['TradeoffAtLevel'];
+export type Emulation = components['schemas']['Emulation'];
+export type ActiveBound = components['schemas']['ActiveBound'];
+export type EmulationFit = components['schemas']['EmulationFit'];
+export type LevelOneRow = components['schemas']['LevelOneRow'];
+export type EmulatedScenario = components['schemas']['EmulatedScenario'];
+export type DesignAnswer = components['schemas']['DesignAnswer'];
+export type RangeRequest = components['schemas']['RangeRequest'];
+export type Scheduling = components['schemas']['Scheduling'];
+export type GivenRangePoint = components['schemas']['GivenRangePoint'];
+export type RangeOfEquations = components['schemas']['RangeOfEquations'];
+export type ScheduleWish = components['schemas']['ScheduleWish'];
+export type RangeFilter = components['schemas']['RangeFilter'];
+export type GivenRow = components['schemas']['GivenRow'];
+export type RangeResult = components['schemas']['RangeResult'];
+export type Range = components['schemas']['Range'];
+export type RangePoint = components['schemas']['RangePoint'];
+export type OneSetting = components['schemas']['OneSetting'];
+export type PlacePrice = components['schemas']['PlacePrice'];
+export type Schedule = components['schemas']['Schedule'];
+export type ScheduleRow = components['schemas']['ScheduleRow'];
+export type RangeCurves = components['schemas']['RangeCurves'];
+export type RangeTraces = components['schemas']['RangeTraces'];
+export type RangeWorst = components['schemas']['RangeWorst'];
+export type WorstPlace = components['schemas']['WorstPlace'];
+export type RangePassage = components['schemas']['RangePassage'];
+export type RangeRun = components['schemas']['RangeRun'];
+export type RangeNonlinearRun = components['schemas']['RangeNonlinearRun'];
+export type EvaluateAnswer = components['schemas']['EvaluateAnswer'];
+export type IdentifyRequest = components['schemas']['IdentifyRequest'];
+export type IdentifyAnswer = components['schemas']['IdentifyAnswer'];
+export type PlantQuestion = components['schemas']['PlantQuestion'];
+export type PlantAnswer = components['schemas']['PlantAnswer'];
+export type PreviewAnswer = components['schemas']['PreviewAnswer'];
+export type PreviewColumn = components['schemas']['PreviewColumn'];
+export type PreviewTime = components['schemas']['PreviewTime'];
+export type PreviewRun = components['schemas']['PreviewRun'];
+export type SkippedLine = components['schemas']['SkippedLine'];
+export type ReadingProblem = components['schemas']['ReadingProblem'];
+export type RelayRequest = components['schemas']['RelayRequest'];
+export type Relay = components['schemas']['Relay'];
+export type RelayAnswer = components['schemas']['RelayAnswer'];
+export type RelayRecord = components['schemas']['RelayRecord'];
+export type RelayPlan = components['schemas']['RelayPlan'];
+export type ControllerSummary = components['schemas']['ControllerSummary'];
+export type ControllerProduct = components['schemas']['ControllerProduct'];
+export type ControllerParameter = components['schemas']['ControllerParameter'];
+export type ControllerWeights = components['schemas']['ControllerWeights'];
+export type ControllerAction = components['schemas']['ControllerAction'];
+export type ControllerAlgorithm = components['schemas']['ControllerAlgorithm'];
+export type GainScheduling = components['schemas']['GainScheduling'];
+export type ControllerEvidence = components['schemas']['ControllerEvidence'];
+export type ControllerExample = components['schemas']['ControllerExample'];
+export type ScheduleSettingsAnswer = components['schemas']['ScheduleSettingsAnswer'];
+export type SettingsRow = components['schemas']['SettingsRow'];

@@ -10,8 +10,8 @@
 #include "engine/loop/peaks.h"
 #include "engine/loop/sampled/sampled_loop.h"
 #include "engine/number_text.h"
-#include "engine/numerics/extremum.h"
 #include "engine/numerics/fast_complex.h"
+#include "engine/numerics/optimise/line_search.h"
 #include "engine/numerics/sign_change.h"
 
 namespace tunewright {

@@ -7,8 +7,8 @@
 
 #include "engine/loop/frequency_grid.h"
 #include "engine/loop/stability.h"
-#include "engine/numerics/extremum.h"
 #include "engine/numerics/fast_complex.h"
+#include "engine/numerics/optimise/line_search.h"
 #include "engine/numerics/sign_change.h"
 
 namespace tunewright {

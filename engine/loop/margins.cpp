@@ -9,8 +9,8 @@
 
 #include "engine/loop/interior_margins.h"
 #include "engine/loop/stability.h"
-#include "engine/numerics/extremum.h"
 #include "engine/numerics/fast_complex.h"
+#include "engine/numerics/optimise/line_search.h"
 #include "engine/numerics/sign_change.h"
 
 namespace tunewright {

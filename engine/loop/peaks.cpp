@@ -5,8 +5,8 @@
 #include <limits>
 #include <numbers>
 
-#include "engine/numerics/extremum.h"
 #include "engine/numerics/fast_complex.h"
+#include "engine/numerics/optimise/line_search.h"
 
 namespace tunewright {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "engine/number_text.h"
 #include "engine/numerics/cubic.h"
-#include "engine/numerics/extremum.h"
+#include "engine/numerics/optimise/direct_search.h"
 #include "engine/reduction/step_reading.h"
 #include "engine/simulation/linear/step_response.h"
 

@@ -25,9 +25,23 @@ struct FoundColumns {
     std::string unread;  ///< a sentence about columns that may be u where CsvOptions::u_step is given; "" for none
 };
 
-/// The columns as chosen; then by their headings; then, where headings do not say, by what they hold: time rises, u
-/// stays on its levels while y moves. What remains open is a fault that lists the headings. A set point is reported
-/// where it is found, and is never u or y.
+/// The columns of time, u, y and the set point r. Each step looks only for what the steps before left open. What stays
+/// open is a fault that lists the headings.
+///
+///  1. The columns that the request names, with measured disturbances.
+///  2. The controller's own terms (P, I, D) are set apart: none of them is u or y.
+///  3. Headings that say u and y only together, such as x and y beside w; the spacing of samples, in a column or above
+///     the data, in place of times.
+///  4. Time by its heading.
+///  5. u and y by their headings: u beside y of one name; then each by the words of its role (heading_words), the best
+///     fit, of equal fits those that move, and those that belong together by stem or number.
+///  6. A date and a time of day in two columns are joined.
+///  7. By content, where headings do not say: time holds stamps or rises; u switches or stays on its levels while y
+///     moves; the only column left.
+///  8. The set point: reported where it is found, and never u or y.
+///  9. Checks: all roles found, none twice, one clock, no more headings than values.
+///
+/// The order matters: a column that a later step takes by its content must not have been named before.
 FoundColumns find_columns(std::string_view text, const CsvLayout& layout, const std::vector<ColumnProfile>& profiles,
                           const CsvOptions& options, std::vector<CsvFault>& faults);
 

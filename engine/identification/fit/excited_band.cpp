@@ -5,6 +5,7 @@
 #include <complex>
 #include <numbers>
 
+#include "engine/numerics/optimise/line_search.h"
 #include "engine/plant/linear/linear_plant.h"
 
 namespace tunewright {
@@ -59,11 +60,7 @@ std::optional<ExcitedBand> excited_band(const Excitation& excitation, const Plan
     if (excited(above)) return band;
     while (above > band.omega_low && !excited(above / kRatio)) above /= kRatio;
     if (above <= band.omega_low) return std::nullopt;
-    double below = above / kRatio;
-    while (above > below * kFinest) {
-        const double middle = std::sqrt(above * below);
-        (excited(middle) ? below : above) = middle;
-    }
+    const double below = log_bisect({above / kRatio, above}, excited, 1 - 1 / kFinest).inside;
     band.omega_high = std::max(below, band.omega_low);
     return band;
 }

@@ -1,3 +1,17 @@
+// One record's models, in this order. Each attempt leaves the search as it was, or puts a better one in its place:
+//
+//  1. Fit the structures of the request, simpler ones first, from each other's ends; richer ones where a pattern or
+//     more than noise is left. Choose by the information criterion (candidates.h).
+//  2. A relay test that no model explains, or whose unstable model runs too long: the record's beginning alone.
+//  3. A pattern, rows unevenly spaced: u changed midway between its rows.
+//  4. Moves of u in gaps: put at the missing rows where they explain y best.
+//  5. Moves of u within their rows: their times estimated with the model; of a relay, its switches put where they
+//     explain y best, whichever leaves less.
+//  6. A pattern still: a drift, a load, both.
+//  7. A slow part that may stand in for a drift; then a drift that leaves no pattern.
+//  8. How far the rows may show u late, for the errors of the dead time.
+//
+// The order matters: a misplaced move of u looks like a lag or a drift, and a drift takes in what a lag would explain.
 #include "engine/identification/fit/model_search.h"
 
 #include <algorithm>
@@ -13,6 +27,8 @@
 
 namespace tunewright {
 namespace {
+
+constexpr ModelSearchConstants k;
 
 /// The structures to fit, simpler ones first, those to fit where these leave a pattern, and those that answer the
 /// request: the others only give starting values.
@@ -58,8 +74,7 @@ ModelSearch ranked(FitContext context, std::vector<Fit> fits, const Plan& plan, 
     finish_fits(search.context, search.fits);
     const Fit* best = best_fit(search.fits);
     if (best != nullptr) search.independent = effective_samples(best->residual);
-    constexpr double kKnownTo = 0.8;  // of the noise's variance
-    const double noise = known_noise(search.context, best), least = kKnownTo * noise * noise;
+    const double noise = known_noise(search.context, best), least = k.min_noise_share * noise * noise;
     for (const Fit& fit : search.fits) {
         search.criteria.push_back(information_criterion(fit, search.independent, least));
         search.percents.push_back(fit_percent(search.context.record, fit));
@@ -78,10 +93,9 @@ ModelSearch ranked(FitContext context, std::vector<Fit> fits, const Plan& plan, 
 bool wants_richer(const FitContext& context, const std::vector<Fit>& fits) {
     const Fit* best = best_fit(fits);
     if (best == nullptr || context.relay) return best != nullptr;
-    constexpr double kMoreThanNoise = 1.3, kNotWhite = 1.5;  // noise variances; samples of correlation time
     const auto n = static_cast<double>(best->residual.size());
-    return best->sse > kMoreThanNoise * n * context.noise * context.noise ||
-           correlation_time(best->residual) > kNotWhite;
+    return best->sse > k.richer_min_noise_variances * n * context.noise * context.noise ||
+           correlation_time(best->residual) > k.richer_min_correlation;
 }
 
 std::string names_of(const std::vector<Structure>& structures) {
@@ -92,7 +106,6 @@ std::string names_of(const std::vector<Structure>& structures) {
 
 ModelSearch fit_all(FitContext context, ModelChoice model, const Disturbances& disturbances,
                     const RunControl& control) {
-    constexpr int kDeepest = 2;
     const Plan plan = plan_for(model, context.record);
     std::vector<Fit> fits;
     const auto fit = [&](const std::vector<Structure>& structures, double fraction) {
@@ -100,7 +113,7 @@ ModelSearch fit_all(FitContext context, ModelChoice model, const Disturbances& d
         report(control, fraction, "fitting " + names_of(structures));
         std::ranges::move(fit_structures(context, structures, disturbances, fits), std::back_inserter(fits));
     };
-    for (int level = 0; level <= kDeepest; ++level) {
+    for (int level = 0; level <= k.max_depth; ++level) {
         std::vector<Structure> here;
         std::ranges::copy_if(plan.fitted, std::back_inserter(here), [&](Structure s) { return depth(s) == level; });
         fit(here, static_cast<double>(fits.size()) / static_cast<double>(plan.fitted.size()));
@@ -130,10 +143,7 @@ ModelSearch fit_some(const ModelSearch& search, ModelChoice model, const Disturb
 bool usable(const ModelSearch& search) { return search.choice.index >= 0; }
 
 /// True if the rows are so far apart that they hardly show when u moved.
-bool few_rows(const CleanRecord& record) {
-    constexpr int kFewRows = 40;  // for each change of u
-    return record.samples() <= kFewRows * record.changes();
-}
+bool few_rows(const CleanRecord& record) { return record.samples() <= k.few_rows * record.changes(); }
 
 void try_between_rows(ModelSearch& search, ModelChoice model, const RunControl& control) {
     if (!unevenly_spaced(search.context.record)) return;
@@ -141,31 +151,27 @@ void try_between_rows(ModelSearch& search, ModelChoice model, const RunControl& 
     const Fit& now = search.chosen();
     const Fit fit = fit_shape({&moved, {}}, now.form, now.shape, {}, control.stop);
     // Rows written at the changes would leave no pattern: late ones are the likelier, unless the fit says otherwise.
-    constexpr double kMuchWorse = 1.5;
-    if (!fit.determined || fit.sse > kMuchWorse * now.sse) return;
+    if (!fit.determined || fit.sse > k.between_rows_max_ratio * now.sse) return;
     ModelSearch other = fit_all(fit_context(moved, search.context.relay, control), model, {}, control);
-    if (!usable(other) || other.chosen().sse > kMuchWorse * now.sse) return;
+    if (!usable(other) || other.chosen().sse > k.between_rows_max_ratio * now.sse) return;
     search = std::move(other);
 }
 
 /// A change of u in a gap of the record happened at a row that is missing: at which one, the models tell. Kept where
 /// that leaves a third of the sum of squares or less.
 void try_gap_moves(ModelSearch& search, ModelChoice model, const RunControl& control) {
-    constexpr double kMuchLess = 3;
-    constexpr int kMax = 200;  // moves: each costs a fit for each row that it may belong to
     // Misses of a few rows here and there are no pattern, and look like noise: the fit itself says whether to look.
-    constexpr double kWorthLooking = 95;  // per cent
-    if (search.percents[static_cast<std::size_t>(search.choice.index)] > kWorthLooking) return;
+    if (search.percents[static_cast<std::size_t>(search.choice.index)] > k.explained_percent) return;
     const std::vector<int> moves = gap_moves(search.context.record);
-    if (moves.empty() || static_cast<int>(moves.size()) > kMax) return;
+    if (moves.empty() || static_cast<int>(moves.size()) > k.max_gap_moves) return;
     ModelSearch other = search;
-    for (int round = 0; round < 2; ++round) {
+    for (int round = 0; round < k.gap_rounds; ++round) {
         CleanRecord placed = with_gap_moves_placed(search.context.record, other.chosen(), moves, control.stop);
         ModelSearch next = fit_all(fit_context(std::move(placed), search.context.relay, control), model, {}, control);
         if (!usable(next) || next.chosen().sse >= other.chosen().sse) break;
         other = std::move(next);
     }
-    if (kMuchLess * other.chosen().sse > search.chosen().sse) return;
+    if (k.gap_min_ratio * other.chosen().sse > search.chosen().sse) return;
     search = std::move(other);
 }
 
@@ -173,21 +179,19 @@ void try_gap_moves(ModelSearch& search, ModelChoice model, const RunControl& con
 /// where y shows nothing of them.
 std::optional<ModelSearch> with_times_estimated(const CleanRecord& record, const ModelSearch& search, ModelChoice model,
                                                 const RunControl& control) {
-    constexpr double kMoreThanNoise = 1.15, kNotWhite = 1.3;  // noise variances; samples of correlation time
-    constexpr int kRounds = 2;
     const double noise = search.context.noise, n = record.samples();
     if (record.row.empty() || record.changes() < 2) return std::nullopt;
     // With few rows a half period misplaced switches leave what looks like white noise, and the oscillation looks like
     // it.
-    const bool pattern =
-        (search.context.relay && few_rows(record)) || (search.chosen().sse > kMoreThanNoise * n * noise * noise &&
-                                                       correlation_time(search.chosen().residual) > kNotWhite);
+    const bool pattern = (search.context.relay && few_rows(record)) ||
+                         (search.chosen().sse > k.moves_min_noise_variances * n * noise * noise &&
+                          correlation_time(search.chosen().residual) > k.moves_min_correlation);
     RunControl quiet = control;  // the progress of a search that was done is not told again
     quiet.progress = {};
     std::optional<ModelSearch> other;
     Fit start = search.chosen();
     std::vector<double> times = search.context.record.v_time;
-    for (int round = 0; round < kRounds && !control.stop.stop_requested(); ++round) {
+    for (int round = 0; round < k.move_rounds && !control.stop.stop_requested(); ++round) {
         std::optional<CleanRecord> placed = with_move_times(record, times, start, noise, pattern, control.stop);
         if (!placed) break;
         times = placed->v_time;
@@ -203,28 +207,26 @@ std::optional<ModelSearch> with_times_estimated(const CleanRecord& record, const
 
 /// Moves of u between the rows, as y shows them.
 void try_move_times(ModelSearch& search, ModelChoice model, const RunControl& control) {
-    constexpr double kLess = 1.01, kFarLess = 10;  // times the mean square; where a pattern remains
     std::optional<ModelSearch> other = with_times_estimated(search.context.record, search, model, control);
     if (!other) return;
     const double less = search.chosen().sse / other->chosen().sse;
-    if (less > (leaves_a_pattern(other->context, other->chosen()) ? kFarLess : kLess)) search = std::move(*other);
+    if (less > (leaves_a_pattern(other->context, other->chosen()) ? k.moves_min_ratio_of_pattern : k.moves_min_ratio))
+        search = std::move(*other);
 }
 
 /// A relay recorded in few rows a half period: each of its switches lies within the row that shows it. Kept where that
 /// leaves two thirds of the sum of squares or less.
 void try_switches_between_rows(ModelSearch& search, ModelChoice model, const RunControl& control) {
-    constexpr double kMuchLess = 1.5, kWorthLooking = 95, kMostWork = 60'000;  // times; per cent; changes times rows
-    constexpr int kRounds = 4;
-    if (search.percents[static_cast<std::size_t>(search.choice.index)] > kWorthLooking) return;
+    if (search.percents[static_cast<std::size_t>(search.choice.index)] > k.explained_percent) return;
     const CleanRecord& record = search.context.record;
     const double rows = record.samples(), changes = record.changes();
-    if (!few_rows(record) || rows * changes > kMostWork) return;
+    if (!few_rows(record) || rows * changes > k.max_switch_work) return;
     const auto fitted = [&](CleanRecord placed, ModelChoice choice) {
         return fit_all(fit_context(std::move(placed), true, control), choice, {}, control);
     };
     // A model of few parameters places them: one of more would explain the misplaced ones too.
     ModelSearch other = fitted(changed_between_rows(record), ModelChoice::fopdt);
-    for (int round = 0; round < kRounds && usable(other) && !control.stop.stop_requested(); ++round) {
+    for (int round = 0; round < k.switch_rounds && usable(other) && !control.stop.stop_requested(); ++round) {
         ModelSearch next = fitted(with_switches_placed(record, other.chosen(), control.stop), ModelChoice::fopdt);
         if (!usable(next) || next.chosen().sse >= other.chosen().sse) break;
         other = std::move(next);
@@ -232,22 +234,21 @@ void try_switches_between_rows(ModelSearch& search, ModelChoice model, const Run
     if (!usable(other)) return;
     other = fitted(with_switches_placed(record, other.chosen(), control.stop), model);
     // Each place is a parameter more.
-    const double freedom = std::max(1 - changes / rows, 0.1);
-    if (!usable(other) || kMuchLess * other.chosen().sse > search.chosen().sse * freedom) return;
+    const double freedom = std::max(1 - changes / rows, k.min_freedom);
+    if (!usable(other) || k.switches_min_ratio * other.chosen().sse > search.chosen().sse * freedom) return;
     search = std::move(other);
 }
 
 /// Whether another lag explains what a drift (`by_drift`, criterion with `independent` samples) would: it is then kept
 /// in its place, and the choice made again.
 bool another_lag_does(ModelSearch& search, ModelChoice model, double by_drift, double independent) {
-    constexpr double kAsGood = 2;
     const Plan plan = plan_for(model, search.context.record);
     const auto fitted = [&](Structure structure) {
         return std::ranges::any_of(search.fits, [&](const Fit& f) { return f.form.structure == structure; });
     };
     if (plan.richer.empty() || fitted(Structure::third) || !fitted(Structure::sopdt)) return false;
     Fit richer = fit_structure(search.context, Structure::third, search.disturbances, search.fits);
-    if (!richer.determined || information_criterion(richer, independent) > by_drift + kAsGood) return false;
+    if (!richer.determined || information_criterion(richer, independent) > by_drift + k.as_good) return false;
     std::vector<Fit> fits = std::move(search.fits);
     fits.push_back(std::move(richer));
     search = ranked(search.context, std::move(fits), plan, search.disturbances);
@@ -257,35 +258,31 @@ bool another_lag_does(ModelSearch& search, ModelChoice model, double by_drift, d
 /// A slow part beside a quick one that is slower than the record may stand in for a drift: then a drift is tried in its
 /// place, and kept where it explains the record as well.
 void try_drift_for_slow_part(ModelSearch& search, ModelChoice model, const RunControl& control) {
-    constexpr double kSlow = 0.5, kAsGood = 2;
     const Fit& now = search.chosen();
-    if (now.form.structure != Structure::sopdt_zero || now.shape.slowest_lag() < kSlow || now.form.slope) return;
+    if (now.form.structure != Structure::sopdt_zero || now.shape.slowest_lag() < k.slow_part || now.form.slope) return;
     if (!shows_drift(search.context.record)) return;
     ModelSearch other = fit_all(search.context, model, {true, false}, control);
     if (!usable(other) || is_integrating(other.chosen().form.structure)) return;
     const double n = other.independent;
-    if (information_criterion(other.chosen(), n) > information_criterion(now, n) + kAsGood) return;
+    if (information_criterion(other.chosen(), n) > information_criterion(now, n) + k.as_good) return;
     search = std::move(other);
 }
 
 /// A slow drift hides in gain and time constant without leaving a pattern: its column is tried wherever the record can
 /// show it.
 void try_drift(ModelSearch& search, ModelChoice model, const RunControl& control) {
-    constexpr double kPositive = 6, kStrong = 10;  // differences of the criterion (Kass and Raftery 1995, section 3.2)
-    constexpr Effort kRough{30, 1e-6};             // enough to compare criteria
-    constexpr double kWhite = 2, kSteps = 3;       // samples of correlation time; steps of y's grid over the record
     const Fit& now = search.chosen();
     if (!shows_drift(search.context.record) || is_integrating(now.form.structure)) return;
     ModelForm form = now.form;
     form.slope = true;
-    const Fit fit = fit_shape(search.context.some(), form, now.shape, kRough, control.stop);
+    const Fit fit = fit_shape(search.context.some(), form, now.shape, k.rough, control.stop);
     const Fit plain = project(search.context.some(), now.form, now.shape);
     if (!fit.determined) return;
     // Wandering noise and a coarse grid look like a drift for as long as a record lasts.
     const double time = correlation_time(fit.residual), n = std::max(kMinIndependent, fit.residual.size() / time);
     const double lead = information_criterion(plain, n) - information_criterion(fit, n);
-    if (lead < (time < kWhite ? kPositive : kStrong)) return;
-    if (std::abs(fit.linear[form.slope_index()]) < kSteps * search.context.grid) return;
+    if (lead < (time < k.white_correlation ? k.strong : k.very_strong)) return;
+    if (std::abs(fit.linear[form.slope_index()]) < k.min_drift_steps * search.context.grid) return;
     if (another_lag_does(search, model, information_criterion(fit, n), n)) return;
     ModelSearch other = fit_all(search.context, model, {true, false}, control);
     if (!usable(other) || is_integrating(other.chosen().form.structure)) return;
@@ -295,7 +292,6 @@ void try_drift(ModelSearch& search, ModelChoice model, const RunControl& control
 /// Moves of u within their rows: each time estimated with the model, or a relay's switches put where they explain y
 /// best, whichever leaves less. From few rows a half period the joint estimate may end in another valley.
 void try_moves(ModelSearch& search, ModelChoice model, bool relay, const RunControl& control) {
-    constexpr double kAsGood = 1.05;  // times the sum of squares: an estimate whose errors are counted is worth it
     ModelSearch placed = search;
     try_move_times(search, model, control);
     if (!relay || control.stop.stop_requested()) return;
@@ -305,13 +301,12 @@ void try_moves(ModelSearch& search, ModelChoice model, bool relay, const RunCont
     if (!search.context.record.v_open.empty() && placed.chosen().sse >= search.chosen().sse) return;
     search = std::move(placed);
     std::optional<ModelSearch> joint = with_times_estimated(recorded, search, model, control);
-    if (joint && joint->chosen().sse < kAsGood * search.chosen().sse) search = std::move(*joint);
+    if (joint && joint->chosen().sse < k.joint_max_ratio * search.chosen().sse) search = std::move(*joint);
 }
 
 void try_disturbances(ModelSearch& search, ModelChoice model, const RunControl& control) {
-    constexpr double kMuchLess = 3, kFarLess = 30, kStrong = 10, kWorthLooking = 0.005;
     const CleanRecord& record = search.context.record;
-    if (unexplained_share(search.context, search.chosen()) < kWorthLooking) return;
+    if (unexplained_share(search.context, search.chosen()) < k.min_unexplained_share) return;
     const ModelSearch* best = &search;
     std::vector<ModelSearch> others;
     others.reserve(3);
@@ -325,9 +320,11 @@ void try_disturbances(ModelSearch& search, ModelChoice model, const RunControl& 
         if (!usable(other) || !plausible_load(record, other.chosen())) continue;
         // A disturbance that leaves a pattern too stands in for a structure that is none of these.
         const double less = best->chosen().sse / other.chosen().sse;
-        if (less < (leaves_a_pattern(other.context, other.chosen()) ? kFarLess : kMuchLess)) continue;
+        if (less < (leaves_a_pattern(other.context, other.chosen()) ? k.disturbance_min_ratio_of_pattern
+                                                                    : k.disturbance_min_ratio))
+            continue;
         const double n = other.independent;
-        if (information_criterion(other.chosen(), n) + kStrong < information_criterion(best->chosen(), n))
+        if (information_criterion(other.chosen(), n) + k.very_strong < information_criterion(best->chosen(), n))
             best = &other;
     }
     if (best == &search) return;
@@ -337,18 +334,16 @@ void try_disturbances(ModelSearch& search, ModelChoice model, const RunControl& 
 
 /// Whether an unstable model's free run lasts so many time constants that it is all but arbitrary.
 bool runs_too_long(const Fit& fit) {
-    constexpr double kShortest = 0.12;  // record lengths: e^(1/0.12) is 4000 times an error at the start
-    return fit.form.structure == Structure::unstable && fit.shape.T() < kShortest;
+    return fit.form.structure == Structure::unstable && fit.shape.T() < k.min_unstable_lag;
 }
 
 /// Kept where the beginning alone is explained by an unstable model with a time constant that it can show.
 void try_beginning(ModelSearch& search, const CleanRecord& record, ModelChoice model, const RunControl& control) {
     if (model != ModelChoice::automatic && model != ModelChoice::fopdt) return;
-    constexpr int kMinChanges = 3, kMinBeginning = 40;  // of u, and samples: a period of the relay and some more
-    for (const double part : {0.35, 0.12, 0.04}) {
+    for (const double part : k.beginnings) {
         if (control.stop.stop_requested()) return;
         const CleanRecord beginning = first_part(record, part);
-        if (beginning.changes() < kMinChanges || beginning.samples() < kMinBeginning) return;
+        if (beginning.changes() < k.min_beginning_changes || beginning.samples() < k.min_beginning_samples) return;
         ModelSearch other = fit_all(fit_context(beginning, true, control), model, {}, control);
         if (!usable(other) || other.chosen().form.structure != Structure::unstable) continue;
         if (at_shortest_lag(other.chosen()) || leaves_a_pattern(other.context, other.chosen())) continue;

@@ -6,6 +6,7 @@
 
 #include "engine/numerics/matrix/dense.h"
 #include "engine/numerics/matrix/projection.h"
+#include "engine/numerics/optimise/levenberg_marquardt.h"
 
 namespace tunewright {
 namespace {
@@ -228,20 +229,10 @@ std::vector<int> free_parameters(const ModelShape& shape, const std::vector<int>
 }
 
 Eigen::VectorXd damped_step(const Eigen::MatrixXd& normal, const Eigen::VectorXd& descent, const std::vector<int>& free,
-                            double lambda) {
-    const int m = static_cast<int>(free.size());
-    Eigen::MatrixXd A(m, m);
-    Eigen::VectorXd b(m);
-    constexpr double kInsensitive = 1e-12;  // a parameter that nothing depends on is damped all the same
-    const double floor = kInsensitive * normal.diagonal().maxCoeff();
-    for (int i = 0; i < m; ++i) {
-        for (int j = 0; j < m; ++j) A(i, j) = normal(free[i], free[j]);
-        A(i, i) += lambda * std::max(A(i, i), floor);
-        b[i] = descent[free[i]];
-    }
-    const Eigen::VectorXd reduced = solve_symmetric(A, b);
+                            double damping) {
     Eigen::VectorXd step = Eigen::VectorXd::Zero(descent.size());
-    for (int i = 0; i < m; ++i) step[free[i]] = reduced[i];
+    const Eigen::MatrixXd A = optimise::damped(normal, damping)(free, free);
+    step(free) = solve_symmetric(A, Eigen::VectorXd(descent(free)));
     return step;
 }
 
@@ -307,49 +298,73 @@ std::vector<double> sums_of_squares(const FitData& data, const ModelForm& form, 
     return sums;
 }
 
+namespace {
+
+constexpr double kSmallestStep = 1e-9;  // digits beyond those that any noise leaves
+
+/// The search over the shape, as `levenberg_marquardt` wants it.
+class ShapeFit {
+public:
+    ShapeFit(const FitData& data, const ModelForm& form, const ModelShape& start, const Effort& effort,
+             const std::stop_token& stop)
+        : problem_(data, form),
+          places_(form.searched()),
+          bounds_(shape_bounds(*data.record, form.structure)),
+          effort_(effort),
+          stop_(stop),
+          shape_(clamped(start, bounds_)) {
+        problem_.project(shape_, here_);
+    }
+
+    Fit run() {
+        const int iterations = optimise::levenberg_marquardt(*this, effort_.most_iterations);
+        Fit fit = problem_.finish(shape_, here_);
+        fit.iterations = iterations;
+        return fit;
+    }
+
+    bool linearise() {
+        if (!here_.determined || stop_.stop_requested()) return false;
+        Eigen::MatrixXd& D = problem_.sensitivities(shape_, here_.linear);
+        take_out(here_.basis, D);
+        equations_ = normal_equations(D, here_.residual);
+        free_ = free_parameters(shape_, places_, bounds_, equations_.right);
+        return !free_.empty() && equations_.matrix.diagonal().maxCoeff() > 0;
+    }
+
+    optimise::Trial try_step(double damping) {
+        using optimise::Trial;
+        const Eigen::VectorXd step = damped_step(equations_.matrix, equations_.right, free_, damping);
+        const ModelShape next = moved_by(shape_, places_, step, bounds_);
+        const double moved = distance(next, shape_);
+        problem_.project(next, there_);
+        bool converged = !(moved > kSmallestStep);
+        const bool better = there_.sse < here_.sse;
+        if (better) {
+            converged |= here_.sse - there_.sse < effort_.tolerance * here_.sse;
+            shape_ = next;
+            std::swap(here_, there_);
+        }
+        return converged ? Trial::end : better ? Trial::better : Trial::worse;
+    }
+
+private:
+    OutputError problem_;
+    const std::vector<int> places_;
+    const ShapeBounds bounds_;
+    const Effort& effort_;
+    const std::stop_token& stop_;
+    ModelShape shape_;
+    Projection here_, there_;
+    NormalEquations equations_;
+    std::vector<int> free_;
+};
+
+}  // namespace
+
 Fit fit_shape(const FitData& data, const ModelForm& form, const ModelShape& start, const Effort& effort,
               const std::stop_token& stop) {
-    constexpr double kSmallestStep = 1e-9;    // digits beyond those that any noise leaves
-    constexpr double kLargestDamping = 1e10;  // steps are then rounding
-    constexpr double kFirstDamping = 1e-3,
-                     kLeastDamping = 1e-9;     // of the diagonal; below it steps are Gauss and Newton's
-    constexpr double kEase = 8, kTighten = 6;  // unequal: no cycle between two dampings
-    OutputError problem(data, form);
-    const std::vector<int> places = form.searched();
-    const ShapeBounds bounds = shape_bounds(*data.record, form.structure);
-    ModelShape shape = clamped(start, bounds);
-    Projection here, there;
-    problem.project(shape, here);
-    double lambda = kFirstDamping;
-    int iteration = 0;
-    for (; iteration < effort.most_iterations && here.determined && lambda < kLargestDamping && !stop.stop_requested();
-         ++iteration) {
-        Eigen::MatrixXd& D = problem.sensitivities(shape, here.linear);
-        take_out(here.basis, D);
-        const auto [normal, descent] = normal_equations(D, here.residual);
-        const std::vector<int> free = free_parameters(shape, places, bounds, descent);
-        if (free.empty() || !(normal.diagonal().maxCoeff() > 0)) break;
-        bool converged = false, better = false;
-        while (!better && !converged && lambda < kLargestDamping) {
-            const ModelShape next = moved_by(shape, places, damped_step(normal, descent, free, lambda), bounds);
-            const double moved = distance(next, shape);
-            problem.project(next, there);
-            converged = !(moved > kSmallestStep);
-            better = there.sse < here.sse;
-            if (better) {
-                converged |= here.sse - there.sse < effort.tolerance * here.sse;
-                shape = next;
-                std::swap(here, there);
-                lambda = std::max(kLeastDamping, lambda / kEase);
-            } else {
-                lambda *= kTighten;
-            }
-        }
-        if (converged) break;
-    }
-    Fit fit = problem.finish(shape, here);
-    fit.iterations = iteration;
-    return fit;
+    return ShapeFit(data, form, start, effort, stop).run();
 }
 
 void jacobian(const FitData& data, Fit& fit) {

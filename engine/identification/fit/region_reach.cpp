@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "engine/numerics/matrix/dense.h"
+#include "engine/numerics/optimise/line_search.h"
 #include "engine/numerics/polynomial_roots.h"
 #include "engine/plant/plant_family.h"
 
@@ -164,14 +165,9 @@ std::vector<double> region_reach(const CleanRecord& record, const Fit& fit, cons
     bool cut = false;
     for (const PlantRegion::Point& end : region->ends()) {
         const double curvature = 0.5 * (growth(end, kNear) + growth(end, -kNear)) / (kNear * kNear);
-        double low = kNear, high = 1;
-        if (!(growth(end, 1) > kPlainly * curvature)) low = high;
-        for (int i = 0; i < kHalvings && low < high; ++i) {
-            const double middle = 0.5 * (low + high);
-            (growth(end, middle) > kPlainly * curvature ? high : low) = middle;
-        }
-        cut |= low < 1;
-        reach.push_back(low);
+        const auto linear = [&](double share) { return !(growth(end, share) > kPlainly * curvature); };
+        reach.push_back(linear(1) ? 1 : bisect({kNear, 1}, linear, kHalvings).inside);
+        cut |= reach.back() < 1;
     }
     return cut ? reach : std::vector<double>{};
 }

@@ -8,7 +8,6 @@
 
 #include "engine/loop/interior_margins.h"
 #include "engine/loop/winding.h"
-#include "engine/numerics/extremum.h"
 #include "engine/numerics/fast_complex.h"
 
 namespace tunewright {

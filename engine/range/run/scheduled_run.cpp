@@ -8,6 +8,7 @@
 
 #include "engine/number_text.h"
 #include "engine/numerics/ode_integrator.h"
+#include "engine/numerics/optimise/line_search.h"
 #include "engine/numerics/step_polynomial.h"
 #include "engine/range/run/profile.h"
 #include "engine/range/run/scheduled_law.h"
@@ -22,8 +23,7 @@ constexpr double kLeastShare = 1e-3;    // of what a state moves by over the ran
 constexpr int kEchoes = 4;              // passages of a jump through the dead time that steps end at
 constexpr double kSettledShare = 0.01;  // of the profile's size
 constexpr double kMuchCoupling = 0.3;   // of the gain from y to u, added by the settings' motion
-constexpr int kBisections = 50;
-constexpr double kEps = 1e-12;  // of the time: two times that are one
+constexpr double kEps = 1e-12;          // of the time: two times that are one
 
 /// Sizes of the plant's states, u and y over the range.
 struct Sizes {
@@ -187,12 +187,9 @@ private:
             return law_.leaves_row(signals(t, z).place);
         };
         if (!law_.leaves_row(signals(integrator_.t(), integrator_.x()).place)) return std::nullopt;
-        double low = integrator_.t_before(), high = integrator_.t();
-        for (int k = 0; k < kBisections && high - low > slack(high); ++k) {
-            const double middle = 0.5 * (low + high);
-            (leaves(middle) ? high : low) = middle;
-        }
-        return high;
+        const auto close = [](double before, double after) { return after - before <= slack(after); };
+        const auto stays = [&](double t) { return !leaves(t); };
+        return bisect({integrator_.t_before(), integrator_.t()}, stays, close).outside;
     }
 
     /// I takes up what the other parts lose.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/numerics/optimise/line_search.h"
+
 namespace tunewright::range {
 namespace {
 
@@ -153,11 +155,8 @@ OwnOptima::Layout OwnOptima::layout(int rows, Interpolation interpolation) const
     const Parts parts(grid.at, grid.x, interpolation);
     const bool steps = interpolation == Interpolation::steps;
     const auto most = std::size_t(std::max(1, steps ? rows : rows - 1));
-    double low = 0, high = parts.spread(0, grid.at.size() - 1);
-    for (int k = 0; k < kHalvings; ++k) {
-        const double middle = 0.5 * (low + high);
-        (parts.cover(middle, most).empty() ? low : high) = middle;
-    }
+    const auto covers = [&](double spread) { return !parts.cover(spread, most).empty(); };
+    const double high = bisect({parts.spread(0, grid.at.size() - 1), 0}, covers, kHalvings).inside;
     Layout layout{.at = {}, .error = high};
     auto ends = parts.cover(high, most);
     // The spread need not grow with a part: then the halving of a part's length misses that the whole range serves.

@@ -39,16 +39,16 @@ struct JointResult {
     Eigen::VectorXd v;
     double log_price = 0;  ///< of the aim; infinite where some loop is unstable
     double excess = 0;     ///< the largest ln of a limit's ratio plus the margin, on the searches' own grids
-    int iterations = 0;
     bool stopped = false;
 
     /// The searches' own grids hold the limits as far as they can see.
     bool holds() const { return excess <= 1e-6; }
 };
 
-/// Sequential quadratic programming with an exact penalty of the limits' largest excess, so that a start need not hold
-/// them: minimise t + rho s subject to the linearised prices <= t and limits <= s, s >= 0, in a trust region (Fletcher,
-/// Practical Methods of Optimization, 1987, section 14.4). `start` must be stable at every place.
+/// Sequential quadratic programming (numerics/optimise/sqp.h has its steps) with an exact penalty of the limits'
+/// largest excess, so that a start need not hold them: minimise t + rho s subject to the linearised prices <= t and
+/// limits <= s, s >= 0, in a trust region (Fletcher 1987, Practical Methods of Optimization, section 14.4). `start`
+/// must be stable at every place.
 JointResult search_jointly(const JointProblem& problem, const Eigen::VectorXd& start, const JointOptions& options,
                            const std::function<void(const JointResult&)>& report);
 

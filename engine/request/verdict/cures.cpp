@@ -7,6 +7,7 @@
 #include "engine/evaluation/evaluate.h"
 #include "engine/loop/peaks.h"
 #include "engine/loop/stability.h"
+#include "engine/numerics/optimise/line_search.h"
 #include "engine/numerics/propagator.h"
 #include "engine/simulation/limited/limited_response.h"
 #include "engine/simulation/linear/indices.h"
@@ -79,10 +80,8 @@ std::optional<SetpointCure> overshoot_cure(const Case& c, double percent) {
         if (i == kDoublings || stopped()) return std::nullopt;
         low = cure->lag;
     }
-    for (int i = 0; low > 0 && i < kHalvings; ++i) {
-        const SetpointCure middle{cure->b, 0.5 * (low + cure->lag)};
-        (kept(middle) ? cure->lag : low) = middle.lag;
-    }
+    const auto keeps = [&](double lag) { return kept({cure->b, lag}); };
+    if (low > 0) cure->lag = bisect({cure->lag, low}, keeps, kHalvings).inside;
     if (stopped()) return std::nullopt;
     return cure;
 }

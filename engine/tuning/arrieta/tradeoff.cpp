@@ -9,7 +9,7 @@
 #include "engine/loop/peaks.h"
 #include "engine/loop/stability.h"
 #include "engine/number_text.h"
-#include "engine/numerics/extremum.h"
+#include "engine/numerics/optimise/direct_search.h"
 #include "engine/plant/linear/linear_plant.h"
 #include "engine/simulation/linear/indices.h"
 #include "engine/simulation/linear/linear_response.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/numerics/extremum.h"
+#include "engine/numerics/optimise/line_search.h"
 
 namespace tunewright::built {
 namespace {

@@ -5,7 +5,8 @@
 #include <limits>
 
 #include "engine/number_text.h"
-#include "engine/numerics/extremum.h"
+#include "engine/numerics/optimise/direct_search.h"
+#include "engine/numerics/optimise/line_search.h"
 #include "engine/tuning/built/largest_gain.h"
 
 namespace tunewright::built {
@@ -103,10 +104,11 @@ double Search::widening(double Ti, double Td) const {
             limiters_, [&](double gain) { return law(gain, Ti, Td); }, wider, shape_.gain.high);
         return k && *k >= shape_.gain.low;
     };
-    double low = 0, high = std::log(kWidest);
     if (!serves(kWidest)) return kInfinity;
-    while (high - low > kWider) (serves(std::exp(0.5 * (low + high))) ? high : low) = 0.5 * (low + high);
-    return std::exp(high);
+    const auto close = [](double serving, double failing) { return serving - failing <= kWider; };
+    return std::exp(bisect(
+                        {std::log(kWidest), 0}, [&](double x) { return serves(std::exp(x)); }, close)
+                        .inside);
 }
 
 Settings Search::confirmed(double Ti, double Td) {

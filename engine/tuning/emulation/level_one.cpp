@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "engine/number_text.h"
-#include "engine/numerics/extremum.h"
+#include "engine/numerics/optimise/direct_search.h"
 #include "engine/plant/plant.h"
 #include "engine/simulation/experiment/nonlinear_experiments.h"
 #include "engine/tuning/emulation/emulation.h"

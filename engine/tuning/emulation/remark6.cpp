@@ -105,26 +105,24 @@ constexpr int kFilterScan = 9;           // points of a free filter
 constexpr int kFilterBits = 26;          // of ln Tf between them: half of the digits, which is what a minimum shows
 constexpr double kNoController = 1e100;  // J of a filter with which there is none
 
-using Gains = robust::Vector3;
+using Gains = Eigen::Vector3d;
 
 Gains gains_at(const SettingsPoint& point) {
     return {point[0], point[0] / point[1], point.size() > 2 ? point[0] * point[2] : 0};
 }
 
 // The bounds on Kp, Ti, Td as half-planes of sign (Kp, Kp/Ti, Kp Td), Kp > 0 there; unknowns scaled.
-std::vector<robust::LinearConstraint> half_planes(double sign, const Bounds& bounds, const Gains& scale,
-                                                  bool derivative) {
+void add_half_planes(optimise::SmallProgram& program, double sign, const Bounds& bounds, const Gains& scale) {
     const double low = std::max(0.0, sign > 0 ? bounds.low[0] : -bounds.high[0]);
     const double high = sign > 0 ? bounds.high[0] : -bounds.low[0];
-    std::vector<robust::LinearConstraint> planes = {{{scale[0], 0, 0}, high},
-                                                    {{-scale[0], 0, 0}, -low},
-                                                    {{-scale[0], bounds.low[1] * scale[1], 0}, 0},
-                                                    {{scale[0], -bounds.high[1] * scale[1], 0}, 0}};
-    if (derivative) {
-        planes.push_back({{bounds.low[2] * scale[0], 0, -scale[2]}, 0});
-        planes.push_back({{-bounds.high[2] * scale[0], 0, scale[2]}, 0});
-    }
-    return planes;
+    const auto add = [&](const Gains& normal, double bound) { program.add(normal.head(program.g.size()), bound); };
+    add({scale[0], 0, 0}, high);
+    add({-scale[0], 0, 0}, -low);
+    add({-scale[0], bounds.low[1] * scale[1], 0}, 0);
+    add({scale[0], -bounds.high[1] * scale[1], 0}, 0);
+    if (program.g.size() < 3) return;
+    add({bounds.low[2] * scale[0], 0, -scale[2]}, 0);
+    add({-bounds.high[2] * scale[0], 0, scale[2]}, 0);
 }
 
 }  // namespace
@@ -188,22 +186,26 @@ std::optional<Remark6::Found> Remark6::best_of_sign(double sign, double Tf, cons
     std::vector<bool> beyond(u_nl_.size(), false), next(u_nl_.size());
     std::optional<Found> best;
     for (int round = 0; round < kLimitRounds; ++round) {
-        robust::Matrix3 H = robust::Matrix3::Zero();
-        robust::Vector3 g = robust::Vector3::Zero();
+        Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
+        Gains g = Gains::Zero();
         for (std::size_t i = 0; i < u_nl_.size(); ++i) {
             if (beyond[i]) continue;
-            const robust::Vector3 at(signals[0][i], signals[1][i], signals[2][i]);
+            const Gains at(signals[0][i], signals[1][i], signals[2][i]);
             g -= sign * weights_[i] * u_nl_[i] * at;
             H += weights_[i] * at * at.transpose();
         }
         Gains scale = Gains::Ones();
         for (int j = 0; j < 3; ++j)
             if (H(j, j) > 0) scale[j] = 1 / std::sqrt(H(j, j));
-        g = g.cwiseProduct(scale);
-        H = (scale.asDiagonal() * H * scale.asDiagonal()).eval() + kRidge * robust::Matrix3::Identity();
-        const auto solved = robust::solve_quadratic_program(n, H, g, half_planes(sign, bounds, scale, n == 3));
+        H = (scale.asDiagonal() * H * scale.asDiagonal()).eval() + kRidge * Eigen::Matrix3d::Identity();
+        optimise::SmallProgram program(n, 6);
+        program.H = H.topLeftCorner(n, n);
+        program.g = g.cwiseProduct(scale).head(n);
+        add_half_planes(program, sign, bounds, scale);
+        const auto solved = solve(program);
         if (!solved) return best;
-        const Gains gains = sign * scale.cwiseProduct(solved->p);
+        Gains gains = Gains::Zero();
+        gains.head(n) = sign * scale.head(n).cwiseProduct(solved->x);
         if (!(sign * gains[0] > 0) || !(sign * gains[1] > 0)) return best;
         const double J = J_of(gains, signals, &next);
         if (!best || J < best->J) {

@@ -6,9 +6,9 @@
 #include <array>
 #include <optional>
 
+#include "engine/numerics/optimise/quadratic_program.h"
 #include "engine/tuning/emulation/criterion.h"
 #include "engine/tuning/emulation/problem.h"
-#include "engine/tuning/robust/quadratic_program.h"
 
 namespace tunewright::emulation {
 
@@ -32,7 +32,7 @@ private:
     };
 
     Signals signals(double Tf) const;
-    double J_of(const robust::Vector3& gains, const Signals& signals, std::vector<bool>* beyond) const;
+    double J_of(const Eigen::Vector3d& gains, const Signals& signals, std::vector<bool>* beyond) const;
     std::optional<Found> best_with(double Tf, const Bounds& bounds) const;
     std::optional<Found> best_of_sign(double sign, double Tf, const Signals& signals, const Bounds& bounds) const;
 

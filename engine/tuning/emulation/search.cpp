@@ -7,8 +7,9 @@
 
 #include "engine/loop/peaks.h"
 #include "engine/loop/stability.h"
-#include "engine/numerics/extremum.h"
-#include "engine/numerics/matrix/linear_algebra.h"
+#include "engine/numerics/optimise/direct_search.h"
+#include "engine/numerics/optimise/levenberg_marquardt.h"
+#include "engine/numerics/optimise/quadratic_program.h"
 #include "engine/plant/linear/linear_plant.h"
 #include "engine/progress.h"
 #include "engine/simulation/linear/indices.h"
@@ -30,88 +31,15 @@ std::optional<BestSoFar> best_so_far(const LinearPlant& plant, const IdealPid& p
     return BestSoFar{pid, integrals.IAE, peaks.S.value, peaks.T.value};
 }
 
-enum class Side { free, low, high };
-
-double value_of(const std::vector<double>& H, const std::vector<double>& g, const std::vector<double>& d) {
-    const std::size_t n = g.size();
-    double value = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-        value += g[i] * d[i];
-        for (std::size_t j = 0; j < n; ++j) value += 0.5 * H[i * n + j] * d[i] * d[j];
-    }
-    return value;
-}
-
-// Solves for the free unknowns; the others lie on their side.
-std::optional<std::vector<double>> with_sides(const std::vector<double>& H, const std::vector<double>& g,
-                                              std::vector<double> d, const std::vector<Side>& sides) {
-    const std::size_t n = g.size();
-    std::vector<std::size_t> free;
-    for (std::size_t i = 0; i < n; ++i)
-        if (sides[i] == Side::free) free.push_back(i);
-    std::vector<double> matrix, right;
-    for (const std::size_t i : free) {
-        double b = -g[i];
-        for (std::size_t j = 0; j < n; ++j) {
-            if (sides[j] == Side::free)
-                matrix.push_back(H[i * n + j]);
-            else
-                b -= H[i * n + j] * d[j];
-        }
-        right.push_back(b);
-    }
-    if (free.empty()) return d;
-    const auto solved = solve(matrix, right, static_cast<int>(free.size()));
-    if (!solved) return std::nullopt;
-    for (std::size_t k = 0; k < free.size(); ++k) d[free[k]] = (*solved)[k];
-    return d;
-}
-
-bool inside(const std::vector<double>& d, const std::vector<double>& low, const std::vector<double>& high) {
-    for (std::size_t i = 0; i < d.size(); ++i)
-        if (!(d[i] >= low[i] && d[i] <= high[i])) return false;
-    return true;
-}
-
-// Minimises g.d + d.H d/2 subject to low <= d <= high, by trying every set of active bounds. H is n x n, row by row,
-// positive definite; low <= 0 <= high. At most four unknowns.
-std::vector<double> best_step_in_box(const std::vector<double>& H, const std::vector<double>& g,
-                                     const std::vector<double>& low, const std::vector<double>& high) {
-    const std::size_t n = g.size();
-    std::vector<double> best(n, 0);
-    double least = 0;
-    std::size_t combinations = 1;
-    for (std::size_t i = 0; i < n; ++i) combinations *= 3;
-    for (std::size_t code = 0; code < combinations; ++code) {
-        std::vector<Side> sides(n);
-        std::vector<double> d(n, 0);
-        std::size_t rest = code;
-        for (std::size_t i = 0; i < n; ++i, rest /= 3) {
-            sides[i] = static_cast<Side>(rest % 3);
-            if (sides[i] != Side::free) d[i] = sides[i] == Side::low ? low[i] : high[i];
-        }
-        const auto candidate = with_sides(H, g, d, sides);
-        if (!candidate || !inside(*candidate, low, high)) continue;
-        const double value = value_of(H, g, *candidate);
-        if (value >= least) continue;
-        least = value;
-        best = *candidate;
-        if (code == 0) break;  // nothing holds it
-    }
-    return best;
-}
-
 constexpr double kCoarseTolerance = 1e-6;        // of simulations while looking around
 constexpr double kSearchTolerance = 1e-8;        // of those between which differences are taken
 constexpr int kExplored[] = {0, 0, 30, 60, 90};  // points of the global look, by the number of unknowns
 constexpr int kPolished = 2;                     // starts that are polished
 constexpr double kApart = 0.05;                  // of two of them, in a unit box
 constexpr int kMaxPolishSteps = 25;
-constexpr double kDifference = 1e-4;    // of a derivative, relative to the unknown
-constexpr double kFlat = 1e-10;         // expected fall of J, relative, at which a polish ends
-constexpr double kFirstDamping = 1e-3;  // of Levenberg and Marquardt
-constexpr double kMinDamping = 1e-9;
-constexpr double kMaxDamping = 1e8;
+constexpr double kDifference = 1e-4;  // of a derivative, relative to the unknown
+constexpr double kFlat = 1e-10;       // expected fall of J, relative, at which a polish ends
+constexpr optimise::MarquardtDamping kDamping = {.ease = 10, .tighten = 10};  // J ends as flat as `kFlat` with few runs
 constexpr double kConfident = 10;       // damping up to which a small expected fall means that J is flat
 constexpr double kMaxPolishStep = 0.5;  // relative to the unknown
 constexpr double kSubplexStep = 0.02;   // in a unit box
@@ -163,7 +91,7 @@ public:
         for (std::size_t i = 0; i < chosen.size() && !stopped(); ++i) {
             report(0.4 + 0.2 * static_cast<double>(i), "Polishing the emulating controller.");
             const double before = best_value_;
-            const bool ended_flat = polish(point_at(chosen[i].x));
+            const bool ended_flat = Polish(*this, point_at(chosen[i].x)).run();
             if (best_value_ < before) flat = ended_flat;
         }
         if (!flat && !stopped()) subplex();
@@ -224,95 +152,100 @@ private:
         return chosen;
     }
 
-    // Residuals and their derivatives by the unknowns, each relative to its own size there.
-    struct Slope {
-        std::vector<double> size, g, H;
+    // A local search from one point, as `levenberg_marquardt` wants it. Unknowns are steps relative to their own sizes
+    // at the point.
+    class Polish {
+    public:
+        Polish(SettingsSearch& search, const SettingsPoint& start) : search_(search), point_(start) {
+            cost_ = cost_at(start, residuals_);
+            search.keep(start, cost_);
+        }
+
+        // Whether it ends where no step promises anything.
+        bool run() {
+            if (cost_.ended.empty()) optimise::levenberg_marquardt(*this, kMaxPolishSteps, kDamping);
+            return flat_;
+        }
+
+        bool linearise() {
+            const auto n = Eigen::Index(point_.size());
+            const auto rows = Eigen::Index(residuals_.size());
+            size_ = sizes_of(point_, search_.bounds_);
+            Eigen::MatrixXd slopes(rows, n);
+            std::vector<double> there;
+            for (Eigen::Index i = 0; i < n; ++i) {
+                SettingsPoint moved = point_;
+                moved[std::size_t(i)] += kDifference * size_[std::size_t(i)];
+                if (search_.stopped() || !cost_at(moved, there).ended.empty() || there.size() != residuals_.size())
+                    return false;
+                slopes.col(i) = (column(there) - column(residuals_)) / kDifference;
+            }
+            H_ = slopes.transpose() * slopes;
+            g_ = slopes.transpose() * column(residuals_);
+            return true;
+        }
+
+        optimise::Trial try_step(double damping) {
+            using optimise::Trial;
+            if (search_.stopped()) return Trial::end;
+            const SettingsPoint next = stepped(damping);
+            const double fall = expected_fall(next);
+            flat_ = fall < kFlat && damping < kConfident;
+            if (fall < kFlat) return Trial::end;
+            std::vector<double> residuals;
+            const Cost there = cost_at(next, residuals);
+            if (!there.ended.empty() || !(there.J < cost_.J)) return Trial::worse;
+            point_ = next;
+            cost_ = there;
+            residuals_ = std::move(residuals);
+            search_.keep(point_, cost_);
+            return Trial::better;
+        }
+
+    private:
+        static Eigen::Map<const Eigen::VectorXd> column(const std::vector<double>& values) {
+            return {values.data(), Eigen::Index(values.size())};
+        }
+        Cost cost_at(const SettingsPoint& point, std::vector<double>& residuals) const {
+            const Criterion& criterion = search_.criterion_;
+            return criterion.cost(controller_at(criterion.problem(), point), kSearchTolerance, search_.control_.stop,
+                                  residuals);
+        }
+
+        // The damped step inside the bounds.
+        SettingsPoint stepped(double damping) const {
+            const auto n = Eigen::Index(point_.size());
+            optimise::SmallProgram program(n, 2 * n);
+            program.H = optimise::damped(H_, damping, kDamping);
+            program.g = g_;
+            const Bounds& bounds = search_.bounds_;
+            for (Eigen::Index i = 0; i < n; ++i) {
+                const auto k = std::size_t(i);
+                const auto unit = optimise::SmallProgram::Vector::Unit(n, i);
+                program.add(unit, std::clamp((bounds.high[k] - point_[k]) / size_[k], 0.0, kMaxPolishStep));
+                program.add(-unit, std::clamp((point_[k] - bounds.low[k]) / size_[k], 0.0, kMaxPolishStep));
+            }
+            SettingsPoint next = point_;
+            if (const auto step = solve(program))
+                for (std::size_t i = 0; i < next.size(); ++i) next[i] += step->x[Eigen::Index(i)] * size_[i];
+            return clipped(next, bounds);
+        }
+
+        // What the step should gain, relative to J.
+        double expected_fall(const SettingsPoint& to) const {
+            optimise::SmallProgram::Vector d(g_.size());
+            for (std::size_t i = 0; i < to.size(); ++i) d[Eigen::Index(i)] = (to[i] - point_[i]) / size_[i];
+            return -(2 * g_.dot(d) + d.dot(H_ * d)) / (cost_.J + kLeastJ);
+        }
+
+        SettingsSearch& search_;
+        SettingsPoint point_;
+        Cost cost_;
+        std::vector<double> residuals_, size_;
+        optimise::SmallProgram::Matrix H_;  // J'J of the residuals' derivatives
+        optimise::SmallProgram::Vector g_;  // J'r
+        bool flat_ = false;
     };
-
-    std::optional<Slope> slope_at(const SettingsPoint& point, const std::vector<double>& residuals) const {
-        const std::size_t n = point.size();
-        std::vector<std::vector<double>> columns(n);
-        Slope slope{sizes_of(point, bounds_), std::vector<double>(n, 0), std::vector<double>(n * n, 0)};
-        for (std::size_t i = 0; i < n; ++i) {
-            SettingsPoint moved = point;
-            moved[i] += kDifference * slope.size[i];
-            if (stopped()) return std::nullopt;
-            const Cost cost = criterion_.cost(controller_at(criterion_.problem(), moved), kSearchTolerance,
-                                              control_.stop, columns[i]);
-            if (!cost.ended.empty() || columns[i].size() != residuals.size()) return std::nullopt;
-            for (std::size_t k = 0; k < residuals.size(); ++k)
-                columns[i][k] = (columns[i][k] - residuals[k]) / kDifference;
-        }
-        for (std::size_t i = 0; i < n; ++i) {
-            for (std::size_t k = 0; k < residuals.size(); ++k) slope.g[i] += columns[i][k] * residuals[k];
-            for (std::size_t j = 0; j <= i; ++j) {
-                double sum = 0;
-                for (std::size_t k = 0; k < residuals.size(); ++k) sum += columns[i][k] * columns[j][k];
-                slope.H[i * n + j] = slope.H[j * n + i] = sum;
-            }
-        }
-        return slope;
-    }
-
-    // Levenberg and Marquardt's step inside the box.
-    SettingsPoint stepped(const SettingsPoint& point, const Slope& slope, double damping) const {
-        const std::size_t n = point.size();
-        std::vector<double> H = slope.H, low(n), high(n);
-        for (std::size_t i = 0; i < n; ++i) {
-            H[i * n + i] *= 1 + damping;
-            low[i] = std::min(0.0, std::max((bounds_.low[i] - point[i]) / slope.size[i], -kMaxPolishStep));
-            high[i] = std::max(0.0, std::min((bounds_.high[i] - point[i]) / slope.size[i], kMaxPolishStep));
-        }
-        const std::vector<double> d = best_step_in_box(H, slope.g, low, high);
-        SettingsPoint next = point;
-        for (std::size_t i = 0; i < n; ++i) next[i] += d[i] * slope.size[i];
-        return clipped(next, bounds_);
-    }
-
-    // What the step should gain, relative to J.
-    static double expected_fall(const SettingsPoint& from, const SettingsPoint& to, const Slope& slope, double J) {
-        const std::size_t n = from.size();
-        double fall = 0;
-        for (std::size_t i = 0; i < n; ++i) {
-            const double d = (to[i] - from[i]) / slope.size[i];
-            fall -= 2 * slope.g[i] * d;
-            for (std::size_t j = 0; j < n; ++j) fall -= d * slope.H[i * n + j] * (to[j] - from[j]) / slope.size[j];
-        }
-        return fall / (J + kLeastJ);
-    }
-
-    // Whether it ends where no step promises anything.
-    bool polish(SettingsPoint point) {
-        std::vector<double> residuals, tried;
-        Cost cost =
-            criterion_.cost(controller_at(criterion_.problem(), point), kSearchTolerance, control_.stop, residuals);
-        keep(point, cost);
-        if (!cost.ended.empty()) return false;
-        double damping = kFirstDamping;
-        for (int i = 0; i < kMaxPolishSteps; ++i) {
-            const auto slope = slope_at(point, residuals);
-            if (!slope) return false;
-            for (;;) {
-                if (stopped()) return false;
-                const SettingsPoint next = stepped(point, *slope, damping);
-                const double fall = expected_fall(point, next, *slope, cost.J);
-                if (fall < kFlat) return damping < kConfident;
-                Cost there =
-                    criterion_.cost(controller_at(criterion_.problem(), next), kSearchTolerance, control_.stop, tried);
-                if (there.ended.empty() && there.J < cost.J) {
-                    point = next;
-                    cost = there;
-                    residuals.swap(tried);
-                    keep(point, cost);
-                    damping = std::max(kMinDamping, damping / 10);
-                    break;
-                }
-                damping *= 10;
-                if (damping > kMaxDamping) return false;
-            }
-        }
-        return false;
-    }
 
     void keep(const SettingsPoint& point, const Cost& cost) {
         const double value = criterion_.penalised(cost);

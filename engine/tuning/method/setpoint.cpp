@@ -4,12 +4,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "engine/figure.h"
 #include "engine/loop/loop.h"
 #include "engine/loop/stability.h"
 #include "engine/number_text.h"
+#include "engine/numerics/optimise/line_search.h"
 #include "engine/numerics/sign_change.h"
 #include "engine/tuning/method/setpoint_responses.h"
 
@@ -27,43 +27,11 @@ constexpr int kSections = 26;           // golden ones: leave 4e-6 of the interv
 constexpr double kStepOfPair = 0.05;    // of b: a pair's IAE moves by less than 0.3 % between two
 constexpr double kStepOfWeight = 1e-3;  // of b, over which the IAE shows whether it rises
 
-/// Where a convex function on [0, 1] is least, by golden sections.
-template <class F>
-double least(const F& f) {
-    constexpr double kGolden = 1 / std::numbers::phi;
-    double low = 0, high = 1, a = 1 - kGolden, b = kGolden, fa = f(a), fb = f(b);
-    for (int i = 0; i < kSections; ++i) {
-        if (fa <= fb) {
-            high = b;
-            b = a;
-            fb = fa;
-            a = high - kGolden * (high - low);
-            fa = f(a);
-        } else {
-            low = a;
-            a = b;
-            fa = fb;
-            b = low + kGolden * (high - low);
-            fb = f(b);
-        }
-    }
-    return 0.5 * (low + high);
-}
-
-/// The last x from `good` towards `bad` at which `keeps` holds; not looked for any closer once both ends are `alike`.
-template <class F, class Alike>
-double border(double good, double bad, const F& keeps, const Alike& alike) {
-    for (int i = 0; i < kHalvings && !alike(good, bad); ++i) {
-        const double middle = 0.5 * (good + bad);
-        (keeps(middle) ? good : bad) = middle;
-    }
-    return good;
-}
+double least(const auto& f) { return golden_section(f, 0, 1, kSections); }
 
 double rounded(double b) { return std::round(b * kDigits) / kDigits; }
 double down(double b) { return std::floor(b * kDigits) / kDigits; }
 bool same_digits(double a, double b) { return down(a) == down(b); }
-bool never(double, double) { return false; }
 
 /// The shortest filter that keeps the limit; empty: none that was looked at does. `near`: where the search begins.
 std::optional<double> shortest_filter(const SetpointResponses::Filtered& response, double limit, double near) {
@@ -127,8 +95,8 @@ double best_weight(const SetpointResponses& responses, double limit, double best
     const auto IAE = [&](double b) { return responses.IAE(b); };
     double largest = 1;
     if (!keeps(1)) {
-        largest = down(border(best, 1, keeps, same_digits));
-        if (!keeps(largest)) return border(best, 1, keeps, never);
+        largest = down(bisect({best, 1}, keeps, same_digits, kHalvings).inside);
+        if (!keeps(largest)) return bisect({best, 1}, keeps, kHalvings).inside;
     }
     const double less = largest - kStepOfWeight;
     if (less < 0 || !keeps(less) || IAE(largest) <= IAE(less)) return largest;

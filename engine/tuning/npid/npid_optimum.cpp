@@ -9,7 +9,7 @@
 #include "engine/loop/margins.h"
 #include "engine/loop/stability.h"
 #include "engine/number_text.h"
-#include "engine/numerics/extremum.h"
+#include "engine/numerics/optimise/direct_search.h"
 #include "engine/simulation/linear/indices.h"
 #include "engine/simulation/linear/linear_response.h"
 

@@ -8,7 +8,7 @@
 #include "engine/loop/peaks.h"
 #include "engine/loop/stability.h"
 #include "engine/number_text.h"
-#include "engine/numerics/extremum.h"
+#include "engine/numerics/optimise/line_search.h"
 #include "engine/numerics/sign_change.h"
 #include "engine/simulation/linear/indices.h"
 #include "engine/simulation/linear/linear_response.h"
@@ -25,20 +25,9 @@ constexpr int kPointsPerDecade = 60;                  // of the sweep that finds
 // That sweep's ends, times 1/T or 1/L: no Ms of a PID of the branch peaks beyond them.
 constexpr double kLowestSwept = 0.03, kHighestSwept = 300;
 constexpr double kShortestSwept = 1e-3;  // of L/T: a shorter dead time shows nothing more
-constexpr int kMaxHalvings = 60;         // of ln lambda: more than its digits
 constexpr double kLeastFilter = 0.01;    // of Td: a linear fraction's filter time
 constexpr double kOpenEnd = 1e-9;        // relative: where the admissible range excludes its end
 constexpr double kFirstStep = 1e-4;      // relative, from the sweep's answer to a bracket of the true one
-
-/// Where `holds` ends between a point at which it does and one at which it does not.
-double boundary(const std::function<bool(double)>& holds, double inside, double outside,
-                double accuracy = kRootTolerance) {
-    for (int i = 0; i < kMaxHalvings && std::abs(inside / outside - 1) > accuracy; ++i) {
-        const double middle = std::sqrt(inside * outside);
-        (holds(middle) ? inside : outside) = middle;
-    }
-    return inside;
-}
 
 LinearPlant scaled_plant(const Fopdt& model) { return *LinearPlant::make(Fopdt{1, 1, model.L / model.T}); }
 
@@ -72,8 +61,9 @@ void RimcBranch::find_admissible() {
     double low = 1, high = 1;  // lambda = tau always is
     while (low > kSmallest && admissible(low * 0.9)) low *= 0.9;
     while (high < kLargest && admissible(high * 1.05)) high *= 1.05;
-    scaled_admissible_.low = low > kSmallest ? boundary(admissible, low, low * 0.9) : 0;
-    scaled_admissible_.high = high < kLargest ? boundary(admissible, high, high * 1.05) : high;
+    scaled_admissible_.low = low > kSmallest ? log_bisect({low, low * 0.9}, admissible, kRootTolerance).inside : 0;
+    scaled_admissible_.high =
+        high < kLargest ? log_bisect({high, high * 1.05}, admissible, kRootTolerance).inside : high;
 }
 
 // Least |1 + L| over a fixed set of frequencies, with a parabola through the lowest three: quick, and close enough to
@@ -132,12 +122,13 @@ void RimcBranch::find_stability_limit() {
         const auto settings = pid(x);
         return settings && settings->filter.Tf >= kLeastFilter * settings->Td;
     };
-    if (filter_.linear_fraction && filtered(low) && !filtered(lowest)) lowest = boundary(filtered, low, lowest);
+    if (filter_.linear_fraction && filtered(low) && !filtered(lowest))
+        lowest = log_bisect({low, lowest}, filtered, kRootTolerance).inside;
     const auto stable = [&](double x) { return stable_loop(x).has_value(); };
     while (low * kStep > lowest) {
         if (!stable(low * kStep)) {
             has_stability_limit_ = true;
-            low = boundary(stable, low, low * kStep, kLimitAccuracy);
+            low = log_bisect({low, low * kStep}, stable, kLimitAccuracy).inside;
             return;
         }
         low *= kStep;

@@ -9,7 +9,7 @@
 #include "engine/loop/peaks.h"
 #include "engine/loop/stability.h"
 #include "engine/number_text.h"
-#include "engine/numerics/extremum.h"
+#include "engine/numerics/optimise/direct_search.h"
 #include "engine/tuning/limits.h"
 #include "engine/tuning/robust/sqp.h"
 #include "engine/tuning/robust/starts.h"

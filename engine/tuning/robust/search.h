@@ -1,6 +1,20 @@
-// The three searches of a robust design: the default one, and the paper's own in the (Ti, Td) plane, with Kp eliminated
-// by tangency (Nelder-Mead and gridding).
-
+// The searches of a robust design. The default one, `fast`:
+//
+//  1. Scan (Ti, Td) for the largest gain within the limits, each with a stable loop: the usual box, and where it shows
+//     nothing the slow and the close one (starts.h).
+//  2. Start from the cheapest of the points with the least integrated error and of its optimum, which needs no runs
+//     (Garpinger and Hagglund 2008; Hast et al. 2013); sequential quadratic programming from there (sqp.h).
+//  3. PID: a run that ended at a short Td is tried against a PI and against the cheapest point of a long one.
+//  4. PID: further valleys. Under a limit on Mks, from the cheapest point of each Td; with a set-point step, from long
+//     Ti; with a slow zero, from long filters; on a resonant plant, from the wide box's valleys, from an integral alone
+//     and from islands that wider limits show. A rough run shows how deep a valley is; only one that may be the deepest
+//     is followed to its end.
+//  5. The weighted objective: from the optima of its two parts.
+//  6. Where the cost has kinks (set-point steps, resonant plants): simplices from the best, while they win.
+//
+// The cheapest design counts. The others are the paper's own, Nelder-Mead and gridding over (Ti, Td): Kp is eliminated,
+// as the cheapest gain within the limits, at an end of a gap between the forbidden ones (Garpinger and Hagglund 2008,
+// Eq. 6).
 #pragma once
 
 #include <optional>
@@ -16,10 +30,6 @@ std::optional<Found> fast_search(const Sweep& sweep, const DesignProblem& proble
 
 /// Whether a pair of poles is damped so little that designs may lie in several valleys.
 bool is_resonant(const LinearPlant& plant);
-
-/// The cheapest feasible gain for one (Ti, Td), moved onto the limit exactly; empty where no gain is feasible.
-std::optional<Found> best_gain(const Sweep& sweep, const DesignProblem& problem, double Ti, double Td,
-                               double tolerance);
 
 /// Nelder-Mead from a simplex with corners (Ti, Td), (0.4 Ti, Td), (Ti, 0.4 Td) (Garpinger and Hagglund 2008,
 /// section 4.2).

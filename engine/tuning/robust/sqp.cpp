@@ -6,100 +6,84 @@
 
 #include "engine/loop/measured_loop.h"
 #include "engine/loop/stability.h"
-#include "engine/tuning/robust/quadratic_program.h"
+#include "engine/numerics/optimise/quadratic_program.h"
+#include "engine/numerics/optimise/sqp.h"
 
 namespace tunewright::robust {
 namespace {
 
-constexpr double kNear = -0.25;     // constraints below it cannot become active within a step
-constexpr double kAimBelow = 1e-7;  // feasibility is aimed this far inside
-constexpr double kFeasible = 1e-8;  // and accepted with this much slack
+using optimise::SmallProgram;
+using Vector = SmallProgram::Vector;
+using Matrix = SmallProgram::Matrix;
 
-constexpr int kMaxRestoring = 12;           // Newton steps back to the feasible side; three or four are usual
-constexpr double kNearOfRestoring = -0.1;   // constraints below it do not stop a step back
-constexpr double kRestoringRadius = 0.5;    // of a logarithm
-constexpr std::size_t kRestoringPeaks = 6;  // the largest ones, as constraints of a step back
-constexpr double kMinLessGain = 1e-6;       // ln: less gain where the peaks have no common linear way out
-constexpr double kMaxLessGain = 0.3;
-constexpr std::size_t kPeaks = 8;           // the largest ones, as constraints of a step
-constexpr double kFirstCurvature = 0.3;     // of ln(cost) over logarithms, before gradients have shown it
-constexpr double kLeastCurvature = 1e-300;  // of a step whose update would divide by nothing
-constexpr double kPowellDamping = 0.2;      // of s.H s, which s.y keeps at least (Powell 1978)
-constexpr double kSamePeak = 0.3;           // ln omega: a peak that moves further is another one
-constexpr int kSmallStepsToEnd = 2;         // in a row, each within the tolerance of the cost
-constexpr double kEnoughWon = 0.05;         // of what the model promised, for a step to be taken
-constexpr double kMostOfPromise = 5;        // a run rarely wins so many times what its model promises
-constexpr double kMuchWon = 0.7;            // of it, for the trust region to grow
-constexpr double kTellingStep = 1e-3;       // of a logarithm: a curvature from shorter ones is not handed on
-constexpr double kSmallestRadius = 1e-5;    // of a logarithm: nothing is left to win in it
-constexpr double kLargestRadius = 4;        // beyond it the linear models have no common solution at all
-constexpr double kFarRestored = 4;          // radii: what restoring moved further is another design
+/// Of logarithms, where nothing else is said. Those of the iteration are `optimise::SqpConstants`. They were set while
+/// the search was made, on the AMIGO batch and random plants; `bench/robust_batch` shows what a change costs in time,
+/// `bench/robust_search` in designs.
+struct DesignSqpConstants {
+    double near = -0.25;                  ///< constraints below it cannot become active within a step
+    double aim_below = 1e-7;              ///< feasibility is aimed this far inside
+    double feasible = 1e-8;               ///< and accepted with this much slack
+    std::size_t max_peaks = 8;            ///< the largest ones, as constraints of a step
+    int max_restoring_steps = 12;         ///< Newton steps back to the feasible side; three or four are usual
+    double near_of_restoring = -0.1;      ///< constraints below it do not stop a step back
+    double restoring_radius = 0.5;        ///< as the first trust region
+    std::size_t max_restoring_peaks = 6;  ///< the largest ones, as constraints of a step back
+    double gain_per_excess = 1.5;         ///< less gain where the peaks have no common linear way out
+    double min_less_gain = 1e-6;          ///< of ln Kp
+    double max_less_gain = 0.3;           ///< of ln Kp
+    double max_restored_radii = 4;        ///< what restoring moved further is another design
+    int small_steps_to_end = 2;           ///< in a row, each within the tolerance of the cost
+    double max_of_promise = 5;            ///< a run rarely wins so many times what its model promises
+    double telling_step = 1e-3;           ///< a curvature from shorter ones is not handed on
+    double same_peak = 0.3;               ///< ln omega: a peak that moves further is another one
+    double min_radius = 1e-5, max_radius = 1;
+    double hopeless_radius = 4;  ///< beyond it the linear models have no common solution at all
+};
+constexpr DesignSqpConstants k;
+static_assert(k.max_peaks + 6 <= 14, "SmallProgram has room for the peaks and the bounds of three unknowns");
 
-double longest(const Vector3& v) { return v.cwiseAbs().maxCoeff(); }
-Vector3 vector(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
-Vector3 difference(const std::array<double, 3>& a, const std::array<double, 3>& b) { return vector(a) - vector(b); }
-DesignPoint moved(const DesignPoint& x, const Vector3& p) { return {x[0] + p[0], x[1] + p[1], x[2] + p[2]}; }
-
-Matrix3 matrix(const Curvature& curvature) {
-    Matrix3 H;
-    for (std::size_t i = 0; i < 3; ++i) H.row(static_cast<Eigen::Index>(i)) = vector(curvature[i]);
-    return H;
+double longest(const Vector& v) { return v.cwiseAbs().maxCoeff(); }
+Vector vector(const std::array<double, 3>& a, int n) { return Eigen::Map<const Vector>(a.data(), n); }
+Vector difference(const std::array<double, 3>& a, const std::array<double, 3>& b, int n) {
+    return vector(a, n) - vector(b, n);
+}
+DesignPoint moved(DesignPoint x, const Vector& p) {
+    for (Eigen::Index i = 0; i < p.size(); ++i) x[std::size_t(i)] += p[i];
+    return x;
 }
 
-Curvature curvature(const Matrix3& H) {
-    Curvature rows;
-    for (std::size_t i = 0; i < 3; ++i)
-        for (std::size_t j = 0; j < 3; ++j) rows[i][j] = H(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
-    return rows;
-}
-
-/// BFGS on the Lagrangian with Powell's damping: stays positive definite where the constraints' curvature is not.
-void update(Matrix3& H, const Vector3& step, Vector3 y, int n) {
-    const Vector3 Hs = H * step;
-    const double sHs = step.dot(Hs), sy = step.dot(y);
-    if (!(sHs > kLeastCurvature)) return;
-    if (sy < kPowellDamping * sHs) {
-        const double theta = (1 - kPowellDamping) * sHs / (sHs - sy);
-        y = theta * y + (1 - theta) * Hs;
-    }
-    const double scale = step.dot(y);
-    if (!(scale > kLeastCurvature)) return;
-    H.topLeftCorner(n, n) += (y * y.transpose() / scale - Hs * Hs.transpose() / sHs).topLeftCorner(n, n);
-}
-
-/// The peaks' linear models and the trust region, which ends at the bounds of Ti and Td, for a step from x.
-std::vector<LinearConstraint> linearised(const std::vector<ActivePeak>& peaks, const Sweep& sweep, const DesignPoint& x,
-                                         double radius, std::size_t most) {
-    std::vector<LinearConstraint> constraints;
-    for (const auto& peak : peaks) {
-        if (constraints.size() == most) break;
-        constraints.push_back({vector(peak.gradient), -peak.value - kAimBelow});
-    }
+/// The peaks' linear models, the `most` largest ones, and the trust region, which ends at the bounds of Ti and Td, for
+/// a step from x. H and g are those of the shortest step.
+SmallProgram linearised(const std::vector<ActivePeak>& peaks, const Sweep& sweep, const DesignPoint& x, double radius,
+                        std::size_t most) {
+    const int n = sweep.problem().dimension();
+    const std::size_t count = std::min(most, peaks.size());
+    SmallProgram program(n, Eigen::Index(count) + 2 * n);
+    for (std::size_t i = 0; i < count; ++i) program.add(vector(peaks[i].gradient, n), -peaks[i].value - k.aim_below);
     const auto log_time = [&](double in_reference) { return std::log(in_reference / sweep.reference()); };
     const std::array<double, 3> lowest = {-INFINITY, log_time(kMinTi), log_time(kMinTd)};
     const std::array<double, 3> highest = {INFINITY, INFINITY, log_time(kMaxTd)};
-    for (std::size_t i = 0; i < std::size_t(sweep.problem().dimension()); ++i) {
-        const Vector3 up = Vector3::Unit(static_cast<Eigen::Index>(i));
-        constraints.push_back({up, std::clamp(highest[i] - x[i], 0.0, radius)});
-        constraints.push_back({-up, std::clamp(x[i] - lowest[i], 0.0, radius)});
+    for (int i = 0; i < n; ++i) {
+        const Vector up = Vector::Unit(n, i);
+        const auto at = std::size_t(i);
+        program.add(up, std::clamp(highest[at] - x[at], 0.0, radius));
+        program.add(-up, std::clamp(x[at] - lowest[at], 0.0, radius));
     }
-    return constraints;
-}
-
-/// The gradient, at the new point, of the peak that was `old`.
-const std::array<double, 3>& followed(const std::vector<ActivePeak>& peaks, const ActivePeak& old) {
-    const ActivePeak* best = nullptr;
-    for (const auto& peak : peaks)
-        if (peak.kind == old.kind && peak.plant == old.plant &&
-            (best == nullptr ||
-             std::abs(std::log(peak.omega / old.omega)) < std::abs(std::log(best->omega / old.omega))))
-            best = &peak;
-    const bool same =
-        best != nullptr && (best->omega == old.omega || std::abs(std::log(best->omega / old.omega)) < kSamePeak);
-    return same ? best->gradient : old.gradient;
+    return program;
 }
 
 }  // namespace
+
+const ActivePeak* same_peak(const std::vector<ActivePeak>& peaks, const ActivePeak& old) {
+    const ActivePeak* best = nullptr;
+    const auto distance = [&](const ActivePeak& peak) {
+        return peak.omega == old.omega ? 0 : std::abs(std::log(peak.omega / old.omega));
+    };
+    for (const ActivePeak& peak : peaks)
+        if (peak.kind == old.kind && peak.plant == old.plant && (best == nullptr || distance(peak) < distance(*best)))
+            best = &peak;
+    return best != nullptr && distance(*best) < k.same_peak ? best : nullptr;
+}
 
 bool is_stable(const DesignProblem& problem, const DesignPoint& x) {
     const ParallelPid gains = to_parallel(controller_at(problem, x));
@@ -116,31 +100,27 @@ bool is_stable(const DesignProblem& problem, const DesignPoint& x) {
 
 namespace {
 
-/// A design within the limits, and its peaks above kNear.
+/// A design within the limits, and its peaks above `near`.
 struct Restored {
     DesignPoint x;
     std::vector<ActivePeak> peaks;
 };
 
 std::optional<Restored> restored(const Sweep& sweep, DesignPoint x) {
-    const int n = sweep.problem().dimension();
-    for (int k = 0; k < kMaxRestoring; ++k) {
-        auto peaks = sweep.peaks(x, kNear);
-        if (peaks.empty() || peaks[0].value <= -kFeasible / 10) return Restored{x, std::move(peaks)};
+    for (int i = 0; i < k.max_restoring_steps; ++i) {
+        auto peaks = sweep.peaks(x, k.near);
+        if (peaks.empty() || peaks[0].value <= -k.feasible / 10) return Restored{x, std::move(peaks)};
         const auto in_the_way =
-            std::ranges::count_if(peaks, [](const ActivePeak& peak) { return peak.value > kNearOfRestoring; });
-        const auto step = solve_quadratic_program(
-            n, Matrix3::Identity(), Vector3::Zero(),
-            linearised(peaks, sweep, x, kRestoringRadius, std::min(kRestoringPeaks, std::size_t(in_the_way))));
-        if (step) {
-            x = moved(x, step->p);
-        } else {
-            x[0] -=
-                std::clamp(1.5 * peaks[0].value, kMinLessGain, kMaxLessGain);  // no common linear way out: less gain
-        }
+            std::ranges::count_if(peaks, [](const ActivePeak& peak) { return peak.value > k.near_of_restoring; });
+        const auto step = solve(
+            linearised(peaks, sweep, x, k.restoring_radius, std::min(k.max_restoring_peaks, std::size_t(in_the_way))));
+        if (step)
+            x = moved(x, step->x);
+        else
+            x[0] -= std::clamp(k.gain_per_excess * peaks[0].value, k.min_less_gain, k.max_less_gain);
     }
-    auto peaks = sweep.peaks(x, kNear);
-    if (peaks.empty() || peaks[0].value <= kFeasible) return Restored{x, std::move(peaks)};
+    auto peaks = sweep.peaks(x, k.near);
+    if (peaks.empty() || peaks[0].value <= k.feasible) return Restored{x, std::move(peaks)};
     return std::nullopt;
 }
 
@@ -156,74 +136,132 @@ std::optional<DesignPoint> feasible_near(const Sweep& sweep, const DesignPoint& 
     return moved && is_stable(sweep.problem(), *moved) ? moved : std::nullopt;
 }
 
+namespace {
+
+/// As `optimise::minimise` wants it: every state is within the limits, so that its merit is the cost itself.
+class DesignSqp {
+public:
+    struct State {
+        DesignPoint x{};
+        std::vector<ActivePeak> peaks;
+        std::optional<PricedDesign> priced;
+        CostWithGradient cost;
+    };
+    struct Step {
+        Vector p;
+        double promised = 0;  // of ln(cost)
+        SmallProgram::Bounds multipliers;
+    };
+    static constexpr bool kElastic = false;
+
+    DesignSqp(const Sweep& sweep, const DesignProblem& problem, const DesignPoint& start, const SqpOptions& options,
+              const Report& report)
+        : sweep_(sweep), problem_(problem), options_(options), report_(report), n_(problem.dimension()) {
+        if (options.stable_start) last_stable_ = start;
+        H_ = optimise::kSqp.first_curvature * Matrix::Identity(n_, n_);
+        for (int i = 0; options.curvature && i < n_; ++i)
+            H_.row(i) = vector((*options.curvature)[std::size_t(i)], n_).transpose();
+    }
+
+    SqpResult run(const DesignPoint& start) {
+        auto inside = restored(sweep_, start);
+        State here{.x = inside ? inside->x : start, .peaks = {}, .priced = {}, .cost = {}};
+        here.priced.emplace(problem_, here.x, options_.simulation_tolerance);
+        differentiate(here);
+        result_.x = here.x;
+        result_.log_cost = here.cost.value;
+        if (!std::isfinite(here.cost.value)) return result_;
+        here.peaks = inside ? std::move(inside->peaks) : sweep_.peaks(here.x, k.near);
+        const auto end = optimise::minimise(*this, here,
+                                            {.radius = options_.trust_radius,
+                                             .min_radius = k.min_radius,
+                                             .max_radius = k.max_radius,
+                                             .hopeless_radius = k.hopeless_radius},
+                                            options_.max_iterations, options_.cost_tolerance);
+        result_.iterations = end.iterations;
+        result_.converged |= end.converged;
+        return result_;
+    }
+
+    std::optional<Step> step(const State& here, double radius) const {
+        SmallProgram program = linearised(here.peaks, sweep_, here.x, radius, k.max_peaks);
+        program.H = H_;
+        program.g = vector(here.cost.gradient, n_);
+        const auto minimum = solve(program);
+        if (!minimum) return std::nullopt;
+        const Vector& p = minimum->x;
+        return Step{p, -(program.g.dot(p) + 0.5 * p.dot(H_ * p)), minimum->multipliers};
+    }
+
+    double length(const Step& step) const { return longest(step.p); }
+
+    bool worth_trying(const State& here, const Step& step, double radius) const {
+        return !(longest(step.p) < radius && here.cost.value - k.max_of_promise * step.promised > options_.wanted);
+    }
+
+    /// Back to the curved constraints before the cost is asked: a sweep costs a tenth of a simulation.
+    std::optional<State> candidate(const State& here, const Step& step, double radius) {
+        auto inside = restored(sweep_, moved(here.x, step.p));
+        if (!inside || !(longest(difference(inside->x, here.x, n_)) < k.max_restored_radii * radius) ||
+            !stays_stable(inside->x))
+            return std::nullopt;
+        last_stable_ = inside->x;
+        State next{.x = inside->x, .peaks = std::move(inside->peaks), .priced = {}, .cost = {}};
+        next.priced.emplace(problem_, next.x, options_.simulation_tolerance);
+        next.cost.value = next.priced->log_cost();
+        return next;
+    }
+
+    double merit(const State& state) const { return state.cost.value; }
+
+    bool accepted(const State& here, double won) {
+        small_steps_ = won < options_.cost_tolerance ? small_steps_ + 1 : 0;
+        result_.x = here.x;
+        result_.stable = true;
+        result_.log_cost = here.cost.value;
+        result_.converged = small_steps_ >= k.small_steps_to_end;
+        return (!report_ || report_(here.x, here.cost.value)) && !result_.converged;
+    }
+
+    void differentiate(State& state) const { state.cost = state.priced->with_gradient(); }
+
+    void learn(const State& before, const State& here, const Step& step) {
+        Vector y = difference(here.cost.gradient, before.cost.gradient, n_);
+        for (std::size_t i = 0; i < std::min(before.peaks.size(), k.max_peaks); ++i) {
+            const double multiplier = step.multipliers[Eigen::Index(i)];
+            const ActivePeak* same = multiplier > 0 ? same_peak(here.peaks, before.peaks[i]) : nullptr;
+            if (same != nullptr) y += multiplier * difference(same->gradient, before.peaks[i].gradient, n_);
+        }
+        const Vector moved_by = difference(here.x, before.x, n_);
+        optimise::update_curvature(H_, moved_by, y);
+        // From a tiny step gradients' rounding tells more than their change.
+        if (!(longest(moved_by) > k.telling_step)) return;
+        result_.curvature.emplace();
+        for (int i = 0; i < n_; ++i)
+            for (int j = 0; j < n_; ++j) (*result_.curvature)[std::size_t(i)][std::size_t(j)] = H_(i, j);
+    }
+
+private:
+    bool stays_stable(const DesignPoint& x) const {
+        return (last_stable_ && sweep_.stays_stable(*last_stable_, x)) || is_stable(problem_, x);
+    }
+
+    const Sweep& sweep_;
+    const DesignProblem& problem_;
+    const SqpOptions& options_;
+    const Report& report_;
+    int n_;
+    Matrix H_;  // of ln(cost) and the active limits
+    std::optional<DesignPoint> last_stable_;
+    int small_steps_ = 0;
+    SqpResult result_;
+};
+
+}  // namespace
+
 SqpResult minimise(const Sweep& sweep, const DesignProblem& problem, const DesignPoint& start,
                    const SqpOptions& options, const Report& report) {
-    const int n = problem.dimension();
-    SqpResult result;
-    auto here = restored(sweep, start);
-    result.x = here ? here->x : start;
-    CostWithGradient cost = PricedDesign(problem, result.x, options.simulation_tolerance).with_gradient();
-    result.log_cost = cost.value;
-    if (!std::isfinite(cost.value)) return result;
-    std::vector<ActivePeak> peaks = here ? std::move(here->peaks) : sweep.peaks(result.x, kNear);
-    Matrix3 H = options.curvature ? matrix(*options.curvature) : Matrix3(kFirstCurvature * Matrix3::Identity());
-    double radius = options.trust_radius;
-    int small_steps = 0;
-    std::optional<DesignPoint> stable;  // the last design whose loop was seen to be stable
-    if (options.stable_start) stable = start;
-    const auto stays_stable = [&](const DesignPoint& x) {
-        return (stable && sweep.stays_stable(*stable, x)) || is_stable(problem, x);
-    };
-    for (; result.iterations < options.max_iterations; ++result.iterations) {
-        const auto constraints = linearised(peaks, sweep, result.x, radius, kPeaks);
-        const auto step = solve_quadratic_program(n, H, vector(cost.gradient), constraints);
-        if (!step) {
-            radius *= 2;
-            if (radius > kLargestRadius) break;
-            continue;
-        }
-        const double promised = -(vector(cost.gradient).dot(step->p) + 0.5 * step->p.dot(H * step->p));
-        if (promised < options.cost_tolerance) {
-            result.converged = true;
-            break;
-        }
-        if (longest(step->p) < radius && result.log_cost - kMostOfPromise * promised > options.wanted) break;
-        // Back to the curved constraints before the cost is asked: a sweep costs a tenth of a simulation.
-        auto candidate = restored(sweep, moved(result.x, step->p));
-        std::optional<PricedDesign> priced;
-        if (candidate && longest(difference(candidate->x, result.x)) < kFarRestored * radius &&
-            stays_stable(candidate->x)) {
-            stable = candidate->x;
-            priced.emplace(problem, candidate->x, options.simulation_tolerance);
-        }
-        const double won = cost.value - (priced ? priced->log_cost() : INFINITY);
-        if (!(won > kEnoughWon * promised)) {
-            radius = std::min(radius, longest(step->p)) * 0.3;
-            if (radius < kSmallestRadius) break;
-            continue;
-        }
-        if (won > kMuchWon * promised) radius = std::min(2 * radius, 1.0);
-        small_steps = won < options.cost_tolerance ? small_steps + 1 : 0;
-        const DesignPoint before = std::exchange(result.x, candidate->x);
-        result.stable = true;
-        result.log_cost = priced->log_cost();
-        result.converged = small_steps >= kSmallStepsToEnd;
-        if ((report && !report(result.x, result.log_cost)) || result.converged) break;
-        const CostWithGradient next = priced->with_gradient();
-        Vector3 y = difference(next.gradient, cost.gradient);
-        for (std::size_t i = 0; i < std::min(peaks.size(), kPeaks); ++i) {
-            const double lambda = step->multipliers[i];
-            if (lambda == 0) continue;
-            y += lambda * difference(followed(candidate->peaks, peaks[i]), peaks[i].gradient);
-        }
-        const Vector3 moved_by = difference(result.x, before);
-        update(H, moved_by, y, n);
-        // From a tiny step gradients' rounding tells more than their change.
-        if (longest(moved_by) > kTellingStep) result.curvature = curvature(H);
-        cost = next;
-        peaks = std::move(candidate->peaks);
-    }
-    return result;
+    return DesignSqp(sweep, problem, start, options, report).run(start);
 }
 
 }  // namespace tunewright::robust

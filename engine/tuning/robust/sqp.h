@@ -1,5 +1,5 @@
-// Sequential quadratic programming over the logarithms of (Kp, Ti, Td): every iterate is feasible, so it can be stopped
-// at any time.
+// A robust design by sequential quadratic programming (numerics/optimise/sqp.h has its steps) over the logarithms of
+// (Kp, Ti, Td): every iterate is moved back within the limits, so it can be stopped at any time.
 #pragma once
 
 #include <functional>
@@ -41,6 +41,10 @@ SqpResult minimise(const Sweep& sweep, const DesignProblem& problem, const Desig
 /// Moves x to the feasible side by Newton steps on the violated peaks, along the shortest way. The steps aim 1e-7
 /// inside (of a constraint's logarithm); up to 1e-8 outside is accepted. Empty if that does not succeed.
 std::optional<DesignPoint> restore(const Sweep& sweep, DesignPoint x);
+
+/// The peak that `old`, of another design near by, has become: of its kind and plant the nearest, within 0.3 of ln
+/// omega; null where there is none.
+const ActivePeak* same_peak(const std::vector<ActivePeak>& peaks, const ActivePeak& old);
 
 /// Is the loop at x stable, on every plant?
 bool is_stable(const DesignProblem& problem, const DesignPoint& x);

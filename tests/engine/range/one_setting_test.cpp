@@ -7,7 +7,7 @@
 
 #include "engine/loop/peaks.h"
 #include "engine/loop/stability.h"
-#include "engine/numerics/extremum.h"
+#include "engine/numerics/optimise/direct_search.h"
 #include "engine/range/search/places.h"
 #include "engine/tuning/robust/cost.h"
 

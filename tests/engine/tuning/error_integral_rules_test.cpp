@@ -2,7 +2,7 @@
 // they claim.
 #include "engine/loop/loop.h"
 #include "engine/loop/stability.h"
-#include "engine/numerics/extremum.h"
+#include "engine/numerics/optimise/direct_search.h"
 #include "engine/simulation/linear/indices.h"
 #include "engine/simulation/linear/linear_response.h"
 #include "tests/engine/tuning/rule_support.h"

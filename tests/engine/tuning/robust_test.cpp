@@ -8,8 +8,7 @@
 
 #include "engine/evaluation/evaluate.h"
 #include "engine/number_text.h"
-#include "engine/numerics/extremum.h"
-#include "engine/tuning/robust/quadratic_program.h"
+#include "engine/numerics/optimise/direct_search.h"
 #include "engine/tuning/robust/sweep/sweep.h"
 
 namespace tunewright {
@@ -251,25 +250,6 @@ TEST(Robust, SurfaceHasItsLeastValueAtTheDesign) {
         }
     }
     EXPECT_GT(feasible, 50);
-}
-
-TEST(QuadraticProgram, MeetsItsOptimalityConditions) {
-    using namespace robust;
-    const Matrix3 H{{2, 0.3, 0}, {0.3, 1, 0.2}, {0, 0.2, 3}};
-    const Vector3 g = {-1, 2, -3};
-    const std::vector<LinearConstraint> constraints = {
-        {{1, 1, 1}, 0.5}, {{-1, 0, 0}, 0.1}, {{0, 0, 1}, 0.4}, {{0, -1, 0}, 2}};
-    const auto solution = solve_quadratic_program(3, H, g, constraints);
-    ASSERT_TRUE(solution.has_value());
-    Vector3 gradient = g + H * solution->p;
-    for (std::size_t k = 0; k < constraints.size(); ++k) gradient += solution->multipliers[k] * constraints[k].a;
-    EXPECT_NEAR(gradient.norm(), 0, 1e-10);
-    for (std::size_t k = 0; k < constraints.size(); ++k) {
-        const double slack = constraints[k].b - constraints[k].a.dot(solution->p);
-        EXPECT_GE(slack, -1e-9);
-        EXPECT_NEAR(slack * solution->multipliers[k], 0, 1e-9);
-    }
-    EXPECT_FALSE(solve_quadratic_program(1, H, g, {{{1, 0, 0}, -1}, {{-1, 0, 0}, -1}}).has_value());
 }
 
 TEST(LocalMinimum, BothSearchesFindRosenbrocksValley) {

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "engine/tuning/emulation/criterion.h"
-#include "engine/tuning/emulation/problem.h"
+#include "engine/tuning/emulation/emulation_problem.h"
 #include "engine/tuning/robust/quadratic_program.h"
 
 namespace tunewright::emulation {

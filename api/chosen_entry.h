@@ -7,7 +7,7 @@
 #include <variant>
 
 #include "api/json/json.h"
-#include "api/problem.h"
+#include "api/json/problem.h"
 
 namespace tunewright::api {
 

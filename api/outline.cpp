@@ -6,7 +6,6 @@
 #include "api/contract/plant/plant.h"
 #include "api/json/json.h"
 #include "api/json/writer.h"
-#include "api/service.h"
 #include "engine/request/verdict/findings.h"
 
 namespace tunewright::api {

@@ -12,8 +12,8 @@ namespace tunewright::api {
 ///
 /// `plant` is that of the request or of the model found in its record, cut to its type where it is long; the figures
 /// are those of the first entry in the ranking that was tuned, and beside them those of today's settings. A few hundred
-/// bytes, whatever the size of the result. What a failed job's line holds, its error alone, is error_outline() of
-/// service.h: there is no result to write it from, and often no request that could be read.
+/// bytes, whatever the size of the result. What a failed job's line holds, its error alone, is error_outline():
+/// there is no result to write it from, and often no request that could be read.
 class Outline {
 public:
     explicit Outline(const JobRequest& request);
@@ -26,5 +26,8 @@ private:
     std::string units_;  ///< JSON; "" if none
     std::string plant_;  ///< JSON; "" of a record
 };
+
+/// What a list shows of a job that has failed, from its problem's text.
+std::string error_outline(const std::string& problem_json);
 
 }  // namespace tunewright::api

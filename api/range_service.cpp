@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "api/contract/range/range_experiments.h"
 #include "api/contract/range/range_request.h"
 #include "api/contract/range/range_result.h"
 #include "api/describe/body.h"

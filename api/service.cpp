@@ -16,6 +16,7 @@
 #include "api/json/json.h"
 #include "api/outline.h"
 #include "api/range_service.h"
+#include "engine/evaluation/best_so_far.h"
 #include "engine/number_text.h"
 #include "engine/plant/linear/linear_plant.h"
 
@@ -178,8 +179,6 @@ JobOutcome computed(JobRequest request, std::string_view hash, const RunControl&
 }
 
 }  // namespace
-
-Answer refusal(const Problem& problem) { return {problem.status, to_json(problem)}; }
 
 std::variant<PreparedJob, Problem> prepare_job(std::string_view body, const JobLimits& limits) {
     auto parsed = parse(body);

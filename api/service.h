@@ -8,7 +8,8 @@
 #include <vector>
 
 #include "api/contract/terms.h"
-#include "api/problem.h"
+#include "api/json/problem.h"
+#include "api/outcome.h"
 #include "api/shorthand.h"
 #include "engine/progress.h"
 
@@ -38,24 +39,6 @@ struct StoredRequest {
     std::string_view hash;  ///< PreparedJob::request_hash
 };
 
-struct JobOutcome {
-    enum class Status { succeeded, failed, cancelled };
-    Status status = Status::failed;
-    std::string result_json;        ///< of succeeded; of cancelled with a feasible design ("partial": true); else empty
-    std::string error_json;         ///< problem object of failed; else empty
-    std::string method = {};        ///< the method asked for; "several" of more than one; "none" of a request with none
-    std::string outline_json = {};  ///< of a result: what a list shows of it (JobOutline in the document)
-};
-
-/// Status and body of a synchronous call; the media type is problem+json from 400 on.
-struct Answer {
-    int status = 200;
-    std::string body;
-};
-
-/// What a call answers that cannot be done.
-Answer refusal(const Problem& problem);
-
 /// What an operator allows beside the contract.
 struct JobLimits {
     double default_timeout_s = 60;    ///< of a request without timeout_s
@@ -72,16 +55,13 @@ std::variant<PreparedJob, Problem> prepare_range(std::string_view body, const Jo
 /// and stands in the request that is kept. 422 where it has terms that only the batch as a whole can have.
 std::variant<PreparedJob, Problem> prepare_entry(std::string_view body, const JobLimits& limits = {});
 
-/// Runs a prepared request to its end. Never throws for anything in the request.
 /// The request of a result, as a job keeps it, from the text of its file. Problems: those of prepare_job(); 422 where
 /// the result names another.
 std::variant<std::string, Problem> request_of_result(std::string_view result, const std::string& request);
 
+/// Runs a prepared request to its end. Never throws for anything in the request.
 JobOutcome run_job(const PreparedJob& job, const RunControl& control);
 JobOutcome run_job(const StoredRequest& stored, const RunControl& control);
-
-/// What a list shows of a job that has failed, from its problem's text.
-std::string error_outline(const std::string& problem_json);
 
 std::string progress_json(const Progress& progress);
 
@@ -89,7 +69,6 @@ Answer evaluate_call(std::string_view body, const RunControl& control);  ///< PO
 Answer design_call(std::string_view body, const RunControl& control);    ///< POST /v1/design
 Answer frontier_call(std::string_view body, const RunControl& control);  ///< POST /v1/frontier
 Answer identify_call(std::string_view body, const RunControl& control);  ///< POST /v1/identify
-Answer range_call(std::string_view body, const RunControl& control);     ///< POST /v1/range
 
 /// POST /v1/records/preview: of JSON, and of the file itself, in any encoding.
 Answer preview_call(std::string_view body);
@@ -97,23 +76,7 @@ Answer preview_file(std::string_view bytes);
 
 /// The same for a CSV file as it is, in any encoding, without a request around it.
 Answer identify_csv(std::string csv, const CsvRequest& question, const RunControl& control);
-Answer parse_plant_call(std::string_view body);                                   ///< POST /v1/plants/parse
-Answer relay_call(std::string_view body, const RunControl& control);              ///< POST /v1/experiments/relay
-Answer range_experiments_call(std::string_view body, const RunControl& control);  ///< POST /v1/experiments/range
-
-std::string controllers_json();               ///< GET /v1/controllers: products that settings can be converted for
-Answer controller_json(std::string_view id);  ///< GET /v1/controllers/{id}; 404 for none
-/// POST /v1/controllers/{id}/settings, .../schedule and .../controller: what is typed for a controller and for the rows
-/// of a schedule, and what settings are.
-Answer controller_settings_call(std::string_view id, std::string_view body);
-Answer controller_schedule_call(std::string_view id, std::string_view body);
-Answer controller_twin_call(std::string_view id, std::string_view body);
-
-std::string methods_json();               ///< GET /v1/methods
-Answer method_json(std::string_view id);  ///< GET /v1/methods/{id}; 404 for none
-std::string examples_json();              ///< GET /v1/examples
-/// The request of the example with that id, or that number from 1; 404 for none.
-Answer example_request(std::string_view which);
-std::string openapi_json();  ///< GET /openapi.json (OpenAPI 3.1)
+Answer parse_plant_call(std::string_view body);                       ///< POST /v1/plants/parse
+Answer relay_call(std::string_view body, const RunControl& control);  ///< POST /v1/experiments/relay
 
 }  // namespace tunewright::api

@@ -5,6 +5,7 @@
 
 #include "engine/plant/nonlinear/nonlinear_system.h"
 #include "engine/tuning/method/method.h"
+#include "engine/tuning/registry.h"
 #include "tests/engine/plant/nonlinear_plants.h"
 
 namespace tunewright {

@@ -14,6 +14,7 @@
 #include "bench/batch.h"
 #include "engine/loop/peaks.h"
 #include "engine/tuning/method/method.h"
+#include "engine/tuning/registry.h"
 
 namespace tunewright::bench {
 namespace {

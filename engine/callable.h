@@ -1,4 +1,4 @@
-// A function of a known signature with what it captured. Descriptions of options and of the contract hold hundreds of
+// A function of a known signature with what it captured. Descriptions of options hold hundreds of
 // these, each of a type of its own; they cost a third of the compile time of std::function.
 #pragma once
 

@@ -8,7 +8,7 @@ namespace tunewright {
 
 /// Named for what the caller can do next, not for where it happened.
 enum class ErrorKind {
-    invalid_argument,        ///< a value of the request is wrong: mend it (`where` names it)
+    invalid_argument,        ///< a value that was given is wrong: `where` names it
     unsupported,             ///< a valid request that this method or plant cannot serve: choose another
     not_identifiable,        ///< the record does not determine a model
     unstable_plant,          ///< no controller of the asked kind stabilises the plant
@@ -20,7 +20,7 @@ enum class ErrorKind {
     numerical_failure,       ///< the computation could not be finished to its accuracy
 };
 
-/// The kind as the contract spells it in a problem's `type`, e.g. "no-feasible-controller".
+/// The kind's code, e.g. "no-feasible-controller".
 inline const char* to_string(ErrorKind kind) {
     switch (kind) {
         case ErrorKind::invalid_argument: return "invalid-argument";

@@ -1,29 +1,21 @@
-// How long work reports, how it is stopped, and how it is spread. The engine has no clock and no threads: both come
-// from outside.
+// How long work reports, how it is stopped, and how it is spread. The engine starts no thread and reads no clock: both
+// come from outside.
 #pragma once
 
 #include <functional>
-#include <optional>
+#include <memory>
 #include <stop_token>
 #include <string>
 
-#include "engine/controller/pid.h"
-
 namespace tunewright {
 
-/// The best feasible design so far.
-struct BestSoFar {
-    Controller controller;
-    double load_IAE = 0;
-    double Ms = 0;
-    double Mt = 0;
-};
+struct BestSoFar;  // evaluation/best_so_far.h
 
 struct Progress {
-    double fraction = 0;  ///< 0 to 1, never falls within a job
-    std::string stage;    ///< one word for programs: "identify", "tune", "evaluate"
-    std::string message;  ///< one sentence for people
-    std::optional<BestSoFar> best;
+    double fraction = 0;                         ///< 0 to 1, never falls within a job
+    std::string stage;                           ///< one word for programs: "identify", "tune", "evaluate"
+    std::string message;                         ///< one sentence for people
+    std::shared_ptr<const BestSoFar> best = {};  ///< null: no feasible design yet
 };
 
 /// Calls f(0) ... f(n - 1), each once, in any order and perhaps several at once, and returns when all have returned.

@@ -7,8 +7,6 @@
 #include <memory>
 #include <stdexcept>
 
-#include "server/http/app/router.h"
-#include "server/jobs/running/result_outbox.h"
 #include "server/json_text.h"
 #include "server/log_sink.h"
 
@@ -19,35 +17,14 @@ constexpr std::size_t kWaitingLines = 8192;
 bool as_json = false;
 std::shared_ptr<GatheringSink> sink;
 
-/// Probes come every few seconds; only the level debug shows them.
-spdlog::level::level_enum level_of(const http::Answered& answered) {
-    const bool probe = answered.route == "/healthz" || answered.route == "/readyz" || answered.route == "/metrics";
-    if (answered.status >= 500) return spdlog::level::warn;
-    return probe ? spdlog::level::debug : spdlog::level::info;
-}
-
-bool is_word(std::string_view text) {
-    return !text.empty() && std::ranges::all_of(text, [](char c) {
-        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
-    });
-}
-
-/// What was asked for, in quotes, with the names of the parameters alone: a value may be a secret, such as the address
-/// that a batch tells, also where the name before it is spelt in another way.
-std::string shown_target(std::string_view target) {
-    const std::size_t mark = std::min(target.find('?'), target.size());
-    std::string shown(target.substr(0, mark));
-    for (std::size_t at = mark; at < target.size();) {
-        const std::size_t end = std::min(target.find('&', at + 1), target.size());
-        const std::string_view parameter = target.substr(at + 1, end - at - 1);
-        const std::string_view name = parameter.substr(0, std::min(parameter.find('='), parameter.size()));
-        shown += at == mark ? '?' : '&';
-        // Without a value, it may be one.
-        if (name.size() < parameter.size() && is_word(name)) shown.append(name).append("=");
-        if (!parameter.empty()) shown += "...";
-        at = end;
+spdlog::level::level_enum level_of(LogLevel level) {
+    switch (level) {
+        case LogLevel::debug: return spdlog::level::debug;
+        case LogLevel::info: return spdlog::level::info;
+        case LogLevel::warning: return spdlog::level::warn;
+        case LogLevel::error: break;
     }
-    return json_string(shown);
+    return spdlog::level::err;
 }
 
 void log_message(spdlog::level::level_enum level, std::string_view message) {
@@ -82,42 +59,16 @@ void stop_log() {
 
 std::size_t dropped_log_lines() { return sink ? sink->dropped() : 0; }
 
+bool log_is_json() { return as_json; }
+
+bool logs(LogLevel level) { return spdlog::should_log(level_of(level)); }
+
+void log_line(LogLevel level, std::string_view line) { spdlog::log(level_of(level), "{}", line); }
+
 void log_info(std::string_view message) { log_message(spdlog::level::info, message); }
 
 void log_warning(std::string_view message) { log_message(spdlog::level::warn, message); }
 
 void log_error(std::string_view message) { log_message(spdlog::level::err, message); }
-
-void log_answer(const http::Answered& answered) {
-    const auto level = level_of(answered);
-    if (!spdlog::should_log(level)) return;
-    const double ms = static_cast<double>(answered.duration.count()) * 1e-3;
-    const std::string target = shown_target(answered.target);
-    if (as_json)
-        spdlog::log(
-            level,
-            R"("event":"request","id":{},"method":{},"target":{},"status":{},"ms":{:.2f},"bytes":{},"client":{},"traceparent":"{}")",
-            json_string(answered.request_id), json_string(answered.method), target, answered.status, ms, answered.bytes,
-            json_string(answered.client), answered.traceparent);
-    else
-        spdlog::log(level, "request {} {} {} {} {:.2f} ms, {} bytes to {}", answered.request_id, answered.method,
-                    target, answered.status, ms, answered.bytes, answered.client);
-}
-
-void log_job(const Ended& ended) {
-    const JobEnd& end = ended.end;
-    const JobRecord& job = ended.held->job;
-    const double ms = ended.seconds * 1e3;
-    if (as_json)
-        spdlog::info(
-            R"("event":"job","id":"{}","status":"{}","ms":{:.2f},"attempts":{},"method":{},"owner":{},"batch":"{}",)"
-            R"("request_id":{},"traceparent":"{}")",
-            end.id, to_string(end.status), ms, end.attempts, json_string(ended.method), json_string(job.owner),
-            job.batch, json_string(job.request_id), job.traceparent);
-    else
-        spdlog::info("job {} {} after {:.2f} ms, attempt {}{}{}{}", end.id, to_string(end.status), ms, end.attempts,
-                     job.owner.empty() ? "" : ", of " + job.owner, job.batch.empty() ? "" : ", batch " + job.batch,
-                     job.request_id.empty() ? "" : ", request " + job.request_id);
-}
 
 }  // namespace tunewright::server

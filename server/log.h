@@ -1,17 +1,12 @@
-// One line for each request and each job, on standard error, as text or as JSON; gathered and written by a thread of
-// its own, so that a slow reader of the log never holds up an answer (the oldest of 8192 waiting lines are dropped
-// instead). Every function may be called from any thread.
+// The log: lines on standard error, as text or as JSON, gathered and written by a thread of its own, so that a slow
+// reader of the log never holds up an answer (the oldest of 8192 waiting lines are dropped instead). Every function may
+// be called from any thread.
 #pragma once
 
 #include <string>
 #include <string_view>
 
 namespace tunewright::server {
-
-namespace http {
-struct Answered;
-}
-struct Ended;
 
 /// Format: text or json. Level: debug, info, warn, error, off. Throws std::invalid_argument for others.
 void start_log(const std::string& format, const std::string& level);
@@ -27,10 +22,15 @@ void log_info(std::string_view message);
 void log_warning(std::string_view message);
 /// The same for what its operator has to look after.
 void log_error(std::string_view message);
-/// One answered request: at the level warn where the status is 500 or more, debug for probes (/healthz, /readyz,
-/// /metrics), info otherwise.
-void log_answer(const http::Answered& answered);
-/// One job that a worker has ended.
-void log_job(const Ended& ended);
+
+// ---- for events with fields of their own (http/app/answer_log.h, jobs/job_log.h)
+
+enum class LogLevel { debug, info, warning, error };
+
+/// Whether lines are JSON objects: then `line` of log_line() is their members behind time and level.
+bool log_is_json();
+bool logs(LogLevel level);
+/// A line as it is, behind its time and level.
+void log_line(LogLevel level, std::string_view line);
 
 }  // namespace tunewright::server

@@ -12,12 +12,13 @@
 
 #include "server/access/gate.h"
 #include "server/clock.h"
-#include "server/executor.h"
+#include "server/http/app/answer_log.h"
 #include "server/http/app/problems.h"
 #include "server/http/app/router.h"
 #include "server/http/app/static_files.h"
 #include "server/http/guard/server.h"
 #include "server/jobs/batch/batches.h"
+#include "server/jobs/job_log.h"
 #include "server/jobs/service.h"
 #include "server/lobby.h"
 #include "server/log.h"
@@ -27,8 +28,10 @@
 #include "server/routes/job_json.h"
 #include "server/routes/request_checks.h"
 #include "server/routes/routes.h"
-#include "server/spare_cores.h"
+#include "server/store/metered_store.h"
 #include "server/store/open_store.h"
+#include "server/threads/executor.h"
+#include "server/threads/spare_cores.h"
 
 namespace tunewright::server {
 namespace {
@@ -244,7 +247,7 @@ private:
         if (parse_role(config_.role) != Role::worker) add_public_routes();
         router_.observe([this](const http::Answered& answered) {
             metrics_.count(answered);
-            log_answer(answered);
+            http::log_answer(answered);
         });
     }
 
@@ -296,7 +299,7 @@ private:
         answered.traceparent = request.traceparent;
         answered.status = status;
         metrics_.count(answered);
-        log_answer(answered);
+        http::log_answer(answered);
         http::Response response = http::problem_response(status, detail);
         for (const auto& [name, value] : request.answer_headers) response.set(name, value);
         http::add_common_headers(response);

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "api/problem.h"
+#include "api/json/problem.h"
 
 namespace tunewright::api {
 

@@ -3,7 +3,7 @@
 #include <array>
 
 #include "api/contract/record.h"
-#include "api/csv/writer.h"
+#include "api/csv/csv_writer.h"
 #include "api/json/json.h"
 #include "api/json/writer.h"
 

@@ -9,7 +9,7 @@
 #include "api/csv/cell.h"
 #include "api/csv/columns/heading.h"
 #include "api/json/json.h"
-#include "api/problem.h"
+#include "api/json/problem.h"
 
 namespace tunewright::api {
 

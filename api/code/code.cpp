@@ -1,10 +1,30 @@
 #include "api/code/code.h"
 
-#include "api/code/parts.h"
+#include "api/code/parameters.h"
+#include "api/code/provenance.h"
 #include "api/contract/controller.h"
+#include "api/contract/range/range_request.h"
+#include "engine/code/algorithm.h"
+#include "engine/number_text.h"
 
 namespace tunewright::api {
 namespace {
+
+ControllerCode file_of(code::Language language, std::string text) {
+    switch (language) {
+        case code::Language::structured_text: return {"text/plain", "TunewrightPid.st", std::move(text)};
+        case code::Language::c: return {"text/x-c", "tunewright_pid.h", std::move(text)};
+        case code::Language::python: return {"text/x-python", "tunewright_pid.py", std::move(text)};
+    }
+    return {};
+}
+
+ControllerCode printed(const code::Program& program, code::Language language, const code::Provenance& provenance,
+                       const SampleTime& sample_time) {
+    code::Provenance rows = provenance;
+    rows.emplace_back("Sample time", tunewright::text(sample_time.seconds, 6) + " s, " + sample_time.origin);
+    return file_of(language, code::print(program, language, rows));
+}
 
 /// The controller of the entry; a nonlinear one says for which errors it was made.
 Controller controller_of(const Json& entry, Reader& reader) {
@@ -37,6 +57,47 @@ std::variant<ControllerCode, Problem> written_entry(const ChosenEntry& found, co
     const Controller controller = controller_of(found.entry(), reader);
     if (auto problem = reader.problem()) return *std::move(problem);
     return written(found, asked, controller);
+}
+
+/// With its times in seconds, as programs count.
+Schedule schedule_of(const Json& schedule, double unit, Reader& reader) {
+    Schedule read;
+    read.hysteresis = schedule.value("hysteresis", 0.0);
+    const Reader::At at(reader, "interpolation");
+    interpolation_word().read(schedule.at("interpolation"), read.interpolation, reader);
+    for (const Json& row : schedule.at("rows"))
+        read.rows.push_back({.at = row.at("at").get<double>(),
+                             .Kp = row.at("Kp").get<double>(),
+                             .Ti = row.at("Ti").get<double>() * unit,
+                             .Td = row.value("Td", 0.0) * unit,
+                             .Tf = row.value("Tf", 0.0) * unit,
+                             .b = row.value("b", 1.0)});
+    return read;
+}
+
+/// "level in cm".
+std::string named(const Json& scheduling) {
+    const std::string unit = scheduling.value("unit", "");
+    return scheduling.value("name", "") + (unit.empty() ? "" : " in " + unit);
+}
+
+/// The program of the schedule in an answer about a range. May throw Json::exception, as choose_entry.
+std::variant<ControllerCode, Problem> written_schedule(const ChosenEntry& found, const CodeWords& words) {
+    Reader reader;
+    const AskedCode asked = read_asked(words, found, reader);
+    const Json& answer = found.result.at("range");
+    const Schedule schedule = schedule_of(answer.at("schedule"), asked.unit, reader);
+    if (auto problem = reader.problem()) return *std::move(problem);
+    SampledPid law = law_of(asked, {});
+    law.gains = to_parallel(controller_of(code::leading_row(schedule)));  // which are in seconds already
+    const auto sample_time = sample_time_of(asked, found.request, law.gains, answer.at("schedule"));
+    if (const auto* problem = std::get_if<Problem>(&sample_time)) return *problem;
+    law.Ts = std::get<SampleTime>(sample_time).seconds;
+    const auto program =
+        code::scheduled_algorithm(schedule, law, options_of(asked, found.result), named(answer.at("scheduling")));
+    if (!program) return to_problem(program.error());
+    return printed(*program, asked.question.language, provenance_of_schedule(found.result, found.request),
+                   std::get<SampleTime>(sample_time));
 }
 
 Problem no_schedule() {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "api/chosen_entry.h"
-#include "api/problem.h"
+#include "api/json/problem.h"
 
 namespace tunewright::api {
 

@@ -1,4 +1,5 @@
-#include "api/code/parts.h"
+
+#include "api/code/provenance.h"
 
 #include "engine/number_text.h"
 

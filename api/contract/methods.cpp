@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "api/contract/method_options.h"
+#include "engine/tuning/registry.h"
 
 namespace tunewright::api {
 namespace {

@@ -1,10 +1,13 @@
 #include "api/contract/record.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "api/csv/shape/runs.h"
 #include "api/csv/time_stamp.h"
 #include "engine/number_text.h"
+#include "engine/plant/linear/linear_plant.h"
 
 namespace tunewright::api {
 namespace {
@@ -325,6 +328,184 @@ ReadRecord resolve(GivenRecord given, const Units& units, Reader& reader) {
     choose_part(given, out, reader);
     check_disturbances(out.record, true, reader);
     return out;
+}
+
+namespace {
+
+// `rows` ascend. A column that the record does not have stays empty.
+template <class T>
+void keep(const std::vector<std::size_t>& rows, std::vector<T>& column) {
+    if (column.empty()) return;
+    for (std::size_t k = 0; k < rows.size(); ++k) column[k] = column[rows[k]];
+    column.resize(rows.size());
+}
+
+// The row whose value of `column` holds at the time `from`; empty where none before it has a number.
+std::optional<std::size_t> row_held(const std::vector<double>& t, const std::vector<double>& column, double from) {
+    std::optional<std::size_t> last;
+    for (std::size_t i = 0; i < column.size(); ++i)
+        if (t[i] < from && !std::isnan(column[i]) && (!last || t[i] >= t[*last])) last = i;
+    return last;
+}
+
+// u and the disturbances hold where a cell is blank, also from rows that are left out.
+void hold_from_before(double from, std::size_t first, Record& record) {
+    std::vector<std::vector<double>*> columns = {&record.u};
+    for (FurtherInput& input : record.d) columns.push_back(&input.values);
+    for (std::vector<double>* column : columns) {
+        if (!std::isnan((*column)[first])) continue;
+        if (const auto row = row_held(record.t, *column, from)) (*column)[first] = (*column)[*row];
+    }
+}
+
+// u_step and u0 speak of the time before the file's first sample, which `from` leaves out. True if that is reported.
+bool left_out_by_from(const GivenRecord& given, const ReadRecord& read, double from, Reader& reader) {
+    const auto held = row_held(read.record.t, read.record.u, from);
+    if (!held) return false;
+    const std::string rows = "the rows before " + tunewright::text(from) + ", which from leaves out";
+    if (given.u_step) {
+        reader.fault_at(
+            "from", "u steps at the first row by u_step, among " + rows + ". Leave from out, or give u as a column.");
+        return true;
+    }
+    const double u = read.record.u[*held];
+    if (!given.u0 || *given.u0 == u) return false;
+    reader.fault_at("u0", "u0 is " + tunewright::text(*given.u0) + " and u is " + tunewright::text(u) +
+                              " at the end of " + rows + ". Leave u0 out.");
+    return true;
+}
+
+}  // namespace
+
+void choose_part(const GivenRecord& given, ReadRecord& read, Reader& reader) {
+    if (!given.from && !given.to) return;
+    constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+    const double from = given.from.value_or(-kUnlimited), to = given.to.value_or(kUnlimited);
+    std::vector<std::size_t> rows;
+    for (std::size_t i = 0; i < read.record.t.size(); ++i) {
+        if (const double t = read.record.t[i]; t >= from && t <= to) rows.push_back(i);
+    }
+    if (rows.size() < 2) {
+        const auto [first, last] = std::minmax_element(read.record.t.begin(), read.record.t.end());
+        const std::string extent = read.record.t.empty() ? ""
+                                                         : " It runs from " + tunewright::text(*first) + " to " +
+                                                               tunewright::text(*last) + ".";
+        reader.fault_at(given.from ? "from" : "to", "fewer than 2 samples of the record lie in the part that is used." +
+                                                        extent + " Choose a wider part.");
+        return;
+    }
+    if (left_out_by_from(given, read, from, reader)) return;
+    Record& record = read.record;
+    const auto earliest = std::ranges::min_element(rows, {}, [&](std::size_t row) { return record.t[row]; });
+    hold_from_before(from, *earliest, record);
+    const std::size_t all = record.t.size();
+    keep(rows, record.t);
+    keep(rows, record.u);
+    keep(rows, record.y);
+    keep(rows, record.r);
+    for (FurtherInput& input : record.d) keep(rows, input.values);
+    keep(rows, record.line);
+    read.notes.push_back("Of " + std::to_string(all) + " samples, the " + std::to_string(rows.size()) + " from " +
+                         tunewright::text(record.t.front()) + " to " + tunewright::text(record.t.back()) +
+                         " were used, as asked.");
+}
+
+namespace {
+
+/// True if `d` is a + b x within rounding, with b other than 0, in the rows where both have numbers; NaN repeats the
+/// number before it.
+bool moves_as(const std::vector<double>& d, const std::vector<double>& x) {
+    constexpr double kRounding = 1e-9;  // of the range of d
+    std::vector<std::pair<double, double>> held;
+    double last_d = std::nan(""), last_x = last_d;
+    for (std::size_t i = 0; i < d.size(); ++i) {
+        if (!std::isnan(d[i])) last_d = d[i];
+        if (!std::isnan(x[i])) last_x = x[i];
+        if (!std::isnan(last_d) && !std::isnan(last_x)) held.emplace_back(last_x, last_d);
+    }
+    if (held.empty()) return false;
+    const auto [x0, d0] = held.front();
+    const auto by = [&](auto member) {
+        return std::ranges::max_element(
+            held, {}, [&, first = held.front().*member](const auto& row) { return std::abs(row.*member - first); });
+    };
+    const auto farthest = by(&std::pair<double, double>::first);
+    const double range_x = farthest->first - x0,
+                 range_d = std::abs(by(&std::pair<double, double>::second)->second - d0);
+    if (range_x == 0 || range_d == 0) return false;
+    const double slope = (farthest->second - d0) / range_x;
+    return std::ranges::all_of(held, [&, x0 = x0, d0 = d0](const auto& row) {
+        return std::abs(row.second - d0 - slope * (row.first - x0)) <= kRounding * range_d;
+    });
+}
+
+/// "u", "y" or the name of an earlier disturbance that moves as number `k` does; "" for none.
+std::string twin_of(const Record& record, std::size_t k) {
+    const std::vector<double>& d = record.d[k].values;
+    if (moves_as(d, record.u)) return "u";
+    if (moves_as(d, record.y)) return "y";
+    for (std::size_t i = 0; i < k; ++i)
+        if (moves_as(d, record.d[i].values)) return "\"" + record.d[i].name + "\"";
+    return "";
+}
+
+}  // namespace
+
+void check_disturbances(const Record& record, bool from_csv, Reader& reader) {
+    if (record.d.empty()) return;
+    for (std::size_t k = 0; k < record.d.size(); ++k) {
+        if (record.d[k].values.size() != record.u.size() || record.y.size() != record.u.size()) return;
+        const std::string twin = twin_of(record, k);
+        if (twin.empty()) continue;
+        reader.fault_below((from_csv ? "columns/d/" : "d/") + std::to_string(k), 0,
+                           "\"" + record.d[k].name + "\" moves as " + twin +
+                               " does in every row: what each of them does to y cannot be separated. Leave it out.");
+    }
+}
+
+namespace {
+
+/// Seconds that nothing names, and a plant that takes more than a day, as of milliseconds, or less than a thousandth of
+/// a second, as of days.
+void ask_for_unit(IdentifiedModel& model) {
+    constexpr double kDay = 86400, kShort = 1e-3;
+    const auto plant = LinearPlant::make(model.plant);
+    if (!plant) return;
+    const double total = plant->time_scale();
+    const bool slow = total > kDay;
+    if (!slow && !(total > 0 && total < kShort)) return;
+    model.warnings.insert(
+        model.warnings.begin(),
+        {"time-unit-doubtful",
+         (slow ? "The plant comes out slower than a day: its lags and dead time add up to " +
+                     tunewright::text(total / kDay, 3) + " days"
+               : "The plant comes out quicker than a millisecond: its lags and dead time add up to " +
+                     tunewright::text(total, 3) + " s") +
+             ", because the times were taken as seconds; nothing in the file names their unit. If they are " +
+             (slow ? "milliseconds, choose ms" : "days, as spreadsheets count, choose d") +
+             " as the unit of the times."});
+}
+
+}  // namespace
+
+void add_reading(const ReadRecord& read, IdentifiedModel& model) {
+    DataQuality& quality = model.data_quality;
+    quality.time_unit_assumed = !read.time_unit_known;
+    if (!read.time_unit_known) ask_for_unit(model);
+    if (!read.unread.empty()) model.warnings.push_back({"lines-left-out", read.unread});
+    if (!read.unread_column.empty()) model.warnings.push_back({"column-left-out", read.unread_column});
+    quality.samples_dropped += read.dropped;
+    quality.notes.insert(quality.notes.begin(), read.notes.begin(), read.notes.end());
+    if (read.dropped > 0)
+        quality.notes.push_back(std::to_string(read.dropped) +
+                                " line(s) of the csv that cannot be read, or without a time, or with neither u nor y, "
+                                "were left out.");
+}
+
+void leave_out_traces(const IdentifyQuestion& question, IdentifiedModel& model) {
+    if (question.traces) return;
+    model.fit = {};
+    for (Candidate& candidate : model.candidates) candidate.y_model.clear();
 }
 
 }  // namespace tunewright::api

@@ -1,7 +1,7 @@
 // Recorded tests of the contract: arrays or CSV text.
 #pragma once
 
-#include "api/csv/record.h"
+#include "api/csv/csv_record.h"
 #include "api/describe/description.h"
 #include "engine/identification/identify.h"
 #include "engine/request/verdict/finding.h"

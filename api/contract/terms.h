@@ -9,7 +9,7 @@
 #include <string_view>
 #include <variant>
 
-#include "api/problem.h"
+#include "api/json/problem.h"
 
 namespace tunewright::api {
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "api/csv/record.h"
+#include "api/csv/csv_record.h"
 
 namespace tunewright::api {
 

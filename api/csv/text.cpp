@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "api/json/json.h"
+#include "api/json/utf8.h"
 
 namespace tunewright::api {
 namespace {

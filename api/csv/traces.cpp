@@ -4,7 +4,7 @@
 #include <map>
 #include <vector>
 
-#include "api/csv/writer.h"
+#include "api/csv/csv_writer.h"
 #include "api/json/json.h"
 
 namespace tunewright::api {

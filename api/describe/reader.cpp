@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "api/json/json.h"
+#include "api/json/utf8.h"
 
 namespace tunewright::api {
 

@@ -1,10 +1,11 @@
+#include "api/examples/examples.h"
+
 #include <vector>
 
 #include "api/contract/range/range_request.h"
 #include "api/describe/suggest.h"
 #include "api/embed/files.h"
 #include "api/json/json.h"
-#include "api/service.h"
 
 namespace tunewright::api {
 namespace {

@@ -1,8 +1,9 @@
-#include "api/formula/notation.h"
+#include "api/formula/method_mathml.h"
 
 #include <algorithm>
 
 #include "api/formula/elements.h"
+#include "api/formula/notation.h"
 #include "api/formula/tokens.h"
 
 namespace tunewright::api {

@@ -1,8 +1,14 @@
 #include "api/json/json.h"
 
+#include <rapidjson/error/error.h>
+#include <rapidjson/reader.h>
 #include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
 #include <vector>
 
+#include "api/json/utf8.h"
 #include "api/json/writer.h"
 
 namespace tunewright::api {
@@ -130,6 +136,343 @@ std::string pointer_segment(std::string_view name) {
             out += c;
     }
     return out;
+}
+
+namespace {
+
+Problem refused(std::string pointer, std::string detail) {
+    Problem problem{422, "invalid-request", "The request is not valid", detail, {}, {}};
+    problem.errors.push_back({std::move(pointer), std::move(detail)});
+    return problem;
+}
+
+template <class Integer>
+std::optional<Integer> whole_number(std::string_view token) {
+    Integer value{};
+    const auto [end, fault] = std::from_chars(token.data(), token.data() + token.size(), value);
+    if (fault != std::errc{} || end != token.data() + token.size()) return std::nullopt;
+    return value;
+}
+
+// Infinity for what no double holds; what is too small is 0, or the nearest that there is.
+double nearest_double(std::string_view token) {
+    double value = 0;
+    const auto [end, fault] = std::from_chars(token.data(), token.data() + token.size(), value);
+    if (fault == std::errc{}) return value;
+    // That function does not say on which side a number leaves the range.
+    return std::strtod(std::string(token).c_str(), nullptr);
+}
+
+std::string place(std::string_view text, std::size_t position) {
+    const std::string_view before = text.substr(0, position);
+    const auto line = 1 + std::count(before.begin(), before.end(), '\n');
+    const std::size_t start = before.rfind('\n') == before.npos ? 0 : before.rfind('\n') + 1;
+    return "line " + std::to_string(line) + ", column " + std::to_string(before.size() - start + 1);
+}
+
+// Builds the tree from the reader's events. The names of its functions are the reader's.
+class TreeBuilder : public rapidjson::BaseReaderHandler<rapidjson::UTF8<>, TreeBuilder> {
+public:
+    explicit TreeBuilder(std::string_view text) : text_(text) {}
+
+    bool Null() { return add(nullptr); }
+    bool Bool(bool value) { return add(value); }
+    bool String(const char* text, rapidjson::SizeType length, bool) {
+        std::string value(text, length);
+        return is_paired(value) && add(std::move(value));
+    }
+    bool StartObject() { return open(Json::object()); }
+    bool StartArray() { return open(Json::array()); }
+    bool EndObject(rapidjson::SizeType) { return close(); }
+    bool EndArray(rapidjson::SizeType) { return close(); }
+
+    bool RawNumber(const char* text, rapidjson::SizeType length, bool) {
+        const std::string_view token(text, length);
+        const auto real = [](char c) { return c == '.' || c == 'e' || c == 'E'; };
+        if (std::none_of(token.begin(), token.end(), real)) {
+            if (const auto whole = whole_number<std::uint64_t>(token)) return add(*whole);
+            if (const auto whole = whole_number<std::int64_t>(token)) return add(*whole);
+        }
+        const double value = nearest_double(token);
+        return std::isinf(value) ? too_large(token) : add(value);
+    }
+
+    bool Key(const char* text, rapidjson::SizeType length, bool) {
+        const std::string name(text, length);
+        if (!is_paired(name)) return false;
+        Json& object = *stack_.back();
+        if (object.contains(name)) {
+            problem_ = refused(pointer() + "/" + pointer_segment(name),
+                               name + " is given twice in the same object; only one value can hold. Remove one.");
+            return false;
+        }
+        if (object.size() >= kMaxMembers) {
+            problem_ = refused(pointer(), "The object has more than " + std::to_string(kMaxMembers) +
+                                              " members; none of the contract needs so many.");
+            return false;
+        }
+        names_.back() = name;
+        return true;
+    }
+
+    void fault(rapidjson::ParseErrorCode code, std::size_t position) {
+        if (code == rapidjson::kParseErrorTermination) return;  // the builder's own, and already told
+        if (code == rapidjson::kParseErrorNumberTooBig) {
+            too_large(text_.substr(position, text_.find_first_of(" \t\r\n,]}", position) - position));
+        } else if (code == rapidjson::kParseErrorDocumentEmpty && position == text_.size()) {
+            problem_ = not_json(
+                "The body is empty; send a JSON object such as {\"plant\": {\"type\": \"fopdt\", \"K\": 2, \"T\": 10, "
+                "\"L\": 3}}.");
+        } else {
+            problem_ = not_json("The body is not JSON: the text at " + place(text_, position) + " cannot be read" +
+                                hint(position) + ".");
+        }
+    }
+
+    Json take() { return std::move(root_); }
+    const std::optional<Problem>& problem() const { return problem_; }
+
+private:
+    bool too_large(std::string_view number) {
+        problem_ = refused(pointer_of_next(), "The number " + std::string(number.substr(0, 40)) +
+                                                  " is too large; it must fit a double (up to 1.8e308).");
+        return false;
+    }
+
+    // The text is UTF-8: what is not has come from an escape. The reader refuses the first half of a surrogate pair
+    // that stands alone, and takes the second.
+    bool is_paired(std::string_view value) {
+        if (is_utf8(value)) return true;
+        problem_ = not_json("The body is not JSON: a text has \\udc00 to \\udfff without the first half of the pair.");
+        return false;
+    }
+
+    // The spellings that other languages write and JSON does not have.
+    std::string hint(std::size_t position) const {
+        const std::size_t from = position > 12 ? position - 12 : 0;
+        const std::string_view around = text_.substr(from, 24);
+        for (const char* word : {"NaN", "Infinity", "nan", "inf"}) {
+            if (around.find(word) != around.npos)
+                return " (JSON has no NaN or Infinity: leave the field out or write a number)";
+        }
+        if (around.find('\'') != around.npos) return " (texts stand in double quotes)";
+        if (position >= text_.size()) return " (it ends too early: a bracket or quote is not closed)";
+        if (around.find(",}") != around.npos || around.find(",]") != around.npos)
+            return " (no comma after the last element)";
+        return "";
+    }
+
+    template <class Value>
+    Json* place_value(Value&& value) {
+        if (stack_.empty()) {
+            root_ = std::forward<Value>(value);
+            return &root_;
+        }
+        Json& parent = *stack_.back();
+        if (parent.is_array()) return &parent.get_ref<Json::array_t&>().emplace_back(std::forward<Value>(value));
+        auto& members = parent.get_ref<Json::object_t&>();
+        if (members.size() == members.capacity()) grow(members);
+        // The name is known to be new: appending spares the library's search.
+        members.Container::emplace_back(names_.back(), std::forward<Value>(value));
+        return &members.back().second;
+    }
+
+    // Left to itself the library copies all members: pairs with a constant name cannot be moved.
+    static void grow(Json::object_t& members) {
+        Json::object_t larger;
+        larger.reserve(2 * members.size() + 1);
+        for (auto& [name, member] : members) larger.Container::emplace_back(name, std::move(member));
+        members.swap(larger);
+    }
+
+    template <class Value>
+    bool add(Value&& value) {
+        place_value(std::forward<Value>(value));
+        return true;
+    }
+
+    bool open(Json container) {
+        if (stack_.size() >= kMaxDepth) {
+            problem_ = refused(pointer(), "Objects and arrays are nested more than " + std::to_string(kMaxDepth) +
+                                              " deep; the contract needs 6.");
+            return false;
+        }
+        stack_.push_back(place_value(std::move(container)));
+        names_.emplace_back();
+        return true;
+    }
+
+    bool close() {
+        stack_.pop_back();
+        names_.pop_back();
+        return true;
+    }
+
+    std::string pointer() const {
+        std::string path;
+        for (std::size_t i = 0; i + 1 < stack_.size(); ++i) path += "/" + segment(i, 1);
+        return path;
+    }
+
+    std::string pointer_of_next() const {
+        return stack_.empty() ? "" : pointer() + "/" + segment(stack_.size() - 1, 0);
+    }
+
+    // `placed` 1: the element that is open now is already the array's last.
+    std::string segment(std::size_t level, std::size_t placed) const {
+        if (stack_[level]->is_array()) return std::to_string(stack_[level]->size() - placed);
+        return pointer_segment(names_[level]);
+    }
+
+    std::string_view text_;
+    Json root_;
+    std::vector<Json*> stack_;
+    std::vector<std::string> names_;
+    std::optional<Problem> problem_;
+};
+
+}  // namespace
+
+/// Measured: what an element, a member (beside its name), a container and a text of nlohmann::ordered_json take, with
+/// room to grow and what the system's allocator adds.
+std::size_t tree_size(std::string_view text) {
+    constexpr std::size_t element = 32, member = 32, container = 64, string = 64;
+    std::size_t size = 0;
+    bool quoted = false;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        switch (text[i]) {
+            case '"':
+                size += quoted ? 0 : string;
+                quoted = !quoted;
+                break;
+            case '\\': i += quoted ? 1 : 0; break;
+            case ',': size += quoted ? 1 : element; break;
+            case ':': size += quoted ? 1 : member; break;
+            case '{':
+            case '[': size += quoted ? 1 : container; break;
+            default: size += quoted ? 1 : 0;
+        }
+    }
+    return size;
+}
+
+std::variant<Json, Problem> parse(std::string_view text) {
+    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+    if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+    if (tree_size(text) > kMaxTree)
+        return Problem{
+            413,
+            "too-large",
+            "The request is too large",
+            "The JSON holds more values than are accepted in one request (some two million numbers, "
+            "or three hundred thousand small objects). Send a record as CSV, or leave out rows that say nothing new.",
+            {},
+            {}};
+    TreeBuilder builder(text);
+    // The reader's own check reads on behind the end of a text that breaks off within a character.
+    if (const std::size_t valid = valid_utf8(text); valid < text.size()) {
+        builder.fault(rapidjson::kParseErrorStringInvalidEncoding, valid);
+        return *builder.problem();
+    }
+    // The reader takes a zero for the end of its text, and writes strings without their escapes over it.
+    std::string copy(text);
+    rapidjson::InsituStringStream stream(copy.data());
+    rapidjson::Reader reader;
+    constexpr unsigned kFlags = rapidjson::kParseInsituFlag | rapidjson::kParseNumbersAsStringsFlag;
+    const rapidjson::ParseResult result = reader.Parse<kFlags>(stream, builder);
+    if (result.IsError())
+        builder.fault(result.Code(), result.Offset());
+    else if (stream.Tell() < text.size())
+        builder.fault(rapidjson::kParseErrorDocumentRootNotSingular, stream.Tell());
+    if (builder.problem()) return *builder.problem();
+    return builder.take();
+}
+
+namespace {
+
+/// Walks over text that is known to be JSON without white space between its tokens. Of other text it makes something.
+class Walk {
+public:
+    Walk(std::string_view json, std::initializer_list<std::string_view> names) : json_(json), names_(names) {}
+
+    std::string run() {
+        out_.reserve(json_.size());
+        value(true);
+        return std::move(out_);
+    }
+
+private:
+    bool at(char c) const { return at_ < json_.size() && json_[at_] == c; }
+
+    /// The token from `from` to here is passed on, or not.
+    void pass(std::size_t from, bool kept) {
+        if (kept) out_ += json_.substr(from, at_ - from);
+    }
+
+    std::string_view quoted() {
+        const std::size_t from = at_++;
+        while (at_ < json_.size() && json_[at_] != '"') at_ += json_[at_] == '\\' ? 2 : 1;
+        at_ = std::min(at_ + 1, json_.size());
+        return json_.substr(from, at_ - from);
+    }
+
+    void value(bool kept) {
+        if (at('{')) return object(kept);
+        if (at('[')) return array(kept);
+        at_ = std::min(at_, json_.size());
+        const std::size_t from = at_;
+        if (at('"')) {
+            quoted();
+        } else {
+            at_ = std::min(json_.find_first_of(",]}", at_), json_.size());
+        }
+        pass(from, kept);
+    }
+
+    void object(bool kept) {
+        at_++;
+        if (kept) out_ += '{';
+        bool first = true;
+        while (at_ < json_.size() && !at('}')) {
+            if (at(',')) at_++;
+            if (!at('"')) break;
+            const std::string_view name = quoted();
+            if (!at(':')) break;
+            at_++;
+            const bool stays = kept && std::ranges::find(names_, name.substr(1, name.size() - 2)) == names_.end();
+            if (stays) out_.append(first ? "" : ",").append(name).append(":");
+            first = first && !stays;
+            value(stays);
+        }
+        at_++;
+        if (kept) out_ += '}';
+    }
+
+    void array(bool kept) {
+        const std::size_t from = at_++;
+        pass(from, kept);
+        while (at_ < json_.size() && !at(']')) {
+            const std::size_t comma = at_;
+            if (at(',')) at_++;
+            pass(comma, kept);
+            const std::size_t before = at_;
+            value(kept);
+            if (at_ == before) break;
+        }
+        at_++;
+        if (kept) out_ += ']';
+    }
+
+    std::string_view json_;
+    std::initializer_list<std::string_view> names_;
+    std::size_t at_ = 0;
+    std::string out_;
+};
+
+}  // namespace
+
+std::string without_members(std::string_view json, std::initializer_list<std::string_view> names) {
+    return Walk(json, names).run();
 }
 
 }  // namespace tunewright::api

@@ -14,9 +14,9 @@
     template <class>                 \
     nlohmann::json unread(const char* s, std::size_t n)
 #include <nlohmann/json.hpp>
-#undef _json
 
-#include "api/problem.h"
+#include "api/json/problem.h"
+#undef _json
 
 namespace tunewright::api {
 
@@ -48,15 +48,6 @@ std::string indented(std::string_view text);
 /// `json`, an object or an array as compact() or a Writer spells it, without the members of these names, wherever they
 /// stand. Everything else is passed on as it is spelled.
 std::string without_members(std::string_view json, std::initializer_list<std::string_view> names);
-
-/// How many bytes `text` begins with that belong to valid UTF-8 sequences (RFC 3629): overlong forms, surrogates and
-/// what lies above U+10FFFF are not valid, and neither is a sequence that the end cuts off.
-std::size_t valid_utf8(std::string_view text);
-
-inline bool is_utf8(std::string_view text) { return valid_utf8(text) == text.size(); }
-
-/// The first `bytes` of UTF-8, or as many of them as hold whole characters.
-std::string_view whole_characters(std::string_view text, std::size_t bytes);
 
 /// One spelling for equal values: members sorted by name, numbers as the shortest text that gives the same double.
 std::string canonical(const Json& value);

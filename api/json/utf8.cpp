@@ -1,4 +1,4 @@
-#include "api/json/json.h"
+#include "api/json/utf8.h"
 
 #include <cstdint>
 #include <cstring>

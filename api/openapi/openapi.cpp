@@ -1,9 +1,13 @@
+#include "api/openapi/openapi.h"
+
 #include <set>
 #include <string>
 
 #include "api/contract/plant/typed.h"
 #include "api/contract/preview.h"
+#include "api/contract/product/conversion.h"
 #include "api/contract/product/product.h"
+#include "api/contract/range/range_experiments.h"
 #include "api/contract/range/range_request.h"
 #include "api/contract/range/range_result.h"
 #include "api/contract/relay.h"
@@ -13,7 +17,7 @@
 #include "api/contract/result/result.h"
 #include "api/describe/answers.h"
 #include "api/embed/files.h"
-#include "api/service.h"
+#include "api/examples/examples.h"
 
 namespace tunewright::api {
 namespace {

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "api/report/figures.h"
+#include "api/report/sections.h"
 
 namespace tunewright::api {
 namespace {

@@ -1,4 +1,4 @@
-// Numbers, tables and sections of the report. A figure carries the place of its value in the result, so that what is
+// Numbers and tables of the report. A figure carries the place of its value in the result, so that what is
 // printed can be compared with what was computed.
 #pragma once
 
@@ -9,9 +9,7 @@
 
 #include "api/json/json.h"
 #include "api/report/html.h"
-#include "api/report/plot.h"
-#include "api/report/subject.h"
-#include "engine/controller/product/product.h"
+#include "api/report/report_subject.h"
 
 namespace tunewright::api {
 
@@ -45,27 +43,5 @@ Html section(const char* title, const Html& inside);
 std::string unit_quotient(const std::string& above, const std::string& below);
 /// "Ti (s)"
 std::string with_unit(const std::string& name, const std::string& unit);
-
-Html verdict_section(const ReportSubject& subject);
-/// "Emerson DeltaV PID, FORM Series"; a maker after whom the product is named is not said twice.
-std::string product_title(const product::Product& product);
-/// The same of the user's own controller, as the request names it; "" where it does not.
-std::string controller_words(const ReportSubject& subject);
-/// From today's settings to the new ones, with the ranges that they rest on.
-Html settings_section(const ReportSubject& subject);
-/// New and today's settings in the ideal, parallel and series forms.
-Html forms_section(const ReportSubject& subject);
-Html figures_section(const ReportSubject& subject);
-/// Set-point and load step, y and u of each.
-std::vector<Plot> response_plots(const ReportSubject& subject);
-Html responses_section(const ReportSubject& subject);
-Html robustness_section(const ReportSubject& subject);
-Html plant_section(const ReportSubject& subject);
-Html method_section(const ReportSubject& subject);
-Html assumptions_section(const ReportSubject& subject);
-/// All that a report says of an operating range but its head and its request.
-Html range_sections(const ReportSubject& subject);
-/// The request whole, as a file to take out, as text and as a command. `origin`: of the service.
-Html request_section(const Json& request, const std::string& origin);
 
 }  // namespace tunewright::api

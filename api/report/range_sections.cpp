@@ -4,6 +4,7 @@
 
 #include "api/report/figures.h"
 #include "api/report/plot.h"
+#include "api/report/sections.h"
 
 namespace tunewright::api {
 namespace {

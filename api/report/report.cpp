@@ -3,6 +3,7 @@
 #include "api/embed/files.h"
 #include "api/json/digest.h"
 #include "api/report/figures.h"
+#include "api/report/sections.h"
 #include "engine/number_text.h"
 
 namespace tunewright::api {

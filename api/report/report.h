@@ -9,7 +9,7 @@
 #include <variant>
 
 #include "api/chosen_entry.h"
-#include "api/problem.h"
+#include "api/json/problem.h"
 
 namespace tunewright::api {
 

@@ -3,7 +3,9 @@
 
 #include "api/json/digest.h"
 #include "api/json/json.h"
+#include "api/json/utf8.h"
 #include "api/report/figures.h"
+#include "api/report/sections.h"
 
 namespace tunewright::api {
 namespace {

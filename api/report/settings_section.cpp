@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "api/report/figures.h"
+#include "api/report/sections.h"
 #include "engine/controller/product/catalogue.h"
 
 namespace tunewright::api {

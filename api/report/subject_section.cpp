@@ -2,9 +2,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "api/contract/plant/mathml.h"
 #include "api/contract/plant/plant.h"
 #include "api/report/figures.h"
 #include "api/report/plot.h"
+#include "api/report/sections.h"
 
 namespace tunewright::api {
 namespace {

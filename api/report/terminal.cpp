@@ -1,12 +1,17 @@
 #include "api/report/terminal.h"
 
 #include <algorithm>
+#include <cmath>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "api/json/json.h"
+#include "api/json/utf8.h"
 #include "api/report/columns.h"
 #include "api/report/figures.h"
+#include "api/report/plot.h"
+#include "api/report/sections.h"
 #include "engine/number_text.h"
 
 namespace tunewright::api {
@@ -203,6 +208,213 @@ std::string problem_text(std::string_view problem) {
         out += "  " + (place.empty() ? "" : place + ": ") + words(fault.value("detail", Json())) + "\n";
     }
     return out;
+}
+
+namespace {
+
+constexpr const char* kUnknownFigure = "-";
+
+std::string shown_figure(const Json& value, int digits = 4) {
+    return value.is_number() ? tunewright::text(value.get<double>(), digits) : kUnknownFigure;
+}
+
+std::string word_at(const Json& value, const char* member) {
+    return value.contains(member) && value.at(member).is_string() ? value.at(member).get<std::string>() : "";
+}
+
+/// The value of a curve at the place of it that lies nearest.
+Json curve_at(const Json& places, const Json& curve, double at) {
+    std::size_t nearest = 0;
+    for (std::size_t i = 1; i < places.size(); ++i)
+        if (std::abs(places[i].get<double>() - at) < std::abs(places[nearest].get<double>() - at)) nearest = i;
+    return nearest < curve.size() ? curve[nearest] : Json();
+}
+
+Json worst_of(const Json& worst, const char* quantity) {
+    for (const Json& place : worst)
+        if (place.at("quantity") == quantity) return place.at("value");
+    return {};
+}
+
+class RangeTable {
+public:
+    RangeTable(const Json& range, const std::string& time) : range_(range) {
+        const Json& scheduling = range.at("scheduling");
+        const std::string unit = word_at(scheduling, "unit");
+        const std::string head = word_at(scheduling, "name") + (unit.empty() ? "" : " (" + unit + ")");
+        columns_ = Columns({"setting", head, "Kp", "Ti (" + time + ")", "Td (" + time + ")", "Ms", "Mt", "IAE/own"}, 1);
+    }
+
+    std::string text() {
+        const Json &one = range_.at("one"), &schedule = range_.at("schedule"), &worst = range_.at("worst");
+        if (one.is_object()) {
+            const Json& pid = one.at("controller");
+            whole("one", pid, worst.value("one", Json::array()));
+        }
+        if (schedule.is_object()) {
+            for (const Json& row : schedule.at("rows")) add_row(row);
+            whole("schedule", Json::object(), worst.value("schedule", Json::array()));
+        }
+        return columns_.text();
+    }
+
+private:
+    void whole(const char* name, const Json& pid, const Json& worst) {
+        columns_.row({name, "all", shown_figure(pid.value("Kp", Json())), shown_figure(pid.value("Ti", Json())),
+                      shown_figure(pid.value("Td", Json())), shown_figure(worst_of(worst, "Ms")),
+                      shown_figure(worst_of(worst, "Mt")), shown_figure(worst_of(worst, "relative_IAE"))});
+    }
+
+    void add_row(const Json& row) {
+        const Json& curves = range_.at("curves");
+        const Json curve = curves.value("schedule", Json::object());
+        const double at = row.at("at").get<double>();
+        const auto there = [&](const char* name) {
+            return shown_figure(curve_at(curves.at("at"), curve.value(name, Json::array()), at));
+        };
+        columns_.row({"row", shown_figure(row.at("at"), 6), shown_figure(row.at("Kp")), shown_figure(row.at("Ti")),
+                      shown_figure(row.at("Td")), there("Ms"), there("Mt"), there("relative_IAE")});
+    }
+
+    const Json& range_;
+    Columns columns_{{}, 1};
+};
+
+std::string runs_of(const Json& range) {
+    if (!range.contains("runs")) return "";
+    Columns columns({"run", "IAE one", "IAE schedule"}, 1);
+    for (const Json& run : range.at("runs")) {
+        const auto area = [&](const char* which) {
+            return run.contains(which) ? shown_figure(run.at(which).at("IAE")) : std::string(kUnknownFigure);
+        };
+        columns.row({run.at("name").get<std::string>(), area("one"), area("schedule")});
+    }
+    return "\n" + columns.text();
+}
+
+}  // namespace
+
+std::string range_text(std::string_view result) try {
+    const Json value = Json::parse(result);
+    const Json& range = value.at("range");
+    const std::string time = value.contains("units") ? word_at(value.at("units"), "time") : "";
+    std::string out = RangeTable(range, time.empty() ? "s" : time).text() + runs_of(range) + "\n";
+    if (range.contains("verdict")) out += word_at(range.at("verdict"), "text") + "\n";
+    for (const Json& warning : range.at("warnings")) out += "  " + word_at(warning, "detail") + "\n";
+    if (range.contains("why_null"))
+        for (const Json& reason : range.at("why_null")) out += "  " + reason.get<std::string>() + "\n";
+    return out;
+} catch (const Json::exception&) {
+    return std::string(result) + "\n";
+}
+
+namespace {
+
+constexpr int kColumns = 62, kRows = 12;  // letters inside the frame
+constexpr int kAcross = 2, kDown = 4;     // dots of a letter
+constexpr std::size_t kMargin = 9;        // letters left of the frame
+
+class Dots {
+public:
+    void set(int x, int y) {
+        if (x < 0 || y < 0 || x >= kColumns * kAcross || y >= kRows * kDown) return;
+        // Dots 1 to 8 of the letter, in the order of Unicode's bits.
+        constexpr int kBits[kDown][kAcross] = {{0x01, 0x08}, {0x02, 0x10}, {0x04, 0x20}, {0x40, 0x80}};
+        cells_[static_cast<std::size_t>((y / kDown) * kColumns + x / kAcross)] |= kBits[y % kDown][x % kAcross];
+    }
+
+    void line(double x1, double y1, double x2, double y2) {
+        const int steps = 1 + static_cast<int>(std::max(std::abs(x2 - x1), std::abs(y2 - y1)));
+        for (int i = 0; i <= steps; ++i) {
+            const double part = static_cast<double>(i) / steps;
+            set(static_cast<int>(std::lround(x1 + part * (x2 - x1))),
+                static_cast<int>(std::lround(y1 + part * (y2 - y1))));
+        }
+    }
+
+    std::string row(int number) const {
+        std::string out;
+        for (int column = 0; column < kColumns; ++column) {
+            const int code = 0x2800 + cells_[static_cast<std::size_t>(number * kColumns + column)];
+            out += {static_cast<char>(0xE0 | (code >> 12)), static_cast<char>(0x80 | ((code >> 6) & 0x3F)),
+                    static_cast<char>(0x80 | (code & 0x3F))};
+        }
+        return out;
+    }
+
+private:
+    std::vector<int> cells_ = std::vector<int>(static_cast<std::size_t>(kColumns * kRows), 0);
+};
+
+void draw(const Trace& trace, const Frame& frame, Dots& dots) {
+    const double right = kColumns * kAcross - 1, bottom = kRows * kDown - 1;
+    const auto across = [&](double x) { return (x - frame.x.first) / (frame.x.second - frame.x.first) * right; };
+    const auto down = [&](double y) { return (frame.y.second - y) / (frame.y.second - frame.y.first) * bottom; };
+    for (std::size_t i = 1; i < std::min(trace.x.size(), trace.y.size()); ++i) {
+        const double values[] = {trace.x[i - 1], trace.y[i - 1], trace.x[i], trace.y[i]};
+        if (std::all_of(std::begin(values), std::end(values), [](double v) { return std::isfinite(v); }))
+            dots.line(across(values[0]), down(values[1]), across(values[2]), down(values[3]));
+    }
+}
+
+std::string padded(const std::string& text) {
+    return std::string(kMargin - std::min(kMargin, text.size()), ' ') + text;
+}
+
+std::string drawn_in_dots(const Plot& plot, const Frame& frame) {
+    Dots dots;
+    for (const Trace& trace : plot.traces) draw(trace, frame, dots);
+    std::string out = std::string(kMargin + 1, ' ') + plot.title;
+    if (plot.traces.size() > 1)
+        for (std::size_t i = 0; i < plot.traces.size(); ++i) out += (i == 0 ? ": " : ", ") + plot.traces[i].name;
+    out += "\n";
+    for (int row = 0; row < kRows; ++row) {
+        std::string mark;
+        if (row == 0) mark = tunewright::text(frame.y.second, 3);
+        if (row == kRows - 1) mark = tunewright::text(frame.y.first, 3);
+        out += padded(mark) + "│" + dots.row(row) + "\n";
+    }
+    const std::string from = tunewright::text(frame.x.first, 3),
+                      to = tunewright::text(frame.x.second, 4) + "  " + plot.x_label;
+    const std::size_t room =
+        static_cast<std::size_t>(kColumns) - std::min<std::size_t>(kColumns, from.size() + to.size());
+    return out + std::string(kMargin, ' ') + "└" + from + std::string(room, ' ') + to + "\n";
+}
+
+std::variant<std::vector<Plot>, Problem> plots_of(const ResultSource& source, std::string_view index) try {
+    auto chosen = choose_entry(source, index);
+    if (auto* problem = std::get_if<Problem>(&chosen)) return std::move(*problem);
+    auto& found = std::get<ChosenEntry>(chosen);
+    const std::size_t number = index.empty() ? best_proposal(found) : found.index;
+    const Json document = document_of(found);
+    std::vector<Plot> plots = response_plots(subject_of(document, number));
+    std::erase_if(plots, [](const Plot& plot) { return !frame_of(plot); });
+    if (plots.empty())
+        return Problem{422,
+                       "no-traces",
+                       "There is nothing to draw",
+                       "The result has no traces: its request asked for none. Leave evaluate.points out of it.",
+                       {},
+                       {}};
+    return plots;
+} catch (const Json::exception&) {
+    return not_a_result();
+}
+
+}  // namespace
+
+std::variant<std::string, Problem> responses_text(const ResultSource& source, std::string_view index) {
+    auto plots = plots_of(source, index);
+    if (auto* problem = std::get_if<Problem>(&plots)) return std::move(*problem);
+    std::string out;
+    for (const Plot& plot : std::get<std::vector<Plot>>(plots)) out += drawn_in_dots(plot, *frame_of(plot)) + "\n";
+    return out;
+}
+
+std::variant<std::string, Problem> responses_svg(const ResultSource& source, std::string_view index) {
+    auto plots = plots_of(source, index);
+    if (auto* problem = std::get_if<Problem>(&plots)) return std::move(*problem);
+    return svg_file(std::get<std::vector<Plot>>(plots));
 }
 
 }  // namespace tunewright::api

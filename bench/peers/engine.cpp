@@ -19,6 +19,7 @@
 #include "bench/batch.h"
 #include "engine/evaluation/evaluate.h"
 #include "engine/tuning/method/method.h"
+#include "engine/tuning/registry.h"
 
 namespace tunewright::bench {
 namespace {

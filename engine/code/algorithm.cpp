@@ -1,12 +1,16 @@
 #include "engine/code/algorithm.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
+#include <string_view>
+#include <utility>
 
 #include "engine/code/builder.h"
 #include "engine/number_text.h"
 
 namespace tunewright::code {
-
 namespace {
 
 Error invalid(const char* where, const std::string& sentence) { return {ErrorKind::invalid_argument, where, sentence}; }
@@ -60,6 +64,174 @@ Expected<Program> pid_algorithm(const SampledPid& pid, const CodeOptions& option
     if (const auto fault = option_fault(plan)) return *fault;
     Program program = Builder(pid, options).build();
     program.notes = notes(plan);
+    return program;
+}
+
+namespace {
+
+/// Those of a row that the program has, in this order.
+struct FollowedSetting {
+    const char* name;
+    double ScheduleRow::*member;
+};
+constexpr std::array kFollowed = {FollowedSetting{"Kp", &ScheduleRow::Kp}, FollowedSetting{"Ti", &ScheduleRow::Ti},
+                                  FollowedSetting{"Td", &ScheduleRow::Td}, FollowedSetting{"Tf", &ScheduleRow::Tf},
+                                  FollowedSetting{"b", &ScheduleRow::b}};
+
+Expr variable_of(Role role, const char* name) { return Expr(Expression{Type::real, Place{role, name}}); }
+
+/// Puts the settings that the program has in front of its body.
+class Following {
+public:
+    Following(Program& program, const Schedule& schedule) : program_(program), schedule_(schedule) {
+        at_ = declare_input();
+        for (const FollowedSetting& setting : kFollowed) take_over(setting);
+    }
+
+    void add() {
+        body_.push_back(remark("The settings of this call, from the schedule."));
+        schedule_.interpolation == Interpolation::steps ? add_steps() : add_lines();
+        program_.body.insert(program_.body.begin(), body_.begin(), body_.end());
+    }
+
+private:
+    /// Behind the measurement, before what belongs to manual.
+    Expr declare_input() {
+        const Expr input = program_.declare(
+            {.role = Role::input, .name = kSchedulingInput, .comment = "the scheduling variable, as the rows have it"});
+        auto& all = program_.variables;
+        const auto after = std::ranges::find(all, std::string("measurement"), &Declaration::name) + 1;
+        std::rotate(after, all.end() - 1, all.end());
+        return input;
+    }
+
+    /// What was a setting of the user's is memory of the program's now.
+    void take_over(const FollowedSetting& setting) {
+        for (Declaration& known : program_.variables)
+            if (known.name == setting.name && known.role == Role::parameter) {
+                known.role = Role::state;
+                known.comment += ", as of the last call";
+                followed_.push_back(setting);
+            }
+    }
+
+    double value(const FollowedSetting& setting, std::size_t row) const {
+        return std::abs(schedule_.rows[row].*setting.member);
+    }
+
+    Block row_as_it_is(std::size_t row) const {
+        Block block;
+        for (const FollowedSetting& setting : followed_)
+            block.push_back(assign(variable_of(Role::state, setting.name), value(setting, row)));
+        return block;
+    }
+
+    void add_steps() {
+        const double half = 0.5 * schedule_.hysteresis;
+        const Expr row = program_.declare(
+            {.role = Role::state, .type = Type::integer, .name = "schedule_row", .comment = "the row in use, from 0"});
+        const std::size_t count = schedule_.rows.size();
+        for (std::size_t k = 1; k < count; ++k)
+            body_.push_back(
+                when(both(row<whole(int(k)), at_> schedule_.rows[k].at + half), {assign(row, whole(int(k)))}));
+        for (std::size_t k = count - 1; k > 0; --k)
+            body_.push_back(
+                when(both(row >= whole(int(k)), at_ < schedule_.rows[k].at - half), {assign(row, whole(int(k) - 1))}));
+        const Block first = row_as_it_is(0);
+        body_.insert(body_.end(), first.begin(), first.end());
+        for (std::size_t k = 1; k < count; ++k) body_.push_back(when(row >= whole(int(k)), row_as_it_is(k)));
+    }
+
+    void add_lines() {
+        const Block first = row_as_it_is(0);
+        body_.insert(body_.end(), first.begin(), first.end());
+        if (schedule_.rows.size() < 2) return;
+        const Expr share = program_.declare(
+            {.role = Role::local, .name = "share", .comment = "how far on the way to the next row: 0 to 1"});
+        for (std::size_t k = 0; k + 1 < schedule_.rows.size(); ++k) {
+            const double from = schedule_.rows[k].at, to = schedule_.rows[k + 1].at;
+            Block part{assign(share, (at_ - from) / (to - from)), when(share > 1, {assign(share, 1.0)})};
+            for (const FollowedSetting& setting : followed_)
+                part.push_back(assign(variable_of(Role::state, setting.name), between(setting, k, share)));
+            body_.push_back(when(at_ > from, std::move(part)));
+        }
+    }
+
+    Expr between(const FollowedSetting& setting, std::size_t k, const Expr& share) const {
+        const double left = value(setting, k), right = value(setting, k + 1);
+        if (schedule_.interpolation == Interpolation::linear_in_gains && std::string_view(setting.name) == "Ti")
+            return 1 / (Expr(1 / left) + share * Expr(1 / right - 1 / left));
+        return Expr(left) + share * Expr(right - left);
+    }
+
+    Program& program_;
+    const Schedule& schedule_;
+    Expr at_ = 0;
+    std::vector<FollowedSetting> followed_;
+    Block body_;
+};
+
+std::string how(const Schedule& schedule) {
+    switch (schedule.interpolation) {
+        case Interpolation::steps:
+            return "a row's settings hold from its place on; a row is left " + text(0.5 * schedule.hysteresis) +
+                   " beyond its border";
+        case Interpolation::linear_in_gains: return "between rows Kp, 1/Ti, Td, Tf and b are linear";
+        case Interpolation::linear_in_times: return "between rows Kp, Ti, Td, Tf and b are linear";
+    }
+    return {};
+}
+
+/// What the program cannot follow: it has one action, and a filter or none.
+std::optional<Error> row_fault(const Schedule& schedule) {
+    const auto same = [&](auto property) {
+        return std::ranges::all_of(
+            schedule.rows, [&](const ScheduleRow& row) { return property(row) == property(schedule.rows.front()); });
+    };
+    if (!same([](const ScheduleRow& row) { return row.Kp < 0; }))
+        return Error{ErrorKind::unsupported, "rows",
+                     "Kp of the rows changes its sign, and a program has one action. Write one program for each sign."};
+    if (!same([](const ScheduleRow& row) { return row.Tf > 0; }))
+        return Error{ErrorKind::unsupported, "rows",
+                     "Some rows have a filter and others have Tf = 0. Give every row a Tf above 0, or none."};
+    return std::nullopt;
+}
+
+std::string schedule_note(const Schedule& schedule, const std::string& named) {
+    std::string note = "Schedule: each call computes its settings from the input " + std::string(kSchedulingInput) +
+                       ", " + named + "; " + how(schedule) +
+                       ", below the first and above the last row their settings hold. u does not jump because "
+                       "settings move. Rows, times in s:";
+    for (const ScheduleRow& row : schedule.rows)
+        note += " at " + text(row.at, 6) + " Kp " + text(std::abs(row.Kp), 6) + ", Ti " + text(row.Ti, 6) + ", Td " +
+                text(row.Td, 6) + ", Tf " + text(row.Tf, 6) + ", b " + text(row.b, 4) + ";";
+    note.back() = '.';
+    return note;
+}
+
+}  // namespace
+
+const ScheduleRow& leading_row(const Schedule& schedule) {
+    const bool derivative = std::ranges::any_of(schedule.rows, [](const ScheduleRow& row) { return row.Td > 0; });
+    const ScheduleRow* best = nullptr;
+    for (const ScheduleRow& row : schedule.rows)
+        if ((!derivative || row.Td > 0) && (best == nullptr || row.Ti < best->Ti)) best = &row;
+    return *best;
+}
+
+Expected<Program> scheduled_algorithm(const Schedule& schedule, const SampledPid& law, const CodeOptions& options,
+                                      const std::string& named) {
+    if (law.velocity)
+        return Error{ErrorKind::unsupported, "form",
+                     "The velocity form has no integral part that could take over what settings lose when they move. "
+                     "Choose the form position."};
+    if (const auto fault = row_fault(schedule)) return *fault;
+    SampledPid leading = law;
+    leading.gains = to_parallel(controller_of(leading_row(schedule)));
+    auto program = pid_algorithm(leading, options, true);
+    if (!program) return program;
+    Following(*program, schedule).add();
+    program->notes.insert(program->notes.begin(), schedule_note(schedule, named));
     return program;
 }
 

@@ -1,4 +1,4 @@
-// What a controller's program has to compute, decided once from the law and the options.
+// What a controller's program has to compute, decided once from the law and the options, and what its reader is told.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// What controls: the PID law of the contract in its ideal form, with set-point weights and filters.
+// What controls: the PID law in its ideal form, with set-point weights and filters.
 //
 //   u = Kp [ (b r_f - y_f) + (1/Ti) int (r_f - y_f) dt + Td d/dt (c r_f - y_f) ],   r_f = r/(1 + s T)
 //

@@ -1,4 +1,4 @@
-// The time-domain figures of the contract from simulated responses, and the traces that show them.
+// The time-domain figures from simulated responses, and the traces that show them.
 #pragma once
 
 #include <optional>

@@ -13,7 +13,7 @@ namespace tunewright {
 
 namespace {
 
-/// |L| = 1, |L| real and so on, as the contract names them.
+/// |L| = 1, |L| real and so on.
 void store_margins(Robustness& r, const Margins& m) {
     const std::string no_gain_crossover = "|L| never crosses 1.";
     r.gain_margin = finite_or(m.gain_margin, "No higher gain loses stability.");

@@ -392,7 +392,7 @@ Expected<IdentifiedModel> identify(const Record& record, const IdentifyOptions& 
         model =
             model_in_time(std::move(model), identified(counted_down(record), options, control), turned && turned->loop);
     }
-    if (model && control.progress) control.progress({1, "identify", "model found", std::nullopt});
+    if (model && control.progress) control.progress({1, "identify", "model found", nullptr});
     return model;
 }
 

@@ -38,7 +38,7 @@ struct ParameterCovariance {
     std::vector<std::string> names;
     std::vector<std::vector<double>> matrix;
     /// Shares of the ends of the 95 % ellipsoid (PlantRegion::ends) that the record leaves possible, 0 to 1; empty: all
-    /// of it (fit/region_reach.h).
+    /// of it (fit/uncertainty.h).
     std::vector<double> reach = {};
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/evaluation/best_so_far.h"
 #include "engine/loop/measured_loop.h"
 #include "engine/loop/peaks.h"
 #include "engine/loop/stability.h"
@@ -105,7 +106,8 @@ public:
         ++steps_;
         Progress progress{.fraction = 0.3 * (1 - std::pow(0.85, steps_)), .stage = "tune", .message = {}, .best = {}};
         progress.message = "one setting: at worst " + text(std::exp(result.log_price), 3) + " times the own optimum.";
-        progress.best = BestSoFar{setting_at(rules_, x, 1), std::exp(result.log_price), limits_.Ms, limits_.Mt};
+        progress.best = std::make_shared<const BestSoFar>(
+            BestSoFar{setting_at(rules_, x, 1), std::exp(result.log_price), limits_.Ms, limits_.Mt});
         control_.progress(progress);
     }
 

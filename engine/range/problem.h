@@ -8,6 +8,7 @@
 
 #include "engine/controller/schedule/schedule.h"
 #include "engine/plant/plant_family.h"
+#include "engine/tuning/robust/filter_rule.h"
 #include "engine/tuning/robust/robust.h"
 
 namespace tunewright::range {

@@ -22,7 +22,7 @@ enum class ReductionMethod {
     min_itae,  ///< least integrated difference of the step responses: min_error.h
 };
 
-/// The contract's word for it: "auto", "half_rule", "tangent", "123c", "min_ise", "min_iae", "min_itae".
+/// Its name: "auto", "half_rule", "tangent", "123c", "min_ise", "min_iae", "min_itae".
 const char* to_string(ReductionMethod method);
 
 /// The method of a word; automatic for any other.

@@ -1,4 +1,4 @@
-// Controllers that were sent, each judged on the same plant: what `POST /v1/evaluate` answers.
+// Controllers that were given, each evaluated on the same plant.
 #pragma once
 
 #include <optional>

@@ -8,6 +8,7 @@
 #include "engine/number_text.h"
 #include "engine/tuning/limits.h"
 #include "engine/tuning/method/rule.h"
+#include "engine/tuning/registry.h"
 
 namespace tunewright {
 namespace {

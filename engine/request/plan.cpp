@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "engine/tuning/method/rule.h"
+#include "engine/tuning/registry.h"
 
 namespace tunewright {
-
 namespace {
 
 Error unknown_method(const std::string& id, const std::string& where) {

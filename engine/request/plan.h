@@ -10,6 +10,7 @@
 #include "engine/request/entry.h"
 #include "engine/tuning/method/method.h"
 #include "engine/tuning/method/options.h"
+#include "engine/tuning/registry.h"
 
 namespace tunewright {
 

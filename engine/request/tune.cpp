@@ -5,6 +5,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "engine/evaluation/best_so_far.h"
 #include "engine/evaluation/evaluate.h"
 #include "engine/evaluation/evaluation_start.h"
 #include "engine/request/identified_region.h"
@@ -52,7 +53,7 @@ private:
     std::optional<PlantFamily> held_;  // where limits must hold, if that is more than one plant
     std::optional<double> dead_time_std_;
     std::optional<TuningProblem> problem_;  // what methods work on, unless the plant is known by points alone
-    std::optional<BestSoFar> best_;
+    std::shared_ptr<const BestSoFar> best_;
     std::optional<Rows> rows_;
     TuningResult result_;
 };
@@ -122,7 +123,8 @@ void TuningRun::keep_best(const TuningEntry& entry) {
     const auto& [robustness, load] = std::tie(entry.evaluation->robustness, entry.evaluation->performance.load);
     if (!robustness.stable || !load.IAE || !robustness.Ms || *robustness.Ms > request_.evaluate.rank_Ms) return;
     if (best_ && best_->load_IAE <= *load.IAE) return;
-    best_ = BestSoFar{entry.evaluation->controller, *load.IAE, *robustness.Ms, robustness.Mt.value_or(0)};
+    best_ = std::make_shared<const BestSoFar>(
+        BestSoFar{entry.evaluation->controller, *load.IAE, *robustness.Ms, robustness.Mt.value_or(0)});
 }
 
 // Where a rule has no derivative its PID row is its PI row once more.
@@ -147,7 +149,7 @@ public:
         return control;
     }
     void begin(std::size_t row, const std::string& title) {
-        if (run_.control_.progress) report(row, {0, "tune", "Tuning with " + title + ".", std::nullopt});
+        if (run_.control_.progress) report(row, {0, "tune", "Tuning with " + title + ".", nullptr});
     }
     void end(std::size_t row, const MadeRow& made) {
         const std::lock_guard locked(lock_);

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "api/problem.h"
+#include "api/json/problem.h"
 
 namespace tunewright::server {
 

@@ -16,9 +16,9 @@
 
 #include "engine/progress.h"
 #include "server/jobs/outage.h"
-#include "server/jobs/periodic_thread.h"
 #include "server/jobs/running/held.h"
 #include "server/store/archive.h"
+#include "server/threads/periodic_thread.h"
 
 namespace tunewright::server {
 

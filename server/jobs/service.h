@@ -13,7 +13,6 @@
 #include "engine/progress.h"
 #include "server/jobs/followers.h"
 #include "server/jobs/outage.h"
-#include "server/jobs/periodic_thread.h"
 #include "server/jobs/queue_bound.h"
 #include "server/jobs/running/claims.h"
 #include "server/jobs/running/heartbeats.h"
@@ -22,9 +21,10 @@
 #include "server/jobs/running/result_outbox.h"
 #include "server/jobs/running/workers.h"
 #include "server/jobs/sweeper.h"
-#include "server/jobs/timer.h"
 #include "server/jobs/waits.h"
 #include "server/store/store.h"
+#include "server/threads/periodic_thread.h"
+#include "server/threads/timer.h"
 
 namespace tunewright::server {
 

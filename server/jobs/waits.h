@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "server/jobs/timer.h"
 #include "server/store/archive.h"
+#include "server/threads/timer.h"
 
 namespace tunewright::server {
 

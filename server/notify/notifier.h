@@ -12,11 +12,11 @@
 #include <optional>
 #include <string>
 
-#include "server/jobs/periodic_thread.h"
 #include "server/notify/lanes.h"
 #include "server/notify/policy.h"
 #include "server/notify/sender.h"
 #include "server/store/store.h"
+#include "server/threads/periodic_thread.h"
 
 namespace tunewright::server {
 

@@ -4,9 +4,9 @@
 #include <functional>
 #include <string>
 
-#include "server/executor.h"
 #include "server/http/message.h"
 #include "server/jobs/batch/batches.h"
+#include "server/threads/executor.h"
 
 namespace tunewright::server {
 

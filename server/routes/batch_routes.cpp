@@ -2,6 +2,7 @@
 #include <optional>
 
 #include "api/json/json.h"
+#include "api/json/utf8.h"
 #include "server/http/app/negotiation.h"
 #include "server/http/app/problems.h"
 #include "server/jobs/await.h"

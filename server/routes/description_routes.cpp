@@ -1,3 +1,6 @@
+#include "api/examples/examples.h"
+#include "api/openapi/openapi.h"
+#include "api/registries.h"
 #include "api/service.h"
 #include "server/http/app/compression.h"
 #include "server/routes/request_checks.h"

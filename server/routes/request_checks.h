@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "api/problem.h"
+#include "api/json/problem.h"
 #include "api/service.h"
 #include "server/http/message.h"
 

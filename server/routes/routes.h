@@ -8,14 +8,14 @@
 #include "server/access/gate.h"
 #include "server/access/places.h"
 #include "server/access/turns.h"
-#include "server/executor.h"
 #include "server/http/app/router.h"
 #include "server/jobs/batch/batches.h"
 #include "server/jobs/service.h"
-#include "server/jobs/timer.h"
 #include "server/metrics/memory.h"
 #include "server/notify/policy.h"
-#include "server/spare_cores.h"
+#include "server/threads/executor.h"
+#include "server/threads/spare_cores.h"
+#include "server/threads/timer.h"
 
 namespace tunewright::server {
 

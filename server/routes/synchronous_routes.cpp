@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "api/range_service.h"
+#include "api/registries.h"
 #include "api/service.h"
 #include "server/clock.h"
 #include "server/http/app/negotiation.h"

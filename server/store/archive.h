@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "server/clock.h"
-#include "server/jobs/state.h"
 #include "server/store/fault.h"
+#include "server/store/job_state.h"
 
 namespace tunewright::server {
 

@@ -32,6 +32,12 @@ struct SchemaState {
     int known = 0;
 };
 
+/// Who brings the tables of a store up to date when a newer program comes.
+enum class SchemaSteps {
+    take,   ///< whoever opens it
+    leave,  ///< `tunewright migrate`: until then it cannot be opened
+};
+
 /// Thrown when a store is opened that is to be brought up to date by somebody else, and has not been yet.
 class SchemaBehind : public StoreError {
 public:

@@ -1,7 +1,7 @@
 // A store that measures each operation of the one inside it.
-#include <chrono>
+#include "server/store/metered_store.h"
 
-#include "server/store/open_store.h"
+#include <chrono>
 
 namespace tunewright::server {
 namespace {

@@ -3,6 +3,9 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "server/store/postgres/postgres_store.h"
+#include "server/store/sqlite/sqlite_store.h"
+
 namespace tunewright::server {
 namespace {
 

@@ -2,7 +2,10 @@
 #include <gmock/gmock.h>
 
 #include "api/contract/result/evaluation.h"
+#include "api/examples/examples.h"
+#include "engine/evaluation/best_so_far.h"
 #include "engine/tuning/method/method.h"
+#include "engine/tuning/registry.h"
 #include "support.h"
 
 namespace tunewright::api {
@@ -83,8 +86,9 @@ TEST(Answers, TracesHaveSixDigitsAndFiguresAll) {
 }
 
 TEST(Answers, TheProgressIsOneObject) {
-    Progress progress{0.25, "tune", "Half of the starts are done.", BestSoFar{}};
-    progress.best->controller = IdealPid{.Kp = 2};
+    const auto best = std::make_shared<BestSoFar>();
+    best->controller = IdealPid{.Kp = 2};
+    Progress progress{0.25, "tune", "Half of the starts are done.", best};
     const Json written = Json::parse(progress_json(progress));
     EXPECT_EQ(schema_faults(written, "Progress"), std::vector<std::string>{});
     EXPECT_EQ(written["best"]["controller"]["Kp"], 2);

@@ -5,6 +5,7 @@
 #include <random>
 #include <variant>
 
+#include "api/examples/examples.h"
 #include "support.h"
 
 namespace tunewright::api {

@@ -1,6 +1,8 @@
 // Calls about controllers as they are built: the lists keep the document, conversions answer as the contract says.
 #include <gmock/gmock.h>
 
+#include "api/contract/product/conversion.h"
+#include "api/registries.h"
 #include "engine/controller/product/catalogue.h"
 #include "support.h"
 
@@ -154,8 +156,7 @@ TEST(ControllerSchedule, SaysWhatTheProductDoesBetweenTheRows) {
     EXPECT_THAT(codes(schedule_of("labview_pid")["notes"]), testing::Not(testing::Contains("interpolation")));
     const Json linear = schedule_of("labview_pid", {{"interpolation", "linear_in_gains"}});
     EXPECT_EQ(codes(linear["notes"])[0], "interpolation");
-    EXPECT_THAT(linear["notes"][0]["detail"].get<std::string>(),
-                HasSubstr("Design it with \"interpolation\": \"steps\""));
+    EXPECT_THAT(linear["notes"][0]["detail"].get<std::string>(), HasSubstr("Design it with interpolation = steps"));
     EXPECT_THAT(codes(schedule_of("simulink_pid_ideal", {{"interpolation", "linear_in_gains"}})["notes"]),
                 testing::Not(testing::Contains("interpolation")));
     EXPECT_EQ(codes(schedule_of("simulink_pid_parallel", {{"interpolation", "linear_in_gains"}})["notes"])[0],

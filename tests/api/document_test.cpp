@@ -3,6 +3,10 @@
 
 #include "api/contract/method_options.h"
 #include "api/contract/methods.h"
+#include "api/examples/examples.h"
+#include "api/openapi/openapi.h"
+#include "api/registries.h"
+#include "engine/tuning/registry.h"
 #include "support.h"
 
 namespace tunewright::api {

@@ -6,6 +6,7 @@
 
 #include "api/json/digest.h"
 #include "api/json/json.h"
+#include "api/json/utf8.h"
 #include "api/json/writer.h"
 #include "support.h"
 

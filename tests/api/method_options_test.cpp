@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "api/describe/reader.h"
+#include "api/registries.h"
 #include "api/service.h"
 #include "engine/tuning/limits.h"
 

@@ -4,9 +4,10 @@
 #include <algorithm>
 
 #include "api/batch/rows.h"
+#include "api/csv/csv_writer.h"
 #include "api/csv/traces.h"
-#include "api/csv/writer.h"
 #include "api/json/digest.h"
+#include "api/openapi/openapi.h"
 #include "support.h"
 
 namespace tunewright::api {

@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "api/examples/examples.h"
 #include "tests/api/support.h"
 
 namespace tunewright::api {

@@ -1,4 +1,5 @@
 #include "support.h"
+#include "api/openapi/openapi.h"
 
 #include <fstream>
 #include <set>

@@ -10,6 +10,7 @@
 
 #include "api/batch/reader.h"
 #include "api/json/json.h"
+#include "api/openapi/openapi.h"
 #include "support.h"
 
 namespace tunewright::api {

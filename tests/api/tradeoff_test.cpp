@@ -2,6 +2,7 @@
 // carry, where it is null.
 #include <gmock/gmock.h>
 
+#include "api/examples/examples.h"
 #include "tests/api/support.h"
 
 namespace tunewright::api {

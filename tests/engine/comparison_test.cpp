@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "engine/request/tune.h"
+#include "engine/tuning/registry.h"
 #include "tests/engine/plant/subject_of.h"
 
 namespace tunewright {

@@ -1,5 +1,6 @@
 // tune(): the request's methods in order, failures as entries, ranking, progress, cancellation, records.
 #include "engine/request/tune.h"
+#include "engine/evaluation/best_so_far.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

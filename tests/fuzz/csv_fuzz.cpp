@@ -12,8 +12,10 @@
 
 #include "api/batch/reader.h"
 #include "api/contract/terms.h"
-#include "api/csv/record.h"
+#include "api/csv/csv_record.h"
 #include "api/json/json.h"
+#include "api/json/utf8.h"
+#include "engine/tuning/registry.h"
 
 namespace tunewright::api {
 

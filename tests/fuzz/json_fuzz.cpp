@@ -7,6 +7,7 @@
 #include <string>
 
 #include "api/json/json.h"
+#include "api/json/utf8.h"
 
 namespace {
 

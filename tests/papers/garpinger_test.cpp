@@ -9,6 +9,7 @@
 
 #include "engine/evaluation/evaluate.h"
 #include "engine/tuning/method/method.h"
+#include "engine/tuning/registry.h"
 #include "tests/test_data.h"
 
 namespace tunewright {

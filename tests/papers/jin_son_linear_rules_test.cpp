@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/tuning/method/method.h"
+#include "engine/tuning/registry.h"
 
 namespace tunewright {
 namespace {

@@ -14,6 +14,7 @@
 #include "engine/simulation/linear/indices.h"
 #include "engine/simulation/linear/linear_response.h"
 #include "engine/tuning/method/method.h"
+#include "engine/tuning/registry.h"
 #include "tests/test_data.h"
 
 namespace tunewright {

@@ -8,6 +8,7 @@
 
 #include "engine/evaluation/evaluate.h"
 #include "engine/request/tune.h"
+#include "engine/tuning/registry.h"
 #include "engine/tuning/rimc/rimc_report.h"
 #include "tests/engine/plant/subject_of.h"
 #include "tests/test_data.h"

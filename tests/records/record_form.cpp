@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "api/csv/record.h"
+#include "api/csv/csv_record.h"
 
 namespace tunewright::records {
 namespace {

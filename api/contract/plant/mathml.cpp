@@ -1,4 +1,4 @@
-#include "api/contract/plant/plant.h"
+#include "api/contract/plant/mathml.h"
 
 #include <cmath>
 #include <cstdlib>

@@ -1,11 +1,8 @@
-// The plants of the contract, and how one is shown.
+// The plants of the contract.
 #pragma once
-
-#include <string>
 
 #include "api/describe/union.h"
 #include "engine/plant/plant.h"
-#include "engine/plant/typed/formula.h"
 
 namespace tunewright::api {
 
@@ -14,17 +11,5 @@ const Union<Plant>& plant_contract();
 
 /// What a request may be about, as objects: a linear plant, several, measured points of one, or differential equations.
 const Union<PlantModel>& plant_model_contract();
-
-/// P(s) = ... as Presentation MathML without white space, in the factors that the formula has; numbers with six
-/// significant digits. Elements: math, mrow, mfrac, msup, mi, mn, mo; of a state space mtable, mtr, mtd. None has an
-/// attribute but math.
-///
-///   mathml(Fopdt{.K = 2, .T = 10, .L = 3})
-///     <math xmlns="http://www.w3.org/1998/Math/MathML" display="block"><mrow><mi>P</mi><mrow><mo>(</mo><mi>s</mi>
-///     <mo>)</mo></mrow><mo>=</mo><mfrac><mrow><mn>2</mn><msup><mi>e</mi>...
-std::string mathml(const typed::Formula& formula);
-
-/// Of any linear plant; uncertainty is not shown.
-std::string mathml(const Plant& plant);
 
 }  // namespace tunewright::api

@@ -1,6 +1,7 @@
 // A text in place of a plant, and the question what a text or a plant means.
 #include "api/contract/plant/typed.h"
 
+#include "api/contract/plant/mathml.h"
 #include "api/contract/record.h"
 #include "api/csv/time_stamp.h"
 #include "engine/plant/typed/typed_plant.h"

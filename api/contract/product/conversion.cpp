@@ -1,5 +1,6 @@
+#include "api/contract/product/conversion.h"
+
 #include "api/contract/controller.h"
-#include "api/contract/product/product.h"
 
 namespace tunewright::api {
 namespace {

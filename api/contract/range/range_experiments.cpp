@@ -1,5 +1,5 @@
-#include "api/contract/range/range_request.h"
-#include "api/contract/range/range_result.h"
+
+#include "api/contract/range/range_experiments.h"
 
 #include "api/contract/plant/typed.h"
 

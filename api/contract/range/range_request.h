@@ -10,6 +10,7 @@
 #include "engine/range/experiments.h"
 #include "engine/request/range/ask_range.h"
 #include "engine/tuning/limits.h"
+#include "engine/tuning/robust/filter_rule.h"
 
 namespace tunewright::api {
 
@@ -96,11 +97,5 @@ range::RangeOptions options_of(const ScheduleWish& wish);
 std::vector<ScheduleRow> rows_of(const ScheduleWish& wish);
 /// The word that a schedule is written with too.
 Codec<Interpolation> interpolation_word();
-
-/// Step and relay tests at several places of a range of equations: POST /v1/experiments/range.
-struct RangeExperimentsRequest : RangeSubject {
-    range::ExperimentOptions experiment;
-};
-const Description<RangeExperimentsRequest>& range_experiments_contract();
 
 }  // namespace tunewright::api

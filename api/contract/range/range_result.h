@@ -60,11 +60,4 @@ RangeCurves curves_of(const RangeResult& result);
 const Description<RangeCurves>& range_curves_contract();
 const Description<RangePassage>& range_passage_contract();
 
-/// Tests at several places of a range.
-struct RangeExperiments {
-    std::shared_ptr<const range::SteadyBranch> branch;
-    std::vector<range::PlaceTest> tests;
-};
-const Description<RangeExperiments>& range_experiments_answer_contract();
-
 }  // namespace tunewright::api

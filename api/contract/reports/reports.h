@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "api/describe/description.h"
-#include "engine/tuning/method/report.h"
+#include "engine/tuning/method/method_report.h"
 
 namespace tunewright::api {
 

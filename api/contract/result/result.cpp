@@ -4,6 +4,7 @@
 #include "api/contract/controller.h"
 #include "api/contract/methods.h"
 #include "api/contract/plant/plant.h"
+#include "api/contract/product/conversion.h"
 #include "api/contract/product/product.h"
 #include "api/contract/reports/reports.h"
 #include "api/contract/result/evaluation.h"

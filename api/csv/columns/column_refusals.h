@@ -8,7 +8,7 @@
 
 #include "api/csv/columns/column_facts.h"
 #include "api/csv/columns/heading.h"
-#include "api/csv/record.h"
+#include "api/csv/csv_record.h"
 
 namespace tunewright::api {
 

@@ -10,7 +10,7 @@
 #include "api/csv/columns/column_facts.h"
 #include "api/csv/columns/file_spacing.h"
 #include "api/csv/columns/heading.h"
-#include "api/csv/record.h"
+#include "api/csv/csv_record.h"
 #include "api/csv/table.h"
 
 namespace tunewright::api {

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "api/csv/record.h"
+#include "api/csv/csv_record.h"
 #include "api/csv/table.h"
 
 namespace tunewright::api {

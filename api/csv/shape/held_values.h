@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "api/csv/record.h"
+#include "api/csv/csv_record.h"
 
 namespace tunewright::api {
 

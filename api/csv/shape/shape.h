@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "api/csv/record.h"
+#include "api/csv/csv_record.h"
 #include "api/csv/table.h"
 
 namespace tunewright::api {

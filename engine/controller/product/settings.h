@@ -66,12 +66,6 @@ struct ConvertedSchedule {
 Expected<ConvertedSchedule> to_settings(const Product& product, const Schedule& schedule, const Context& context,
                                         bool nearest);
 
-/// The exact ideal twin of what stands in the block. Parameters that are missing have the maker's default where it is
-/// known, else no integral, no derivative, no filter. Errors: invalid_argument at "settings/NAME" for a name or value
-/// that the block does not take; not_representable for gains that have no ideal form; as above for spans.
-Expected<IdealPid> to_controller(const Product& product, const Settings& settings, const Context& context,
-                                 std::vector<Note>& notes);
-
 /// Rounded to each parameter's resolution and range; floating-point numbers stay as they are.
 Settings as_typed(const Product& product, const Settings& settings);
 

@@ -1,3 +1,5 @@
+#include "engine/controller/product/to_controller.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -229,7 +231,7 @@ IdealPid twin(const Product& product, const Law& law) {
     return pid;
 }
 
-// What no controller of the contract is: a filter that lets nothing pass, a series lead that its own filter outlasts.
+// What no controller of the ideal form is: a filter that lets nothing pass, a series lead that its own filter outlasts.
 std::optional<Error> beyond(const Product& product, const IdealPid& pid) {
     const auto at = [&](Role role, const std::string& reason) {
         const Parameter* parameter = parameter_of(product, role);

@@ -16,10 +16,10 @@ enum class Interpolation {
     linear_in_times,  ///< Kp, Ti and Td are linear between rows
 };
 
-/// The contract's word for it: "steps", "linear_in_gains", "linear_in_times".
+/// The name of it: "steps", "linear_in_gains", "linear_in_times".
 std::string_view to_string(Interpolation interpolation);
 
-/// The contract's ideal form (controller/pid.h). Tf = 0: no filter.
+/// The ideal form (controller/pid.h). Tf = 0: no filter.
 struct ScheduleRow {
     double at = 0;
     double Kp = 0, Ti = 0, Td = 0, Tf = 0, b = 1;

@@ -63,7 +63,7 @@ Plan plan_for(ModelChoice model, const CleanRecord& record) {
 }
 
 void report(const RunControl& control, double fraction, std::string message) {
-    if (control.progress) control.progress({fraction, "identify", std::move(message), std::nullopt});
+    if (control.progress) control.progress({fraction, "identify", std::move(message), nullptr});
 }
 
 ModelSearch ranked(FitContext context, std::vector<Fit> fits, const Plan& plan, const Disturbances& disturbances) {

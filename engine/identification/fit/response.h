@@ -45,7 +45,7 @@ int shape_size(Structure structure);
 bool is_integrating(Structure structure);
 /// Whether the denominator has a quadratic factor: a1 and a2 count.
 bool has_quadratic(Structure structure);
-/// The contract's name: "fopdt", ...; "unstable fopdt" for that variant
+/// Its name: "fopdt", ...; "unstable fopdt" for that variant
 const char* name_of(Structure structure);
 
 inline constexpr int kLoadTime = 3, kThirdLag = 4;  ///< their places in ModelShape::p

@@ -6,6 +6,7 @@
 #include "engine/numerics/fast_complex.h"
 #include "engine/numerics/matrix/eigenvalues.h"
 #include "engine/numerics/matrix/linear_algebra.h"
+#include "engine/numerics/matrix/resolvent.h"
 
 namespace tunewright {
 namespace {

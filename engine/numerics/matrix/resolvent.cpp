@@ -1,4 +1,4 @@
-#include "engine/numerics/matrix/eigenvalues.h"
+#include "engine/numerics/matrix/resolvent.h"
 
 #include <Eigen/LU>
 #include <cstddef>

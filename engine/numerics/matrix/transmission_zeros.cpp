@@ -1,4 +1,4 @@
-#include "engine/numerics/matrix/eigenvalues.h"
+#include "engine/numerics/matrix/transmission_zeros.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

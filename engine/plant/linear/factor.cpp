@@ -8,6 +8,8 @@
 
 #include "engine/number_text.h"
 #include "engine/numerics/matrix/eigenvalues.h"
+#include "engine/numerics/matrix/resolvent.h"
+#include "engine/numerics/matrix/transmission_zeros.h"
 #include "engine/numerics/polynomial_roots.h"
 
 namespace tunewright {

@@ -8,6 +8,7 @@
 #include "engine/error.h"
 #include "engine/numerics/matrix/eigenvalues.h"
 #include "engine/numerics/matrix/linear_algebra.h"
+#include "engine/numerics/matrix/transmission_zeros.h"
 #include "engine/plant/expression/taylor.h"
 #include "engine/plant/nonlinear/nonlinear_system.h"
 

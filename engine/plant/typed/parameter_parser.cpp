@@ -1,4 +1,5 @@
-#include "engine/plant/typed/parsers.h"
+
+#include "engine/plant/typed/parameter_parser.h"
 
 #include <map>
 #include <utility>

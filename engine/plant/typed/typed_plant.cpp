@@ -5,7 +5,8 @@
 
 #include "engine/number_text.h"
 #include "engine/plant/linear/factor.h"
-#include "engine/plant/typed/parsers.h"
+#include "engine/plant/typed/formula_parser.h"
+#include "engine/plant/typed/parameter_parser.h"
 #include "engine/plant/typed/words.h"
 
 namespace tunewright {

@@ -23,7 +23,7 @@ struct TypedPlant {
 /// `seconds_per_time`: of the unit of time in which the plant is answered, into which a unit in the text is converted;
 /// 0 where that unit is not known, which makes units in the text a fault. Numbers without a unit are taken as they are.
 ///
-/// A text is read by the grammar of typed/parsers.h; a name such as "P(s) =" may
+/// A text is read by the grammar of formula_parser.h or parameter_parser.h; a name such as "P(s) =" may
 /// stand before. Every spelling of one plant gives the same plant. Errors (invalid_argument): "position 7: <what,
 /// cure>"; a plant that is improper, not causal or 0; numbers that no plant may have; a text longer than
 /// typed::kMaxLength.

@@ -1,10 +1,13 @@
-// A profile of the set point or the parameter over time, as the run reads it.
+// Profiles of the set point or the parameter over time: as a run reads them, and the usual ones across a range.
 #pragma once
 
 #include <algorithm>
 #include <cstddef>
 #include <optional>
+#include <string>
+#include <vector>
 
+#include "engine/controller/schedule/schedule.h"
 #include "engine/error.h"
 #include "engine/expected.h"
 #include "engine/range/run/scheduled_run.h"
@@ -50,5 +53,19 @@ private:
 
     const Profile& profile_;
 };
+
+/// A named passage over the whole range.
+struct Passage {
+    std::string name;  ///< "step up", "step down", "stairs", "ramp"
+    Profile profile;
+    double horizon = 0;
+};
+
+/// One step from end to end either way, stairs of four steps, and a slow ramp there and back, with times from the rows'
+/// slowest integral time and the dead time.
+Expected<std::vector<Passage>> standard_passages(const SteadyBranch& branch, const Schedule& schedule);
+
+/// The schedule of one row that is this controller.
+Schedule one_row(const IdealPid& controller, double at);
 
 }  // namespace tunewright::range

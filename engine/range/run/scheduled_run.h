@@ -52,20 +52,6 @@ struct ScheduledRun {
 Expected<ScheduledRun> run_schedule(const SteadyBranch& branch, const Schedule& schedule, const Profile& profile,
                                     const RunOptions& options);
 
-/// A named passage over the whole range.
-struct Passage {
-    std::string name;  ///< "step up", "step down", "stairs", "ramp"
-    Profile profile;
-    double horizon = 0;
-};
-
-/// One step from end to end either way, stairs of four steps, and a slow ramp there and back, with times from the rows'
-/// slowest integral time and the dead time.
-Expected<std::vector<Passage>> standard_passages(const SteadyBranch& branch, const Schedule& schedule);
-
-/// The schedule of one row that is this controller.
-Schedule one_row(const IdealPid& controller, double at);
-
 /// A step across the range under the input/output linearising controller that knows the equations and their states
 /// (simulation/nonlinear/linearising_response.h): how well any controller could pass, to be seen beside the schedule.
 /// (tau s/r + 1)^r is what it makes of the loop, r the relative degree.

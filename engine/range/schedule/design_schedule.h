@@ -39,12 +39,6 @@ struct ScheduleDesign {
 Expected<ScheduleDesign> design_schedule(Places& places, OwnOptima& own, const RangeOptions& options,
                                          const std::optional<IdealPid>& one);
 
-/// Parts by OwnOptima::layout; each part's row is the one setting with the least worst price over the part and half the
-/// hysteresis beyond it. The fewest rows that stay within the allowance, or `options.rows`; where 20 do not, those 20.
-/// Errors: as design_schedule.
-Expected<ScheduleDesign> steps_schedule(Places& places, OwnOptima& own, const RangeOptions& options,
-                                        const std::optional<IdealPid>& one);
-
 /// The longest sample time of a program with backward rules that keeps Ms within 5 % of the continuous loop's, at the
 /// model's points and at the rows, with each setting in use there, on the nominal plants. Empty: none was found, or the
 /// plants are known by their frequency response alone. Errors: the model's.

@@ -6,12 +6,13 @@
 
 #include "engine/number_text.h"
 #include "engine/tuning/limits.h"
+#include "engine/tuning/robust/filter_rule.h"
 #include "engine/tuning/robust/robust.h"
 
 namespace tunewright::range {
 namespace {
 
-/// The contract's rule at one point of the range.
+/// The filter rule at one point of the range.
 Expected<robust::FilterRule> rule_at(const LinearPlant& plant, const RangeOptions& options, bool pid) {
     const TuningProblem problem{.plant = Fopdt{}, .linear = plant, .dead_time_std = {}};
     return robust::filter_rule(problem, options.filter, pid);

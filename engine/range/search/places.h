@@ -12,7 +12,7 @@
 namespace tunewright::range {
 
 /// What the options ask at every place: the sign of Kp of the first point; the filter that is given, else none for PI,
-/// Tf = 0.1 Td where any point has it by the contract's rule (robust::filter_rule), else the shortest Tf that the rule
+/// Tf = 0.1 Td where any point has it by robust::filter_rule, else the shortest Tf that the rule
 /// gives at a point. Errors: as robust::filter_rule, and unstable_plant for a zero at s = 0.
 Expected<DesignRules> design_rules(const RangeModel& model, const RangeOptions& options);
 

@@ -6,6 +6,8 @@
 
 #include "engine/number_text.h"
 #include "engine/plant/linear/linear_plant.h"
+#include "engine/range/run/profile.h"
+#include "engine/request/range/plants_of.h"
 
 namespace tunewright {
 namespace {
@@ -51,8 +53,8 @@ verdict::Finding finding_of(const RangeDesign& design) {
     return draft;
 }
 
-/// The sentence of a fault that the engine's names are in.
-Error in_words_of_contract(Error error) {
+/// A fault of the options is one of the schedule's question.
+Error in_words_of_question(Error error) {
     if (error.where.starts_with("options/")) error.where = "schedule/" + error.where.substr(8);
     return error;
 }
@@ -64,7 +66,7 @@ public:
     Expected<RangeResult> answer() {
         const double started = control_.now_ms ? control_.now_ms() : 0;
         if (auto error = find_model()) return in_range_request(*error, question_);
-        if (auto error = design()) return in_range_request(in_words_of_contract(*error), question_);
+        if (auto error = design()) return in_range_request(in_words_of_question(*error), question_);
         if (auto error = look_at_places()) return *error;
         if (auto error = run_across()) return *error;
         if (control_.now_ms) result_.compute_ms = control_.now_ms() - started;

@@ -13,6 +13,7 @@
 #include "engine/plant/plant_family.h"
 #include "engine/range/design_range.h"
 #include "engine/range/equations/steady_branch.h"
+#include "engine/range/run/profile.h"
 #include "engine/range/run/scheduled_run.h"
 #include "engine/request/verdict/finding.h"
 
@@ -72,12 +73,6 @@ struct RangeResult {
 /// model_of_branch; of design_range and judge_schedule, whose "options/..." become "schedule/..."; cancelled where
 /// nothing was found before the stop. Progress: "identify", "tune", "schedule", "evaluate".
 Expected<RangeResult> ask_range(const RangeQuestion& question, const RunControl& control);
-
-/// Records find their plants, and all of them one structure where their records allow it: of structures that differ,
-/// the one in which all together lose least. `warnings` says which.
-Expected<std::vector<RangePointPlant>> plants_of(const RangeQuestion& question, const RunControl& control,
-                                                 std::vector<range::RangePoint>& points,
-                                                 std::vector<Warning>& warnings);
 
 /// Where a range's plants lie in the request that a fault is about.
 Error in_range_request(Error error, const RangeQuestion& question);

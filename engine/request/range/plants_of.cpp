@@ -1,4 +1,6 @@
 // The plants of a range's points, records identified.
+#include "engine/request/range/plants_of.h"
+
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -7,7 +9,6 @@
 #include "engine/number_text.h"
 #include "engine/range/model/parameters.h"
 #include "engine/request/identified_region.h"
-#include "engine/request/range/ask_range.h"
 
 namespace tunewright {
 namespace {

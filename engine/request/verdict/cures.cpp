@@ -13,6 +13,7 @@
 #include "engine/simulation/linear/indices.h"
 #include "engine/simulation/linear/linear_response.h"
 #include "engine/simulation/sampled/sampled_response.h"
+#include "engine/tuning/registry.h"
 
 namespace tunewright::verdict {
 namespace {

@@ -1,4 +1,4 @@
-// The verdict on each entry and on the whole answer, and where there is no loop to judge (without_loop.cpp).
+// The verdict on each entry and on the whole answer, and where there is no loop to judge.
 #pragma once
 
 #include <vector>

@@ -5,6 +5,7 @@
 
 #include "engine/numerics/matrix/eigenvalues.h"
 #include "engine/numerics/matrix/linear_algebra.h"
+#include "engine/numerics/matrix/resolvent.h"
 #include "engine/plant/linear/linear_plant.h"
 #include "engine/simulation/run/delayed_input.h"
 

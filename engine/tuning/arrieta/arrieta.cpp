@@ -201,12 +201,12 @@ Expected<TunedController> tune_by_degradation(const TuningProblem& problem, cons
     if (!column && exact.has_value() && !*exact)
         return Error{ErrorKind::invalid_argument, "degradation",
                      "degradation is " + text(degradation) + "; Table 2 has settings for " + listed_levels() +
-                         ". Take one of these, or \"exact\": true, which solves for any other on the model."};
+                         ". Take one of these, or exact = true, which solves for any other on the model."};
     std::vector<Warning> warnings;
     if (!exact)
         warnings.push_back({"exact-degradation", "Table 2 has settings for " + listed_levels() + "; those for " +
                                                      text(degradation) +
-                                                     " were solved for on the model, as with \"exact\": true."});
+                                                     " were solved for on the model, as with exact = true."});
     return tune_exactly(problem, *model, degradation, report, std::move(warnings), control);
 }
 

@@ -122,7 +122,7 @@ void TradeoffReport::complete(const ReportContext& context, Evaluation& evaluati
     if (!rule->degradation || !model.Deg || std::abs(*model.Deg - *rule->degradation) <= kMissed) return;
     evaluation.warnings.push_back({"degradation-missed", "On the model the degradation is " + text(*model.Deg) +
                                                              ", not the " + text(*rule->degradation) +
-                                                             " of Table 2's column; \"exact\": true solves for it."});
+                                                             " of Table 2's column; exact = true solves for it."});
 }
 
 }  // namespace tunewright

@@ -11,7 +11,7 @@
 #include "engine/controller/pid.h"
 #include "engine/evaluation/evaluation.h"
 #include "engine/tuning/arrieta/tradeoff.h"
-#include "engine/tuning/method/report.h"
+#include "engine/tuning/method/method_report.h"
 
 namespace tunewright {
 

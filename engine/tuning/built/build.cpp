@@ -5,7 +5,9 @@
 #include <cmath>
 
 #include "engine/controller/product/formula.h"
+#include "engine/controller/product/to_controller.h"
 #include "engine/number_text.h"
+#include "engine/tuning/built/typed_grid.h"
 #include "engine/tuning/built/typed_ranges.h"
 
 namespace tunewright::built {

@@ -11,7 +11,7 @@
 #include "engine/controller/sampled/pid_program.h"
 #include "engine/expected.h"
 #include "engine/progress.h"
-#include "engine/tuning/built/search.h"
+#include "engine/tuning/built/settings_search.h"
 
 namespace tunewright::built {
 
@@ -69,14 +69,5 @@ std::optional<Error> refuse_sampling(const Build& build, const LinearPlant& plan
 /// and grid of settings. Errors: no_feasible_controller, not_representable, cancelled.
 Expected<Fitted> design(const Build& build, const std::vector<const LinearPlant*>& plants, const Wish& wish,
                         const RunControl& control);
-
-/// The number that a text says; `otherwise` where it is none.
-double number_of(const std::string& text, double otherwise);
-
-/// `near` is a design within the limits before its settings were rounded. All ways to round its numbers up or down are
-/// tried, and where a step is coarse the neighbours too. Error: no_feasible_controller where none holds the limits and
-/// has a load IAE below `enough`.
-Expected<Fitted> on_grid(const Build& build, const std::vector<const LinearPlant*>& plants, const Limits& limits,
-                         Fitted near, double enough, const RunControl& control);
 
 }  // namespace tunewright::built

@@ -1,9 +1,11 @@
-#include "engine/tuning/built/build.h"
+#include "engine/tuning/built/typed_grid.h"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
+
+#include "engine/controller/product/to_controller.h"
 
 namespace tunewright::built {
 namespace {

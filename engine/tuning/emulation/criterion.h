@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include "engine/tuning/emulation/problem.h"
+#include "engine/tuning/emulation/emulation_problem.h"
 
 namespace tunewright::emulation {
 

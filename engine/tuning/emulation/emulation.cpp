@@ -1,10 +1,10 @@
 #include "engine/tuning/emulation/emulation.h"
 
 #include "engine/number_text.h"
+#include "engine/tuning/emulation/emulated_design.h"
 #include "engine/tuning/emulation/level_one.h"
+#include "engine/tuning/emulation/optimum_search.h"
 #include "engine/tuning/emulation/options.h"
-#include "engine/tuning/emulation/report.h"
-#include "engine/tuning/emulation/search.h"
 #include "engine/tuning/method/rule.h"
 
 namespace tunewright {

@@ -10,8 +10,8 @@
 
 #include "engine/controller/pid.h"
 #include "engine/plant/plant.h"
+#include "engine/tuning/method/method_report.h"
 #include "engine/tuning/method/options.h"
-#include "engine/tuning/method/report.h"
 
 namespace tunewright {
 

@@ -10,12 +10,12 @@
 #include "engine/plant/plant.h"
 #include "engine/simulation/experiment/nonlinear_experiments.h"
 #include "engine/tuning/emulation/emulation.h"
-#include "engine/tuning/emulation/problem.h"
+#include "engine/tuning/emulation/emulation_problem.h"
 #include "engine/tuning/model_based/imc.h"
+#include "engine/tuning/registry.h"
 #include "engine/tuning/ultimate/ziegler_nichols_ultimate.h"
 
 namespace tunewright::emulation {
-
 namespace {
 
 constexpr double kTolerance = 1e-12;

@@ -5,8 +5,8 @@
 
 #include <vector>
 
+#include "engine/tuning/emulation/emulation_problem.h"
 #include "engine/tuning/emulation/emulation_report.h"
-#include "engine/tuning/emulation/problem.h"
 
 namespace tunewright::emulation {
 

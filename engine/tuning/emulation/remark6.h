@@ -8,7 +8,7 @@
 
 #include "engine/numerics/optimise/quadratic_program.h"
 #include "engine/tuning/emulation/criterion.h"
-#include "engine/tuning/emulation/problem.h"
+#include "engine/tuning/emulation/emulation_problem.h"
 
 namespace tunewright::emulation {
 

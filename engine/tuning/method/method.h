@@ -17,9 +17,9 @@
 #include "engine/plant/plant_family.h"
 #include "engine/progress.h"
 #include "engine/tuning/built/build.h"
+#include "engine/tuning/method/method_report.h"
 #include "engine/tuning/method/option_set.h"
 #include "engine/tuning/method/options.h"
-#include "engine/tuning/method/report.h"
 #include "engine/warning.h"
 
 namespace tunewright {
@@ -136,14 +136,5 @@ private:
             return solve(problem, options, control);
     }
 };
-
-/// Every method, in the order in which they are listed. The one place that names them all.
-const std::vector<TuningMethod>& method_registry();
-
-/// The method of a request that names none: the first of the registry.
-const std::string& default_method();
-
-/// Null if there is none of this id.
-const TuningMethod* find_method(const std::string& id);
 
 }  // namespace tunewright

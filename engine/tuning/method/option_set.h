@@ -18,7 +18,7 @@
 
 namespace tunewright {
 
-/// The members of `T` (default-constructed: every option left out) under the names of the contract. A member of type
+/// The members of `T` (default-constructed: every option left out) under their names. A member of type
 /// std::optional has no default of its own: its sentence says what is taken instead.
 template <class T>
 class OptionSet {

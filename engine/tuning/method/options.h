@@ -43,7 +43,7 @@ struct OptionSlider {
 };
 
 struct OptionDescription {
-    std::string name;  ///< as in JSON, e.g. "Ms"
+    std::string name;  ///< e.g. "Ms"
     OptionType type = OptionType::number;
     std::string sentence;   ///< what it does
     std::string unit = {};  ///< "", "time", "u/y", ...

@@ -107,7 +107,7 @@ private:
         }
         if (control_.progress && evaluations_ % kReportEvery == 0)
             control_.progress({std::min(1.0, double(evaluations_) / kExpected), "tune",
-                               "Searching the nonlinear PID's optimum.", std::nullopt});
+                               "Searching the nonlinear PID's optimum.", nullptr});
         const double value = within(x) ? cost(controller(x)) : kNoLoop;
         if (value < best_.value) best_ = {x, value};
         return value;

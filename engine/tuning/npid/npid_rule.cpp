@@ -46,13 +46,13 @@ std::optional<Error> unfit(const ReducedModel& model) {
     if (model.integrators > 0)
         return degenerate("plant",
                           "The rule is written for a stable first-order lag with dead time, and this plant integrates.",
-                          "Use \"optimise\": true, which needs no model, or simc or robust.");
+                          "Use optimise = true, which needs no model, or simc or robust.");
     if (model.L <= 0)
         return degenerate("plant/L", "The rule raises L/T to a negative power, and the dead time of the model is 0.",
                           "Give the loop's true dead time, or use lambda or robust.");
     if (model.T1 <= 0)
         return degenerate("plant/T", "The rule divides by the lag T, and that of the model is 0 (a pure dead time).",
-                          "Use \"optimise\": true, or amigo or robust.");
+                          "Use optimise = true, or amigo or robust.");
     return std::nullopt;
 }
 
@@ -61,7 +61,7 @@ std::vector<Warning> remarks(double q) {
     if (q < kLowest || q > kHighest)
         warnings.push_back(outside_validity("L/T is " + text(q) +
                                             ", outside 0.01 to 3, for which the rule was fitted. "
-                                            "\"optimise\": true finds the plant's own optimum."));
+                                            "optimise = true finds the plant's own optimum."));
     if (q > kTable2To)
         warnings.push_back(
             {"rule-table", "L/T is " + text(q) + ", above 0.9: the source's table for long dead times is used" +

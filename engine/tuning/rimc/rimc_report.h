@@ -5,7 +5,7 @@
 
 #include "engine/controller/imc_controller.h"
 #include "engine/figure.h"
-#include "engine/tuning/method/report.h"
+#include "engine/tuning/method/method_report.h"
 #include "engine/tuning/rimc/rimc_branch.h"
 
 namespace tunewright {

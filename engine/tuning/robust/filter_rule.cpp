@@ -1,11 +1,11 @@
-#include "engine/tuning/limits.h"
-#include "engine/tuning/robust/robust.h"
+#include "engine/tuning/robust/filter_rule.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "engine/number_text.h"
+#include "engine/tuning/limits.h"
 
 namespace tunewright::robust {
 namespace {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/tuning/robust/family.h"
+#include "engine/tuning/robust/filter_rule.h"
 #include "engine/tuning/robust/search.h"
 #include "engine/tuning/robust/verified_search.h"
 

@@ -6,6 +6,7 @@
 
 #include "engine/plant/subject.h"
 #include "engine/tuning/limits.h"
+#include "engine/tuning/robust/filter_rule.h"
 #include "engine/tuning/robust/robust.h"
 
 namespace tunewright {
@@ -48,7 +49,7 @@ Expected<Frontier> frontier(const TuningProblem& tuning, const FrontierOptions& 
 /// On a plant as requests give it. Error: unsupported for measured points, which have no response over time.
 Expected<Frontier> frontier(const Subject& subject, const FrontierOptions& options, const RunControl& control);
 
-/// The options under the names of the contract.
+/// The options under their names.
 const OptionSet<FrontierOptions>& frontier_options();
 
 TuningMethod frontier_method();

@@ -7,16 +7,12 @@
 #include <vector>
 
 #include "engine/tuning/limits.h"
-#include "engine/tuning/method/report.h"
+#include "engine/tuning/method/method_report.h"
 #include "engine/tuning/method/rule.h"
 #include "engine/tuning/robust/design.h"
+#include "engine/tuning/robust/filter_rule.h"
 
 namespace tunewright {
-
-/// Filter of the measurement, second order: Tf, or a fraction of Td; neither: the plant decides.
-struct RobustFilterOptions {
-    std::optional<double> Tf = {}, Tf_over_Td = {};
-};
 
 struct RobustOptions {
     ControllerKind controller = ControllerKind::PID;          ///< PI or PID
@@ -66,18 +62,7 @@ Expected<Found> search_everywhere(SearchKind kind, const TuningProblem& tuning, 
                                   const std::optional<std::pair<double, double>>& start, CostSurface* surface,
                                   const RunControl& control, const Found* before, std::vector<Warning>& warnings);
 
-/// The options of the filter under the names of the contract; at most one of them is given.
+/// The options of the filter under their names; at most one of them is given.
 OptionSet<RobustFilterOptions> filter_options();
-
-/// The filter that the options give, if they do. Error: invalid_argument for Tf_over_Td of a PI.
-Expected<std::optional<FilterRule>> explicit_filter(const RobustFilterOptions& options, bool pid);
-
-/// The contract's filter rule: what is given; else none for PI, Tf = 0.1 Td for plants with a dead time, a
-/// right-half-plane zero or pole excess >= 3, and Tf = 0.05 of the lags minus the leads for the others. Error:
-/// unbounded_optimum ("filter") for a plant with neither dead time nor lags.
-Expected<FilterRule> filter_rule(const TuningProblem& problem, const RobustFilterOptions& options, bool pid);
-
-/// Low gain of the right sign must push the output towards the set point: K/T of the plant's first slope decides.
-double first_sign(const LinearPlant& plant);
 
 }  // namespace tunewright::robust

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/evaluation/best_so_far.h"
 #include "engine/number_text.h"
 #include "engine/tuning/limits.h"
 #include "engine/tuning/robust/family.h"
@@ -46,7 +47,7 @@ public:
             BestSoFar best{controller_at(problem_, x), std::exp(log_cost), problem_.limits.Ms, problem_.limits.Mt};
             // Of other objectives the integral of e stands for the load IAE, which it never exceeds.
             if (problem_.objective != Objective::load_iae) best.load_IAE = std::exp(x[1] - x[0]);
-            progress.best = best;
+            progress.best = std::make_shared<const BestSoFar>(best);
             control_.progress(progress);
         }
         return !control_.stop.stop_requested();

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <string>
 
-#include "api/problem.h"
+#include "api/json/problem.h"
 #include "server/http/message.h"
 
 namespace tunewright::server::http {

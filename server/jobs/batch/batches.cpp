@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "api/json/digest.h"
+#include "api/outline.h"
 #include "server/jobs/await.h"
 #include "server/random.h"
 

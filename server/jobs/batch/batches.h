@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "api/batch/reader.h"
-#include "server/executor.h"
 #include "server/jobs/service.h"
 #include "server/store/store.h"
+#include "server/threads/executor.h"
 
 namespace tunewright::server {
 

@@ -1,6 +1,6 @@
 #include "server/jobs/running/result_outbox.h"
 
-#include "api/problem.h"
+#include "api/json/problem.h"
 #include "engine/error.h"
 #include "engine/number_text.h"
 

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 
+#include "api/outline.h"
 #include "server/clock.h"
-#include "server/executor.h"
 #include "server/jobs/running/result_outbox.h"
 #include "server/log.h"
+#include "server/threads/executor.h"
 
 namespace tunewright::server {
 namespace {

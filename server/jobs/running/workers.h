@@ -12,7 +12,7 @@
 #include "server/jobs/running/claims.h"
 #include "server/jobs/running/held.h"
 #include "server/jobs/running/result_outbox.h"
-#include "server/jobs/timer.h"
+#include "server/threads/timer.h"
 
 namespace tunewright::server {
 

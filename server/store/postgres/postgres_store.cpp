@@ -1,4 +1,4 @@
-#include "server/store/open_store.h"
+#include "server/store/postgres/postgres_store.h"
 
 #include <atomic>
 #include <future>
@@ -6,10 +6,12 @@
 
 #include "server/clock.h"
 #include "server/random.h"
-#include "server/store/postgres/changes.h"
+#include "server/store/postgres/batch_changes.h"
+#include "server/store/postgres/job_changes.h"
 #include "server/store/postgres/listener.h"
 #include "server/store/postgres/readers.h"
 #include "server/store/postgres/reading.h"
+#include "server/store/postgres/schema.h"
 #include "server/store/postgres/writer.h"
 
 namespace tunewright::server {

@@ -1,7 +1,7 @@
 // The tables of the PostgreSQL store and the steps that lead to them.
-#include <array>
+#include "server/store/postgres/schema.h"
 
-#include "server/store/postgres/session.h"
+#include <array>
 
 namespace tunewright::server::postgres {
 namespace {

@@ -117,17 +117,6 @@ private:
     std::map<std::string, std::string> names_;  ///< of the prepared statements, by their text
 };
 
-/// Throws Failure, or StoreError with a sentence where the database is not fit or was written by a newer program.
-SchemaState schema_state(Session& session);
-/// Brings the database to the newest schema by the numbered steps of schema.cpp, in one transaction and one process at
-/// a time: replicas may start together. A step is never edited after a release. Throws as schema_state() does.
-void migrate(Session& session);
-/// A word that changes when the server crashes: after that it may give a transaction's number a second time. Throws
-/// Failure.
-std::string server_life(Session& session);
-/// What a service needs, for a role that may not change the schema.
-void grant_use(Session& session, const std::string& role);
-
 /// What an exception of libpqxx means; `open`: the connection still is.
 Failure failure_of(const std::exception& error, bool open);
 

@@ -5,7 +5,9 @@
 #include <utility>
 
 #include "server/log.h"
-#include "server/store/postgres/changes.h"
+#include "server/store/postgres/batch_changes.h"
+#include "server/store/postgres/job_changes.h"
+#include "server/store/postgres/schema.h"
 
 namespace tunewright::server::postgres {
 namespace {

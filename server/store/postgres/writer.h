@@ -18,7 +18,8 @@
 #include <thread>
 #include <vector>
 
-#include "server/store/postgres/changes.h"
+#include "server/store/postgres/batch_changes.h"
+#include "server/store/postgres/job_changes.h"
 #include "server/store/postgres/session.h"
 
 namespace tunewright::server::postgres {

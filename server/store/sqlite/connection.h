@@ -71,10 +71,4 @@ private:
     std::map<std::string, SQLite::Statement, std::less<>> statements_;
 };
 
-/// Throws StoreError where the database was written by a newer program.
-SchemaState schema_state(SQLite::Database& database);
-/// Brings the database to the newest schema by the numbered steps of schema.cpp, one transaction for each; a step is
-/// never edited after a release. Throws as schema_state() does.
-void migrate(SQLite::Database& database);
-
 }  // namespace tunewright::server

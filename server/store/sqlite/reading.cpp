@@ -2,7 +2,8 @@
 
 #include <algorithm>
 
-#include "server/store/sqlite/changes.h"
+#include "server/store/sqlite/batch_changes.h"
+#include "server/store/sqlite/job_changes.h"
 
 namespace tunewright::server {
 namespace {

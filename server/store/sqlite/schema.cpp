@@ -1,8 +1,9 @@
 // The tables of the SQLite store and the steps that lead to them.
+#include "server/store/sqlite/schema.h"
+
 #include <array>
 #include <string>
 
-#include "server/store/sqlite/connection.h"
 #include "server/store/store.h"
 
 namespace tunewright::server {

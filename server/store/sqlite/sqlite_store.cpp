@@ -1,4 +1,4 @@
-#include "server/store/open_store.h"
+#include "server/store/sqlite/sqlite_store.h"
 
 #include <cerrno>
 #include <filesystem>
@@ -9,10 +9,12 @@
 
 #include "server/clock.h"
 #include "server/store/pool.h"
-#include "server/store/sqlite/changes.h"
+#include "server/store/sqlite/batch_changes.h"
 #include "server/store/sqlite/file.h"
+#include "server/store/sqlite/job_changes.h"
 #include "server/store/sqlite/reading.h"
 #include "server/store/sqlite/reserve.h"
+#include "server/store/sqlite/schema.h"
 #include "server/store/sqlite/writer.h"
 
 namespace tunewright::server {

@@ -6,7 +6,7 @@
 #include <functional>
 #include <string>
 
-#include "api/csv/record.h"
+#include "api/csv/csv_record.h"
 
 namespace tunewright::api {
 namespace {

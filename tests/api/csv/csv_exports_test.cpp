@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "api/csv/record.h"
+#include "api/csv/csv_record.h"
 #include "api/csv/time_stamp.h"
 #include "tests/api/support.h"
 

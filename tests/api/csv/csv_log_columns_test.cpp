@@ -1,7 +1,7 @@
 // Which columns of a log are time, u, y and the set point: chosen, found, or refused with the cure.
 #include <gmock/gmock.h>
 
-#include "api/csv/record.h"
+#include "api/csv/csv_record.h"
 #include "tests/api/csv/written_logs.h"
 
 namespace tunewright::api {

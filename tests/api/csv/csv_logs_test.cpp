@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "api/csv/record.h"
+#include "api/csv/csv_record.h"
 #include "tests/api/csv/written_logs.h"
 
 namespace tunewright::api {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "api/csv/csv_record.h"
 #include "api/csv/preview.h"
-#include "api/csv/record.h"
 
 namespace tunewright::api {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <variant>
 
-#include "api/csv/record.h"
+#include "api/csv/csv_record.h"
 
 namespace tunewright::api {
 namespace {

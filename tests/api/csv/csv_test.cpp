@@ -1,7 +1,7 @@
 // Recorded tests as people export them.
 #include <gmock/gmock.h>
 
-#include "api/csv/record.h"
+#include "api/csv/csv_record.h"
 #include "api/csv/time_stamp.h"
 #include "tests/api/support.h"
 

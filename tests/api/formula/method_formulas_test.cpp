@@ -9,10 +9,12 @@
 #include <string>
 #include <vector>
 
+#include "api/formula/method_mathml.h"
 #include "api/formula/notation.h"
 #include "engine/plant/expression/parser.h"
 #include "engine/plant/expression/scalar.h"
 #include "engine/tuning/method/method.h"
+#include "engine/tuning/registry.h"
 #include "tests/api/formula/read_mathml.h"
 #include "tests/engine/tuning/rule_support.h"
 

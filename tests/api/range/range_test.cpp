@@ -1,6 +1,8 @@
 // POST /v1/range and jobs about a range: answers against the document and each other.
 #include <gmock/gmock.h>
 
+#include "api/contract/range/range_experiments.h"
+#include "api/range_service.h"
 #include "api/report/report.h"
 #include "engine/tuning/limits.h"
 #include "tests/api/support.h"

@@ -1,5 +1,6 @@
 // LinearPlant: factors and realisation describe the same transfer function as the user's numbers.
 #include "engine/plant/linear/linear_plant.h"
+#include "engine/numerics/matrix/resolvent.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
 #include "engine/range/run/scheduled_run.h"
+#include "engine/range/run/profile.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,7 @@
 // Settings as they stand in a product today: the loop that they make, and their ideal twin.
 #include <gtest/gtest.h>
 
+#include "engine/controller/product/to_controller.h"
 #include "tests/engine/request/expect_as_built.h"
 
 namespace tunewright {

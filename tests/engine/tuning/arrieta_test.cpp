@@ -10,6 +10,7 @@
 #include "engine/tuning/arrieta/tradeoff.h"
 #include "engine/tuning/arrieta/tradeoff_report.h"
 #include "engine/tuning/method/method.h"
+#include "engine/tuning/registry.h"
 
 namespace tunewright {
 namespace {
@@ -64,7 +65,6 @@ TEST(ArrietaRule, InBetweenTheLevelsItSolvesAndSaysSo) {
     const Error error = refusal(model, "arrieta_degradation", {{"degradation", 0.4}, {"exact", false}});
     EXPECT_EQ(error.where, "degradation");
     EXPECT_THAT(error.message, HasSubstr("0, 0.25, 0.35, 0.45, 0.55"));
-    EXPECT_THAT(error.message, HasSubstr("\"exact\": true"));
 }
 
 TEST(ArrietaRule, ExactAtALevelLeavesTheTable) {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "engine/tuning/method/method.h"
+#include "engine/tuning/registry.h"
 #include "engine/tuning/robust/cost.h"
 #include "engine/tuning/robust/family.h"
 #include "engine/tuning/robust/sqp.h"

@@ -9,6 +9,7 @@
 
 #include "engine/plant/nonlinear/nonlinear_system.h"
 #include "engine/tuning/method/method.h"
+#include "engine/tuning/registry.h"
 
 namespace tunewright {
 

@@ -5,6 +5,7 @@
 
 #include "engine/number_text.h"
 #include "engine/tuning/built/built_loop.h"
+#include "engine/tuning/registry.h"
 #include "engine/tuning/robust/frontier.h"
 #include "engine/tuning/robust/robust.h"
 

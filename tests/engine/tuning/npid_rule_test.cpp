@@ -8,6 +8,7 @@
 #include "engine/evaluation/evaluate.h"
 #include "engine/loop/stability.h"
 #include "engine/request/tune.h"
+#include "engine/tuning/registry.h"
 
 namespace tunewright {
 namespace {

@@ -8,6 +8,7 @@
 
 #include "engine/evaluation/evaluate.h"
 #include "engine/request/tune.h"
+#include "engine/tuning/registry.h"
 #include "tests/engine/plant/subject_of.h"
 
 namespace tunewright {

@@ -226,7 +226,7 @@ TEST(Robust, StopsWithTheBestSoFar) {
     control.progress = [&](const Progress& progress) {
         EXPECT_GE(progress.fraction, fraction);
         fraction = progress.fraction;
-        EXPECT_TRUE(progress.best.has_value());
+        EXPECT_TRUE(progress.best);
         if (++reports == 2) source.request_stop();
     };
     const auto tuned =

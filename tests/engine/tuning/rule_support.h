@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "engine/tuning/method/method.h"
+#include "engine/tuning/registry.h"
 
 namespace tunewright::test {
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "engine/tuning/method/method.h"
+#include "engine/tuning/registry.h"
 #include "tests/engine/tuning/reference_batch.h"
 #include "tests/engine/tuning/rule_support.h"
 

@@ -10,6 +10,7 @@
 
 #include "engine/evaluation/evaluate.h"
 #include "engine/request/tune.h"
+#include "engine/tuning/registry.h"
 #include "tests/engine/plant/subject_of.h"
 #include "tests/engine/tuning/reference_batch.h"
 

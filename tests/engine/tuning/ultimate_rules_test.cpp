@@ -2,6 +2,7 @@
 // refused.
 #include <numbers>
 
+#include "engine/tuning/registry.h"
 #include "tests/engine/tuning/rule_support.h"
 
 namespace tunewright {

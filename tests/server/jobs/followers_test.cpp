@@ -7,6 +7,7 @@
 #include <future>
 
 #include "server/store/open_store.h"
+#include "server/store/sqlite/sqlite_store.h"
 
 namespace tunewright::server {
 namespace {

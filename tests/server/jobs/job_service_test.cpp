@@ -8,6 +8,7 @@
 #include "server/jobs/sweeper.h"
 #include "server/random.h"
 #include "server/store/open_store.h"
+#include "server/store/sqlite/sqlite_store.h"
 
 namespace tunewright::server {
 namespace {

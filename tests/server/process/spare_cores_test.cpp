@@ -1,4 +1,3 @@
-#include "server/spare_cores.h"
 
 #include <gtest/gtest.h>
 
@@ -10,6 +9,8 @@
 #include <stdexcept>
 #include <thread>
 #include <vector>
+
+#include "server/threads/spare_cores.h"
 
 namespace tunewright::server {
 namespace {

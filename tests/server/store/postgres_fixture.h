@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "server/store/open_store.h"
+#include "server/store/postgres/postgres_store.h"
 #include "tests/server/store/postgres_place.h"
 #include "tests/server/store/store_conformance.h"
 

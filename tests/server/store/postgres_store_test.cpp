@@ -4,6 +4,7 @@
 #include <mutex>
 #include <thread>
 
+#include "server/store/postgres/postgres_store.h"
 #include "tests/server/store/forbidden_changes.h"
 #include "tests/server/store/postgres_fixture.h"
 

@@ -7,6 +7,7 @@
 
 #include "server/jobs/service.h"
 #include "server/store/open_store.h"
+#include "server/store/sqlite/sqlite_store.h"
 #include "tests/server/store/shared_store.h"
 
 namespace tunewright::server {

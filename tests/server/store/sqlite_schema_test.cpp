@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "server/store/open_store.h"
+#include "server/store/sqlite/sqlite_store.h"
 #include "tests/server/store/forbidden_changes.h"
 #include "tests/server/store/store_conformance.h"
 #include "tests/server/store/store_file.h"

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "server/store/open_store.h"
+#include "server/store/sqlite/sqlite_store.h"
 #include "tests/server/store/store_conformance.h"
 #include "tests/server/store/store_file.h"
 

@@ -18,7 +18,7 @@ Parameter gain_of(std::string_view name, std::string_view unit, Role role, Term 
 }
 
 Action direction() {
-    // DIRECT: a larger output raises the measurement, which the contract calls reverse action.
+    // DIRECT: a larger output raises the measurement, which is reverse action here.
     return {.kind = Action::Kind::switched,
             .name = "ControllerDirection",
             .direct = std::string("REVERSE"),

@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 
+#include "engine/controller/product/to_controller.h"
 #include "tests/engine/controller/product/support.h"
 
 namespace tunewright::product {

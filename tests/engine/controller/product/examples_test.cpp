@@ -1,4 +1,5 @@
 // Every entry of the catalogue against the example that was published with it: digits as printed there.
+#include "engine/controller/product/to_controller.h"
 #include "tests/engine/controller/product/support.h"
 
 namespace tunewright::product {

@@ -1,5 +1,6 @@
 // Choices that decide a block's weights and actions are typed too: form, structure, equation, switches. Whoever types
 // a design into a block that stood otherwise before has the design's loop.
+#include "engine/controller/product/to_controller.h"
 #include "engine/controller/product/typed.h"
 #include "tests/engine/controller/product/support.h"
 

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "engine/controller/product/notes.h"
+#include "engine/controller/product/to_controller.h"
 #include "engine/controller/schedule/schedule.h"
 #include "tests/engine/controller/product/support.h"
 

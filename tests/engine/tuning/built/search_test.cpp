@@ -1,10 +1,10 @@
-#include "engine/tuning/built/search.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "engine/progress.h"
+#include "engine/tuning/built/settings_search.h"
 
 namespace tunewright::built {
 namespace {

@@ -14,6 +14,7 @@
 
 #include "api/service.h"
 #include "server/store/open_store.h"
+#include "server/store/sqlite/sqlite_store.h"
 #include "tests/server/store/faulty/bookkeeper.h"
 #include "tests/server/store/faulty/memory.h"
 #include "tests/server/store/store_file.h"

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "server/store/open_store.h"
+#include "server/store/postgres/postgres_store.h"
 #include "tests/server/store/faulty/bookkeeper.h"
 #include "tests/server/store/faulty/cut_line.h"
 #include "tests/server/store/postgres_place.h"

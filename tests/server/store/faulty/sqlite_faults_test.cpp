@@ -7,6 +7,7 @@
 #include <random>
 
 #include "server/store/open_store.h"
+#include "server/store/sqlite/sqlite_store.h"
 #include "tests/server/store/faulty/bookkeeper.h"
 #include "tests/server/store/faulty/disk.h"
 #include "tests/server/store/store_conformance.h"

@@ -1,0 +1,54 @@
+// The parameters of a program: options of the call and of the command, read with what the result and its request say.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "api/chosen_entry.h"
+#include "api/code/code.h"
+#include "api/describe/description.h"
+#include "engine/code/algorithm.h"
+#include "engine/code/print.h"
+
+namespace tunewright::api {
+
+/// Times are in the result's own unit (units.time), u and y in theirs.
+struct CodeQuestion {
+    code::Language language = code::Language::structured_text;
+    std::optional<double> sample_time;
+    IntegralRule integral = IntegralRule::backward;
+    DerivativeRule derivative = DerivativeRule::filtered_backward;
+    std::optional<int> slope_samples;  ///< of the rule slope, which needs it
+    bool velocity = false;
+    std::optional<code::AntiWindup> anti_windup;
+    std::optional<double> tracking_time, u_min, u_max, rate_limit, bias, y0;
+};
+
+/// Read from an object of the parameters as they were typed, numbers as numbers.
+const Description<CodeQuestion>& code_contract();
+
+/// The parameters as they were typed, rules that are not among them from the request's `implement`, and what the result
+/// says of units: all read before anything is computed.
+struct AskedCode {
+    CodeQuestion question;
+    double unit = 1;  ///< seconds in the result's unit of time
+};
+AskedCode read_asked(const CodeWords& words, const ChosenEntry& found, Reader& reader);
+
+struct SampleTime {
+    double seconds = 0;
+    std::string origin;  ///< for the head comment
+};
+
+/// As asked for, else as the request says how the controller runs, else from the controller's own times (gains with
+/// their times in seconds) and the `longest_sample_time` of the design, an entry or a schedule, where that says one. A
+/// fault of `sample_time` where there is none.
+std::variant<SampleTime, Problem> sample_time_of(const AskedCode& asked, const Json& request, const ParallelPid& gains,
+                                                 const Json& design);
+
+/// In seconds; the sample time is still to be set.
+SampledPid law_of(const AskedCode& asked, const ParallelPid& gains);
+code::CodeOptions options_of(const AskedCode& asked, const Json& result);
+
+}  // namespace tunewright::api

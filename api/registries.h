@@ -1,0 +1,22 @@
+// The lists that the service answers: methods, and products with the conversions of their settings.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "api/outcome.h"
+
+namespace tunewright::api {
+
+std::string controllers_json();               ///< GET /v1/controllers: products that settings can be converted for
+Answer controller_json(std::string_view id);  ///< GET /v1/controllers/{id}; 404 for none
+/// POST /v1/controllers/{id}/settings, .../schedule and .../controller: what is typed for a controller and for the rows
+/// of a schedule, and what settings are.
+Answer controller_settings_call(std::string_view id, std::string_view body);
+Answer controller_schedule_call(std::string_view id, std::string_view body);
+Answer controller_twin_call(std::string_view id, std::string_view body);
+
+std::string methods_json();               ///< GET /v1/methods
+Answer method_json(std::string_view id);  ///< GET /v1/methods/{id}; 404 for none
+
+}  // namespace tunewright::api

@@ -1,0 +1,399 @@
+#include "engine/controller/product/settings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "engine/controller/product/needs.h"
+#include "engine/controller/product/notes.h"
+#include "engine/controller/product/series.h"
+#include "engine/controller/product/to_controller.h"
+#include "engine/controller/product/typed.h"
+#include "engine/number_text.h"
+
+namespace tunewright::product {
+namespace {
+
+/// A conversion on its way: always to the nearest, with a sentence for each thing that the block cannot be.
+struct Work {
+    const Product& product;
+    const IdealPid& pid;  ///< in the caller's unit of time
+    const Context& context;
+    Quantities own = {};
+    Settings choices = {};  ///< what is chosen, before the other parameters are looked at
+    Settings settings = {};
+    std::vector<Note> notes = {};
+    std::vector<std::string> refusals = {};
+    std::string_view beyond = "";  ///< a parameter whose value is no number any more
+};
+
+double alpha_of(const Product& product) {
+    return product.filter.kind == FilterKind::ratio ? product.filter.value : product.series_alpha;
+}
+
+void refuse_complex_zeros(const RatioSeries& series, Work& work) {
+    const double unit = work.context.seconds_per_time;
+    work.refusals.push_back(
+        "Its form is a series, whose zeros are real: Ti = " + text(work.pid.Ti) + " is below " +
+        text(series.deviation->least_Ti / unit) + ", 4 Td/(1 - alpha) with alpha = " + text(alpha_of(work.product)) +
+        ". The nearest: both times sqrt(Ti Td) = " + text(series.ti / unit) + " and a gain of " +
+        text(series.Kc / work.own.Kp) + " Kp. It keeps the integral gain; the proportional gain becomes " +
+        text(series.deviation->proportional) + " times and the derivative gain " + text(series.deviation->derivative) +
+        " times the design's. Better: tune for this block, under that limit.");
+}
+
+void set_sign(Work& work) {
+    const Action& action = work.product.action;
+    if (work.pid.Kp > 0 || action.kind == Action::Kind::signed_gain) return;
+    work.own.Kp = -work.own.Kp;
+    if (action.kind == Action::Kind::reverse_only) {
+        work.refusals.push_back(
+            "Its gain is never negative and it has no switch for the direction, while Kp = " + text(work.pid.Kp) +
+            ". The nearest is the same gain with the opposite sign, for an "
+            "actuator that is turned round. " +
+            std::string(action.text));
+    }
+}
+
+void set_own_form(Work& work) {
+    const double unit = work.context.seconds_per_time;
+    const IdealPid& pid = work.pid;
+    Quantities& own = work.own;
+    own.Kp = pid.Kp;
+    set_sign(work);
+    own.Ti = pid.Ti * unit;
+    own.Td = own.ideal_Td = pid.Td * unit;
+    own.Tf = pid.filter.type == FilterType::none ? 0 : pid.filter.Tf * unit;
+    if (work.product.form == Form::p_only && (pid.has_integral() || pid.Td != 0)) {
+        work.notes.push_back({"proportional-only",
+                              "The block has no integral and no derivative action: it gets the "
+                              "proportional part of the design alone, which is another loop."});
+    }
+    if (work.product.form != Form::series) return;
+    const double alpha = alpha_of(work.product);
+    const RatioSeries series = ratio_series(own.Kp, own.Ti, own.Td, alpha);
+    if (series.deviation) refuse_complex_zeros(series, work);
+    own.Kp = series.Kc;
+    own.Ti = series.ti;
+    own.Td = series.td;
+    if (series.deviation) own.ideal_Td = to_ideal(SeriesPid{.Kp = own.Kp, .Ti = own.Ti, .Td = own.Td})->Td;
+    if (alpha > 0) own.Tf = alpha * series.td;
+}
+
+// If one option sets both weights, c decides among those of the same b only. Free weights cost less than any
+// difference that counts, so that they are taken where no fixed ones are the design's.
+constexpr double kLessThanB = 1e-6, kFreeWeights = 1e-12;
+constexpr double kAction = 10;  ///< of an action too much or too little: more than weights can differ
+
+bool law_role(Role role) {
+    return role == Role::gain || role == Role::multiplier || role == Role::integral || role == Role::derivative ||
+           role == Role::sample_time;
+}
+
+constexpr double kHardlyAny = 1e6;  // s, of an integral time
+
+// The law has no integral action: what stands for that, or what comes nearest to it.
+std::optional<double> without_integral(const Parameter& parameter, Work& work) {
+    if (parameter.off) return *parameter.off;
+    Quantities slow = work.own;
+    slow.Ti = kHardlyAny;
+    const double longest = rounded(parameter, value_of(parameter.term, slow));
+    slow.Ti = solved(parameter.term, work.own, &Quantities::Ti, parameter.term.Ti, longest);
+    work.refusals.push_back(std::string(parameter.name) +
+                            " has no value that is known to switch integral action off, "
+                            "and the design has none. The nearest: " +
+                            std::string(parameter.name) + " = " + text(longest, 6) + ", an integral time of " +
+                            text(slow.Ti / work.context.seconds_per_time, 3) +
+                            ". On a plant that is as slow as that it counts: judge the loop by what is realised.");
+    return longest;
+}
+
+// A value that the law determines, into the parameter's range.
+double within_range(const Parameter& parameter, double value, Work& work) {
+    const double typed = rounded(parameter, value);
+    if (typed > parameter.usual_most)
+        work.notes.push_back({"range", std::string(parameter.name) + " is " + text(typed, 6) +
+                                           ", and not every model takes that. " + std::string(parameter.remark)});
+    const bool inside = value >= parameter.range.low - parameter.resolution / 2 &&
+                        value <= parameter.range.high + parameter.resolution / 2;
+    if (inside || (parameter.off && value == *parameter.off)) return value;
+    if (law_role(parameter.role)) {
+        work.refusals.push_back(std::string(parameter.name) + " would be " + text(value, 6) + ", and it takes " +
+                                range_text(parameter) + ". The nearest: " + std::string(parameter.name) + " = " +
+                                text(typed, 6) + ".");
+    } else if (parameter.role == Role::filter) {
+        work.notes.push_back({"range", std::string(parameter.name) + " would be " + text(value, 6) + ", and it takes " +
+                                           range_text(parameter) + ": it is " + text(typed, 6) + "."});
+    }
+    return typed;
+}
+
+/// Back-calculation's time, sqrt(Ti Td), is Ti where there is no derivative.
+Term term_of(const Parameter& parameter, const Quantities& own) {
+    Term term = parameter.term;
+    if (parameter.role == Role::limit && own.Td == 0) term.Ti += std::exchange(term.Td, 0);
+    return term;
+}
+
+std::optional<double> number_for(const Parameter& parameter, Work& work) {
+    if (parameter.role == Role::integral && !work.pid.has_integral() && work.own.Ti > 0) {
+        const double value = value_of(parameter.term, work.own);
+        if (std::isinf(value)) return without_integral(parameter, work);
+        if (!parameter.zero_remark.empty()) work.notes.push_back({"integral-off", std::string(parameter.zero_remark)});
+    }
+    const Clocks clocks = clocks_of(work.product, work.context);
+    const double clock = work.product.algorithm.firmware_clock ? clocks.firmware : work.own.Ts;
+    const double value = parameter.role == Role::filter ? filter_value(parameter, work.own, clock)
+                                                        : value_of(term_of(parameter, work.own), work.own);
+    if (std::isfinite(value) && !(parameter.role == Role::filter && work.own.Td == 0 &&
+                                  work.product.filter.kind == FilterKind::parameter && parameter.standard))
+        return within_range(parameter, value, work);
+    if (law_role(parameter.role)) work.beyond = parameter.name;
+    // The law leaves it open: there is no derivative, or no filter.
+    if (parameter.off && work.own.Tf == 0) return parameter.off;
+    return number_of(parameter, {});
+}
+
+const Option& nearest_option(const Parameter& parameter, const IdealPid& pid) {
+    const auto distance = [&](const Option& option) {
+        double sum = option.free_weights ? kFreeWeights : 0;
+        if (option.integral.value_or(true) != pid.has_integral()) sum += kAction;
+        if (option.derivative.value_or(true) != (pid.Td != 0)) sum += kAction;
+        if (option.b) sum += std::abs(*option.b - pid.b);
+        if (option.c && pid.Td != 0) sum += kLessThanB * std::abs(*option.c - pid.c);
+        const bool measured = pid.filter.type == FilterType::measurement_first_order ||
+                              pid.filter.type == FilterType::measurement_second_order;
+        if (option.filter) sum += (*option.filter == FilterType::measurement_second_order) != measured;
+        return sum;
+    };
+    // Of two equally near the gentler one: the smaller weight of the set point.
+    const Option* best = &parameter.options.front();
+    for (const Option& option : parameter.options) {
+        const double difference = distance(option) - distance(*best);
+        if (difference < 0 || (difference == 0 && option.b.value_or(0) < best->b.value_or(0))) best = &option;
+    }
+    return *best;
+}
+
+void add(const Parameter& parameter, Value value, Work& work) {
+    work.settings.push_back({std::string(parameter.name), std::move(value)});
+}
+
+void add_setting(const Parameter& parameter, Work& work) {
+    const IdealPid& pid = work.pid;
+    switch (parameter.shape) {
+        case Shape::option: return add(parameter, *setting_named(work.choices, parameter.name), work);
+        case Shape::constant: return add(parameter, parameter.standard.value_or(0.0), work);
+        case Shape::alpha_code: return add(parameter, encoded_alpha(1 - pid.b), work);
+        case Shape::one_minus_b: return add(parameter, within_range(parameter, 1 - pid.b, work), work);
+        case Shape::weight:
+            return add(parameter, within_range(parameter, parameter.role == Role::weight_b ? pid.b : pid.c, work),
+                       work);
+        case Shape::feedforward: return add(parameter, within_range(parameter, (pid.b - 1) * work.own.Kp, work), work);
+        default: break;
+    }
+    const auto value = number_for(parameter, work);
+    if (parameter.role == Role::multiplier && value) work.own.K = *value;
+    if (parameter.compiled_in && value && parameter.standard && Value(*value) != *parameter.standard)
+        work.notes.push_back({"compiled-in", std::string(parameter.name) + " is " + text(*value, 4) + " here and " +
+                                                 text_of(*parameter.standard) +
+                                                 " in the firmware as it is published; without a firmware that was "
+                                                 "built anew this is another loop. Tune for this product, and the "
+                                                 "design keeps the published one."});
+    if (value) add(parameter, *value, work);
+}
+
+void choose(Work& work) {
+    for (const Parameter& parameter : work.product.parameters) {
+        if (parameter.shape != Shape::option) continue;
+        const Option& option = parameter.elsewhere ? parameter.options.front() : nearest_option(parameter, work.pid);
+        work.choices.push_back({std::string(parameter.name), option.value});
+    }
+}
+
+std::optional<Error> add_settings(Work& work) {
+    choose(work);
+    for (const Parameter& parameter : work.product.parameters) {
+        if (parameter.elsewhere && parameter.shape != Shape::option) continue;
+        if (!counts(work.product, parameter, work.choices)) continue;
+        if (auto missing = missing_for(work.product, parameter, work.context)) {
+            if (parameter.role != Role::limit) return missing;
+            work.notes.push_back({"limit", std::string(parameter.name) + " is left out: it is " +
+                                               formula_text(work.product, parameter) + ", which needs u_span. " +
+                                               std::string(parameter.remark)});
+            continue;
+        }
+        add_setting(parameter, work);
+    }
+    const Action& action = work.product.action;
+    if (action.kind == Action::Kind::switched && work.pid.Kp < 0) {
+        work.settings.push_back({std::string(action.name), action.direct});
+        work.notes.push_back({"action",
+                              "Kp is negative: the gain is typed without its sign, and the direction is set "
+                              "by " +
+                                  std::string(action.name) + ". " + std::string(action.text)});
+    }
+    // A switch that is left as it comes, at 0, would act the wrong way.
+    const double* reverse = std::get_if<double>(&action.reverse);
+    if (action.kind == Action::Kind::switched && work.pid.Kp > 0 && reverse != nullptr && *reverse != 0)
+        work.notes.push_back({"action", "Kp is positive, so " + std::string(action.name) + " must be " +
+                                            text(*reverse) + ". " + std::string(action.text)});
+    return std::nullopt;
+}
+
+std::optional<Error> unusable(const Product& product, const IdealPid& pid) {
+    if (pid.Kp == 0 || !std::isfinite(pid.Kp))
+        return Error{ErrorKind::not_representable, "controller/Kp",
+                     std::string(product.name) + ": Kp is " + text(pid.Kp) +
+                         "; without a proportional part there is no ideal form to convert. The nearest has a small Kp "
+                         "with Ti = Kp/Ki."};
+    if (!(pid.Ti > 0) || !(pid.Td >= 0) || !std::isfinite(pid.Td) || !std::isfinite(pid.b) || !std::isfinite(pid.c))
+        return Error{ErrorKind::invalid_argument, "controller",
+                     "Ti must be above 0, Td at least 0, and b and c numbers."};
+    return std::nullopt;
+}
+
+Error refusal(const Work& work) {
+    std::string message = std::string(work.product.name) + " cannot be this controller.";
+    for (const std::string& sentence : work.refusals) message += " " + sentence;
+    return {ErrorKind::not_representable, "controller", std::move(message)};
+}
+
+}  // namespace
+
+Expected<Converted> to_settings(const Product& product, const IdealPid& pid, const Context& context, bool nearest) {
+    if (auto error = unusable(product, pid)) return *error;
+    if (auto missing = missing_for_filter(product, context)) return *missing;
+    Work work{.product = product, .pid = pid, .context = context};
+    work.own = quantities_of(product, context);
+    set_own_form(work);
+    if (auto missing = add_settings(work)) return *missing;
+    if (!work.beyond.empty())
+        return Error{ErrorKind::invalid_argument, "controller",
+                     std::string(work.beyond) + " would be beyond any number. Check the controller and the spans."};
+    if (!work.refusals.empty() && !nearest) return refusal(work);
+
+    const Settings typed = as_typed(product, work.settings);
+    std::vector<Note> ignored;
+    auto realised = to_controller(product, typed, context, ignored);
+    if (!realised) return realised.error();
+    Converted converted{.settings = std::move(work.settings), .realised = *realised};
+    for (std::string& sentence : work.refusals) converted.notes.push_back({"nearest", std::move(sentence)});
+    for (Note& note : work.notes) converted.notes.push_back(std::move(note));
+    add_notes({product, pid, converted.realised, context, converted.settings, typed}, converted.notes);
+    return converted;
+}
+
+std::optional<double> default_sample_time_s(const Product& product) { return product.algorithm.sample_time_s; }
+
+std::optional<double> compiled_filter_time(const Product& product, const Context& context) {
+    const Parameter* parameter = parameter_of(product, Role::filter);
+    if (parameter == nullptr || !parameter->compiled_in) return std::nullopt;
+    const double* published = std::get_if<double>(&*parameter->standard);
+    const Quantities quantities = quantities_of(product, context);
+    return filter_time(*parameter, quantities, clocks_of(product, context).firmware, *published);
+}
+
+std::vector<Tunable> tunable_parameters(const Product& product) {
+    std::vector<Tunable> tunable;
+    for (const Parameter& parameter : product.parameters) {
+        const Role role = parameter.role;
+        const bool law = role == Role::gain || role == Role::integral || role == Role::derivative;
+        if (!law && role != Role::filter) continue;
+        tunable.push_back({std::string(parameter.name), role, parameter.range, parameter.resolution});
+    }
+    return tunable;
+}
+
+namespace {
+
+void note_scheduling(const Product& product, const Schedule& schedule, std::vector<Note>& notes) {
+    if (!product.scheduling) {
+        notes.push_back(
+            {"no-gain-scheduling",
+             "No gain scheduling of this product is known here. A program beside it can write the settings as "
+             "the rows say; see that a change does not make the output jump."});
+        return;
+    }
+    const GainScheduling& own = *product.scheduling;
+    if (own.sets > 0 && schedule.rows.size() > own.sets)
+        notes.push_back({"too-many-rows", "The schedule has " + std::to_string(schedule.rows.size()) +
+                                              " rows and the product holds " + std::to_string(own.sets) +
+                                              " sets. Design it with rows = " + std::to_string(own.sets) + "."});
+    if (schedule.rows.size() < 2 || own.between == schedule.interpolation) return;
+    std::string detail = "The schedule is meant with " + std::string(to_string(schedule.interpolation)) +
+                         "; the product does otherwise between its rows: " + std::string(own.text);
+    if (own.between)
+        detail += " Design it with interpolation = " + std::string(to_string(*own.between)) + ".";
+    else
+        detail += " At the rows themselves it is exact.";
+    notes.push_back({"interpolation", std::move(detail)});
+}
+
+bool is_switched(const Product& product, const std::string& name) {
+    const Parameter* parameter = parameter_named(product, name);
+    if (parameter == nullptr) return true;
+    using enum Role;
+    return parameter->role == gain || parameter->role == integral || parameter->role == derivative;
+}
+
+/// What comes with the known products for a schedule switches gain and times alone.
+void note_held(const Product& product, ConvertedSchedule& answer) {
+    if (!product.scheduling) return;
+    std::vector<std::string> held;
+    for (const RowSettings& row : answer.rows)
+        for (const Setting& setting : row.converted.settings) {
+            const bool differs = std::ranges::any_of(answer.rows, [&](const RowSettings& other) {
+                return std::ranges::any_of(other.converted.settings, [&](const Setting& its) {
+                    return its.name == setting.name && its.value != setting.value;
+                });
+            });
+            if (differs && !is_switched(product, setting.name) && std::ranges::find(held, setting.name) == held.end())
+                held.push_back(setting.name);
+        }
+    if (held.empty()) return;
+    std::string names;
+    for (const std::string& name : held) names += (names.empty() ? "" : ", ") + name;
+    answer.notes.push_back({"held-between-rows",
+                            "The rows differ in " + names + ", which the product's gain scheduling does not switch: " +
+                                std::string(product.scheduling->text) +
+                                " Give all rows the same filter and set-point weight, or write these values by a "
+                                "program of your own."});
+}
+
+bool holds(const std::vector<Note>& notes, const Note& note) { return std::ranges::find(notes, note) != notes.end(); }
+
+/// What every row says is said once.
+void lift_common_notes(ConvertedSchedule& answer) {
+    std::vector<RowSettings>& rows = answer.rows;
+    std::vector<Note> common;
+    for (const Note& note : rows.front().converted.notes)
+        if (std::all_of(rows.begin(), rows.end(),
+                        [&](const RowSettings& row) { return holds(row.converted.notes, note); }))
+            common.push_back(note);
+    for (RowSettings& row : rows)
+        std::erase_if(row.converted.notes, [&](const Note& note) { return holds(common, note); });
+    answer.notes.insert(answer.notes.end(), common.begin(), common.end());
+}
+
+}  // namespace
+
+Expected<ConvertedSchedule> to_settings(const Product& product, const Schedule& schedule, const Context& context,
+                                        bool nearest) {
+    ConvertedSchedule answer;
+    note_scheduling(product, schedule, answer.notes);
+    for (const ScheduleRow& row : schedule.rows) {
+        auto converted = to_settings(product, controller_of(row), context, nearest);
+        if (!converted) {
+            Error error = converted.error();
+            if (error.kind == ErrorKind::not_representable) error.where = "rows/" + std::to_string(answer.rows.size());
+            return error;
+        }
+        answer.rows.push_back({row.at, *std::move(converted)});
+    }
+    lift_common_notes(answer);
+    note_held(product, answer);
+    return answer;
+}
+
+}  // namespace tunewright::product

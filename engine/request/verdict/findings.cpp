@@ -1,0 +1,75 @@
+#include "engine/request/verdict/findings.h"
+
+#include <algorithm>
+
+namespace tunewright::verdict {
+namespace {
+
+std::optional<double> above(std::optional<double> value, double floor) {
+    return value && *value > floor ? value : std::nullopt;
+}
+
+/// Of the loop that runs; of the ideal one where nothing else is known.
+std::optional<PlacedPeak> running(const Figure& runs, const Figure& ideal, bool built) {
+    if (runs) return PlacedPeak{*runs, built ? PeakLoop::as_built : PeakLoop::ideal};
+    if (ideal) return PlacedPeak{*ideal};
+    return {};
+}
+
+}  // namespace
+
+std::string words_of(PeakLoop loop) {
+    switch (loop) {
+        case PeakLoop::ideal: return "";
+        case PeakLoop::as_built: return " on your controller as it is built";
+        case PeakLoop::worst_plant: return " on the worst plant";
+        case PeakLoop::ideal_on_worst_plant: return " of the ideal loop on the worst plant";
+    }
+    return "";
+}
+
+const Performance& performance_of(const TuningEntry& entry) {
+    return entry.as_built ? entry.as_built->loop.performance : entry.evaluation->performance;
+}
+
+const Robustness& Case::robustness() const {
+    return entry.as_built ? entry.as_built->loop.robustness : evaluation.robustness;
+}
+
+const Performance& Case::performance() const { return performance_of(entry); }
+
+bool Case::has_integral() const { return gains(evaluation.controller).Ki != 0; }
+
+bool Case::warned_of(const std::string& code) const {
+    return std::ranges::any_of(evaluation.warnings, [&](const Warning& warning) { return warning.code == code; });
+}
+
+Limits Case::limits() const {
+    return {above(entry.Ms_limit, 1), above(entry.options.number("Mt"), 1), above(entry.options.number("Mks"), 0)};
+}
+
+std::optional<PlacedPeak> Case::worst_Ms() const {
+    std::optional<PlacedPeak> largest = running(robustness().Ms, evaluation.robustness.Ms, built());
+    if (!evaluation.region) return largest;
+    const Figure& worst = evaluation.region->worst_Ms;
+    if (worst && (!largest || *worst > largest->value))
+        largest = {*worst, built() ? PeakLoop::ideal_on_worst_plant : PeakLoop::worst_plant};
+    return largest;
+}
+
+std::optional<PlacedPeak> Case::worst_Mt() const { return running(robustness().Mt, evaluation.robustness.Mt, built()); }
+
+std::string printed_unit(const std::string& unit) { return unit == "degC" ? "°C" : unit == "degF" ? "°F" : unit; }
+
+std::string product_unit(const std::string& a, const std::string& b) {
+    const std::string first = printed_unit(a), second = printed_unit(b);
+    return first.empty() || second.empty() ? first + second : first + " " + second;
+}
+
+std::string quotient_unit(const std::string& top, const std::string& bottom) {
+    const std::string over = printed_unit(top), under = printed_unit(bottom);
+    if (over == under) return "";
+    return (over.empty() ? "1" : over) + (under.empty() ? "" : "/" + under);
+}
+
+}  // namespace tunewright::verdict

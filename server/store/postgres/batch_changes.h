@@ -1,0 +1,34 @@
+// What the writers do to batches inside a transaction. What touches every entry goes in slices (slices.h says what each
+// does).
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "server/store/postgres/notices.h"
+#include "server/store/postgres/session.h"
+#include "server/store/slices.h"
+
+namespace tunewright::server::postgres {
+
+/// A transaction under way, and what other processes are told when it is committed.
+struct Work {
+    Session& session;
+    Notices& notices;
+};
+
+void open_batch(Session& session, const NewBatch& batch);
+bool add_entries(Session& session, const std::string& id, const std::vector<NewEntry>& entries, UnixMs now);
+SealedBatch seal_batch(Work& work, const BatchSeal& seal);
+std::optional<std::int64_t> leave_batch(Work& work, const std::string& id);
+RemovedBatch remove_batch(Work& work, const std::string& id);
+std::size_t delete_entries(Work& work, std::int64_t batch, std::size_t most);
+std::optional<std::int64_t> begin_cancel(Work& work, const std::string& id);
+std::optional<std::int64_t> cancel_entries(Work& work, std::int64_t batch, std::int64_t from, UnixMs now);
+std::vector<std::string> end_cancel(Work& work, std::int64_t batch);
+std::size_t sweep_slice(Work& work, UnixMs now, const Retention& retention, std::size_t most);
+/// Batches whose receiver has not been heard of for BatchStore::kReceiving are dropped; ended ones are settled.
+Unsettled settle_batches(Session& session);
+
+}  // namespace tunewright::server::postgres

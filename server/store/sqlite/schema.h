@@ -1,0 +1,16 @@
+// The tables of the SQLite file, and the numbered steps to them.
+#pragma once
+
+#include <SQLiteCpp/SQLiteCpp.h>
+
+#include "server/store/store.h"
+
+namespace tunewright::server {
+
+/// Throws StoreError where the database was written by a newer program.
+SchemaState schema_state(SQLite::Database& database);
+/// Brings the database to the newest schema by the numbered steps of schema.cpp, one transaction for each; a step is
+/// never edited after a release. Throws as schema_state() does.
+void migrate(SQLite::Database& database);
+
+}  // namespace tunewright::server

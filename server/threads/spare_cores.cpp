@@ -1,0 +1,59 @@
+#include "server/threads/spare_cores.h"
+
+#include <algorithm>
+#include <exception>
+#include <mutex>
+
+namespace tunewright::server {
+
+/// What is shared out. Helpers may look at it after the call has returned, but not at `f`.
+struct SpareCores::Share {
+    const std::function<void(int)>& f;
+    const int n;
+    std::atomic<int> next = 0, done = 0;
+    std::mutex mutex;
+    std::exception_ptr fault;
+
+    /// False where there is nothing left to begin.
+    bool take_one() {
+        const int i = next++;
+        if (i >= n) return false;
+        try {
+            f(i);
+        } catch (...) {
+            const std::lock_guard locked(mutex);
+            if (!fault) fault = std::current_exception();
+        }
+        if (++done == n) done.notify_all();
+        return true;
+    }
+};
+
+// Not at a lower priority than the computation that waits for them.
+SpareCores::SpareCores(std::size_t cores)
+    : cores_(static_cast<int>(std::max<std::size_t>(1, cores))), helpers_(static_cast<std::size_t>(cores_) - 1) {}
+
+Spread SpareCores::Computation::spread() {
+    return [&cores = cores_](int n, const std::function<void(int)>& f) { cores.spread(n, f); };
+}
+
+/// A helper leaves to computations of their own what they need.
+void SpareCores::help(Share& share) {
+    while (busy_ <= cores_ && share.take_one()) {
+    }
+    --busy_;
+}
+
+void SpareCores::spread(int n, const std::function<void(int)>& f) {
+    const auto share = std::make_shared<Share>(f, n);
+    for (int helpers = std::min(cores_ - busy_, n - 1); helpers > 0; --helpers) {
+        ++busy_;
+        if (!helpers_.post([this, share] { help(*share); })) --busy_;
+    }
+    while (share->take_one()) {
+    }
+    for (int done = share->done; done < n; done = share->done) share->done.wait(done);
+    if (share->fault) std::rethrow_exception(share->fault);
+}
+
+}  // namespace tunewright::server

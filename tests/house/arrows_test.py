@@ -56,7 +56,7 @@ ROOMS = {
         "code": {"chosen_entry", "contract", "csv", "describe", "json"},
         "report": {"chosen_entry", "contract", "embed", "json"},
         "examples": {"outcome", "contract", "describe", "embed", "json"},
-        "openapi": {"examples", "contract", "embed"},
+        "openapi": {"examples", "contract", "describe", "embed"},
         "outline": {"contract", "json"},
         "shorthand": {"contract", "csv", "json"},
         "registries": {"outcome", "contract", "describe", "formula"},

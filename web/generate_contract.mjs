@@ -5,12 +5,14 @@ import { readFileSync, writeFileSync } from "node:fs";
 import { fileURLToPath } from "node:url";
 import openapiTS, { astToString } from "openapi-typescript";
 
-/** What calls of the page send and get; what these refer to comes along. */
-const USED = [
+/** What calls of the page send; an answer that shows one shows it as it was sent. */
+const SENT = ["IdentifyRequest", "PlantQuestion", "RangeRequest", "RelayRequest", "TuningRequest"];
+
+/** What they get; what both refer to comes along. */
+const ANSWERED = [
   "Batch", "ControllerProduct", "ControllerSummary", "DesignAnswer", "EvaluateAnswer", "Example", "Frontier", "IdentifyAnswer",
-  "IdentifyRequest", "Job", "JobList", "MethodDescription", "PlantAnswer", "PlantQuestion", "PreviewAnswer", "Problem",
-  "RangeExample", "RangeRequest", "RangeResult", "RelayAnswer", "RelayRequest", "ScheduleSettingsAnswer", "SettingsAnswer",
-  "TuningRequest", "TuningResult",
+  "Job", "JobList", "MethodDescription", "PlantAnswer", "PreviewAnswer", "Problem", "RangeExample", "RangeResult", "RelayAnswer",
+  "ScheduleSettingsAnswer", "SettingsAnswer", "TuningResult",
 ];
 
 /** Types that the page fills by a description and reads by name, each with the member that tells its kind. */
@@ -18,9 +20,9 @@ const OPEN = { Plant: "type", PlantModel: "type", Method: "method" };
 
 const SHAPE = ["$ref", "type", "enum", "const", "additionalProperties", "items", "oneOf", "anyOf", "properties", "required"];
 
-/** The shape alone. What answers always have is required. */
-function shapeOf(schema) {
-  if (Array.isArray(schema)) return schema.map(shapeOf);
+/** The shape alone. What answers always have (`x-written`) is required where answers have the type. */
+function shapeOf(schema, answered) {
+  if (Array.isArray(schema)) return schema.map((part) => shapeOf(part, answered));
   if (typeof schema !== "object" || schema === null) return schema;
   if (schema.$ref) return { $ref: schema.$ref };
   const shape = {};
@@ -28,11 +30,13 @@ function shapeOf(schema) {
     if (!(name in schema)) continue;
     const part = schema[name];
     shape[name] =
-      name === "properties" ? Object.fromEntries(Object.entries(part).map(([member, of]) => [member, shapeOf(of)])) : shapeOf(part);
+      name === "properties"
+        ? Object.fromEntries(Object.entries(part).map(([member, of]) => [member, shapeOf(of, answered)]))
+        : shapeOf(part, answered);
   }
   const pair = schema.minItems === 2 && schema.maxItems === 2;
   if (pair) Object.assign(shape, { minItems: 2, maxItems: 2 });
-  if (schema["x-written"]) shape.required = [...new Set([...(shape.required ?? []), ...schema["x-written"]])];
+  if (answered && schema["x-written"]) shape.required = [...new Set([...(shape.required ?? []), ...schema["x-written"]])];
   return shape;
 }
 
@@ -50,8 +54,8 @@ function merged(union, schemas) {
   return { type: "object", properties: Object.fromEntries(names.map((name) => [name, member(name)])), required, additionalProperties: false };
 }
 
-/** The names that are used, with all that they refer to. */
-function reached(schemas) {
+/** These names with all that they refer to, but for what lies behind `apart`. */
+function reached(schemas, from, apart = []) {
   const names = new Set();
   const take = (part) => {
     if (typeof part !== "object" || part === null) return;
@@ -59,21 +63,23 @@ function reached(schemas) {
     Object.values(part).forEach(take);
   };
   const visit = (name) => {
-    if (names.has(name)) return;
+    if (names.has(name) || apart.includes(name)) return;
     if (!schemas[name]) throw new Error(`The document has no ${name}.`);
     names.add(name);
     take(schemas[name]);
   };
-  USED.forEach(visit);
+  from.forEach(visit);
   return names;
 }
 
 export async function contractTypes(document) {
-  const schemas = Object.fromEntries(Object.entries(document.components.schemas).map(([name, schema]) => [name, shapeOf(schema)]));
+  const described = document.components.schemas;
+  const answered = reached(described, ANSWERED, SENT);
+  const schemas = Object.fromEntries(Object.entries(described).map(([name, schema]) => [name, shapeOf(schema, answered.has(name))]));
   for (const [name, kind] of Object.entries(OPEN))
     schemas[name] = { type: "object", properties: { [kind]: { type: "string" } }, required: [kind], additionalProperties: true };
   schemas.Controller = merged(schemas.Controller, schemas);
-  const names = reached(schemas);
+  const names = reached(schemas, [...SENT, ...ANSWERED]);
   const used = Object.fromEntries(Object.entries(schemas).filter(([name]) => names.has(name)));
   const small = { openapi: document.openapi, info: { title: "", version: "" }, paths: {}, components: { schemas: used } };
   const text = astToString(await openapiTS(small, { exportType: true, rootTypes: true, rootTypesNoSchemaPrefix: true, arrayLength: true }));

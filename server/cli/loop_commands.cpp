@@ -22,8 +22,7 @@ void add_record_options(CLI::App& app, api::CsvRequest& question) {
     app.add_option("--t", question.t, "CSV: heading or number of the time column")->type_name("COLUMN");
     app.add_option("--u", question.u, "CSV: heading or number of the controller output")->type_name("COLUMN");
     app.add_option("--y", question.y, "CSV: heading or number of the measurement")->type_name("COLUMN");
-    app.add_option("--r", question.r, "CSV: heading or number of the set point, if there is one")
-        ->type_name("COLUMN");
+    app.add_option("--r", question.r, "CSV: heading or number of the set point, if there is one")->type_name("COLUMN");
     app.add_option("--d", question.d, "CSV: heading or number of a measured disturbance; may be repeated")
         ->type_name("COLUMN")
         ->take_all()
@@ -169,8 +168,8 @@ void add_loop_commands(CommandTree& tree) {
 
 void add_list_commands(CommandTree& tree) {
     add_list_command(tree, "methods", "The tuning methods with their options", "Id of one entry to print", methods);
-    add_list_command(tree, "controllers", "The controllers that settings can be converted for", "Id of one entry to print",
-                     controllers);
+    add_list_command(tree, "controllers", "The controllers that settings can be converted for",
+                     "Id of one entry to print", controllers);
     add_list_command(tree, "examples", "Requests to start from", "Id or number of an example to print", examples);
 }
 

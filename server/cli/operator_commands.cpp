@@ -28,9 +28,8 @@ void add_key_command(CommandTree& tree) {
 
 void add_secret_command(CommandTree& tree) {
     SecretCommand& words = tree.keep<SecretCommand>();
-    CLI::App& app =
-        tree.add("secret", "Make a secret that signs notifications: printed on stdout, kept in a file",
-                 [&] { return make_secret(words); });
+    CLI::App& app = tree.add("secret", "Make a secret that signs notifications: printed on stdout, kept in a file",
+                             [&] { return make_secret(words); });
     app.add_option("name", words.name, "Its name, which a request gives as notify.secret_id")->required();
     app.add_option("--file", words.file, "The file it is added to (default: the line goes to stderr)")
         ->type_name("FILE");

@@ -99,10 +99,8 @@ void add_job_options(CLI::App& app, Config& config) {
              "The same for failed jobs");
     duration(app, "retention-cancelled", config.retention_cancelled_s, "as --retention", {0, 1e9},
              "The same for cancelled jobs");
-    duration(app, "job-timeout", config.job_timeout_s, "60s", {0.1, 3600},
-             "Time limit of a job without timeout_s");
-    duration(app, "max-timeout", config.max_timeout_s, "3600s", {0.1, 3600},
-             "Largest timeout_s of a request");
+    duration(app, "job-timeout", config.job_timeout_s, "60s", {0.1, 3600}, "Time limit of a job without timeout_s");
+    duration(app, "max-timeout", config.max_timeout_s, "3600s", {0.1, 3600}, "Largest timeout_s of a request");
 }
 
 void add_notify_options(CLI::App& app, Config& config) {

@@ -52,7 +52,7 @@ TEST(Comparison, MakesARowOfEveryMethodForEachControllerWithIntegralAction) {
         EXPECT_EQ(rows_of(method.id, {}).empty(), !method.compared) << method.id;
     const auto rows = rows_of("ziegler_nichols_step", {});
     ASSERT_EQ(rows.size(), 2u);
-    EXPECT_EQ(rows[0].title, "Ziegler-Nichols, step response (PI)");
+    EXPECT_EQ(rows[0].title(), "Ziegler-Nichols, step response (PI)");
     EXPECT_EQ(rows[1].options.text("controller"), "PID");
 }
 

@@ -17,7 +17,6 @@ namespace tunewright {
 namespace {
 
 using namespace optimise;
-using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
@@ -25,18 +24,18 @@ using Eigen::VectorXd;
 /// of the right sign.
 template <class Program>
 std::optional<VectorXd> by_enumeration(const Program& p) {
-    const Index n = p.g.size(), m = p.constraints;
+    const Eigen::Index n = p.g.size(), m = p.constraints;
     for (unsigned set = 0; set < 1U << m; ++set) {
-        std::vector<Index> active;
-        for (Index i = 0; i < m; ++i)
+        std::vector<Eigen::Index> active;
+        for (Eigen::Index i = 0; i < m; ++i)
             if (set >> i & 1U) active.push_back(i);
-        const auto q = Index(active.size());
+        const auto q = Eigen::Index(active.size());
         if (q > n) continue;
         MatrixXd K = MatrixXd::Zero(n + q, n + q);
         VectorXd right(n + q);
         K.topLeftCorner(n, n) = p.H;
         right.head(n) = -p.g;
-        for (Index k = 0; k < q; ++k) {
+        for (Eigen::Index k = 0; k < q; ++k) {
             K.col(n + k).head(n) = p.A.col(active[std::size_t(k)]);
             K.row(n + k).head(n) = p.A.col(active[std::size_t(k)]).transpose();
             right[n + k] = p.b[active[std::size_t(k)]];
@@ -46,7 +45,7 @@ std::optional<VectorXd> by_enumeration(const Program& p) {
         const VectorXd z = factored.solve(right);
         if (q > 0 && z.tail(q).minCoeff() < -1e-10) continue;
         bool feasible = true;
-        for (Index i = 0; i < m; ++i) feasible = feasible && p.A.col(i).dot(z.head(n)) <= p.b[i] + 1e-10;
+        for (Eigen::Index i = 0; i < m; ++i) feasible = feasible && p.A.col(i).dot(z.head(n)) <= p.b[i] + 1e-10;
         if (feasible) return z.head(n);
     }
     return std::nullopt;
@@ -55,7 +54,7 @@ std::optional<VectorXd> by_enumeration(const Program& p) {
 template <class Program, class Minimum>
 void expect_optimal(const Program& p, const Minimum& minimum, double tolerance) {
     VectorXd gradient = p.g + p.H * minimum.x;
-    for (Index i = 0; i < p.constraints; ++i) {
+    for (Eigen::Index i = 0; i < p.constraints; ++i) {
         const double slack = p.b[i] - p.A.col(i).dot(minimum.x);
         EXPECT_GE(minimum.multipliers[i], 0);
         EXPECT_GE(slack, -tolerance * (1 + std::abs(p.b[i])));
@@ -70,13 +69,13 @@ TEST(QuadraticProgram, IsTheOneFeasibleStationaryPoint) {
     std::normal_distribution<double> normal;
     int without = 0;
     for (int trial = 0; trial < 600; ++trial) {
-        const Index n = 1 + trial % 4, m = 1 + trial % 10;
+        const Eigen::Index n = 1 + trial % 4, m = 1 + trial % 10;
         SmallProgram program(n, m);
         const MatrixXd root = MatrixXd::NullaryExpr(n, n, [&] { return normal(random); });
         program.H = root * root.transpose() + 0.01 * MatrixXd::Identity(n, n);
         program.g = VectorXd::NullaryExpr(n, [&] { return 3 * normal(random); });
         // Every third program has its first constraint twice, as two plants with the same peak give it.
-        for (Index i = 0; i < m; ++i) {
+        for (Eigen::Index i = 0; i < m; ++i) {
             const bool again = trial % 3 == 0 && i == 1;
             const VectorXd a =
                 again ? VectorXd(program.A.col(0)) : VectorXd::NullaryExpr(n, [&] { return normal(random); });
@@ -106,7 +105,7 @@ TEST(QuadraticProgram, ALargeOneMeetsItsOptimalityConditionsBesideALargePenalty)
     std::normal_distribution<double> normal;
     for (const double penalty : {40.0, 4e4}) {
         for (int trial = 0; trial < 20; ++trial) {
-            const Index n = 30, size = n + 2;
+            const Eigen::Index n = 30, size = n + 2;
             LargeProgram program(size, 3 + 2 * n + 80);
             program.H.setZero();
             program.H.topLeftCorner(n, n) = 0.3 * MatrixXd::Identity(n, n);
@@ -123,7 +122,7 @@ TEST(QuadraticProgram, ALargeOneMeetsItsOptimalityConditionsBesideALargePenalty)
             program.add(-VectorXd::Unit(size, n + 1), 0);
             program.add(VectorXd::Unit(size, n + 1), 60);
             program.add(-VectorXd::Unit(size, n), 60);
-            for (Index i = 0; i < n; ++i) {
+            for (Eigen::Index i = 0; i < n; ++i) {
                 program.add(VectorXd::Unit(size, i), 1);
                 program.add(-VectorXd::Unit(size, i), 1);
             }

@@ -252,7 +252,7 @@ export type components = {
       b: number | 1;
       c: number | 0;
       filter: components["schemas"]["Filter"];
-      action?: "reverse" | "direct";
+      action: "reverse" | "direct";
       Ki?: number;
       Kd?: number;
       b_equivalent?: number;
@@ -262,7 +262,7 @@ export type components = {
       T: number;
     };
     Filter: {
-      type?: "none" | "derivative" | "measurement_first_order" | "measurement_second_order";
+      type: "none" | "derivative" | "measurement_first_order" | "measurement_second_order";
       Tf?: number;
       N?: number;
     };
@@ -275,7 +275,7 @@ export type components = {
       b: number;
       c: number;
       filter: components["schemas"]["Filter"];
-      action?: "reverse" | "direct";
+      action: "reverse" | "direct";
     };
     SeriesController: {
       form: "series";
@@ -286,8 +286,8 @@ export type components = {
       b: number;
       c: number;
       filter: components["schemas"]["Filter"];
-      action?: "reverse" | "direct";
-      b_equivalent?: number;
+      action: "reverse" | "direct";
+      b_equivalent: number;
     };
     BaselineSettings: {
       product: string;
@@ -369,7 +369,7 @@ export type components = {
     Model: {
       plant: components["schemas"]["Plant"];
       fit_percent: number;
-      grade?: "good" | "usable" | "doubtful";
+      grade: "good" | "usable" | "doubtful";
       grade_reason?: "fit" | "warning";
       standard_errors: {
         [key: string]: number | null;
@@ -382,10 +382,10 @@ export type components = {
       ultimate_point?: components["schemas"]["UltimatePoint"];
       excited_band?: components["schemas"]["ExcitedBand"];
       region?: components["schemas"]["Region"];
-      choice_reason?: string;
-      candidates?: components["schemas"]["Candidate"][];
+      choice_reason: string;
+      candidates: components["schemas"]["Candidate"][];
       fit?: components["schemas"]["Fit"];
-      data_quality?: components["schemas"]["DataQuality"];
+      data_quality: components["schemas"]["DataQuality"];
       warnings: components["schemas"]["Warning"][];
     };
     Covariance: {
@@ -513,7 +513,7 @@ export type components = {
     Warning: {
       code: string;
       detail: string;
-      level?: "warning" | "bad";
+      level: "warning" | "bad";
     };
     OperatingPoint: {
       states: {

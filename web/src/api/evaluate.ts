@@ -4,7 +4,7 @@ import { deleteJob, postJobAndWait } from "./jobs.ts";
 import type { Controller, Entry, Plant, Tradeoff } from "./types.ts";
 
 /** What the service adds to a controller is not part of its settings. */
-export const settingsOf = ({ action: _action, ...settings }: Controller): Controller => settings;
+export const settingsOf = ({ action: _action, ...settings }: Controller): Omit<Controller, "action"> => settings;
 
 /** The figures and responses of one controller for this set-point step, to that horizon. */
 export async function stepOf(

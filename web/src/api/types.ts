@@ -56,10 +56,11 @@ export type {
   TradeoffFigures,
   UltimatePoint,
   Units,
-  Warning as Notice,
   WorstPlace,
 } from "./contract.gen.ts";
 
+/** A warning, or a note on settings, which has no level. */
+export type Notice = Omit<Contract.Warning, "level"> & Partial<Pick<Contract.Warning, "level">>;
 export type WhyNull = Record<string, string>;
 export type Column = (number | null)[];
 export type SettingValue = number | string | boolean;

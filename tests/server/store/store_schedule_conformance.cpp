@@ -106,7 +106,7 @@ TEST_P(StoreConformance, TheAgeOfAJobThatWasScheduledCountsFromItsTime) {
 }
 
 TEST_P(StoreConformance, AScheduledJobOutlivesItsProcessAndAPause) {
-    accept(at(job("a"), now() + 20));
+    accept(at(job("a"), now() + 800));
     accept(at(job("later"), now() + kHour));
     pause(true);
     reopen();
@@ -140,7 +140,7 @@ TEST_P(StoreConformance, AScheduledJobIsCancelledAndQueuedAgainForItsTime) {
 }
 
 TEST_P(StoreConformance, EachDueJobIsMovedOnceHoweverManyAsk) {
-    for (int i = 0; i < 50; i++) accept(at(job("j" + std::to_string(i), "flow" + std::to_string(i % 3)), now() + 30));
+    for (int i = 0; i < 50; i++) accept(at(job("j" + std::to_string(i), "flow" + std::to_string(i % 3)), now() + 800));
     std::this_thread::sleep_for(Milliseconds(1100));
     std::vector<std::promise<std::size_t>> answers(10);
     for (auto& answer : answers)

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "api/contract/plant/typed.h"
+#include "engine/tuning/limits.h"
 #include "engine/tuning/robust/filter_rule.h"
 
 namespace tunewright::api {
@@ -77,7 +78,7 @@ Codec<Interpolation> interpolation_word() {
 const Description<ScheduleWish>& schedule_wish_contract() {
     static const auto description = [] {
         using W = ScheduleWish;
-        const NumberRule limit{.exclusive_minimum = 1, .maximum = 4};
+        const NumberRule limit{.exclusive_minimum = 1, .maximum = limits::kMaxMs};
         Description<W> d("ScheduleWish", "Limits, and how the user's controller moves between its rows.");
         d.field("controller", &W::controller,
                 choice<ControllerKind>({{"PID", ControllerKind::PID}, {"PI", ControllerKind::PI}}), "Its kind.")

@@ -8,6 +8,7 @@
 
 #include "engine/range/problem.h"
 #include "engine/range/search/place.h"
+#include "engine/tuning/limits.h"
 
 namespace tunewright::range {
 
@@ -42,7 +43,7 @@ struct JointResult {
     bool stopped = false;
 
     /// The searches' own grids hold the limits as far as they can see.
-    bool holds() const { return excess <= 1e-6; }
+    bool holds() const { return excess <= limits::kMaxRelativeExcessSearched; }
 };
 
 /// Sequential quadratic programming (numerics/optimise/sqp.h has its steps) with an exact penalty of the limits'

@@ -236,9 +236,11 @@ public:
         optimise::update_curvature(H_, moved_by, y);
         // From a tiny step gradients' rounding tells more than their change.
         if (!(longest(moved_by) > k.telling_step)) return;
-        result_.curvature.emplace();
+        // Of a parameter that this search leaves alone it knows nothing; whoever takes the curvature needs it positive.
+        Curvature& seen = result_.curvature.emplace();
+        for (std::size_t i = 0; i < seen.size(); ++i) seen[i][i] = optimise::kSqp.first_curvature;
         for (int i = 0; i < n_; ++i)
-            for (int j = 0; j < n_; ++j) (*result_.curvature)[std::size_t(i)][std::size_t(j)] = H_(i, j);
+            for (int j = 0; j < n_; ++j) seen[std::size_t(i)][std::size_t(j)] = H_(i, j);
     }
 
 private:

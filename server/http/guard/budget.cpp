@@ -71,6 +71,7 @@ void Budget::keep(Entry& entry, std::size_t bytes) {
     {
         const std::lock_guard lock(mutex_);
         set(entry, std::min(entry.bytes, bytes));
+        if (bytes == 0) entry.leaving = {}, entry.give_way = nullptr;  // it has given way
     }
     freed_.notify_all();
 }

@@ -48,8 +48,8 @@ std::string accept_sql(bool limited) {
            "SELECT id, seq, not_before FROM made";
 }
 
-/// A job that failed or was cancelled gives its key up to a unique one, and keeps it behind its id. Its row is locked:
-/// queued again at this moment, it keeps the key, or comes after this.
+/// A job that failed or was cancelled gives its key up to a unique one, and keeps it behind its id. Who calls this is
+/// in its turn (kInTurn): a job that is queued again takes the same turn first.
 void free_key(Session& session, const std::string& owner, const std::string& key) {
     session.run(
         "WITH free AS MATERIALIZED (SELECT e.seq FROM jobs j JOIN ended e ON e.seq = j.seq WHERE j.owner = $1 "
@@ -64,17 +64,21 @@ const std::string kInTurn =
     "SELECT count(pg_advisory_xact_lock(x'74756e65'::int, hash)) FROM "
     "(SELECT DISTINCT hashtext(name) AS hash FROM unnest($1::text[]) AS g (name) ORDER BY hash OFFSET 0) f";
 
-/// Where the job has given its key up it takes it back; false where a later one has it.
+/// Where the job has given its key up it takes it back; false where a later one has it. Until the commit no other job
+/// is accepted with that key, given up or not.
 bool take_key_back(Session& session, std::int64_t seq) {
-    const pqxx::result given = session.run(
-        "SELECT owner, substr(idempotency_key, 2 + length(id)) FROM jobs WHERE seq = $1 "
-        "AND starts_with(idempotency_key, ' ' || id)",
-        Values().number(seq));
-    if (given.empty()) return true;
-    const std::string owner = text_of(given[0][0]), key = text_of(given[0][1]);
+    static const std::string look =
+        "SELECT owner, CASE WHEN given_up THEN substr(key, 2 + length(id)) ELSE key END, given_up FROM "
+        "(SELECT id, owner, idempotency_key AS key, starts_with(idempotency_key, ' ' || id) AS given_up "
+        "FROM jobs WHERE seq = $1 AND idempotency_key IS NOT NULL) k";
+    const pqxx::result kept = session.run(look, Values().number(seq));
+    if (kept.empty()) return true;
+    const std::string owner = text_of(kept[0][0]), key = text_of(kept[0][1]);
     TextArray in_turn;
     in_turn.add(key);
     session.run(kInTurn, Values().plain(in_turn.literal()));
+    const pqxx::result now = session.run(look, Values().number(seq));
+    if (now.empty() || !now[0][2].as<bool>()) return true;
     free_key(session, owner, key);
     return session
                .run(

@@ -42,6 +42,26 @@ TEST(RobustSearch, TheLeastTdIsNoAnswerWithoutALookElsewhere) {
     EXPECT_TRUE(expect_best_known({lightly_damped(), 1.5, "setpoint_iae"}, 20, 1, "set point"));
 }
 
+// A search over Kp and Ti says nothing of Td; with zeros there the next one could take no step.
+TEST(RobustSearch, TheCurvatureThatAPiHandsOnServesAPid) {
+    const DesignTask task{Fopdt{2, 10, 3}, 1.4, "load_iae"};
+    const LinearPlant linear = *LinearPlant::make(task.plant);
+    const auto best = designed(task, "fast");
+    ASSERT_TRUE(best.has_value());
+    const robust::DesignProblem pid = problem_of(task, linear, best->controller);
+    robust::DesignProblem pi = pid;
+    pi.pid = false;
+    const auto found = robust::minimise(robust::Sweep(pi, robust::reference_frequency(pi)), pi,
+                                        {std::log(0.3), std::log(8), std::log(0.5)}, {}, {});
+    ASSERT_TRUE(found.curvature);
+    robust::SqpOptions options;
+    options.curvature = found.curvature;
+    const auto next = robust::minimise(robust::Sweep(pid, robust::reference_frequency(pid)), pid,
+                                       {found.x[0], found.x[1], std::log(0.5)}, options, {});
+    EXPECT_TRUE(next.converged);
+    EXPECT_NEAR(next.log_cost, robust::log_cost(pid, point_of(best->controller), 1e-6), 1e-3);
+}
+
 TEST(RobustSearch, FastIsWithinAThousandthOfTheBestKnown) {
     int compared = 0;
     for (int i = 1000; i < 1018; ++i) {

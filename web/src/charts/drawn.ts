@@ -47,8 +47,9 @@ function worthDrawing(result: Result): number[] {
   return calm.length > 0 ? calm : drawn;
 }
 
-/** The entry that is shown first, as the answer says; of an older answer the one that its verdict names. */
-export const proposedEntry = ({ proposed, verdict }: Result): number => proposed ?? verdict?.[0]?.figures?.["entry"] ?? 0;
+/** The entry that is shown first, as the answer says; of an older answer the one that its verdict names, or the first without an error. */
+export const proposedEntry = ({ proposed, verdict, controllers }: Result): number =>
+  proposed ?? verdict?.[0]?.figures?.["entry"] ?? Math.max(0, controllers.findIndex((entry) => !entry.error));
 
 /** The best of the ranking and today's settings, at most four, in the order of the entries. */
 export function defaultDrawn(result: Result): number[] {

@@ -1,4 +1,4 @@
-// What a job and a call come to.
+// The results of a job and of a call.
 #pragma once
 
 #include <string>
@@ -22,7 +22,7 @@ struct Answer {
     std::string body;
 };
 
-/// What a call answers that cannot be done.
+/// The answer to a call that cannot be done.
 inline Answer refusal(const Problem& problem) { return {problem.status, to_json(problem)}; }
 
 }  // namespace tunewright::api

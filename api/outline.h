@@ -27,7 +27,7 @@ private:
     std::string plant_;  ///< JSON; "" of a record
 };
 
-/// What a list shows of a job that has failed, from its problem's text.
+/// A failed job as a list shows it, from its problem's text.
 std::string error_outline(const std::string& problem_json);
 
 }  // namespace tunewright::api

@@ -1,4 +1,4 @@
-// Where the controller of a program comes from: lines of its head comment.
+// The origin of a program's controller, as lines of its head comment.
 #pragma once
 
 #include "api/json/json.h"

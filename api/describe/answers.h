@@ -1,4 +1,4 @@
-// What only answers need of a type: its values that others are drawn over, and the mark of what is always there.
+// The parts of a type that only answers need: values that others are drawn over, the mark of what is always there.
 #pragma once
 
 #include <vector>

@@ -17,7 +17,7 @@ namespace tunewright::api {
 ///     <mo>)</mo></mrow><mo>=</mo><mfrac><mrow><mn>2</mn><msup><mi>e</mi>...
 std::string mathml(const typed::Formula& formula);
 
-/// Of any linear plant; uncertainty is not shown.
+/// Any linear plant; uncertainty is not shown.
 std::string mathml(const Plant& plant);
 
 }  // namespace tunewright::api

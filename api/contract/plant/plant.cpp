@@ -466,7 +466,7 @@ const Description<PlantSet>& plant_set() {
     return description;
 }
 
-// What belongs together in the points.
+// The parts of the points that belong together.
 void check_points(const Json&, FrequencyResponse& points, Reader& reader) {
     if (const auto fault = points_fault(points)) reader.fault_below(fault->where, 1, fault->message);
 }

@@ -12,7 +12,7 @@
 
 namespace tunewright::api {
 
-/// What both conversions take beside controller or settings.
+/// The members that both conversions take as well as controller or settings.
 struct BlockContext {
     std::optional<Units> units;
     std::optional<std::vector<double>> y_span, u_span;
@@ -26,7 +26,7 @@ struct SettingsRequest : BlockContext {
 };
 const Description<SettingsRequest>& settings_request_contract();
 
-/// What is to be typed, also beside an entry of a result.
+/// The settings to type, also with an entry of a result.
 struct SettingsAnswer {
     const product::Product* product = nullptr;
     product::Settings settings;  ///< in full precision

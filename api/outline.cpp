@@ -49,8 +49,8 @@ void write_figures(const TuningEntry& entry, Writer& out) {
 void write_settings(const TuningEntry& best, Writer& out) {
     out.key("controller");
     controller_contract().write(best.evaluation->controller, out);
-    if (!best.as_built || best.as_built->fitted.typed.empty()) return;
-    const built::Fitted& fitted = best.as_built->fitted;
+    if (!best.on_device || best.on_device->fitted.typed.empty()) return;
+    const device::Fitted& fitted = best.on_device->fitted;
     out.key("to_type");
     out.begin_object();
     for (const product::Setting& setting : fitted.typed) {

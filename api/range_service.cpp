@@ -46,7 +46,7 @@ std::string outline_of(const RangeContent& content, const std::optional<Units>& 
     out.key("method");
     out.text("range");
     const auto& worst = content.schedule ? content.worst.schedule : content.worst.one;
-    const auto largest = std::ranges::find(worst, range::Quantity::Ms, &range::WorstPlace::quantity);
+    const auto largest = std::ranges::find(worst, range::Quantity::Ms, &range::WorstPoint::quantity);
     out.key("Ms");
     largest != worst.end() && largest->value ? out.number(*largest->value) : out.null();
     out.key("range");

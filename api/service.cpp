@@ -62,13 +62,13 @@ Json plant_json(const PlantModel& plant) {
 
 /// A typed plant is kept as what it means: whoever reads the job finds a plant, and every spelling of it is the same
 /// request. False where there is none.
-bool spell_plants(Json& value, const JobRequest& request) {
+bool canonicalise_plants(Json& value, const JobRequest& request) {
     if (!request.plant || !is_typed(value["plant"])) return false;
     value["plant"] = plant_json(*request.plant);
     return true;
 }
 
-bool spell_plants(Json& value, const RangeRequest& request) {
+bool canonicalise_plants(Json& value, const RangeRequest& request) {
     bool typed = false;
     if (!request.points) return typed;
     for (std::size_t k = 0; k < request.points->size(); ++k) {
@@ -97,7 +97,7 @@ std::variant<PreparedJob, Problem> prepared_as(const Description<Request>& contr
     const bool given = value.contains("timeout_s");
     if (given && request.timeout_s > limits.longest_timeout_s) return timeout_too_long(request.timeout_s, limits);
     if (auto problem = refuse_far(request.not_before)) return *std::move(problem);
-    const bool typed = spell_plants(value, request);
+    const bool typed = canonicalise_plants(value, request);
     PreparedJob job{.name = request.name.value_or(""),
                     .timeout_s = given ? request.timeout_s : limits.default_timeout_s,
                     .request_json = typed ? value.dump() : text(),
@@ -277,7 +277,7 @@ Answer evaluate_call(std::string_view body, const RunControl& control) {
     const auto& request = std::get<EvaluateRequest>(decoded);
 
     const auto result =
-        evaluate_all(*request.subject, request.controllers, request.evaluate, request.build, labels_of(request.units),
+        evaluate_all(*request.subject, request.controllers, request.evaluate, request.device, labels_of(request.units),
                      control, request.model ? &*request.model : nullptr, request.given_steps);
     if (!result) return refusal(to_problem(result.error()));
     Writer out;

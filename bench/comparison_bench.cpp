@@ -12,7 +12,8 @@ namespace {
 
 TuningRequest request_for(double L_over_T) {
     TuningRequest request;
-    request.subject = std::get<Subject>(Subject::make(Plant(Fopdt{.K = 1.25, .T = 40, .L = 40 * L_over_T})));
+    request.subject =
+        std::get<AnalysedPlant>(AnalysedPlant::make(Plant(Fopdt{.K = 1.25, .T = 40, .L = 40 * L_over_T})));
     request.tune = {{.method = "all", .options = {}}};
     return request;
 }
@@ -27,7 +28,7 @@ void on_two_cores(int n, const std::function<void(int)>& f) {
     work();
 }
 
-void run(benchmark::State& state, bool with_optima, const Spread& spread = {}) {
+void run(benchmark::State& state, bool with_optima, const ParallelFor& spread = {}) {
     TuningRequest request = request_for(static_cast<double>(state.range(0)) / 100);
     request.evaluate.optimum_at_Ms = with_optima;
     int rows = 0;

@@ -65,7 +65,7 @@ BENCHMARK(longest_sample_time_of_a_pid)->Unit(benchmark::kMicrosecond);
 // The job that a queue of small jobs is made of.
 void rule_with_evaluation(benchmark::State& state) {
     TuningRequest request;
-    request.subject = std::get<Subject>(Subject::make(Plant(Fopdt{.K = 1, .T = 40, .L = 2})));
+    request.subject = std::get<AnalysedPlant>(AnalysedPlant::make(Plant(Fopdt{.K = 1, .T = 40, .L = 2})));
     request.tune = {{.method = "simc", .options = {}}};
     request.evaluate.points = static_cast<int>(state.range(0));
     for (auto _ : state) {

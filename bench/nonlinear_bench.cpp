@@ -66,7 +66,7 @@ BENCHMARK(pi_loop_limited)->Unit(benchmark::kMicrosecond);
 
 void evaluation(benchmark::State& state) {
     const auto system = reactor("T");
-    const NonlinearSubject subject{system, *linearised_plant(system)};
+    const AnalysedNonlinear subject{system, *linearised_plant(system)};
     EvaluateOptions options;
     options.setpoint_step = 10;
     for (auto _ : state) {

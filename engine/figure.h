@@ -25,7 +25,7 @@ struct OrReason {
     explicit operator bool() const { return value.has_value(); }
     const T& operator*() const { return *value; }
     const T* operator->() const { return &*value; }
-    T value_or(T otherwise) const { return value.value_or(std::move(otherwise)); }
+    T value_or(T fallback) const { return value.value_or(std::move(fallback)); }
     operator const std::optional<T>&() const { return value; }  // NOLINT(google-explicit-constructor)
 };
 

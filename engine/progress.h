@@ -19,17 +19,17 @@ struct Progress {
 };
 
 /// Calls f(0) ... f(n - 1), each once, in any order and perhaps several at once, and returns when all have returned.
-using Spread = std::function<void(int n, const std::function<void(int)>& f)>;
+using ParallelFor = std::function<void(int n, const std::function<void(int)>& f)>;
 
 struct RunControl {
     std::stop_token stop;                           ///< asked between steps of every search
     std::function<void(const Progress&)> progress;  ///< may be empty; called by one thread at a time
     std::function<double()> now_ms;                 ///< a monotonic clock for `compute_ms`; may be empty (then 0)
-    Spread spread = {};                             ///< may be empty: one after another
+    ParallelFor spread = {};                        ///< may be empty: one after another
 };
 
 /// f(0) ... f(n - 1) by `spread`. What one of them writes no other may read: the answer is the same however they run.
-inline void run_each(const Spread& spread, int n, const std::function<void(int)>& f) {
+inline void parallel_for(const ParallelFor& spread, int n, const std::function<void(int)>& f) {
     if (spread && n > 1) return spread(n, f);
     for (int i = 0; i < n; ++i) f(i);
 }

@@ -27,10 +27,10 @@ HostPort parse_listen(const std::string& text) {
     return result;
 }
 
-Role parse_role(const std::string& text) {
-    if (text == "all") return Role::all;
-    if (text == "api") return Role::api;
-    if (text == "worker") return Role::worker;
+ProcessRole parse_role(const std::string& text) {
+    if (text == "all") return ProcessRole::all;
+    if (text == "api") return ProcessRole::api;
+    if (text == "worker") return ProcessRole::worker;
     throw std::invalid_argument("--role is \"" + text + "\"; it must be all, api or worker.");
 }
 
@@ -58,12 +58,12 @@ double in_units(const std::string& text, const std::array<Unit, N>& units, const
 
 std::size_t parse_size(const std::string& text) {
     constexpr double mib = 1024.0 * 1024.0;
-    constexpr double most_plain = 65'536;
+    constexpr double max_plain = 65'536;
     constexpr std::array<Unit, 5> units{{{"", mib}, {"B", 1}, {"KiB", 1024}, {"MiB", mib}, {"GiB", 1024 * mib}}};
     double bytes = in_units(text, units, "a size such as 8 (MiB), 512KiB or 1GiB");
     const bool plain = text.find_first_not_of("0123456789.") == std::string::npos;
-    if (plain && bytes > most_plain * mib) bytes /= mib;
-    if (bytes < 1024 || bytes > most_plain * mib)
+    if (plain && bytes > max_plain * mib) bytes /= mib;
+    if (bytes < 1024 || bytes > max_plain * mib)
         throw std::invalid_argument("\"" + text + "\" must lie between 1KiB and 64GiB");
     return static_cast<std::size_t>(bytes);
 }
@@ -78,7 +78,7 @@ void check_config(const Config& config) {
     const HostPort address = parse_listen(config.listen);
     if (!config.metrics_listen.empty()) parse_listen(config.metrics_listen);
     check_store_address(config.store);
-    if (parse_role(config.role) != Role::all && !is_shared_store(config.store))
+    if (parse_role(config.role) != ProcessRole::all && !is_shared_store(config.store))
         throw std::invalid_argument("--role " + config.role +
                                     " shares its store with other processes, which SQLite cannot: give --store "
                                     "postgresql://..., or --role all.");

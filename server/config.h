@@ -8,7 +8,7 @@ namespace tunewright::server {
 
 /// What of the service this process does. `api` takes requests and computes nothing; `worker` computes and answers
 /// probes and metrics alone.
-enum class Role { all, api, worker };
+enum class ProcessRole { all, api, worker };
 
 struct Config {
     std::string listen = "127.0.0.1:8080";  ///< HOST:PORT; [::1]:8080 for IPv6; port 0: the system chooses
@@ -62,7 +62,7 @@ struct HostPort {
 
 /// Throws std::invalid_argument with a sentence.
 HostPort parse_listen(const std::string& text);
-Role parse_role(const std::string& text);
+ProcessRole parse_role(const std::string& text);
 /// Bytes of "8" (MiB), "512KiB", "8MiB", "1GiB". A plain number of more than 65,536 is one of bytes.
 std::size_t parse_size(const std::string& text);
 /// Seconds of "10", "10s", "500ms", "5min", "12h", "7d".

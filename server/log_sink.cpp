@@ -21,8 +21,8 @@ void write_all(int descriptor, const std::string& text) {
 
 }  // namespace
 
-GatheringSink::GatheringSink(int descriptor, std::size_t most_waiting)
-    : descriptor_(descriptor), most_waiting_(most_waiting), thread_([this] { work(); }) {}
+GatheringSink::GatheringSink(int descriptor, std::size_t max_waiting)
+    : descriptor_(descriptor), max_waiting_(max_waiting), thread_([this] { work(); }) {}
 
 GatheringSink::~GatheringSink() {
     {
@@ -36,7 +36,7 @@ GatheringSink::~GatheringSink() {
 void GatheringSink::sink_it_(const spdlog::details::log_msg& message) {
     spdlog::memory_buf_t line;
     formatter_->format(message, line);
-    if (waiting_.size() == most_waiting_) {
+    if (waiting_.size() == max_waiting_) {
         waiting_.pop_front();
         ++dropped_;
     }

@@ -16,8 +16,8 @@ namespace tunewright::server {
 
 class GatheringSink : public spdlog::sinks::base_sink<std::mutex> {
 public:
-    /// Lines go to the open file `descriptor`; at most `most_waiting` wait for it.
-    GatheringSink(int descriptor, std::size_t most_waiting);
+    /// Lines go to the open file `descriptor`; at most `max_waiting` wait for it.
+    GatheringSink(int descriptor, std::size_t max_waiting);
     /// Writes what waits.
     ~GatheringSink() override;
 
@@ -29,7 +29,7 @@ private:
     void work();
 
     const int descriptor_;
-    const std::size_t most_waiting_;
+    const std::size_t max_waiting_;
     std::deque<std::string> waiting_;  // under base_sink's mutex_, as the rest
     bool stopping_ = false;
     std::condition_variable changed_;

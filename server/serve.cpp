@@ -20,7 +20,6 @@
 #include "server/jobs/batch/batches.h"
 #include "server/jobs/job_log.h"
 #include "server/jobs/service.h"
-#include "server/lobby.h"
 #include "server/log.h"
 #include "server/metrics/memory.h"
 #include "server/metrics/metrics.h"
@@ -28,6 +27,7 @@
 #include "server/routes/job_json.h"
 #include "server/routes/request_checks.h"
 #include "server/routes/routes.h"
+#include "server/startup_server.h"
 #include "server/store/metered_store.h"
 #include "server/store/open_store.h"
 #include "server/threads/executor.h"
@@ -68,7 +68,8 @@ std::size_t connection_limit() {
     constexpr std::size_t own_files = 64;
     rlimit limit{};
     ::getrlimit(RLIMIT_NOFILE, &limit);
-    return std::clamp<std::size_t>(limit.rlim_cur, 2 * own_files, http::Limits().connections + own_files) - own_files;
+    return std::clamp<std::size_t>(limit.rlim_cur, 2 * own_files, http::ServerLimits().connections + own_files) -
+           own_files;
 }
 
 sigset_t stop_signals() {
@@ -105,7 +106,7 @@ public:
         if (config.metrics_listen.empty()) return;
         add_health_routes(metrics_router_, jobs_, *store_, gate_, memory_,
                           [this] { return metrics_.text(standing()); });
-        metrics_server_ = std::make_unique<http::Server>(http::Limits(), application(metrics_router_));
+        metrics_server_ = std::make_unique<http::Server>(http::ServerLimits(), application(metrics_router_));
     }
 
     int listen() {
@@ -136,13 +137,13 @@ public:
             metrics_server_->stop();
             serving_metrics_.join();
         }
-        const bool told = notifier_.stop(kStopPatience);
+        const bool stopped = notifier_.stop(kStopPatience);
         if (!server_.idle_within(kStopPatience) || (metrics_server_ && !metrics_server_->idle_within(kStopPatience)))
             return false;
         batch_lane_.stop();
         timer_.stop();
-        if (idle && told) store_.reset();
-        return idle && told;
+        if (idle && stopped) store_.reset();
+        return idle && stopped;
     }
 
 private:
@@ -153,11 +154,11 @@ private:
 
     JobSettings settings(const Config& config) {
         JobSettings made;
-        made.workers = parse_role(config.role) == Role::api ? 0 : workers(config);
+        made.workers = parse_role(config.role) == ProcessRole::api ? 0 : workers(config);
         made.queue_limit = config.queue_limit;
         made.entry_limit = config.entry_limit;
         made.client_jobs = config.client_jobs;
-        made.most_attempts = config.max_attempts;
+        made.max_attempts = config.max_attempts;
         made.lease = std::chrono::milliseconds(static_cast<std::int64_t>(config.lease_s * 1e3));
         made.retention = retention_of(config);
         made.version = TUNEWRIGHT_VERSION;
@@ -186,7 +187,7 @@ private:
         made.now = [this] { return now(); };
         made.job_text = job_told_json;
         made.batch_text = batch_json;
-        made.count = [this](Told outcome) { metrics_.count(outcome); };
+        made.count = [this](DeliveryOutcome outcome) { metrics_.count(outcome); };
         made.version = TUNEWRIGHT_VERSION;
         return made;
     }
@@ -210,8 +211,8 @@ private:
     }
 
     /// A third of the memory is for what clients hold: requests and answers on their way.
-    http::Limits limits() const {
-        http::Limits made;
+    http::ServerLimits limits() const {
+        http::ServerLimits made;
         made.connections = connection_limit();
         made.max_body = config_.max_body;
         made.max_batch_body = config_.max_batch_body;
@@ -244,7 +245,7 @@ private:
             return refusal;
         });
         add_health_routes(router_, jobs_, *store_, gate_, memory_, [this] { return metrics_.text(standing()); });
-        if (parse_role(config_.role) != Role::worker) add_public_routes();
+        if (parse_role(config_.role) != ProcessRole::worker) add_public_routes();
         router_.observe([this](const http::Answered& answered) {
             metrics_.count(answered);
             http::log_answer(answered);
@@ -264,11 +265,11 @@ private:
                          {{config_.job_timeout_s, config_.max_timeout_s}, config_.max_body});
         add_synchronous_routes(router_, turns_, timer_, spare_cores_, closing_.get_token());
         add_description_routes(router_);
-        router_.otherwise([this](const http::Request& request) { return page_.find(request); });
+        router_.set_fallback([this](const http::Request& request) { return page_.find(request); });
     }
 
     /// Some threads are always there for what is over soon; one client may have half of the others.
-    static std::array<std::size_t, 2> places_of(const http::Limits& limits) {
+    static std::array<std::size_t, 2> places_of(const http::ServerLimits& limits) {
         const std::size_t lasting = limits.connections * 3 / 4;
         return {lasting, lasting / 2};
     }
@@ -314,9 +315,9 @@ private:
     std::unique_ptr<JobStore> store_;
     SpareCores spare_cores_;
     JobService jobs_;
-    Turns turns_;
-    Turns readers_, listers_, searchers_;
-    Places places_;
+    ComputeSlots turns_;
+    ComputeSlots readers_, listers_, searchers_;
+    LongRequestSlots places_;
     Executor batch_lane_;
     Batches batches_;
     NotifyPolicy policy_;
@@ -374,7 +375,7 @@ int serve(Config config) {
     std::unique_ptr<Service> service;
     int port = 0;
     try {
-        std::unique_ptr<JobStore> store = open_in_lobby(config, signals);
+        std::unique_ptr<JobStore> store = open_behind_startup_server(config, signals);
         if (!store) return stop_log(), 0;
         service = std::make_unique<Service>(config, std::move(store));
         port = service->listen();

@@ -193,14 +193,14 @@ bool Loops::stays_open(std::string_view text) const {
 }
 
 void Loops::gather(long number, std::string_view line, std::vector<RawEntry>& entries) {
-    constexpr std::size_t kMostLines = 20;
+    constexpr std::size_t kMaxLines = 20;
     open_.push_back({number, std::string(line)});
     Held row = open_.front();
     for (std::size_t i = 1; i < open_.size(); ++i) row.text.append("\n").append(open_[i].text);
     if (!stays_open(row.text)) {
         open_.clear();
         take(std::move(row), entries);
-    } else if (open_.size() >= kMostLines) {
+    } else if (open_.size() >= kMaxLines) {
         give_up(entries);
     }
 }
@@ -238,7 +238,7 @@ std::optional<Problem> Loops::read_headings(long number, std::string_view line) 
         return std::nullopt;
     }
     // The separator that shows the most columns we know.
-    std::size_t most = 0;
+    std::size_t max = 0;
     char best = separator_given_ ? separator_ : ',';
     for (const char separator : {';', '\t', ',', '|', ' '}) {
         if (separator_given_) break;
@@ -249,8 +249,8 @@ std::optional<Problem> Loops::read_headings(long number, std::string_view line) 
                 const Heading parts = split_heading(heading);
                 return column_named(parts.name) || todays_column(parts);
             }));
-        if (known <= most) continue;
-        most = known;
+        if (known <= max) continue;
+        max = known;
         best = separator;
     }
     separator_ = best;

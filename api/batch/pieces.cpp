@@ -11,10 +11,10 @@ constexpr std::string_view kLittle = "\xFF\xFE", kBig = "\xFE\xFF", kUtf8 = "\xE
 
 }  // namespace
 
-Problem too_long(std::size_t bytes, std::size_t most) {
+Problem too_long(std::size_t bytes, std::size_t max) {
     Problem problem{413, "too-large", "The request is too large", {}, {}, {}};
     problem.detail =
-        "It has " + std::to_string(bytes) + " bytes; at most " + std::to_string(most) + " are accepted of one request.";
+        "It has " + std::to_string(bytes) + " bytes; at most " + std::to_string(max) + " are accepted of one request.";
     return problem;
 }
 

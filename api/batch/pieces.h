@@ -19,8 +19,8 @@ struct RawEntry {
     std::string name;              ///< of one with a fault, where it is known
 };
 
-/// The fault of a request that has `bytes` bytes where `most` are accepted.
-Problem too_long(std::size_t bytes, std::size_t most);
+/// The fault of a request that has `bytes` bytes where `max` are accepted.
+Problem too_long(std::size_t bytes, std::size_t max);
 
 /// 422: the batch says something that it cannot mean.
 Problem not_valid(std::string pointer, std::string detail);

@@ -245,9 +245,9 @@ std::optional<Problem> BatchReader::take_notify() {
 }
 
 std::optional<Problem> BatchReader::take(std::vector<RawEntry> raw, std::vector<BatchEntry>& entries) {
-    if (count_ + raw.size() > question_.most_entries) {
+    if (count_ + raw.size() > question_.max_entries) {
         return not_valid(
-            "", "The batch has more than " + std::to_string(question_.most_entries) + " requests. Send it in parts.");
+            "", "The batch has more than " + std::to_string(question_.max_entries) + " requests. Send it in parts.");
     }
     if (question_.name.empty()) name_ = cutter_->name();
     for (RawEntry& entry : raw) {

@@ -26,7 +26,7 @@ struct BatchQuestion {
     LoopOptions options;  ///< for a CSV of loops; the other forms know none
     JobLimits limits;
     std::size_t longest_entry = std::size_t{8} << 20;
-    std::size_t most_entries = 100'000;
+    std::size_t max_entries = 100'000;
 };
 
 /// A request that may become a job, or why it cannot.

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "api/contract/built/built.h"
+#include "api/contract/device/device.h"
 #include "api/csv/text.h"
 #include "engine/code/settings.h"
 #include "engine/number_text.h"
@@ -63,7 +63,7 @@ const Description<CodeQuestion>& code_contract() {
                    {.unit = "time"})
             .field("integral", &Q::integral, integral_rule(), "Rule of the integral.")
             .field("derivative", &Q::derivative, derivative_rule(), "Rule of the derivative.")
-            .field("slope_samples", &Q::slope_samples, maybe(integer(1, code::kMostSlopeSamples)),
+            .field("slope_samples", &Q::slope_samples, maybe(integer(1, code::kMaxSlopeSamples)),
                    "Sample times that the rule slope spans.")
             .field("form", &Q::velocity, choice<bool>({{"position", false}, {"velocity", true}}),
                    "Whether u is a sum or what it last was and its increments.")
@@ -103,14 +103,14 @@ void read_words(const CodeWords& words, CodeQuestion& question, Reader& reader) 
 /// The rules by which the request has judged its program, where the words name no others.
 void take_implemented(const CodeWords& words, const Json& request, CodeQuestion& question) {
     if (!request.is_object() || !request.contains("implement")) return;
-    GivenBuild given;
+    GivenDevice given;
     Reader reader;  // a request that was answered has no faults
     implement_contract().read(request.at("implement"), given, reader);
     const auto asked = [&](const char* name) {
         return std::ranges::any_of(words, [&](const auto& word) { return word.first == name; });
     };
     if (given.integral && !asked("integral")) question.integral = *given.integral;
-    if (given.derivative == GivenBuild::Derivative::difference && !asked("derivative"))
+    if (given.derivative == GivenDevice::Derivative::difference && !asked("derivative"))
         question.derivative = DerivativeRule::difference;
     if (given.velocity && !asked("form") && !asked("anti_windup") && !asked("tracking_time"))
         question.velocity = *given.velocity;

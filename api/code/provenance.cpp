@@ -6,7 +6,7 @@
 namespace tunewright::api {
 namespace {
 
-constexpr std::size_t kMostNumbers = 8;  // of a list that is shown
+constexpr std::size_t kMaxNumbers = 8;  // of a list that is shown
 
 std::string word_at(const Json& value, const char* place) {
     const Json::json_pointer pointer(place);
@@ -26,7 +26,7 @@ std::string figure_at(const Json& entry, const char* group, const char* name) {
 std::string value_text(const Json& value) {
     if (value.is_number()) return tunewright::text(value.get<double>(), 6);
     if (value.is_string()) return value.get<std::string>();
-    if (!value.is_array() || value.size() > kMostNumbers) return "...";
+    if (!value.is_array() || value.size() > kMaxNumbers) return "...";
     std::string list;
     for (const Json& element : value) list += (list.empty() ? "" : ", ") + value_text(element);
     return "[" + list + "]";

@@ -94,9 +94,9 @@ void read_number_or_pair(const Json& value, const OptionDescription& option, con
 void read_list(const Json& value, const OptionDescription& option, const std::string& path, MethodOptions& target,
                Reader& reader) {
     if (!value.is_array()) return reader.fault(wrong_kind(value, "an array", reader));
-    if (value.empty() || value.size() > static_cast<std::size_t>(option.most))
+    if (value.empty() || value.size() > static_cast<std::size_t>(option.max))
         return reader.fault(reader.name() + " has " + std::to_string(value.size()) + " elements; it must have 1 to " +
-                            std::to_string(option.most) + ".");
+                            std::to_string(option.max) + ".");
     for (std::size_t i = 0; i < value.size(); ++i) {
         const Reader::At at(reader, i);
         read_option(value[i], option.fields.front(), path + "/" + std::to_string(i), target, reader);
@@ -112,9 +112,9 @@ bool is_name(const std::string& text) {
 void read_numbers_by_name(const Json& value, const OptionDescription& option, const std::string& path,
                           MethodOptions& target, Reader& reader) {
     if (!value.is_object()) return reader.fault(wrong_kind(value, "an object of numbers by name", reader));
-    if (value.size() > static_cast<std::size_t>(option.most))
+    if (value.size() > static_cast<std::size_t>(option.max))
         return reader.fault(reader.name() + " has " + std::to_string(value.size()) + " names; it must have at most " +
-                            std::to_string(option.most) + ".");
+                            std::to_string(option.max) + ".");
     const std::string below = path + "/";
     for (const auto& [name, member] : value.items()) {
         if (!is_name(name)) {
@@ -219,12 +219,12 @@ Json bare_schema(const OptionDescription& option) {
         case OptionType::complex: return {{"oneOf", Json::array({plain, pair_schema(option)})}};
         case OptionType::object: return object_schema(option);
         case OptionType::numbers_by_name:
-            return {{"type", "object"}, {"additionalProperties", plain}, {"maxProperties", option.most}};
+            return {{"type", "object"}, {"additionalProperties", plain}, {"maxProperties", option.max}};
         case OptionType::list:
             return {{"type", "array"},
                     {"items", option_schema(option.fields.front())},
                     {"minItems", 1},
-                    {"maxItems", option.most}};
+                    {"maxItems", option.max}};
     }
     return Json::object();
 }

@@ -135,7 +135,7 @@ CsvOptions csv_options(const PreviewRequest& request) {
     options.dt = request.dt;
     options.u_step = request.u_step;
     options.run = request.run;
-    options.most_samples = kMaxSamples;
+    options.max_samples = kMaxSamples;
     return options;
 }
 

@@ -306,7 +306,7 @@ ReadRecord resolve(GivenRecord given, const Units& units, Reader& reader) {
     options.run = given.run;
     options.unit_u = units.u.value_or("");
     options.unit_y = units.y.value_or("");
-    options.most_samples = kMaxSamples;
+    options.max_samples = kMaxSamples;
     auto read = read_csv_record(*given.csv, options);
     if (const auto* faults = std::get_if<std::vector<CsvFault>>(&read)) {
         for (const CsvFault& fault : *faults) reader.fault_below(fault.where, 0, fault.message);
@@ -415,7 +415,7 @@ namespace {
 /// True if `d` is a + b x within rounding, with b other than 0, in the rows where both have numbers; NaN repeats the
 /// number before it.
 bool moves_as(const std::vector<double>& d, const std::vector<double>& x) {
-    constexpr double kRounding = 1e-9;  // of the range of d
+    constexpr double kValueTolerance = 1e-9;  // of the range of d
     std::vector<std::pair<double, double>> held;
     double last_d = std::nan(""), last_x = last_d;
     for (std::size_t i = 0; i < d.size(); ++i) {
@@ -435,7 +435,7 @@ bool moves_as(const std::vector<double>& d, const std::vector<double>& x) {
     if (range_x == 0 || range_d == 0) return false;
     const double slope = (farthest->second - d0) / range_x;
     return std::ranges::all_of(held, [&, x0 = x0, d0 = d0](const auto& row) {
-        return std::abs(row.second - d0 - slope * (row.first - x0)) <= kRounding * range_d;
+        return std::abs(row.second - d0 - slope * (row.first - x0)) <= kValueTolerance * range_d;
     });
 }
 

@@ -18,7 +18,7 @@ namespace tunewright::api {
 namespace {
 
 // Whether every plant forms a loop with the controller, at which the reader stands.
-void check_loops(const Subject& subject, const Controller& controller, Reader& reader) {
+void check_loops(const AnalysedPlant& subject, const Controller& controller, Reader& reader) {
     if (const auto fault = loop_fault(subject, controller)) reader.fault_below(fault->where, 1, fault->message);
 }
 
@@ -84,28 +84,28 @@ Json baseline_schema(SchemaBook& book) {
 void check_baseline(JobRequest& request, const std::string& time, Reader& reader) {
     if (!seconds_per_time(time, reader)) return;
     const Reader::At at(reader, "baseline");
-    request.baseline_build = build_of(request.baseline_settings->build(request.implement), time, reader);
-    if (!request.baseline_build) return;
+    request.baseline_device = device_of(request.baseline_settings->device(request.implement), time, reader);
+    if (!request.baseline_device) return;
     const std::size_t before = reader.count();
-    check_needs(*request.baseline_build, reader);
+    check_needs(*request.baseline_device, reader);
     if (!reader.clean_since(before)) return;
-    const auto fitted = built::fit(*request.baseline_build, request.baseline_settings->settings);
+    const auto fitted = device::fit(*request.baseline_device, request.baseline_settings->settings);
     if (!fitted) return reader.fault_below(fitted.error().where, 0, fitted.error().message);
-    request.baseline = built::continuous(fitted->controller);
+    request.baseline = device::continuous(fitted->controller);
 }
 
 template <class Request>
-void resolve_build(Request& request, Reader& reader) {
+void resolve_device(Request& request, Reader& reader) {
     if (!request.implement) return;
     const std::string time = request.units.value_or(Units{}).time_or_default();
     if (request.implement->product && !seconds_per_time(time, reader)) return;
     const Reader::At at(reader, "implement");
-    request.build = build_of(*request.implement, time, reader);
-    if (request.build) check_needs(*request.build, reader);
+    request.device = device_of(*request.implement, time, reader);
+    if (request.device) check_needs(*request.device, reader);
 }
 
 void check_implement(const Json&, JobRequest& request, Reader& reader) {
-    resolve_build(request, reader);
+    resolve_device(request, reader);
     const std::string time = request.units.value_or(Units{}).time_or_default();
     if (request.baseline_settings) check_baseline(request, time, reader);
 }
@@ -131,7 +131,7 @@ void check_job(const Json& value, JobRequest& request, Reader& reader) {
 }
 
 /// For a model that was read without a fault.
-std::optional<Subject> made_of(const IdentifiedModel& model, Reader& reader) {
+std::optional<AnalysedPlant> made_of(const IdentifiedModel& model, Reader& reader) {
     auto made = subject_of(model);
     if (made) return std::move(*made);
     reader.fault_at("model", made.error().message);
@@ -186,9 +186,9 @@ void add_checks(Description<Request>& d) {
 
 }  // namespace
 
-std::optional<Subject> subject_of(const PlantModel& plant, Reader& reader) {
-    auto made = Subject::make(plant);
-    if (auto* subject = std::get_if<Subject>(&made)) return std::move(*subject);
+std::optional<AnalysedPlant> subject_of(const PlantModel& plant, Reader& reader) {
+    auto made = AnalysedPlant::make(plant);
+    if (auto* subject = std::get_if<AnalysedPlant>(&made)) return std::move(*subject);
     for (const Error& fault : std::get<std::vector<Error>>(made)) reader.fault_below(fault.where, 0, fault.message);
     return std::nullopt;
 }
@@ -266,7 +266,7 @@ const Description<EvaluateRequest>& evaluate_request_contract() {
                 check_source(value, kEvaluateSources, "or the model of a record", reader);
             })
             .check(check_controllers)
-            .check([](const Json&, EvaluateRequest& request, Reader& reader) { resolve_build(request, reader); })
+            .check([](const Json&, EvaluateRequest& request, Reader& reader) { resolve_device(request, reader); })
             .example({{"plant", {{"type", "fopdt"}, {"K", 2}, {"T", 10}, {"L", 3}}},
                       {"controllers", Json::array({Json{{"form", "ideal"}, {"Kp", 0.9}, {"Ti", 10}}})}});
         return d;
@@ -312,9 +312,9 @@ TuningRequest to_engine(JobRequest request) {
     out.identify = request.identify;
     out.tune = std::move(request.tune);
     out.baseline = request.baseline;
-    out.implement = request.build;
+    out.device = request.device;
     if (request.baseline_settings)
-        out.baseline_settings = {*request.baseline_build, request.baseline_settings->settings};
+        out.baseline_settings = {*request.baseline_device, request.baseline_settings->settings};
     out.evaluate = request.evaluate;
     out.given_steps = request.given_steps;
     out.labels = labels_of(request.units);

@@ -1,7 +1,7 @@
 // Requests of the contract: a tuning job, an evaluation, an identification.
 #pragma once
 
-#include "api/contract/built/built.h"
+#include "api/contract/device/device.h"
 #include "api/contract/plant/plant.h"
 #include "api/contract/record.h"
 #include "api/contract/terms.h"
@@ -10,11 +10,11 @@
 
 namespace tunewright::api {
 
-struct JobRequest : Terms {
+struct JobRequest : JobTerms {
     std::optional<std::string> name;
     std::optional<Units> units;
     std::optional<PlantModel> plant;
-    std::optional<Subject> subject;  ///< that `plant` describes
+    std::optional<AnalysedPlant> subject;  ///< that `plant` describes
     std::optional<GivenRecord> record;
     std::optional<UltimateTest> ultimate;
     std::optional<IdentifiedModel> model;  ///< of a record, sent back; of a design alone
@@ -22,13 +22,13 @@ struct JobRequest : Terms {
     std::vector<MethodRequest> tune = {MethodRequest{}};
     std::optional<Controller> baseline;
     std::optional<GivenBaseline> baseline_settings;  ///< in its place: as typed on a product
-    std::optional<GivenBuild> implement;
+    std::optional<GivenDevice> implement;
     EvaluateOptions evaluate;
     verdict::GivenSteps given_steps;  ///< of `evaluate`
     std::string uncertainty = "auto";
-    ReadRecord read;                             ///< of `record`
-    std::optional<built::Build> build;           ///< of `implement`
-    std::optional<built::Build> baseline_build;  ///< of `baseline_settings`
+    ReadRecord read;                                     ///< of `record`
+    std::optional<device::DeviceModel> device;           ///< of `implement`
+    std::optional<device::DeviceModel> baseline_device;  ///< of `baseline_settings`
 };
 
 /// A tuning request, answered while the client waits.
@@ -41,12 +41,12 @@ struct EvaluateRequest {
     std::optional<Units> units;
     std::optional<PlantModel> plant;
     std::optional<IdentifiedModel> model;  ///< in the place of a plant: of a record, sent back
-    std::optional<Subject> subject;        ///< that they describe
+    std::optional<AnalysedPlant> subject;  ///< that they describe
     std::vector<Controller> controllers;
-    std::optional<GivenBuild> implement;
+    std::optional<GivenDevice> implement;
     EvaluateOptions evaluate;
-    verdict::GivenSteps given_steps;    ///< of `evaluate`
-    std::optional<built::Build> build;  ///< of `implement`
+    verdict::GivenSteps given_steps;            ///< of `evaluate`
+    std::optional<device::DeviceModel> device;  ///< of `implement`
 };
 
 struct IdentifyRequest {
@@ -71,7 +71,7 @@ const std::vector<std::string>& request_sources();
 bool is_request_member(std::string_view name);
 
 /// The plant in the form in which it is computed with; empty after a fault, which the reader then has.
-std::optional<Subject> subject_of(const PlantModel& plant, Reader& reader);
+std::optional<AnalysedPlant> subject_of(const PlantModel& plant, Reader& reader);
 
 /// The members that every request may carry.
 template <class Request>

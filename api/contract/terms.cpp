@@ -65,19 +65,19 @@ Codec<std::int64_t> moment() {
 template <class Request>
 void add_terms(Description<Request>& description) {
     description
-        .field("timeout_s", &Terms::timeout_s, number({.exclusive_minimum = 0, .maximum = kLongestTimeout}),
+        .field("timeout_s", &JobTerms::timeout_s, number({.exclusive_minimum = 0, .maximum = kLongestTimeout}),
                "Time allowed for the job; it fails with type timeout after it.", {.unit = "s"})
-        .field("priority", &Terms::low_priority, choice<bool>({{"normal", false}, {"low", true}}),
+        .field("priority", &JobTerms::low_priority, choice<bool>({{"normal", false}, {"low", true}}),
                "low: it takes its turn among the entries of batches, after single jobs of normal priority.")
-        .field("not_before", &Terms::not_before, maybe(moment()),
+        .field("not_before", &JobTerms::not_before, maybe(moment()),
                "The job starts at this time or later; a time in the past means at once. ISO 8601 with a zone, such as "
                "2026-05-04T06:00:00Z; at most " +
                    std::to_string(kMaxDaysAhead) + " days ahead.")
-        .field("unique", &Terms::unique, boolean(),
+        .field("unique", &JobTerms::unique, boolean(),
                "true: if a job of this very request waits, runs or has succeeded and is kept, the answer is that job "
                "and no second one is made. Name, timeout_s and every other member count; notify, priority, not_before "
                "and unique do not.")
-        .field("notify", &Terms::notify, maybe(object(notify_contract())), "Whom to tell when the job has ended.");
+        .field("notify", &JobTerms::notify, maybe(object(notify_contract())), "Whom to tell when the job has ended.");
 }
 
 template void add_terms(Description<JobRequest>& description);

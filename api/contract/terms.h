@@ -27,7 +27,7 @@ struct Notify {
 const Description<Notify>& notify_contract();
 
 /// The part of a request that every job has.
-struct Terms {
+struct JobTerms {
     double timeout_s = 60;
     std::optional<Notify> notify;
     bool low_priority = false;

@@ -20,11 +20,11 @@ namespace tunewright::api {
 namespace {
 
 constexpr std::size_t kMaxFaults = 10;
-constexpr double kLargest = 1e30;  // as in every number of the contract
+constexpr double kMaxNumber = 1e30;  // as in every number of the contract
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
 // Lines that cannot be read are left out where they are this rare: a total at the end, half a line of a serial port.
-constexpr std::size_t kEnoughRows = 20, kRare = 50;
+constexpr std::size_t kMinReadRows = 20, kMinRowsPerUnread = 50;
 
 class RecordReader {
 public:
@@ -93,12 +93,12 @@ private:
                 read_line(line, times);
             ++index_;
             if (faults_.size() >= kMaxFaults) return;
-            if (record_.t.size() > options_.most_samples) {
-                return fault("csv", "csv has more than " + std::to_string(options_.most_samples) +
+            if (record_.t.size() > options_.max_samples) {
+                return fault("csv", "csv has more than " + std::to_string(options_.max_samples) +
                                         " samples; thin it out: a few thousand identify as well.");
             }
         }
-        if (unread_ > 0 && (record_.t.size() < kEnoughRows || (unread_ - 1) * kRare >= record_.t.size()))
+        if (unread_ > 0 && (record_.t.size() < kMinReadRows || (unread_ - 1) * kMinRowsPerUnread >= record_.t.size()))
             return void(faults_ = std::move(unread_faults_));
         record_.dropped += static_cast<int>(unread_);
         record_.time_unit_known = options_.dt || (columns_.spacing ? unit_is_known(*columns_.spacing, options_)
@@ -116,7 +116,7 @@ private:
     }
 
     void skip(int line, std::string reason) {
-        if (record_.skipped.size() < kMostSkips) record_.skipped.push_back({line, std::move(reason)});
+        if (record_.skipped.size() < kMaxSkips) record_.skipped.push_back({line, std::move(reason)});
     }
 
     // The lines before the first row that are not its headings.
@@ -147,13 +147,13 @@ private:
     void reserve() {
         constexpr std::size_t kMinLineLength = 6;
         const std::size_t typical = layout_.width * 4 + kMinLineLength;
-        const std::size_t most = std::min(options_.most_samples, text_.size() / typical + 1);
-        for (auto* column : {&record_.t, &record_.u, &record_.y}) column->reserve(most);
-        if (columns_.at[kReferenceRole]) record_.r.reserve(most);
+        const std::size_t max = std::min(options_.max_samples, text_.size() / typical + 1);
+        for (auto* column : {&record_.t, &record_.u, &record_.y}) column->reserve(max);
+        if (columns_.at[kReferenceRole]) record_.r.reserve(max);
         for (const std::size_t column : columns_.d) record_.d.push_back({disturbance_name(column), {}});
         d_.assign(columns_.d.size(), kNoNumber);
         last_d_ = d_;
-        record_.lines.reserve(most);
+        record_.lines.reserve(max);
     }
 
     bool only_blanks_beyond(const CsvLine& line) const {
@@ -199,7 +199,7 @@ private:
             if (!disturbance_moved()) return;
             u = last_u_;
         }
-        if (std::abs(t) > kLargest) return report_size(line, kTimeRole);
+        if (std::abs(t) > kMaxNumber) return report_size(line, kTimeRole);
         push(t, u, y, line.number);
     }
 
@@ -237,17 +237,17 @@ private:
     }
 
     // u of words such as ON and OFF.
-    bool of_words(Role role) const {
+    bool of_words(ColumnRole role) const {
         const ColumnProfile& held = profiles_[*columns_.at[role]];
         return role == kInputRole && held.switches > held.numbers;
     }
 
     // NaN where the cell is there but holds no value.
-    bool read_value(const CsvLine& line, Role role, double& value) {
+    bool read_value(const CsvLine& line, ColumnRole role, double& value) {
         const std::string_view text = cell(line, *columns_.at[role]);
         const ColumnProfile& held = profiles_[*columns_.at[role]];
         if (!of_words(role) && read_cell_number(text, value, layout_.sign, held.suffix)) {
-            if (std::abs(value) <= kLargest) return true;
+            if (std::abs(value) <= kMaxNumber) return true;
             report_size(line, role);
             return false;
         }
@@ -265,7 +265,7 @@ private:
     double read_optional(const CsvLine& line, std::size_t column) const {
         double value = 0;
         const bool number = read_cell_number(cell(line, column), value, layout_.sign, profiles_[column].suffix);
-        return number && std::abs(value) <= kLargest ? value : kNoNumber;
+        return number && std::abs(value) <= kMaxNumber ? value : kNoNumber;
     }
 
     // Words of u are its two levels; numbers among them are damaged cells.
@@ -291,12 +291,12 @@ private:
         return same > 1 ? name + " (column " + std::to_string(column + 1) + ")" : name;
     }
 
-    std::string column_name(Role role) const {
+    std::string column_name(ColumnRole role) const {
         const std::string heading = heading_of(*columns_.at[role], "");
         return heading.empty() ? role_name(role) : in_quotes(heading);
     }
 
-    void report_cell(const CsvLine& line, Role role, std::string_view text, bool stamps) {
+    void report_cell(const CsvLine& line, ColumnRole role, std::string_view text, bool stamps) {
         const bool other_separator = line.cells.size() == 1 && layout_.width > 1;
         const std::string reason = "column " + column_name(role) + ": " + in_quotes(text) + " is not " +
                                    (stamps           ? "a time stamp like the first."
@@ -310,13 +310,13 @@ private:
         unread(line, ", ", reason, cure);
     }
 
-    void report_size(const CsvLine& line, Role role) {
+    void report_size(const CsvLine& line, ColumnRole role) {
         fault("csv", "Line " + std::to_string(line.number) + ", column " + column_name(role) + ": " +
                          in_quotes(cell(line, *columns_.at[role])) +
                          " is beyond 1e30, no measurement. Mend the line, or leave the cell blank to drop it.");
     }
 
-    void note_unit(Role role, const std::string& given) {
+    void note_unit(ColumnRole role, const std::string& given) {
         if (!columns_.at[role]) return;
         const std::string unit =
             of_words(role) ? "" : unit_of(layout_, profiles_[*columns_.at[role]], *columns_.at[role]);
@@ -366,7 +366,7 @@ private:
     const CsvOptions& options_;
     const CsvLayout& layout_;
     std::vector<ColumnProfile> profiles_;
-    FoundColumns columns_;
+    DetectedColumns columns_;
     std::size_t index_ = 0, unread_ = 0;
     std::vector<CsvFault> unread_faults_;
     std::string first_unread_;

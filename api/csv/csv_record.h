@@ -23,7 +23,7 @@ struct CsvOptions {
     std::optional<std::array<double, 2>> u_step = {};  ///< of a file without u: it steps so at the first row
     std::optional<int> run = {};                       ///< of a file with several (runs.h), from 1
     std::string unit_u = {}, unit_y = {};              ///< as the user names them; "" if not
-    std::size_t most_samples = 2'000'000;
+    std::size_t max_samples = 2'000'000;
 };
 
 /// A line that is no row.
@@ -47,8 +47,8 @@ struct CsvRecord {
     std::vector<int> lines;              ///< of each sample in the file, from 1
     int dropped = 0;                     ///< lines left out: unreadable, without a time, or with neither u nor y
     std::string unread;                  ///< a sentence about the lines that could not be read; "" if there are none
-    std::string unread_column;           ///< FoundColumns::unread
-    std::vector<CsvSkip> skipped;        ///< the first kMostSkips of them, and what stands above the rows
+    std::string unread_column;           ///< DetectedColumns::unread
+    std::vector<CsvSkip> skipped;        ///< the first kMaxSkips of them, and what stands above the rows
     std::vector<CsvRun> runs;            ///< where the times begin again; empty: one run
     int run = 1;                         ///< the one that is read, from 1
     bool u_stepped = false;              ///< u is CsvOptions::u_step's
@@ -57,7 +57,7 @@ struct CsvRecord {
     std::vector<std::string> notes;      ///< what was found by itself, one sentence each
 };
 
-inline constexpr std::size_t kMostSkips = 100;
+inline constexpr std::size_t kMaxSkips = 100;
 
 /// `where` is "csv", "run", "u_step", or "columns/t", ...
 struct CsvFault {

@@ -314,7 +314,7 @@ private:
 }  // namespace
 
 std::vector<std::string> pair_keys(std::string_view text, const std::vector<std::string>& wanted) {
-    constexpr int kLooked = 400, kEvery = 16;  // lines looked at, and then one of so many
+    constexpr int kProbedLines = 400, kProbeInterval = 16;  // lines looked at, and then one of so many
     constexpr std::size_t kLookedBytes = 4 << 20;
     PairFamilies families;
     // A line that may have the wanted columns holds the last parts of their names.
@@ -329,8 +329,9 @@ std::vector<std::string> pair_keys(std::string_view text, const std::vector<std:
         const std::string_view content = trimmed(*line);
         if (content.empty()) continue;
         // A printer's log may begin with a dump; its reports come later.
-        const bool report = content.starts_with("Stats ") && families.stats() < kLooked;
-        if (++number <= kLooked || report || number % kEvery == 0 || may_be_wanted(content)) families.look_at(content);
+        const bool report = content.starts_with("Stats ") && families.stats() < kProbedLines;
+        if (++number <= kProbedLines || report || number % kProbeInterval == 0 || may_be_wanted(content))
+            families.look_at(content);
     }
     const PairFamily family = families.best(wanted);
     const bool named = !wanted.empty() && family.holds(wanted);

@@ -17,7 +17,7 @@ class Thumbnail {
 public:
     void add(double value) {
         if (in_stretch_ == 0) {
-            if (stretches_.size() == kMost) merge();
+            if (stretches_.size() == kMaxStretches) merge();
             stretches_.push_back({value, value});
         }
         auto& [low, high] = stretches_.back();
@@ -36,14 +36,14 @@ public:
     }
 
 private:
-    static constexpr std::size_t kMost = 120;
+    static constexpr std::size_t kMaxStretches = 120;
 
     void merge() {
-        for (std::size_t i = 0; i < kMost / 2; ++i) {
+        for (std::size_t i = 0; i < kMaxStretches / 2; ++i) {
             const auto &a = stretches_[2 * i], &b = stretches_[2 * i + 1];
             stretches_[i] = {std::min(a.first, b.first), std::max(a.second, b.second)};
         }
-        stretches_.resize(kMost / 2);
+        stretches_.resize(kMaxStretches / 2);
         length_ *= 2;
     }
 
@@ -58,19 +58,19 @@ std::string separator_name(const CsvLayout& layout) {
     return layout.separator == ' ' ? "blanks" : std::string(1, layout.separator);
 }
 
-double confidence_of(const CsvLayout& layout, std::size_t column, Role role, bool chosen) {
-    constexpr double kTag = 0.9, kHeld = 0.7, kContents = 0.5;
+double confidence_of(const CsvLayout& layout, std::size_t column, ColumnRole role, bool chosen) {
+    constexpr double kConfidenceOfTag = 0.9, kConfidenceOfHeld = 0.7, kConfidenceOfContents = 0.5;
     if (chosen) return 1;
     const auto found =
         column < layout.headings.size() ? match(split_heading(layout.headings[column]), role) : std::nullopt;
-    if (!found) return kContents;
-    return found->level == 1 ? 1 : found->level == 2 ? kTag : kHeld;
+    if (!found) return kConfidenceOfContents;
+    return found->level == 1 ? 1 : found->level == 2 ? kConfidenceOfTag : kConfidenceOfHeld;
 }
 
-void guess(const FoundColumns& found, const CsvLayout& layout, const ColumnChoices& chosen, CsvPreview& preview) {
+void guess(const DetectedColumns& found, const CsvLayout& layout, const ColumnChoices& chosen, CsvPreview& preview) {
     const std::array<bool, kRoleCount> given = {chosen.t.has_value(), chosen.u.has_value(), chosen.y.has_value(),
                                                 chosen.r.has_value()};
-    for (const Role role : kRoles) {
+    for (const ColumnRole role : kRoles) {
         if (!found.at[role]) continue;
         PreviewColumn& column = preview.columns[*found.at[role]];
         column.guess = role_name(role);
@@ -107,7 +107,7 @@ void look_through(std::string_view text, const CsvLayout& layout, const std::vec
 }
 
 PreviewTime times_of(const CsvRecord& record, const CsvOptions& options) {
-    constexpr double kGap = 5;  // usual spacings, as in the record's quality
+    constexpr double kMinGapInSpacings = 5;  // usual spacings, as in the record's quality
     PreviewTime time;
     time.unit = options.time_unit;
     time.assumed = !record.time_unit_known;
@@ -124,8 +124,8 @@ PreviewTime times_of(const CsvRecord& record, const CsvOptions& options) {
     }
     if (spacings.empty()) return time;
     time.dt = median(spacings);
-    time.gaps = static_cast<int>(
-        std::count_if(spacings.begin(), spacings.end(), [&](double spacing) { return spacing > kGap * time.dt; }));
+    time.gaps = static_cast<int>(std::count_if(spacings.begin(), spacings.end(),
+                                               [&](double spacing) { return spacing > kMinGapInSpacings * time.dt; }));
     return time;
 }
 

@@ -39,7 +39,7 @@ struct CsvPreview {
     std::optional<PreviewTime> time;  ///< where the record can be read
     std::vector<CsvRun> runs;         ///< where the times begin again; empty: one run
     std::optional<int> run;           ///< of several, the one that is read, from 1
-    std::vector<CsvSkip> skipped;     ///< the first kMostSkips
+    std::vector<CsvSkip> skipped;     ///< the first kMaxSkips
     int skipped_lines = 0;            ///< lines of data that do not count
     std::vector<std::string> notes;   ///< as in CsvRecord
     std::vector<CsvFault> problems;   ///< why the record cannot be read yet; empty: it can

@@ -10,7 +10,7 @@ namespace tunewright::api {
 std::string no_data_sentence(const CsvLayout& layout, std::string_view first_line) {
     if (layout.lines_of_text == 0) return "csv is empty; it needs a heading line such as t,u,y and lines of numbers.";
     for (const std::string& text : layout.headings) {
-        for (const Role role : {kTimeRole, kInputRole, kOutputRole}) {
+        for (const ColumnRole role : {kTimeRole, kInputRole, kOutputRole}) {
             const auto named = match(split_heading(text), role);
             if (named && named->level == 1) return "csv has headings but no line of numbers.";
         }

@@ -6,9 +6,9 @@
 namespace tunewright::api {
 namespace {
 
-constexpr double kMostRepeated = 120;         // seconds of the hour that may be missing where the clock goes back
+constexpr double kMaxRepeated = 120;          // seconds of the hour that may be missing where the clock goes back
 constexpr double kLongestStep = 1200;         // between rows, for a missing hour to be told from a pause
-constexpr double kOfStep = 0.5;               // by which the hour may be missed
+constexpr double kMaxHourErrorInSteps = 0.5;  // by which the hour may be missed
 constexpr int kFirstHour = 1, kLastHour = 3;  // the hours of the day that are left out somewhere
 
 /// A Sunday of March, April, September or October: all countries that change do it on one.
@@ -22,7 +22,8 @@ bool may_begin_summer_time(double seconds) {
 
 bool RunningClock::leaves_out_an_hour(const TimeStamp& stamp, double ahead) const {
     if (!stamp.has_date || stamp.has_zone || !(step_ > 0) || step_ > kLongestStep) return false;
-    if (std::abs(ahead - kHour - step_) > kOfStep * step_ || !may_begin_summer_time(stamp.seconds)) return false;
+    if (std::abs(ahead - kHour - step_) > kMaxHourErrorInSteps * step_ || !may_begin_summer_time(stamp.seconds))
+        return false;
     const double now = std::fmod(stamp.seconds, kDay), before = now - ahead;
     for (int hour = kFirstHour; hour <= kLastHour; ++hour)
         if (before < hour * kHour && now >= (hour + 1) * kHour) return true;
@@ -41,7 +42,7 @@ double RunningClock::seconds(const TimeStamp& stamp, int line) {
             move(kHour);
         } else if (!stamp.has_date && back > kDay / 2) {
             move(kDay);
-        } else if (!stamp.has_zone && back <= kHour && back > kHour - kMostRepeated) {
+        } else if (!stamp.has_zone && back <= kHour && back > kHour - kMaxRepeated) {
             move(kHour);
             notes_.push_back("The clock goes back by an hour at line " + std::to_string(line) +
                              ", as at the end of summer time; the times go on.");

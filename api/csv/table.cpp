@@ -11,7 +11,7 @@
 namespace tunewright::api {
 namespace {
 
-constexpr int kLooked = 200;
+constexpr int kProbedLines = 200;
 
 std::string_view blanks_removed(std::string_view text) {
     while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
@@ -66,9 +66,9 @@ bool opens_cell(std::string_view line) {
 /// A cell such as "Time<line break>(min)", as spreadsheets write headings: `content`, which begins at `start`, takes in
 /// the lines up to the quote that closes it. Returns their number; 0 where none of the next few closes it.
 int take_rest_of_cell(std::string_view text, std::size_t start, std::size_t& at, std::string_view& content) {
-    constexpr int kMost = 6;
+    constexpr int kMaxFurtherLines = 6;
     std::size_t next = at;
-    for (int more = 1; more <= kMost; ++more) {
+    for (int more = 1; more <= kMaxFurtherLines; ++more) {
         const std::size_t begin = next;
         const auto line = next_line(text, next);
         if (!line) return 0;
@@ -84,7 +84,7 @@ int take_rest_of_cell(std::string_view text, std::size_t start, std::size_t& at,
 std::vector<Head> first_lines(std::string_view text) {
     std::vector<Head> lines;
     std::size_t at = 0, start = 0;
-    for (int number = 1; static_cast<int>(lines.size()) < kLooked; ++number) {
+    for (int number = 1; static_cast<int>(lines.size()) < kProbedLines; ++number) {
         start = at;
         const auto line = next_line(text, at);
         if (!line) break;
@@ -134,22 +134,23 @@ char find_separator(const std::vector<Head>& lines) {
         }
         counts.erase(1);
         counts.erase(0);
-        int most = 0;
+        int max = 0;
         std::size_t usual = 0;
         for (const auto& [count, times] : counts) {
-            if (times > most) usual = count;
-            most = std::max(most, times);
+            if (times > max) usual = count;
+            max = std::max(max, times);
         }
-        const double share = all > 0 ? static_cast<double>(most) / all : 0;
-        constexpr double kPlain = 0.8, kBetter = 0.05;
+        const double share = all > 0 ? static_cast<double>(max) / all : 0;
+        constexpr double kMinPlainShare = 0.8, kMinShareGain = 0.05;
         constexpr std::size_t kColumns = 3;
         const auto better = [&](char other) {
             return share_of_numbers(lines, separator) > share_of_numbers(lines, other);
         };
-        if (share >= kPlain && first == usual && (!plain || (usual >= kColumns && separator != ' ' && better(*plain))))
+        if (share >= kMinPlainShare && first == usual &&
+            (!plain || (usual >= kColumns && separator != ' ' && better(*plain))))
             return separator;
-        if (share >= kPlain && !plain) plain = separator;
-        if (share > best_share + kBetter) {
+        if (share >= kMinPlainShare && !plain) plain = separator;
+        if (share > best_share + kMinShareGain) {
             best = separator;
             best_share = share;
         }

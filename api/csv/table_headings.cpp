@@ -17,9 +17,9 @@ bool holds_data(std::string_view cell) {
 
 // A heading for each column but the first, which counts the rows: what R writes.
 bool counts_rows(const std::vector<CsvLine>& data) {
-    constexpr std::size_t kFew = 5;
+    constexpr std::size_t kProbedRows = 5;
     double before = 0;
-    for (std::size_t i = 0; i < std::min(data.size(), kFew); ++i) {
+    for (std::size_t i = 0; i < std::min(data.size(), kProbedRows); ++i) {
         double number = 0;
         if (!read_cell_number(data[i].cells.front(), number) || (i > 0 && number != before + 1)) return false;
         before = number;
@@ -30,10 +30,10 @@ bool counts_rows(const std::vector<CsvLine>& data) {
 // Which of the lines of text, as wide as the data and right above it, holds the headings: the others are a title, units
 // or descriptions.
 std::size_t heading_among(const std::vector<CsvLine>& above, std::size_t first) {
-    std::size_t best = first, most = 0;
+    std::size_t best = first, max = 0;
     int named = 0;
-    for (std::size_t i = first; i < above.size(); ++i) most = std::max(most, filled(above[i].cells));
-    while (best + 1 < above.size() && 2 * filled(above[best].cells) <= most) ++best;
+    for (std::size_t i = first; i < above.size(); ++i) max = std::max(max, filled(above[i].cells));
+    while (best + 1 < above.size() && 2 * filled(above[best].cells) <= max) ++best;
     for (std::size_t i = best; i < above.size(); ++i) {
         const int now = roles_named(above[i].cells);
         if (now <= named) continue;
@@ -58,7 +58,7 @@ int roles_named(const std::vector<std::string_view>& cells) {
     int named = 0;
     for (const std::string_view cell : cells) {
         const Heading heading = split_heading(cell);
-        for (const Role role : {kTimeRole, kInputRole, kOutputRole, kReferenceRole}) {
+        for (const ColumnRole role : {kTimeRole, kInputRole, kOutputRole, kReferenceRole}) {
             const auto found = match(heading, role);
             if (!found || found->level > 2) continue;
             ++named;
@@ -87,11 +87,11 @@ std::size_t usual_width(const std::vector<CsvLine>& lines) {
     std::map<std::size_t, int> counts;
     for (const CsvLine& line : lines) ++counts[line.cells.size()];
     std::size_t width = 0;
-    int most = 0;
+    int max = 0;
     for (const auto& [count, times] : counts) {
-        if (times < most) continue;
+        if (times < max) continue;
         width = count;
-        most = times;
+        max = times;
     }
     return width;
 }
@@ -124,12 +124,12 @@ std::vector<CsvLine> filled_lines(std::vector<CsvLine> lines) {
 
 std::vector<CsvLine>::const_iterator first_data(const std::vector<CsvLine>& lines, std::size_t usual,
                                                 std::size_t width) {
-    constexpr std::ptrdiff_t kLinesOfTitle = 10;
+    constexpr std::ptrdiff_t kMaxTitleLines = 10;
     const auto is_row = [&](const CsvLine& line) { return is_data_of(line, usual, width); };
     const auto is_heading = [](const CsvLine& line) { return is_text(line) && roles_named(line.cells) > 1; };
     const auto first = std::find_if(lines.begin(), lines.end(), is_row);
     if (std::any_of(lines.begin(), first, is_heading)) return first;
-    const auto last_title = first + std::min(kLinesOfTitle, lines.end() - first);
+    const auto last_title = first + std::min(kMaxTitleLines, lines.end() - first);
     const auto heading = std::find_if(first, last_title, is_heading);
     return heading == last_title ? first : std::find_if(heading, lines.end(), is_row);
 }

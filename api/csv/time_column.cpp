@@ -21,25 +21,25 @@ bool is_day(double value) { return (value > 20000 && value < 80000) || (value > 
 
 /// Whether steps are as long as those of logs, counted in days: seconds that divide a minute, or minutes.
 bool steps_of_a_log(double days) {
-    constexpr double kOff = 0.02;  // seconds
+    constexpr double kMaxSecondsOff = 0.02;  // seconds
     const double seconds = days * kDay, whole = std::round(seconds);
-    if (std::abs(seconds - whole) > kOff || whole < 1 || whole > kHour) return false;
+    if (std::abs(seconds - whole) > kMaxSecondsOff || whole < 1 || whole > kHour) return false;
     return std::fmod(whole < kMinute ? kMinute : whole, whole < kMinute ? whole : kMinute) == 0;
 }
 
 /// Whether steps are whole seconds, or whole minutes where they are longer, counted in days: their decimals do not end,
 /// as those of a sample time in seconds do.
 bool steps_of_a_clock(double days) {
-    constexpr double kOff = 0.1, kShort = 90, kLong = 1801;  // seconds
+    constexpr double kMaxSecondsOff = 0.1, kShort = 90, kLong = 1801;  // seconds
     constexpr double kLastDecimal = 1e-7, kEnds = 0.02;
     const double seconds = days * kDay, unit = seconds < kShort ? 1 : kMinute;
     if (std::abs(std::remainder(days / kLastDecimal, 1)) < kEnds) return false;
-    return seconds > 1 - kOff && seconds < kLong && std::abs(std::remainder(seconds, unit)) < kOff;
+    return seconds > 1 - kMaxSecondsOff && seconds < kLong && std::abs(std::remainder(seconds, unit)) < kMaxSecondsOff;
 }
 
 }  // namespace
 
-TimeColumn::TimeColumn(std::string_view text, const CsvLayout& layout, const FoundColumns& columns,
+TimeColumn::TimeColumn(std::string_view text, const CsvLayout& layout, const DetectedColumns& columns,
                        const ColumnProfile& profile, const CsvOptions& options, std::vector<CsvFault>& faults)
     : stamps_(profile.stamps > profile.numbers), sign_(layout.sign), suffix_(profile.suffix) {
     if (!stamps_) {
@@ -82,14 +82,14 @@ void TimeColumn::read_short_clock(std::string_view text, const CsvLayout& layout
 }
 
 // Of the two readings of 03/04/2026 the one is right in which time runs on: the other jumps by months.
-void TimeColumn::find_order(std::string_view text, const CsvLayout& layout, const FoundColumns& columns) {
+void TimeColumn::find_order(std::string_view text, const CsvLayout& layout, const DetectedColumns& columns) {
     CsvLines lines(text, layout);
     CsvLine line;
     double way[2] = {}, last[2] = {};
     bool matters = false, any = false;
-    constexpr int kLooked = 2000;
+    constexpr int kProbedLines = 2000;
     const std::size_t at = *columns.at[kTimeRole];
-    for (int n = 0; lines.next(line) && (matters || n < kLooked); ++n) {
+    for (int n = 0; lines.next(line) && (matters || n < kProbedLines); ++n) {
         if (at >= line.cells.size()) continue;
         const auto day = read_time_stamp(line.cells[at], DateOrder::day_first);
         const auto month = read_time_stamp(line.cells[at], DateOrder::month_first);
@@ -116,8 +116,8 @@ std::optional<std::string> TimeColumn::unit_by_size(std::string_view text, const
     CsvLine line;
     std::optional<double> first, last;
     double steps = 0;
-    constexpr int kLooked = 200;
-    for (int n = 0; n < kLooked && lines.next(line); ++n) {
+    constexpr int kProbedLines = 200;
+    for (int n = 0; n < kProbedLines && lines.next(line); ++n) {
         double value = 0;
         if (column >= line.cells.size() || !read_cell_number(line.cells[column], value, sign_, suffix_)) continue;
         if (!first) first = value;
@@ -144,13 +144,13 @@ std::optional<std::string> TimeColumn::unit_by_size(std::string_view text, const
 // A log with a clock of its own, as of a serial monitor, beside a counter: how fast the one runs by the other.
 std::optional<std::string> TimeColumn::unit_by_clock(std::string_view text, const CsvLayout& layout,
                                                      std::size_t column) const {
-    constexpr int kLooked = 2000, kWithoutClock = 20;
-    constexpr double kLeast = 20, kApart = 0.1;  // seconds; relative
+    constexpr int kProbedLines = 2000, kMaxLinesWithoutClock = 20;
+    constexpr double kMinDurationSeconds = 20, kMaxRelativeDifference = 0.1;  // seconds; relative
     CsvLines lines(text, layout);
     CsvLine line;
     double first = 0, last = 0, began = 0, ended = 0;
     std::optional<std::size_t> clock;
-    for (int n = 0; n < kLooked && lines.next(line); ++n) {
+    for (int n = 0; n < kProbedLines && lines.next(line); ++n) {
         if (column >= line.cells.size() || !read_cell_number(line.cells[column], last, sign_, suffix_)) continue;
         for (std::size_t other = 0; !clock && other < line.cells.size(); ++other) {
             const auto stamp = other == column ? std::nullopt : read_time_stamp(line.cells[other]);
@@ -159,19 +159,19 @@ std::optional<std::string> TimeColumn::unit_by_clock(std::string_view text, cons
             began = stamp->seconds;
             first = last;
         }
-        if (!clock && n >= kWithoutClock) return std::nullopt;
+        if (!clock && n >= kMaxLinesWithoutClock) return std::nullopt;
         if (!clock || *clock >= line.cells.size()) continue;
         if (const auto stamp = read_time_stamp(line.cells[*clock])) ended = stamp->seconds;
     }
-    if (!clock || ended - began < kLeast) return std::nullopt;
+    if (!clock || ended - began < kMinDurationSeconds) return std::nullopt;
     const double a_second = (last - first) / (ended - began);
     for (const auto& [unit, scale] :
          {std::pair{"s", 1.0}, {"ms", 1e3}, {"us", 1e6}, {"min", 1 / 60.0}, {"h", 1 / kHour}})
-        if (std::abs(a_second / scale - 1) < kApart) return unit;
+        if (std::abs(a_second / scale - 1) < kMaxRelativeDifference) return unit;
     return std::nullopt;
 }
 
-void TimeColumn::find_unit(std::string_view text, const CsvLayout& layout, const FoundColumns& columns,
+void TimeColumn::find_unit(std::string_view text, const CsvLayout& layout, const DetectedColumns& columns,
                            const ColumnProfile& profile, const CsvOptions& options) {
     const std::size_t column = *columns.at[kTimeRole];
     std::string unit = options.file_time_unit;
@@ -183,8 +183,8 @@ void TimeColumn::find_unit(std::string_view text, const CsvLayout& layout, const
     }
     if (!seconds_per(unit) && column < layout.headings.size()) {
         const std::string name = split_heading(layout.headings[column]).name;
-        constexpr std::size_t kWord = 5;  // letters from which on a name is no symbol
-        const bool of_time = name.size() >= kWord || match(split_heading(layout.headings[column]), kTimeRole);
+        constexpr std::size_t kMinWordLength = 5;  // letters from which on a name is no symbol
+        const bool of_time = name.size() >= kMinWordLength || match(split_heading(layout.headings[column]), kTimeRole);
         if (seconds_per(name) && of_time && name != "m" && name != "d") unit = name;
         if (name == "millis" || name == "millis()") unit = "ms";
         if (name == "micros") unit = "us";
@@ -224,9 +224,9 @@ void TimeColumn::find_unit(std::string_view text, const CsvLayout& layout, const
 // no reason to ask.
 void TimeColumn::note_unknown_unit(const ColumnProfile& profile, const CsvOptions& options) {
     constexpr double kUsual = 5, kFast = 1e-3;
-    if (profile.changes < 1 || !profile.rises || (profile.least_step < kUsual && profile.least_step >= kFast)) return;
+    if (profile.changes < 1 || !profile.rises || (profile.min_step < kUsual && profile.min_step >= kFast)) return;
     notes_.push_back("The file names no unit of time: the times are read as " + options.time_unit + ", " +
-                     tunewright::text(profile.least_step) + " or more apart. Choose their unit if it is another.");
+                     tunewright::text(profile.min_step) + " or more apart. Choose their unit if it is another.");
 }
 
 std::optional<TimeStamp> TimeColumn::stamp(std::string_view cell, std::string_view clock, DateOrder order) const {

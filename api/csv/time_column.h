@@ -17,7 +17,7 @@ class TimeColumn {
 public:
     /// Looks through the file for what a single cell leaves open: stamps or numbers, unit, day or month first. Adds
     /// its faults; notes say what was assumed.
-    TimeColumn(std::string_view text, const CsvLayout& layout, const FoundColumns& columns,
+    TimeColumn(std::string_view text, const CsvLayout& layout, const DetectedColumns& columns,
                const ColumnProfile& profile, const CsvOptions& options, std::vector<CsvFault>& faults);
 
     /// False where the cell is no time. `clock` is the cell of the second column, where there is one.
@@ -31,8 +31,8 @@ public:
 private:
     void note_unknown_unit(const ColumnProfile& profile, const CsvOptions& options);
     void read_short_clock(std::string_view text, const CsvLayout& layout, std::size_t column);
-    void find_order(std::string_view text, const CsvLayout& layout, const FoundColumns& columns);
-    void find_unit(std::string_view text, const CsvLayout& layout, const FoundColumns& columns,
+    void find_order(std::string_view text, const CsvLayout& layout, const DetectedColumns& columns);
+    void find_unit(std::string_view text, const CsvLayout& layout, const DetectedColumns& columns,
                    const ColumnProfile& profile, const CsvOptions& options);
     std::optional<std::string> unit_by_size(std::string_view text, const CsvLayout& layout, std::size_t column) const;
     std::optional<std::string> unit_by_clock(std::string_view text, const CsvLayout& layout, std::size_t column) const;

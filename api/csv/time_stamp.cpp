@@ -15,11 +15,11 @@
 namespace tunewright::api {
 namespace {
 
-// Reads `least` to `most` digits.
-std::optional<int> take_digits(std::string_view& text, std::size_t least, std::size_t most) {
+// Reads `min` to `max` digits.
+std::optional<int> take_digits(std::string_view& text, std::size_t min, std::size_t max) {
     std::size_t count = 0;
-    while (count < text.size() && count < most && is_digit(text[count])) ++count;
-    if (count < least) return std::nullopt;
+    while (count < text.size() && count < max && is_digit(text[count])) ++count;
+    if (count < min) return std::nullopt;
     int value = 0;
     std::from_chars(text.data(), text.data() + count, value);
     text.remove_prefix(count);
@@ -273,13 +273,13 @@ void skip_weekday(std::string_view& text) {
 
 /// "03/09/2024;23:55:00;7", date, clock and milliseconds, as "03/09/2024 23:55:00.007"; "" where it is no such text.
 std::string joined_stamp(std::string_view text) {
-    constexpr std::size_t kDigits = 3;
+    constexpr std::size_t kMillisecondDigits = 3;
     const std::size_t clock = text.find(';'), millis = std::min(text.find(';', clock + 1), text.size());
     std::string_view digits = text.substr(std::min(millis + 1, text.size()));
-    if (digits.size() > kDigits || !std::ranges::all_of(digits, is_digit)) return {};
+    if (digits.size() > kMillisecondDigits || !std::ranges::all_of(digits, is_digit)) return {};
     std::string out =
         std::string(text.substr(0, clock)) + " " + std::string(text.substr(clock + 1, millis - clock - 1));
-    if (!digits.empty()) out += "." + std::string(kDigits - digits.size(), '0') + std::string(digits);
+    if (!digits.empty()) out += "." + std::string(kMillisecondDigits - digits.size(), '0') + std::string(digits);
     return out;
 }
 

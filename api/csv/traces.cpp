@@ -41,8 +41,8 @@ public:
     }
 
     /// "y" -> "y [degC]", where the request names the unit.
-    std::string with_unit(const std::string& quantity, const char* unit, const std::string& otherwise = {}) const {
-        const std::string name = units_.value(unit, otherwise);
+    std::string with_unit(const std::string& quantity, const char* unit, const std::string& fallback = {}) const {
+        const std::string name = units_.value(unit, fallback);
         return name.empty() ? quantity : quantity + " [" + name + "]";
     }
 

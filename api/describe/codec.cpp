@@ -164,14 +164,14 @@ Codec<double> number_or_infinite(const NumberRule& rule, const std::string& mean
             }};
 }
 
-Codec<std::vector<double>> numbers(std::size_t least, std::size_t most, const NumberRule& rule) {
+Codec<std::vector<double>> numbers(std::size_t min, std::size_t max, const NumberRule& rule) {
     constexpr std::size_t kFaultsListed = 5;
-    return {[least, most, rule](const Json& value, std::vector<double>& target, Reader& reader) {
+    return {[min, max, rule](const Json& value, std::vector<double>& target, Reader& reader) {
                 if (!value.is_array()) return reader.fault(wrong_kind(value, "an array of numbers", reader));
-                if (value.size() < least || value.size() > most) {
+                if (value.size() < min || value.size() > max) {
                     return reader.fault(reader.name() + " has " + std::to_string(value.size()) +
-                                        " numbers; it must have " + std::to_string(least) + " to " +
-                                        std::to_string(most) + "." + (rule.cure.empty() ? "" : " " + rule.cure));
+                                        " numbers; it must have " + std::to_string(min) + " to " + std::to_string(max) +
+                                        "." + (rule.cure.empty() ? "" : " " + rule.cure));
                 }
                 target.assign(value.size(), 0);
                 const std::size_t before = reader.count();
@@ -195,8 +195,8 @@ Codec<std::vector<double>> numbers(std::size_t least, std::size_t most, const Nu
                 for (const double value : values) out.number(value);
                 out.end_array();
             },
-            [least, most, rule](SchemaBook&) {
-                return Json{{"type", "array"}, {"items", number_schema(rule)}, {"minItems", least}, {"maxItems", most}};
+            [min, max, rule](SchemaBook&) {
+                return Json{{"type", "array"}, {"items", number_schema(rule)}, {"minItems", min}, {"maxItems", max}};
             }};
 }
 
@@ -290,9 +290,9 @@ bool ArrayLengths::hold(const Json& value, Reader& reader) const {
         reader.fault(wrong_kind(value, "an array", reader));
         return false;
     }
-    if (value.size() < least || value.size() > most) {
+    if (value.size() < min || value.size() > max) {
         reader.fault(reader.name() + " has " + std::to_string(value.size()) + " elements; it must have " +
-                     std::to_string(least) + " to " + std::to_string(most) + ".");
+                     std::to_string(min) + " to " + std::to_string(max) + ".");
         return false;
     }
     return true;
@@ -302,8 +302,8 @@ SchemaOf ArrayLengths::schema(SchemaOf items, bool stated) const {
     return [items = std::move(items), stated, *this](SchemaBook& book) {
         Json out{{"type", "array"}, {"items", items(book)}};
         if (stated) {
-            out["minItems"] = least;
-            out["maxItems"] = most;
+            out["minItems"] = min;
+            out["maxItems"] = max;
         }
         return out;
     };

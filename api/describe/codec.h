@@ -65,8 +65,8 @@ Codec<std::string> words();
 /// A number or null for "infinite", as with Ti.
 Codec<double> number_or_infinite(const NumberRule& rule, const std::string& meaning_of_null);
 
-/// An array of numbers, `least` to `most` of them. The first five faults are listed.
-Codec<std::vector<double>> numbers(std::size_t least, std::size_t most, const NumberRule& rule = {});
+/// An array of numbers, `min` to `max` of them. The first five faults are listed.
+Codec<std::vector<double>> numbers(std::size_t min, std::size_t max, const NumberRule& rule = {});
 
 /// Only in answers: six significant digits each.
 Codec<std::vector<double>> trace();
@@ -165,7 +165,7 @@ Codec<E> choice(const std::vector<std::pair<std::string, E>>& words) {
 
 /// The lengths of an array.
 struct ArrayLengths {
-    std::size_t least, most;
+    std::size_t min, max;
 
     /// False: the value is no array of such a length, which is reported.
     bool hold(const Json& value, Reader& reader) const;
@@ -173,10 +173,10 @@ struct ArrayLengths {
     SchemaOf schema(SchemaOf items, bool stated) const;
 };
 
-/// An array of `least` to `most` values.
+/// An array of `min` to `max` values.
 template <class T>
-Codec<std::vector<T>> list_of(Codec<T> inner, std::size_t least = 0, std::size_t most = 100) {
-    const ArrayLengths lengths{least, most};
+Codec<std::vector<T>> list_of(Codec<T> inner, std::size_t min = 0, std::size_t max = 100) {
+    const ArrayLengths lengths{min, max};
     Codec<std::vector<T>> codec;
     if (inner.read) {
         codec.read = [read = inner.read, lengths](const Json& value, std::vector<T>& target, Reader& reader) {

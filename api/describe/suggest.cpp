@@ -77,11 +77,11 @@ std::string nearest(std::string_view name, std::span<const std::string> candidat
             return std::string(meant);
     }
     std::string best;
-    std::size_t least = wanted.size() <= 2 ? 0 : wanted.size() <= 4 ? 1 : 2;
+    std::size_t min = wanted.size() <= 2 ? 0 : wanted.size() <= 4 ? 1 : 2;
     for (const std::string& candidate : candidates) {
         const std::size_t steps = distance(wanted, folded(candidate));
-        if (steps < least + (best.empty() ? 1 : 0)) {
-            least = steps;
+        if (steps < min + (best.empty() ? 1 : 0)) {
+            min = steps;
             best = candidate;
         }
     }

@@ -59,33 +59,33 @@ std::string sign(const std::string& text) {
 }
 
 /// Above the line fractions would be too small to read: they keep the slash there, and their brackets with it.
-enum class Place { line, script };
+enum class ScriptLevel { line, script };
 
-std::string written(const Node& node, Place place);
+std::string written(const Node& node, ScriptLevel place);
 
-std::string all(const std::vector<Node>& nodes, Place place, const std::string& between = {}) {
+std::string all(const std::vector<Node>& nodes, ScriptLevel place, const std::string& between = {}) {
     std::string out;
     for (const Node& node : nodes) out += (out.empty() ? "" : between) + written(node, place);
     return out;
 }
 
 /// Above or below a fraction's line, which holds together what the brackets did.
-std::string bare(const Node& node, Place place) {
+std::string bare(const Node& node, ScriptLevel place) {
     return written(node.part == Part::brackets ? node.parts.front() : node, place);
 }
 
-std::string fraction_of(const Node& node, Place place) {
+std::string fraction_of(const Node& node, ScriptLevel place) {
     const Node &above = node.parts[0], &below = node.parts[1];
-    if (place == Place::script) return row(written(above, place) + mo("/") + written(below, place));
+    if (place == ScriptLevel::script) return row(written(above, place) + mo("/") + written(below, place));
     return fraction(bare(above, place), bare(below, place));
 }
 
 bool is_high(const Node& node) { return node.part == Part::fraction || std::ranges::any_of(node.parts, is_high); }
 
 /// Brackets grow with a fraction inside them, and with nothing else: powers and indices would blow them up.
-std::string in_brackets(const Node& node, Place place) {
+std::string in_brackets(const Node& node, ScriptLevel place) {
     const Node& inside = node.parts.front();
-    const bool grows = place == Place::line && is_high(inside), square = node.text == "[";
+    const bool grows = place == ScriptLevel::line && is_high(inside), square = node.text == "[";
     const auto bracket = [&](const char* sign) {
         return grows ? mo(sign) : std::string("<mo stretchy=\"false\">") + sign + "</mo>";
     };
@@ -94,15 +94,16 @@ std::string in_brackets(const Node& node, Place place) {
 
 std::string raised(const Node& node) {
     const Node& base = node.parts[0];
-    const std::string exponent = row(written(node.parts[1], Place::script));
+    const std::string exponent = row(written(node.parts[1], ScriptLevel::script));
     if (base.part == Part::symbol && !is_differential(base.text)) {
         const Name name = name_of(base.text);
         if (!name.index.empty()) return element("msubsup", name.base + index_of(name.index) + exponent);
     }
-    return power(base.part == Part::brackets ? in_brackets(base, Place::line) : written(base, Place::line), exponent);
+    return power(base.part == Part::brackets ? in_brackets(base, ScriptLevel::line) : written(base, ScriptLevel::line),
+                 exponent);
 }
 
-std::string applied(const Node& node, Place place) {
+std::string applied(const Node& node, ScriptLevel place) {
     const Node& to = node.parts.front();
     if (node.text == "sqrt" && to.part == Part::brackets) return element("msqrt", written(to.parts.front(), place));
     const std::string argument = to.part == Part::brackets ? in_brackets(to, place) : written(to, place);
@@ -112,11 +113,11 @@ std::string applied(const Node& node, Place place) {
 std::string big(const Node& node) {
     const std::string sign = mo(node.text == "int" ? "∫" : "∑");
     if (node.parts.empty()) return sign;
-    const std::string limits = all(node.parts, Place::script);
+    const std::string limits = all(node.parts, ScriptLevel::script);
     return element(node.parts.size() == 1 ? "msub" : "msubsup", sign + limits);
 }
 
-std::string written(const Node& node, Place place) {
+std::string written(const Node& node, ScriptLevel place) {
     switch (node.part) {
         case Part::number: return element("mn", node.text);
         case Part::symbol: return symbol(node.text);
@@ -127,7 +128,7 @@ std::string written(const Node& node, Place place) {
         case Part::fraction: return fraction_of(node, place);
         case Part::power: return raised(node);
         case Part::brackets: {
-            const bool held = node.parts.front().part == Part::fraction && place == Place::line;
+            const bool held = node.parts.front().part == Part::fraction && place == ScriptLevel::line;
             return held ? written(node.parts.front(), place) : in_brackets(node, place);
         }
         case Part::bars: return row(mo("|") + written(node.parts.front(), place) + mo("|"));
@@ -142,7 +143,7 @@ std::string cell(const notation::Cell& parts) {
     std::string out;
     for (std::size_t i = 0; i < parts.size(); ++i) {
         if (parts[i].part != Part::words) {
-            out += written(parts[i], Place::line);
+            out += written(parts[i], ScriptLevel::line);
             continue;
         }
         const bool spaced = i > 0 && parts[i].text != ":";

@@ -94,7 +94,7 @@ private:
 
     bool begins_factor() const {
         if (at("|")) return !inside_bars_;
-        return at("(") || at("[") || here()->kind != Kind::sign;
+        return at("(") || at("[") || here()->kind != NotationToken::sign;
     }
 
     Node factor() {
@@ -121,10 +121,10 @@ private:
         if (!token) return fail("");
         if (at("(") || at("[") || at("|")) return enclosed();
         switch (token->kind) {
-            case Kind::number: ++at_; return {Part::number, token->text};
-            case Kind::symbol: ++at_; return {Part::symbol, token->text};
-            case Kind::function: ++at_; return {Part::apply, token->text, {enclosed()}};
-            case Kind::big: return big();
+            case NotationToken::number: ++at_; return {Part::number, token->text};
+            case NotationToken::symbol: ++at_; return {Part::symbol, token->text};
+            case NotationToken::function: ++at_; return {Part::apply, token->text, {enclosed()}};
+            case NotationToken::big: return big();
             default: return fail("stands where a number, a symbol or a bracket belongs");
         }
     }
@@ -168,15 +168,16 @@ private:
 Expected<Cell> read_cell(Tokens tokens, std::size_t end) {
     Cell cell;
     while (!tokens.empty()) {
-        const bool words = tokens.front().kind == Kind::word;
+        const bool words = tokens.front().kind == NotationToken::word;
         std::size_t length = 0;
         if (words) {
             std::string text;
-            for (; length < tokens.size() && (tokens[length].kind == Kind::word || tokens[length].is(",")); ++length)
+            for (; length < tokens.size() && (tokens[length].kind == NotationToken::word || tokens[length].is(","));
+                 ++length)
                 text += (text.empty() || tokens[length].is(",") ? "" : " ") + tokens[length].text;
             cell.push_back({Part::words, text});
         } else {
-            while (length < tokens.size() && tokens[length].kind != Kind::word) ++length;
+            while (length < tokens.size() && tokens[length].kind != NotationToken::word) ++length;
             const std::size_t over = length < tokens.size() ? tokens[length].position : end;
             auto formula = FormulaReader(tokens.first(length), over).whole();
             if (!formula) return formula.error();
@@ -190,7 +191,7 @@ Expected<Cell> read_cell(Tokens tokens, std::size_t end) {
 /// Has a relation with no words before it.
 bool is_equation(Tokens piece) {
     for (const FormulaToken& token : piece) {
-        if (token.kind == Kind::word) return false;
+        if (token.kind == NotationToken::word) return false;
         if (token.is_relation()) return true;
     }
     return false;
@@ -230,12 +231,12 @@ void add_colon(Cell& label) {
 Expected<Line> read_line(Tokens tokens, std::size_t end) {
     Line line;
     std::size_t length = tokens.size();
-    while (length > 0 && tokens[length - 1].kind != Kind::label_end) --length;
+    while (length > 0 && tokens[length - 1].kind != NotationToken::label_end) --length;
     if (length-- > 0) {
         // A label in a label: "Regulation, 0 %: P:".
         Tokens rest = tokens.first(length);
         for (bool more = true; more;) {
-            const auto colon = std::ranges::find(rest, Kind::label_end, &FormulaToken::kind);
+            const auto colon = std::ranges::find(rest, NotationToken::label_end, &FormulaToken::kind);
             const auto size = static_cast<std::size_t>(colon - rest.begin());
             auto part = read_cell(rest.first(size), tokens[length].position);
             if (!part) return part.error();
@@ -266,7 +267,7 @@ Expected<std::vector<Line>> read_formula(std::string_view text) {
     if (!tokens) return tokens.error();
     std::vector<Line> lines;
     for (Tokens rest(*tokens); !rest.empty();) {
-        const auto end = std::ranges::find(rest, Kind::line_end, &FormulaToken::kind);
+        const auto end = std::ranges::find(rest, NotationToken::line_end, &FormulaToken::kind);
         const auto length = static_cast<std::size_t>(end - rest.begin());
         auto line = read_line(rest.first(length), length < rest.size() ? end->position : text.size() + 1);
         if (!line) return line.error();

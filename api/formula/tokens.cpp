@@ -40,8 +40,8 @@ public:
                              "character " + std::to_string(at_ + 1) + " has no meaning in a formula."};
             at_ += token.text.size();
             // "a" is the article where a word follows it.
-            if (token.kind == Kind::word && !tokens.empty() && tokens.back().text == "a")
-                tokens.back().kind = Kind::word;
+            if (token.kind == NotationToken::word && !tokens.empty() && tokens.back().text == "a")
+                tokens.back().kind = NotationToken::word;
             tokens.push_back(std::move(token));
         }
         return tokens;
@@ -52,20 +52,20 @@ private:
         while (at_ < text_.size() && text_[at_] == ' ') ++at_;
     }
 
-    FormulaToken token(Kind kind, std::size_t length) const {
+    FormulaToken token(NotationToken kind, std::size_t length) const {
         return {kind, std::string(text_.substr(at_, length)), at_ + 1};
     }
 
     FormulaToken next() const {
         const char c = text_[at_];
-        if (is_digit_of_name(c)) return token(Kind::number, number_length());
+        if (is_digit_of_name(c)) return token(NotationToken::number, number_length());
         if (is_letter_of_name(c)) return name();
         const std::string_view rest = text_.substr(at_);
-        if (rest.starts_with("<=") || rest.starts_with(">=")) return token(Kind::sign, 2);
-        if (c == ';' || c == '.') return token(Kind::line_end, 1);
-        if (c == ':') return token(Kind::label_end, 1);
-        if (c == '%') return token(Kind::word, 1);
-        return token(Kind::sign, std::string_view("+-/^()[]|=<>!,").find(c) == std::string_view::npos ? 0 : 1);
+        if (rest.starts_with("<=") || rest.starts_with(">=")) return token(NotationToken::sign, 2);
+        if (c == ';' || c == '.') return token(NotationToken::line_end, 1);
+        if (c == ':') return token(NotationToken::label_end, 1);
+        if (c == '%') return token(NotationToken::word, 1);
+        return token(NotationToken::sign, std::string_view("+-/^()[]|=<>!,").find(c) == std::string_view::npos ? 0 : 1);
     }
 
     std::size_t number_length() const {
@@ -81,15 +81,15 @@ private:
         while (end < text_.size() && is_part_of_name(text_[end])) ++end;
         const std::string_view found = text_.substr(at_, end - at_);
         const std::string_view base = found.substr(0, found.find('_'));
-        if (base == "int" || base == "sum") return token(Kind::big, end - at_);
+        if (base == "int" || base == "sum") return token(NotationToken::big, end - at_);
         for (const std::string_view function : {"min", "max", "exp", "sqrt"})
-            if (found == function && opens(end)) return token(Kind::function, end - at_);
-        if (is_symbol(found)) return token(Kind::symbol, end - at_);
+            if (found == function && opens(end)) return token(NotationToken::function, end - at_);
+        if (is_symbol(found)) return token(NotationToken::symbol, end - at_);
         // Words may hang together: docs/methods.md, half-rule.
         while (end + 1 < text_.size() && std::string_view("-./").find(text_[end]) != std::string_view::npos &&
                is_letter_of_name(text_[end + 1]))
             for (++end; end < text_.size() && is_part_of_name(text_[end]);) ++end;
-        return token(Kind::word, end - at_);
+        return token(NotationToken::word, end - at_);
     }
 
     bool opens(std::size_t end) const {

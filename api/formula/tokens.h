@@ -9,7 +9,7 @@
 
 namespace tunewright::api::notation {
 
-enum class Kind {
+enum class NotationToken {
     number,
     symbol,
     function,  ///< min, max, exp, sqrt, with a bracket behind it
@@ -21,11 +21,11 @@ enum class Kind {
 };
 
 struct FormulaToken {
-    Kind kind = Kind::sign;
+    NotationToken kind = NotationToken::sign;
     std::string text;
     std::size_t position = 1;  ///< of its first character, from 1
 
-    bool is(std::string_view sign) const { return kind == Kind::sign && text == sign; }
+    bool is(std::string_view sign) const { return kind == NotationToken::sign && text == sign; }
     bool is_relation() const { return is("=") || is("<") || is(">") || is("<=") || is(">="); }
 };
 

@@ -70,13 +70,13 @@ Problem to_problem(const Error& error) {
     return problem;
 }
 
-RecordSamples samples_of(const Record& record, std::size_t most) {
+RecordSamples samples_of(const Record& record, std::size_t max) {
     std::vector<std::size_t> rows;
     for (std::size_t i = 0; i < record.t.size(); ++i) {
         if (std::isfinite(record.t[i]) && std::isfinite(record.u[i]) && std::isfinite(record.y[i])) rows.push_back(i);
     }
     RecordSamples samples{record.t.size(), {}, {}, {}};
-    const std::size_t shown = std::min(rows.size(), most);
+    const std::size_t shown = std::min(rows.size(), max);
     for (std::size_t k = 0; k < shown; ++k) {
         const std::size_t i = rows[shown == 1 ? 0 : k * (rows.size() - 1) / (shown - 1)];
         samples.t.push_back(record.t[i]);

@@ -49,7 +49,7 @@ constexpr std::size_t kExcerptRows = 3, kPlotRows = 2000;
 
 /// At most so many rows, evenly chosen, the first and the last among them; rows in which t, u or y is no number are
 /// left out.
-RecordSamples samples_of(const Record& record, std::size_t most = kExcerptRows);
+RecordSamples samples_of(const Record& record, std::size_t max = kExcerptRows);
 
 std::string to_json(const Problem& problem);
 

@@ -26,12 +26,13 @@ char* write_full(char* at, char* end, double value) {
 }
 
 struct PowersOfTen {
-    static constexpr int kMax = 300;
-    std::array<double, 2 * kMax + 1> value{};
+    static constexpr int kMaxExponent = 300;
+    std::array<double, 2 * kMaxExponent + 1> value{};
     PowersOfTen() {
-        for (int i = -kMax; i <= kMax; ++i) value[static_cast<std::size_t>(i + kMax)] = std::pow(10.0, i);
+        for (int i = -kMaxExponent; i <= kMaxExponent; ++i)
+            value[static_cast<std::size_t>(i + kMaxExponent)] = std::pow(10.0, i);
     }
-    double operator()(int exponent) const { return value[static_cast<std::size_t>(exponent + kMax)]; }
+    double operator()(int exponent) const { return value[static_cast<std::size_t>(exponent + kMaxExponent)]; }
 };
 
 // The six digits as an integer in [100000, 999999] and the decimal exponent of the first one. The scaling rounds once
@@ -181,14 +182,14 @@ void Writer::numbers(std::span<const double> values) {
 
 // Seconds since 1970 have more than six digits before they differ.
 void Writer::times(std::span<const double> values) {
-    double largest = 0, least = 0;
+    double largest = 0, min = 0;
     for (std::size_t i = 0; i < values.size(); ++i) {
         const double size = std::abs(values[i]), step = i > 0 ? std::abs(values[i] - values[i - 1]) : 0;
         if (std::isfinite(size)) largest = std::max(largest, size);
-        if (step > 0 && std::isfinite(step)) least = least > 0 ? std::min(least, step) : step;
+        if (step > 0 && std::isfinite(step)) min = min > 0 ? std::min(min, step) : step;
     }
     constexpr double kSixDigits = 1e-5;
-    if (least < kSixDigits * largest) return numbers(values);
+    if (min < kSixDigits * largest) return numbers(values);
     trace(values);
 }
 

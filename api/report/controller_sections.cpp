@@ -32,7 +32,7 @@ constexpr FigureRow kSetpoint[] = {{"IAE", "IAE", "y time"},
                                    {"First move of u", "first_move", "u"},
                                    {"TV of u", "TV", "u"}};
 
-std::string unit_of(const FigureRow& row, const ReportSubject& s) {
+std::string unit_of(const FigureRow& row, const ReportInput& s) {
     const std::string unit = row.unit;
     if (unit == "time") return s.time;
     if (unit == "u") return s.u;
@@ -43,8 +43,8 @@ std::string unit_of(const FigureRow& row, const ReportSubject& s) {
 }
 
 /// The limit of the design on this figure, if it has one.
-Place limit_on(const FigureRow& row, const ReportSubject& s) {
-    const Place options = s.entry.at("options");
+JsonLocation limit_on(const FigureRow& row, const ReportInput& s) {
+    const JsonLocation options = s.entry.at("options");
     if (std::string_view(row.place) == "overshoot_percent") return options.at("setpoint").at("overshoot");
     const bool limited =
         std::ranges::any_of(std::array{"Ms", "Mt", "Mks"}, [&](std::string_view one) { return one == row.place; });
@@ -52,10 +52,12 @@ Place limit_on(const FigureRow& row, const ReportSubject& s) {
 }
 
 template <std::size_t n>
-Html figure_table(const char* caption, const FigureRow (&rows)[n], const std::string& below, const ReportSubject& s) {
-    const auto places = [&](const Place& owner) { return Place{owner.root, owner.pointer + "/" + below}; };
+Html figure_table(const char* caption, const FigureRow (&rows)[n], const std::string& below, const ReportInput& s) {
+    const auto places = [&](const JsonLocation& owner) {
+        return JsonLocation{owner.root, owner.pointer + "/" + below};
+    };
     Row heads = {"", "Proposal"};
-    std::vector<Place> columns = {places(s.entry)};
+    std::vector<JsonLocation> columns = {places(s.entry)};
     if (s.entry.at("implemented").exists()) {
         heads.push_back("As built");
         columns.push_back(places(s.entry.at("implemented")));
@@ -72,10 +74,10 @@ Html figure_table(const char* caption, const FigureRow (&rows)[n], const std::st
     std::vector<Row> out;
     for (const FigureRow& row : rows) {
         if (!any_has(columns, row.place)) continue;
-        const Place limit = limit_on(row, s);
+        const JsonLocation limit = limit_on(row, s);
         Row line = {with_unit(row.label, unit_of(row, s))};
         if (limit.exists()) line[0] += ", limit: " + figure(limit);
-        for (const Place& column : columns) line.push_back(figure(column.at(row.place)));
+        for (const JsonLocation& column : columns) line.push_back(figure(column.at(row.place)));
         out.push_back(std::move(line));
     }
     return table(caption, heads, out);
@@ -91,7 +93,7 @@ bool same_finding(const Json& a, const Json& b) {
 
 /// Whether the entry's own verdict holds what this finding about all entries tells: one of its own, the choice of this
 /// entry, or that the only design is not to be entered.
-bool is_own(const Json& finding, const Json& own, const ReportSubject& s) {
+bool is_own(const Json& finding, const Json& own, const ReportInput& s) {
     const std::string code = finding.value("code", "");
     if (std::ranges::any_of(own, [&](const Json& one) { return same_finding(one, finding); })) return true;
     if (code == "take")
@@ -116,7 +118,7 @@ std::string value_text(const Json& value) {
 
 }  // namespace
 
-Html verdict_section(const ReportSubject& s) {
+Html verdict_section(const ReportInput& s) {
     const Json &own = s.entry.at("verdict").value(), &all = s.result.at("verdict").value();
     Html lines;
     if (own.is_array())
@@ -127,14 +129,14 @@ Html verdict_section(const ReportSubject& s) {
     return section("Verdict", lines.empty() ? lines : element("ul", lines, {{"class", "verdict"}}));
 }
 
-Html figures_section(const ReportSubject& s) {
+Html figures_section(const ReportInput& s) {
     const Html tables = figure_table("Margins", kRobustness, "robustness", s) +
                         figure_table("Load step", kLoad, "performance/load", s) +
                         figure_table("Set-point step", kSetpoint, "performance/setpoint", s);
     Html more;
-    const Place stable = s.entry.at("robustness").at("stable");
+    const JsonLocation stable = s.entry.at("robustness").at("stable");
     if (stable.value() == false) more += element("p", element("strong", "The loop is unstable with these settings."));
-    const Place region = s.entry.at("region");
+    const JsonLocation region = s.entry.at("region");
     if (region.at("worst_Ms").exists())
         more += element("p", Html("Over the whole uncertainty, Ms is at worst ") + figure(region.at("worst_Ms")) +
                                  "; the share of them on which the loop is stable is " +
@@ -142,7 +144,7 @@ Html figures_section(const ReportSubject& s) {
     return section("Figures", element("div", tables, {{"class", "tables"}}) + more);
 }
 
-Html method_section(const ReportSubject& s) {
+Html method_section(const ReportInput& s) {
     Html out = element("p", element("strong", text_at(s.entry.at("title"))) + " (" + text_at(s.entry.at("method")) +
                                 "). " + text_at(s.entry.at("source")));
     std::vector<Html> options;
@@ -153,7 +155,7 @@ Html method_section(const ReportSubject& s) {
     for (const Html& option : options) line += (line.empty() ? Html("Options: ") : Html("; ")) + option;
     if (!line.empty()) out += element("p", line);
     std::vector<Html> warnings;
-    for (const Place& owner : {s.entry, s.result})
+    for (const JsonLocation& owner : {s.entry, s.result})
         for (std::size_t i = 0; i < owner.at("warnings").value().size(); ++i)
             warnings.push_back(text_at(owner.at("warnings").at(i).at("detail")));
     if (!warnings.empty()) out += element("h3", "Warnings") + list(warnings);

@@ -13,11 +13,11 @@ namespace {
 struct Source {
     std::string name;
     Line line;
-    Place place;
+    JsonLocation place;
 };
 
 /// Whose traces are drawn.
-std::vector<Source> sources_of(const ReportSubject& s) {
+std::vector<Source> sources_of(const ReportInput& s) {
     std::vector<Source> out = {{"Proposal", Line::proposal, s.entry}};
     if (s.entry.at("implemented").at("responses").exists())
         out.push_back({"As built", Line::built, s.entry.at("implemented")});
@@ -26,16 +26,16 @@ std::vector<Source> sources_of(const ReportSubject& s) {
 }
 
 /// y or u of a response; of a linear model's too where the plant is nonlinear.
-void add_responses(Plot& plot, const ReportSubject& s, const char* step, const char* signal) {
+void add_responses(Plot& plot, const ReportInput& s, const char* step, const char* signal) {
     for (const Source& source : sources_of(s)) {
-        const Place response = source.place.at("responses").at(step);
+        const JsonLocation response = source.place.at("responses").at(step);
         if (!response.at(signal).exists()) continue;
         plot.traces.push_back({.name = source.name,
                                .line = source.line,
                                .x = numbers_at(response.at("t")),
                                .y = numbers_at(response.at(signal))});
     }
-    const Place linear = s.entry.at("linear").at("responses").at(step);
+    const JsonLocation linear = s.entry.at("linear").at("responses").at(step);
     if (linear.at(signal).exists())
         plot.traces.push_back({.name = "Linear model",
                                .line = Line::second,
@@ -44,7 +44,7 @@ void add_responses(Plot& plot, const ReportSubject& s, const char* step, const c
 }
 
 /// Adds the set point, from before the step to the end of the longest response.
-void add_setpoint(Plot& plot, const ReportSubject& s) {
+void add_setpoint(Plot& plot, const ReportInput& s) {
     double end = 0;
     for (const Trace& trace : plot.traces)
         if (!trace.x.empty()) end = std::max(end, trace.x.back());
@@ -55,12 +55,11 @@ void add_setpoint(Plot& plot, const ReportSubject& s) {
 }
 
 /// To the longest horizon; the request's limits of u where it has them.
-Plot response(const ReportSubject& s, const char* title, const char* step, const char* signal,
-              const std::string& unit) {
+Plot response(const ReportInput& s, const char* title, const char* step, const char* signal, const std::string& unit) {
     Plot plot{.title = title, .x_label = with_unit("t", s.time), .y_label = with_unit(signal, unit), .traces = {}};
     add_responses(plot, s, step, signal);
     if (*signal == 'y' && std::string_view(step) == "setpoint") add_setpoint(plot, s);
-    const Place actuator = s.request.at("evaluate").at("actuator");
+    const JsonLocation actuator = s.request.at("evaluate").at("actuator");
     if (*signal == 'u' && actuator.exists())
         for (const char* end : {"min", "max"})
             if (actuator.at(end).value().is_number())
@@ -68,28 +67,28 @@ Plot response(const ReportSubject& s, const char* title, const char* step, const
     return plot;
 }
 
-double limit_of(const ReportSubject& s, const char* name) {
+double limit_of(const ReportInput& s, const char* name) {
     const Json& value = s.entry.at("options").at(name).value();
     return value.is_number() ? value.get<double>() : 0;
 }
 
 /// Far beyond the crossover a dead time turns round and round the origin; that part decides nothing and would print as
 /// a blot.
-void cut_turns(Trace& trace, const Place& entry) {
-    constexpr double kBeyond = 10;
+void cut_turns(Trace& trace, const JsonLocation& entry) {
+    constexpr double kMaxFrequencyOverCrossover = 10;
     const Json& crossover = entry.at("robustness").at("gain_crossover").value();
     const std::vector<double> omega = numbers_at(entry.at("frequency").at("omega"));
     if (!crossover.is_number() || omega.size() != trace.x.size()) return;
-    const double most = kBeyond * crossover.get<double>();
-    const auto end = std::upper_bound(omega.begin(), omega.end(), most) - omega.begin();
+    const double max = kMaxFrequencyOverCrossover * crossover.get<double>();
+    const auto end = std::upper_bound(omega.begin(), omega.end(), max) - omega.begin();
     trace.x.resize(static_cast<std::size_t>(end));
     trace.y.resize(static_cast<std::size_t>(end));
 }
 
-Html nyquist(const ReportSubject& s) {
+Html nyquist(const ReportInput& s) {
     Plot plot{.title = "Nyquist curve of L", .x_label = "Re", .y_label = "Im", .traces = {}};
     for (const Source& source : sources_of(s)) {
-        const Place L = source.place.at("frequency").at("L");
+        const JsonLocation L = source.place.at("frequency").at("L");
         if (!L.at("re").exists()) continue;
         plot.traces.push_back(
             {.name = source.name, .line = source.line, .x = numbers_at(L.at("re")), .y = numbers_at(L.at("im"))});
@@ -106,7 +105,7 @@ Html nyquist(const ReportSubject& s) {
 }
 
 /// From where L is large to where it is small: two decades on both sides of the gain crossover, or all.
-std::optional<std::pair<double, double>> band(const ReportSubject& s) {
+std::optional<std::pair<double, double>> band(const ReportInput& s) {
     const Json& crossover = s.entry.at("robustness").at("gain_crossover").value();
     const std::vector<double> omega = numbers_at(s.entry.at("frequency").at("omega"));
     if (omega.size() < 2 || !(omega.front() > 0)) return std::nullopt;
@@ -116,7 +115,7 @@ std::optional<std::pair<double, double>> band(const ReportSubject& s) {
     return low < high ? std::pair{low, high} : std::pair{omega.front(), omega.back()};
 }
 
-Html sensitivities(const ReportSubject& s) {
+Html sensitivities(const ReportInput& s) {
     Plot plot{.title = "Sensitivities", .x_label = "ω (rad/" + s.time + ")", .y_label = "|S|, |T|", .traces = {}};
     plot.log_x = true;
     plot.x_range = band(s);
@@ -124,7 +123,7 @@ Html sensitivities(const ReportSubject& s) {
     double top = 1;
     for (const auto& [member, name, line] :
          {std::tuple{"S_abs", "|S|", Line::proposal}, std::tuple{"T_abs", "|T|", Line::built}}) {
-        const Place frequency = s.entry.at("frequency");
+        const JsonLocation frequency = s.entry.at("frequency");
         plot.traces.push_back({.name = name,
                                .line = line,
                                .x = numbers_at(frequency.at("omega")),
@@ -132,7 +131,7 @@ Html sensitivities(const ReportSubject& s) {
         for (const double value : plot.traces.back().y) top = std::isfinite(value) ? std::max(top, value) : top;
     }
     if (s.today && s.today->at("frequency").at("S_abs").exists()) {
-        const Place frequency = s.today->at("frequency");
+        const JsonLocation frequency = s.today->at("frequency");
         plot.traces.push_back({.name = "|S| today",
                                .line = Line::today,
                                .x = numbers_at(frequency.at("omega")),
@@ -149,12 +148,12 @@ Html sensitivities(const ReportSubject& s) {
 
 }  // namespace
 
-std::vector<Plot> response_plots(const ReportSubject& s) {
+std::vector<Plot> response_plots(const ReportInput& s) {
     return {response(s, "Set-point step: y", "setpoint", "y", s.y), response(s, "Load step: y", "load", "y", s.y),
             response(s, "Set-point step: u", "setpoint", "u", s.u), response(s, "Load step: u", "load", "u", s.u)};
 }
 
-Html responses_section(const ReportSubject& s) {
+Html responses_section(const ReportInput& s) {
     Html figures;
     for (const Plot& plot : response_plots(s)) figures += drawn(plot);
     if (figures.empty())
@@ -167,7 +166,7 @@ Html responses_section(const ReportSubject& s) {
     return section("Responses", element("div", figures, {{"class", "figures"}}) + note);
 }
 
-Html robustness_section(const ReportSubject& s) {
+Html robustness_section(const ReportInput& s) {
     const Html figures = nyquist(s) + sensitivities(s);
     return figures.empty() ? figures : section("Robustness", element("div", figures, {{"class", "figures"}}));
 }

@@ -22,19 +22,19 @@ std::string number_text(double value, int digits) { return true_minus(tunewright
 
 std::string tick_text(double value) { return true_minus(tunewright::text(std::abs(value) < 1e-300 ? 0 : value, 6)); }
 
-Html figure(const Place& place, int digits) {
+Html figure(const JsonLocation& place, int digits) {
     const Json& value = place.value();
     if (value.is_number())
         return element("span", number_text(value.get<double>(), digits), {{"data-at", place.pointer}});
     const std::size_t slash = place.pointer.rfind('/');
-    const Place owner{place.root, place.pointer.substr(0, slash) + "/why_null" + place.pointer.substr(slash)};
+    const JsonLocation owner{place.root, place.pointer.substr(0, slash) + "/why_null" + place.pointer.substr(slash)};
     const std::string why = text_at(owner);
     return element("span", "–", {{"title", why}});
 }
 
 bool negligible(double standard_error, double value) {
-    constexpr double kShare = 1e-6;
-    return !(standard_error > kShare * std::abs(value));
+    constexpr double kMinRelativeError = 1e-6;
+    return !(standard_error > kMinRelativeError * std::abs(value));
 }
 
 std::string uncertain_text(double value, double standard_error) {
@@ -50,9 +50,9 @@ std::string grade_words(std::string_view grade, std::string_view reason) {
     return reason == "warning" ? "A doubtful model: see its warnings." : "A doubtful model.";
 }
 
-bool any_has(const std::vector<Place>& places, const std::string& name) {
-    return std::ranges::any_of(places,
-                               [&](const Place& one) { return one.value().is_object() && one.value().contains(name); });
+bool any_has(const std::vector<JsonLocation>& places, const std::string& name) {
+    return std::ranges::any_of(
+        places, [&](const JsonLocation& one) { return one.value().is_object() && one.value().contains(name); });
 }
 
 Html table(const char* caption, const Row& heads, const std::vector<Row>& rows) {

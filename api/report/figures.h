@@ -9,7 +9,7 @@
 
 #include "api/json/json.h"
 #include "api/report/html.h"
-#include "api/report/report_subject.h"
+#include "api/report/report_input.h"
 
 namespace tunewright::api {
 
@@ -19,12 +19,12 @@ std::string number_text(double value, int digits = 4);
 std::string tick_text(double value);
 
 /// A number as <span data-at="/controllers/0/...">1.385</span>; a dash and its reason where it is null.
-Html figure(const Place& place, int digits = 4);
+Html figure(const JsonLocation& place, int digits = 4);
 
 using Row = std::vector<Html>;
 
 /// True if any of these objects has a member of that name.
-bool any_has(const std::vector<Place>& places, const std::string& name);
+bool any_has(const std::vector<JsonLocation>& places, const std::string& name);
 
 /// "40 +- 0.30", the error with two digits; the value alone where the error is below a millionth of it.
 std::string uncertain_text(double value, double standard_error);

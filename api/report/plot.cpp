@@ -126,7 +126,7 @@ Html axes(const Plot& plot, const Axis& x, const Axis& y) {
 
 /// The line in px; what lies far outside is cut to the frame's neighbourhood, where numbers stay small.
 std::string path_of(const Trace& trace, const Axis& x, const Axis& y) {
-    constexpr double kFar = 5000;
+    constexpr double kMaxPixel = 5000;
     std::string out;
     bool drawing = false;
     for (std::size_t i = 0; i < std::min(trace.x.size(), trace.y.size()); ++i) {
@@ -135,7 +135,8 @@ std::string path_of(const Trace& trace, const Axis& x, const Axis& y) {
             drawing = false;
             continue;
         }
-        out += (drawing ? "L" : "M") + px(std::clamp(px_x, -kFar, kFar)) + " " + px(std::clamp(px_y, -kFar, kFar));
+        out += (drawing ? "L" : "M") + px(std::clamp(px_x, -kMaxPixel, kMaxPixel)) + " " +
+               px(std::clamp(px_y, -kMaxPixel, kMaxPixel));
         drawing = true;
     }
     return out;

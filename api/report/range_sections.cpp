@@ -13,12 +13,12 @@ namespace {
 constexpr int kTyped = 6;
 
 /// "load (%)"
-std::string scheduling_label(const ReportSubject& s) {
-    const Place scheduling = s.entry.at("scheduling");
+std::string scheduling_label(const ReportInput& s) {
+    const JsonLocation scheduling = s.entry.at("scheduling");
     return with_unit(text_at(scheduling.at("name")), text_at(scheduling.at("unit")));
 }
 
-Html verdict_of(const ReportSubject& s) {
+Html verdict_of(const ReportInput& s) {
     Html out;
     const std::string verdict = text_at(s.entry.at("verdict").at("text"));
     if (!verdict.empty()) out += element("p", element("strong", verdict));
@@ -31,7 +31,7 @@ Html verdict_of(const ReportSubject& s) {
     return section("Verdict", out + list(remarks));
 }
 
-Row settings_row(const Html& head, const Place& controller, const Place& Tf) {
+Row settings_row(const Html& head, const JsonLocation& controller, const JsonLocation& Tf) {
     Row row{head};
     for (const char* name : {"Kp", "Ti", "Td"}) row.push_back(figure(controller.at(name), kTyped));
     row.push_back(Tf.exists() ? figure(Tf, kTyped) : Html("0"));
@@ -39,7 +39,7 @@ Row settings_row(const Html& head, const Place& controller, const Place& Tf) {
     return row;
 }
 
-std::string interpolation_of(const Place& schedule) {
+std::string interpolation_of(const JsonLocation& schedule) {
     const std::string word = text_at(schedule.at("interpolation"));
     if (word == "steps")
         return "A row's settings hold from its place on; a row is left half the hysteresis beyond its border. "
@@ -50,15 +50,15 @@ std::string interpolation_of(const Place& schedule) {
                                        "row their settings hold.";
 }
 
-Html settings_of(const ReportSubject& s) {
+Html settings_of(const ReportInput& s) {
     const Row heads{scheduling_label(s),     with_unit("Kp", unit_quotient(s.u, s.y)),
                     with_unit("Ti", s.time), with_unit("Td", s.time),
                     with_unit("Tf", s.time), "b"};
     Html out;
-    const Place schedule = s.entry.at("schedule"), one = s.entry.at("one").at("controller");
+    const JsonLocation schedule = s.entry.at("schedule"), one = s.entry.at("one").at("controller");
     if (schedule.exists()) {
         std::vector<Row> rows;
-        const Place list = schedule.at("rows");
+        const JsonLocation list = schedule.at("rows");
         for (std::size_t k = 0; k < list.value().size(); ++k)
             rows.push_back(settings_row(figure(list.at(k).at("at"), kTyped), list.at(k), list.at(k).at("Tf")));
         Html how = interpolation_of(schedule);
@@ -73,10 +73,10 @@ Html settings_of(const ReportSubject& s) {
 }
 
 /// The worst place of each figure, by the two that exist.
-Html worst_of(const ReportSubject& s) {
+Html worst_of(const ReportInput& s) {
     std::vector<Row> rows;
     for (const auto& [member, name] : {std::pair{"schedule", "Schedule"}, {"one", "One setting"}}) {
-        const Place worst = s.entry.at("worst").at(member);
+        const JsonLocation worst = s.entry.at("worst").at(member);
         for (std::size_t k = 0; k < worst.value().size(); ++k) {
             const std::string quantity = text_at(worst.at(k).at("quantity"));
             rows.push_back(
@@ -88,17 +88,17 @@ Html worst_of(const ReportSubject& s) {
                    table("Recomputed on finer grids", {"", "Largest", "Limit", scheduling_label(s)}, rows));
 }
 
-Plot over_range(const ReportSubject& s, const std::string& title, const std::string& label) {
+Plot over_range(const ReportInput& s, const std::string& title, const std::string& label) {
     return {.title = title, .x_label = scheduling_label(s), .y_label = label, .traces = {}};
 }
 
-void add_curve(Plot& plot, const Place& curves, const Place& curve, const std::string& name, Line line) {
+void add_curve(Plot& plot, const JsonLocation& curves, const JsonLocation& curve, const std::string& name, Line line) {
     if (curve.exists())
         plot.traces.push_back({.name = name, .line = line, .x = numbers_at(curves.at("at")), .y = numbers_at(curve)});
 }
 
-Html curves_of(const ReportSubject& s) {
-    const Place curves = s.entry.at("curves");
+Html curves_of(const ReportInput& s) {
+    const JsonLocation curves = s.entry.at("curves");
     Html out;
     for (const auto& [member, title, label] :
          {std::tuple{"Ms", "Ms over the range", "Ms"}, std::tuple{"Mt", "Mt over the range", "Mt"},
@@ -128,11 +128,11 @@ Html curves_of(const ReportSubject& s) {
                    element("div", out, {{"class", "figures"}}) + element("p", text_at(s.entry.at("stated"))));
 }
 
-Html points_of(const ReportSubject& s) {
-    const Place points = s.entry.at("one").at("points");
+Html points_of(const ReportInput& s) {
+    const JsonLocation points = s.entry.at("one").at("points");
     std::vector<Row> rows;
     for (std::size_t k = 0; k < points.value().size(); ++k) {
-        const Place point = points.at(k);
+        const JsonLocation point = points.at(k);
         Row row{figure(point.at("at"), kTyped)};
         for (const char* name : {"Kp", "Ti", "Td"}) row.push_back(figure(point.at("own").at(name)));
         for (const char* name : {"relative_IAE", "Ms", "Mt"}) row.push_back(figure(point.at(name)));
@@ -145,7 +145,7 @@ Html points_of(const ReportSubject& s) {
                                                       rows));
 }
 
-Html run_of(const Place& run, const ReportSubject& s) {
+Html run_of(const JsonLocation& run, const ReportInput& s) {
     Html drawings;
     for (const auto& [signal, unit] : {std::pair{"y", s.y}, std::pair{"u", s.u}}) {
         Plot plot{.title = signal, .x_label = with_unit("t", s.time), .y_label = with_unit(signal, unit), .traces = {}};
@@ -168,8 +168,8 @@ Html run_of(const Place& run, const ReportSubject& s) {
     return element("h3", text_at(run.at("name"))) + element("div", drawings, {{"class", "figures"}});
 }
 
-Html runs_of(const ReportSubject& s) {
-    const Place runs = s.entry.at("runs");
+Html runs_of(const ReportInput& s) {
+    const JsonLocation runs = s.entry.at("runs");
     Html out;
     for (std::size_t k = 0; k < runs.value().size(); ++k) out += run_of(runs.at(k), s);
     return out.empty() ? Html() : section("Runs across the range, on the equations", out);
@@ -177,7 +177,7 @@ Html runs_of(const ReportSubject& s) {
 
 }  // namespace
 
-Html range_sections(const ReportSubject& subject) {
+Html range_sections(const ReportInput& subject) {
     return verdict_of(subject) + settings_of(subject) + worst_of(subject) + curves_of(subject) + points_of(subject) +
            runs_of(subject);
 }

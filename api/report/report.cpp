@@ -14,7 +14,7 @@ const std::string& stylesheet() {
     return text;
 }
 
-std::string about_of(const ReportSubject& subject) {
+std::string about_of(const ReportInput& subject) {
     const std::string title = text_at(subject.entry.at("title")), controller = controller_words(subject);
     return (controller.empty() ? "Controller settings" : "Settings of " + controller) +
            ", by: " + (title.empty() ? text_at(subject.entry.at("method")) : title);
@@ -22,13 +22,12 @@ std::string about_of(const ReportSubject& subject) {
 
 /// "2024-05-01 12:00 UTC" of "2024-05-01T12:00:00Z"; another text as it is.
 std::string date_words(const std::string& date) {
-    constexpr std::size_t kDay = 10, kMinutes = 16;
-    if (date.size() <= kMinutes || date[kDay] != 'T' || date.back() != 'Z') return date;
-    return date.substr(0, kDay) + " " + date.substr(kDay + 1, kMinutes - kDay - 1) + " UTC";
+    constexpr std::size_t kDateLength = 10, kMinuteLength = 16;
+    if (date.size() <= kMinuteLength || date[kDateLength] != 'T' || date.back() != 'Z') return date;
+    return date.substr(0, kDateLength) + " " + date.substr(kDateLength + 1, kMinuteLength - kDateLength - 1) + " UTC";
 }
 
-Html head_of(const ReportSubject& subject, const ReportWords& words, const std::string& title,
-             const std::string& about) {
+Html head_of(const ReportInput& subject, const ReportWords& words, const std::string& title, const std::string& about) {
     std::string origin;
     for (const auto& [name, value] : {std::pair{"", date_words(words.date)},
                                       {"job ", words.job},
@@ -68,7 +67,7 @@ ReportWords said_of(const ChosenEntry& found, const ReportWords& words) {
             .origin = words.origin};
 }
 
-std::string title_of(const ReportSubject& subject, const ReportWords& said) {
+std::string title_of(const ReportInput& subject, const ReportWords& said) {
     const std::string name = said.name.empty() ? text_at(subject.request.at("name")) : said.name;
     return name.empty() ? "Tuning report" : name + ": tuning report";
 }
@@ -80,9 +79,9 @@ bool is_of_range(const Json& result) {
 std::string range_report(ChosenEntry& found, const ReportWords& words) {
     const ReportWords said = said_of(found, words);
     const Json document = document_of(found);
-    const ReportSubject subject = subject_of_range(document);
+    const ReportInput subject = subject_of_range(document);
     const std::string title = title_of(subject, said);
-    const Place scheduling = subject.entry.at("scheduling");
+    const JsonLocation scheduling = subject.entry.at("scheduling");
     const auto end = [&](const char* name) { return tunewright::text(scheduling.at(name).value().get<double>(), 6); };
     const std::string about = "Operating range: " + text_at(scheduling.at("name")) + " from " + end("from") + " to " +
                               end("to") + " " + text_at(scheduling.at("unit"));
@@ -101,7 +100,7 @@ std::variant<std::string, Problem> report_html(const ResultSource& source, std::
     const std::size_t number = index.empty() ? best_proposal(found) : found.index;
     const ReportWords said = said_of(found, words);
     const Json document = document_of(found);
-    const ReportSubject subject = subject_of(document, number);
+    const ReportInput subject = subject_of(document, number);
     const std::string title = title_of(subject, said);
     return page(title, head_of(subject, said, title, about_of(subject)) + verdict_section(subject) +
                            settings_section(subject) + figures_section(subject) + responses_section(subject) +

@@ -10,19 +10,19 @@
 namespace tunewright::api {
 namespace {
 
-constexpr std::size_t kMostPrinted = 12'000;  ///< bytes; a longer request prints with its long values cut
-constexpr std::size_t kMostItems = 20, kMostText = 400;
+constexpr std::size_t kMaxPrinted = 12'000;  ///< bytes; a longer request prints with its long values cut
+constexpr std::size_t kMaxItems = 20, kMaxTextLength = 400;
 
 /// Long lists and texts cut, with what was left out in words.
 Json shortened(const Json& value) {
-    if (value.is_string() && value.get_ref<const std::string&>().size() > kMostText) {
+    if (value.is_string() && value.get_ref<const std::string&>().size() > kMaxTextLength) {
         const auto& text = value.get_ref<const std::string&>();
-        return std::string(whole_characters(text, kMostText)) + "... (" + std::to_string(text.size()) + " bytes)";
+        return std::string(whole_characters(text, kMaxTextLength)) + "... (" + std::to_string(text.size()) + " bytes)";
     }
     if (value.is_array()) {
         Json out = Json::array();
-        for (std::size_t i = 0; i < std::min(value.size(), kMostItems); ++i) out.push_back(shortened(value[i]));
-        if (value.size() > kMostItems) out.push_back("... (" + std::to_string(value.size()) + " in all)");
+        for (std::size_t i = 0; i < std::min(value.size(), kMaxItems); ++i) out.push_back(shortened(value[i]));
+        if (value.size() > kMaxItems) out.push_back("... (" + std::to_string(value.size()) + " in all)");
         return out;
     }
     if (!value.is_object()) return value;
@@ -43,7 +43,7 @@ std::string quoted(const std::string& text) {
 Html request_section(const Json& request, const std::string& origin) {
     if (!request.is_object()) return {};
     const std::string whole = request.dump();
-    const bool printed = whole.size() <= kMostPrinted;
+    const bool printed = whole.size() <= kMaxPrinted;
     const std::string call = "curl -sS " + quoted((origin.empty() ? "http://127.0.0.1:8080" : origin) + "/v1/jobs") +
                              " -H 'Content-Type: application/json' -H 'Prefer: wait=60' -d ";
     Html out =

@@ -14,7 +14,7 @@ namespace {
 /// Members of a controller in the order in which they are read.
 constexpr std::array kSettings = {"Kp", "Ki", "Kd", "Ti", "Td", "b", "c", "delta_r"};
 
-std::string setting_unit(const std::string& name, const ReportSubject& s) {
+std::string setting_unit(const std::string& name, const ReportInput& s) {
     const std::string gain = unit_quotient(s.u, s.y);
     if (name == "Kp") return gain;
     if (name == "Ki") return gain.empty() ? "" : gain + "/" + s.time;
@@ -26,9 +26,9 @@ std::string setting_unit(const std::string& name, const ReportSubject& s) {
 /// In full: a setting is typed as it stands here.
 constexpr int kFull = 6;
 
-Row setting_row(const std::string& name, const std::string& unit, const std::vector<Place>& controllers) {
+Row setting_row(const std::string& name, const std::string& unit, const std::vector<JsonLocation>& controllers) {
     Row row = {with_unit(name, unit)};
-    for (const Place& place : controllers) {
+    for (const JsonLocation& place : controllers) {
         const Json& value = place.at(name).value();
         if (value.is_null() && !place.at("why_null").at(name).exists())
             row.push_back(name == "Ti" && place.value().is_object() && place.value().contains("Ti") ? Html("∞")
@@ -42,12 +42,12 @@ Row setting_row(const std::string& name, const std::string& unit, const std::vec
 /// A form of the controller in a column of its own, under its head.
 struct Column {
     std::string head;
-    Place controller;
+    JsonLocation controller;
 };
 
-Html forms_table(const char* caption, const std::vector<Column>& columns, const ReportSubject& s) {
+Html forms_table(const char* caption, const std::vector<Column>& columns, const ReportInput& s) {
     Row top = {""};
-    std::vector<Place> controllers, filters, leads;
+    std::vector<JsonLocation> controllers, filters, leads;
     for (const auto& [head, controller] : columns) {
         top.push_back(head);
         controllers.push_back(controller);
@@ -59,7 +59,7 @@ Html forms_table(const char* caption, const std::vector<Column>& columns, const 
         if (any_has(controllers, name)) rows.push_back(setting_row(name, setting_unit(name, s), controllers));
     Row types = {"Filter"};
     bool filtered = false;
-    for (const Place& filter : filters) {
+    for (const JsonLocation& filter : filters) {
         std::string words = text_at(filter.at("type"));
         filtered = filtered || !words.empty();
         std::ranges::replace(words, '_', ' ');
@@ -70,26 +70,26 @@ Html forms_table(const char* caption, const std::vector<Column>& columns, const 
         if (any_has(filters, name)) rows.push_back(setting_row(name, *name == 'T' ? s.time : "", filters));
     if (any_has(leads, "T")) {
         Row row = {with_unit("Set-point filter T", s.time)};
-        for (const Place& lead : leads) row.push_back(lead.exists() ? figure(lead.at("T"), kFull) : Html(""));
+        for (const JsonLocation& lead : leads) row.push_back(lead.exists() ? figure(lead.at("T"), kFull) : Html(""));
         rows.push_back(row);
     }
     return table(caption, top, rows);
 }
 
-const product::Product* product_of(const ReportSubject& s) {
+const product::Product* product_of(const ReportInput& s) {
     return product::find(text_at(s.request.at("implement").at("product")));
 }
 
-Html typed(const Place& texts, const std::string& name) {
-    const Place value = texts.at(name);
+Html typed(const JsonLocation& texts, const std::string& name) {
+    const JsonLocation value = texts.at(name);
     return value.exists() ? element("span", text_at(value), {{"data-typed", value.pointer}}) : Html("–");
 }
 
 /// Today's settings next to the new ones, by the names of the controller's own list.
-Html change_table(const product::Product& product, const ReportSubject& s) {
-    const Place entered = s.entry.at("as_entered"), texts = entered.at("as_typed");
+Html change_table(const product::Product& product, const ReportInput& s) {
+    const JsonLocation entered = s.entry.at("as_entered"), texts = entered.at("as_typed");
     if (!texts.value().is_object()) return {};
-    std::optional<Place> before;
+    std::optional<JsonLocation> before;
     if (s.today && s.today->at("as_entered").at("as_typed").exists()) before.emplace(s.today->at("as_entered"));
     std::vector<std::string> names;
     for (const auto& [name, value] : texts.value().items()) names.push_back(name);
@@ -110,15 +110,17 @@ Html change_table(const product::Product& product, const ReportSubject& s) {
     return before ? table(caption.c_str(), {"", "Today", "New"}, rows) : table(caption.c_str(), {"", "Type in"}, rows);
 }
 
-Html from_to(const Place& low, const Place& high) { return figure(low, kFull) + " to " + figure(high, kFull); }
+Html from_to(const JsonLocation& low, const JsonLocation& high) {
+    return figure(low, kFull) + " to " + figure(high, kFull);
+}
 
 /// Spans and sample time, on which the typed values rest, and the limits of u that were counted with.
-Html ranges_table(const ReportSubject& s) {
-    const Place implement = s.request.at("implement"), actuator = s.request.at("evaluate").at("actuator");
+Html ranges_table(const ReportInput& s) {
+    const JsonLocation implement = s.request.at("implement"), actuator = s.request.at("evaluate").at("actuator");
     std::vector<Row> rows;
     for (const auto& [label, name, unit] :
          {std::tuple{"Range of the measurement", "y_span", s.y}, std::tuple{"Range of the output", "u_span", s.u}}) {
-        const Place span = implement.at(name);
+        const JsonLocation span = implement.at(name);
         if (span.value().is_array() && span.value().size() == 2)
             rows.push_back({with_unit(label, unit), from_to(span.at(std::size_t{0}), span.at(std::size_t{1}))});
     }
@@ -130,14 +132,14 @@ Html ranges_table(const ReportSubject& s) {
     return rows.empty() ? Html() : table("Ranges and limits", {"", ""}, rows);
 }
 
-Html notes_of(const Place& entry) {
-    const Place notes = entry.at("as_entered").at("notes");
+Html notes_of(const JsonLocation& entry) {
+    const JsonLocation notes = entry.at("as_entered").at("notes");
     std::vector<Html> sentences;
     for (std::size_t i = 0; i < notes.value().size(); ++i) sentences.push_back(text_at(notes.at(i).at("detail")));
     return list(sentences);
 }
 
-const char* own_form(const ReportSubject& s) {
+const char* own_form(const ReportInput& s) {
     const std::string form = text_at(s.entry.at("controller").at("form"));
     return form == "npid" ? "Nonlinear (NPID)" : form == "parallel" ? "Parallel, as given" : "Ideal";
 }
@@ -149,12 +151,12 @@ std::string product_title(const product::Product& product) {
     return name.starts_with(maker) ? name : maker + " " + name;
 }
 
-std::string controller_words(const ReportSubject& s) {
+std::string controller_words(const ReportInput& s) {
     const product::Product* product = product_of(s);
     return product == nullptr ? "" : product_title(*product);
 }
 
-Html settings_section(const ReportSubject& s) {
+Html settings_section(const ReportInput& s) {
     const product::Product* product = product_of(s);
     Html change = product == nullptr ? Html() : change_table(*product, s);
     if (change.empty()) {
@@ -167,10 +169,10 @@ Html settings_section(const ReportSubject& s) {
     return section("Settings", element("div", change + ranges_table(s), {{"class", "tables"}}) + notes_of(s.entry));
 }
 
-Html forms_section(const ReportSubject& s) {
+Html forms_section(const ReportInput& s) {
     std::vector<Column> columns = {{own_form(s), s.entry.at("controller")}};
     for (const auto& [name, head] : {std::pair{"parallel", "Parallel"}, {"series", "Series"}}) {
-        const Place place = s.entry.at("equivalents").at(name);
+        const JsonLocation place = s.entry.at("equivalents").at(name);
         if (place.exists()) columns.push_back({head, place});
     }
     Html tables = forms_table("New settings, by the form of the controller", columns, s);

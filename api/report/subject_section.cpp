@@ -58,13 +58,13 @@ Html points_of(const Json& plant) {
                             plain(omega.front()) + " to " + plain(omega.back()) + " rad per unit of time.");
 }
 
-Html given_plant(const ReportSubject& s) {
+Html given_plant(const ReportInput& s) {
     const Json& plant = s.request.at("plant").value();
     if (!plant.is_object()) return {};
     const std::string type = plant.value("type", "");
     if (type == "nonlinear") {
         Html out = equations_of(plant);
-        const Place point = s.result.at("operating_point");
+        const JsonLocation point = s.result.at("operating_point");
         if (point.at("u").exists())
             out += element("p", Html("Operating point: u ") + figure(point.at("u"), 6) + ", y " +
                                     figure(point.at("y"), 6) + ". The linear model there:") +
@@ -78,12 +78,12 @@ Html given_plant(const ReportSubject& s) {
     return out;
 }
 
-Html parameters_of(const Place& model, const ReportSubject& s) {
+Html parameters_of(const JsonLocation& model, const ReportInput& s) {
     std::vector<Row> rows;
     for (const auto& [name, value] : model.at("plant").value().items()) {
         if (!value.is_number()) continue;
         const bool time = name[0] == 'T' || name == "L";
-        const Place error = model.at("standard_errors").at(name);
+        const JsonLocation error = model.at("standard_errors").at(name);
         const bool told = error.exists() && !negligible(error.value().get<double>(), value.get<double>());
         rows.push_back({with_unit(name, time          ? s.time
                                         : name == "K" ? unit_quotient(s.y, s.u)
@@ -121,7 +121,7 @@ std::string quality_label(const std::string& name) {
     return label;
 }
 
-Html quality_of(const Place& quality) {
+Html quality_of(const JsonLocation& quality) {
     std::vector<Row> rows;
     for (const auto& [name, value] : quality.value().items()) {
         if (name == "kind") continue;
@@ -136,7 +136,7 @@ Html quality_of(const Place& quality) {
     return table("The record", {"", ""}, rows) + list(notes);
 }
 
-Html fit_of(const Place& fit, const ReportSubject& s) {
+Html fit_of(const JsonLocation& fit, const ReportInput& s) {
     if (!fit.at("t").exists() || !fit.at("y_model").exists()) return {};
     const std::vector<double> t = numbers_at(fit.at("t"));
     Plot plot{
@@ -148,8 +148,8 @@ Html fit_of(const Place& fit, const ReportSubject& s) {
     return element("div", drawn(plot) + drawn(input), {{"class", "figures"}});
 }
 
-Html identified(const ReportSubject& s) {
-    const Place model = s.result.at("model");
+Html identified(const ReportInput& s) {
+    const JsonLocation model = s.result.at("model");
     if (!model.at("plant").exists()) return {};
     Html out = element("p", "Identified from a recorded test:") + formula(model.at("plant").value());
     out += element("p", element("strong", grade_words(text_at(model.at("grade")), text_at(model.at("grade_reason")))) +
@@ -158,7 +158,7 @@ Html identified(const ReportSubject& s) {
     out += fit_of(model.at("fit"), s);
     out += element("div", parameters_of(model, s) + element("div", quality_of(model.at("data_quality"))),
                    {{"class", "tables"}});
-    const Place band = model.at("excited_band");
+    const JsonLocation band = model.at("excited_band");
     if (band.at("omega_low").exists())
         out += element("p", Html("The record excites from ") + figure(band.at("omega_low")) + " to " +
                                 figure(band.at("omega_high")) + " rad/" + s.time + ".");
@@ -170,14 +170,14 @@ Html identified(const ReportSubject& s) {
 
 }  // namespace
 
-Html plant_section(const ReportSubject& s) {
+Html plant_section(const ReportInput& s) {
     const Html record = identified(s);
     if (!record.empty()) return section("Record and model", record);
     return section("Plant", given_plant(s));
 }
 
-Html assumptions_section(const ReportSubject& s) {
-    const Place evaluate = s.request.at("evaluate");
+Html assumptions_section(const ReportInput& s) {
+    const JsonLocation evaluate = s.request.at("evaluate");
     const auto step = [&](const char* name, const std::string& unit) {
         const Json& value = evaluate.at(name).value();
         return (value.is_number() ? number_text(value.get<double>(), 6) : std::string("1")) +
@@ -198,12 +198,12 @@ Html assumptions_section(const ReportSubject& s) {
         "L), "
         "T = L/(1 + L); Ms and Mt are their largest sizes.",
         "A model is never the process: enter the settings with the loop watched, and keep today's at hand."};
-    const Place check = s.entry.at("verification");
+    const JsonLocation check = s.entry.at("verification");
     if (check.at("iae_step_halving").exists())
         out.push_back(Html("Checked: halving every step moves the load IAE by ") +
                       figure(check.at("iae_step_halving"), 2) + " of itself; stability by two methods that " +
                       (check.at("stability_methods_agree").value() == true ? "agree." : "do not agree."));
-    const Place longest = s.entry.at("longest_sample_time");
+    const JsonLocation longest = s.entry.at("longest_sample_time");
     if (longest.value().is_number())
         out.push_back(Html("The controller must run at least every ") + figure(longest) + " " + s.time +
                       " to keep Ms within 5 %.");

@@ -17,7 +17,7 @@
 namespace tunewright::api {
 namespace {
 
-constexpr const char* kNothing = "-";
+constexpr const char* kNoValue = "-";
 constexpr std::size_t kWidestTitle = 44;
 
 /// The member at a path such as "/performance/load/IAE"; null where there is none.
@@ -26,7 +26,7 @@ Json at(const Json& value, const char* pointer) {
     return value.contains(where) ? value.at(where) : Json();
 }
 
-std::string number(const Json& value) { return value.is_number() ? tunewright::text(value.get<double>()) : kNothing; }
+std::string number(const Json& value) { return value.is_number() ? tunewright::text(value.get<double>()) : kNoValue; }
 std::string words(const Json& value) { return value.is_string() ? value.get<std::string>() : ""; }
 
 Json parsed_or_null(std::string_view text) {
@@ -97,7 +97,7 @@ std::string title_of(const Json& entry) {
 
 std::string level_of(const Json& entry) {
     const Json first = at(entry, "/verdict/0/level");
-    return first.is_string() ? first.get<std::string>() : kNothing;
+    return first.is_string() ? first.get<std::string>() : kNoValue;
 }
 
 std::string table_of(const Json& result, const std::string& time, std::size_t& refused) {

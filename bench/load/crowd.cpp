@@ -119,7 +119,7 @@ Figures interactive(const Options& options) {
     Client client(options.port);
     const std::size_t count = options.count == 0 ? 10'000 : options.count;
     const auto end = after(options.patience);
-    Answers beside;
+    AnswerLog beside;
     const std::string id = post_batch(client, rule_lines(count));
     const auto start = Clock::now();
     bool ended = false;
@@ -153,7 +153,7 @@ Figures crowd(const Options& options) {
              R"({"plant": {"type": "fopdt", "K": 1, "T": 10, "L": 2}, "controllers": [{"form": "ideal",)"
              R"( "Kp": 1, "Ti": 10, "Td": 1}], "evaluate": {"points": 100}})"),
         get("/v1/jobs?limit=10")};
-    Answers answers;
+    AnswerLog answers;
     const Client::Id normal = client.open();
     const auto start = Clock::now();
     const auto end = after(options.seconds);

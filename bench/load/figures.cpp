@@ -25,14 +25,14 @@ std::string quoted(const std::string& text) {
 
 }  // namespace
 
-void Answers::add(const Answer& answer, bool expected) {
+void AnswerLog::add(const Answer& answer, bool expected) {
     seconds_.push_back(answer.seconds);
     sorted_ = false;
     statuses_[answer.status]++;
     if (!expected) errors_++;
 }
 
-double Answers::percentile_ms(double share) const {
+double AnswerLog::percentile_ms(double share) const {
     if (seconds_.empty()) return 0;
     if (!sorted_) std::sort(seconds_.begin(), seconds_.end());
     sorted_ = true;
@@ -40,7 +40,7 @@ double Answers::percentile_ms(double share) const {
     return 1e3 * seconds_[std::clamp<std::size_t>(rank, 1, seconds_.size()) - 1];
 }
 
-std::string Answers::statuses() const {
+std::string AnswerLog::statuses() const {
     std::string out;
     for (const auto& [status, count] : statuses_) {
         if (!out.empty()) out += ", ";
@@ -55,7 +55,7 @@ void Figures::add(const std::string& name, double value, const std::string& unit
 
 void Figures::add(const std::string& name, const std::string& text) { items_.push_back({name, text, "", false}); }
 
-void Figures::add(const Answers& answers, double duration_s) {
+void Figures::add(const AnswerLog& answers, double duration_s) {
     add("rate", static_cast<double>(answers.count() - answers.errors()) / duration_s, "/s");
     add("p50", answers.percentile_ms(0.50), "ms");
     add("p95", answers.percentile_ms(0.95), "ms");

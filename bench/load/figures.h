@@ -11,7 +11,7 @@
 namespace tunewright::load {
 
 /// Times of answers, and what they were. A status that was not expected counts as an error.
-class Answers {
+class AnswerLog {
 public:
     void add(const Answer& answer, bool expected);
 
@@ -35,7 +35,7 @@ public:
     void add(const std::string& name, double value, const std::string& unit = "");
     void add(const std::string& name, const std::string& text);
     /// Rate, percentiles, errors, statuses.
-    void add(const Answers& answers, double duration_s);
+    void add(const AnswerLog& answers, double duration_s);
 
     /// Lines "name  value unit".
     std::string text() const;

@@ -16,7 +16,7 @@ Clock::time_point after(double seconds) {
 /// Sends request(0), request(1), ... until request(number) is asked for number `count`, as many at once as there are
 /// connections. Returns the seconds from the first to the last answer.
 double send_all(Client& client, const Options& options, std::size_t count,
-                const std::function<std::string(std::size_t)>& request, int expected, Answers& answers) {
+                const std::function<std::string(std::size_t)>& request, int expected, AnswerLog& answers) {
     std::size_t next = 0;
     std::size_t open = 0;
     const auto end = after(options.patience);
@@ -59,7 +59,7 @@ void wait_until_idle(Client& client, double patience) {
 
 Figures health(const Options& options) {
     Client client(options.port);
-    Answers answers;
+    AnswerLog answers;
     const std::string request = get("/healthz");
     const auto start = Clock::now();
     const auto end = after(options.seconds);
@@ -80,7 +80,7 @@ Figures health(const Options& options) {
 
 Figures post_jobs(const Options& options) {
     Client client(options.port);
-    Answers answers;
+    AnswerLog answers;
     const std::size_t count = options.count == 0 ? 8000 : options.count;
     const double seconds = send_all(
         client, options, count, [](std::size_t i) { return post("/v1/jobs", rule_job(i)); }, 202, answers);
@@ -94,7 +94,7 @@ Figures post_jobs(const Options& options) {
 
 Figures finish_jobs(const Options& options) {
     Client client(options.port);
-    Answers answers;
+    AnswerLog answers;
     const std::size_t count = options.count == 0 ? 5000 : options.count;
     const bool waits = options.follow == "wait";
     const std::string fields = waits ? "Prefer: wait=60\r\n" : "";
@@ -113,7 +113,7 @@ Figures finish_jobs(const Options& options) {
 Figures soak(const Options& options) {
     constexpr std::size_t kBatch = 10'000;
     Client client(options.port);
-    Answers answers;
+    AnswerLog answers;
     Figures figures;
     const std::size_t count = options.count == 0 ? 100'000 : options.count;
     const auto start = Clock::now();

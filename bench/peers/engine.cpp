@@ -86,7 +86,7 @@ double load_iae(const Plant& plant, const IdealPid& pid) {
     return evaluation ? evaluation->performance.load.IAE.value_or(NAN) : NAN;
 }
 
-void price_answers() {
+void cost_of_answers() {
     std::map<std::string, Plant> plants;
     for (auto& [name, plant] : amigo_batch()) plants.emplace(name, std::move(plant));
     for (std::string line; std::getline(std::cin, line);) {
@@ -113,7 +113,7 @@ int main(int argc, char** argv) {
     else if (command == "design" && argc > 2)
         print_designs(argv[2], argc > 3 && std::string(argv[3]) == "pi");
     else if (command == "price")
-        price_answers();
+        cost_of_answers();
     else
         return std::fprintf(stderr, "peers_engine plants | design SEARCH [pi] | price\n"), 2;
     return 0;

@@ -36,7 +36,7 @@ constexpr double kM = 1.4;         // limit of Ms and of Mt
 constexpr double kTfOverTd = 0.1;  // the measurement filter is 1/(1 + s Tf + (s Tf)^2/2)
 constexpr double kLowest = 0.005;  // of the frequencies, in phase crossovers
 constexpr double kStep = 0.1;      // of the simulation, in 1/phase crossover
-constexpr int kMostSteps = 40000;
+constexpr int kMaxSteps = 40000;
 constexpr int kRuns = 2;
 
 /// num(s)/den(s) e^(-Ls), coefficients in ascending powers of s, in a unit of time in which the phase crossover is 1.
@@ -229,7 +229,7 @@ public:
         Vector x{}, c{};
         double y = 0, v = 1, sum = 0, absolute = 0;
         int quiet = 0;
-        for (int k = 1; k < kMostSteps && quiet < 10 / dt_; ++k) {
+        for (int k = 1; k < kMaxSteps && quiet < 10 / dt_; ++k) {
             double next = 1;
             if (delay_) {
                 next += u[std::size_t(k) % u.size()];
@@ -298,11 +298,11 @@ struct Point {
 template <typename Cost>
 Point nelder_mead(const Cost& cost, std::vector<Point> simplex) {
     const std::size_t n = simplex.size() - 1;
-    const auto cheaper = [](const Point& a, const Point& b) { return a.cost < b.cost; };
+    const auto lower = [](const Point& a, const Point& b) { return a.cost < b.cost; };
     const auto at = [&](const std::array<double, 2>& x) { return Point{x, cost(x)}; };
     for (auto& p : simplex) p = at(p.x);
     for (int i = 0; i < 200; ++i) {
-        std::sort(simplex.begin(), simplex.end(), cheaper);
+        std::sort(simplex.begin(), simplex.end(), lower);
         const Point &best = simplex.front(), &last_but_one = simplex[n - 1];
         Point& worst = simplex.back();
         const double size = std::hypot(best.x[0] - worst.x[0], best.x[1] - worst.x[1]);
@@ -334,7 +334,7 @@ Point nelder_mead(const Cost& cost, std::vector<Point> simplex) {
         for (std::size_t k = 1; k <= n; ++k)
             simplex[k] = at({(simplex[k].x[0] + best.x[0]) / 2, (simplex[k].x[1] + best.x[1]) / 2});
     }
-    return *std::min_element(simplex.begin(), simplex.end(), cheaper);
+    return *std::min_element(simplex.begin(), simplex.end(), lower);
 }
 
 struct Answer {

@@ -29,9 +29,9 @@ std::optional<Error> timing_fault(const Plan& plan) {
                            text(Tf) + " s and the sample time " + text(Ts) +
                            " s. Choose filtered_backward, or sample more often.");
     if (plan.derivative && plan.rule == DerivativeRule::slope &&
-        !(plan.pid.slope_samples >= 1 && plan.pid.slope_samples <= kMostSlopeSamples))
+        !(plan.pid.slope_samples >= 1 && plan.pid.slope_samples <= kMaxSlopeSamples))
         return invalid("slope_samples", "slope_samples is " + std::to_string(plan.pid.slope_samples) +
-                                            "; it must be 1 to " + std::to_string(kMostSlopeSamples) + ".");
+                                            "; it must be 1 to " + std::to_string(kMaxSlopeSamples) + ".");
     return std::nullopt;
 }
 
@@ -78,7 +78,9 @@ constexpr std::array kFollowed = {FollowedSetting{"Kp", &ScheduleRow::Kp}, Follo
                                   FollowedSetting{"Td", &ScheduleRow::Td}, FollowedSetting{"Tf", &ScheduleRow::Tf},
                                   FollowedSetting{"b", &ScheduleRow::b}};
 
-Expr variable_of(Role role, const char* name) { return Expr(Expression{Type::real, Place{role, name}}); }
+Expr variable_of(VariableRole role, const char* name) {
+    return Expr(Expression{Type::real, VariableReference{role, name}});
+}
 
 /// Puts the settings that the program has in front of its body.
 class Following {
@@ -97,8 +99,9 @@ public:
 private:
     /// Behind the measurement, before what belongs to manual.
     Expr declare_input() {
-        const Expr input = program_.declare(
-            {.role = Role::input, .name = kSchedulingInput, .comment = "the scheduling variable, as the rows have it"});
+        const Expr input = program_.declare({.role = VariableRole::input,
+                                             .name = kSchedulingInput,
+                                             .comment = "the scheduling variable, as the rows have it"});
         auto& all = program_.variables;
         const auto after = std::ranges::find(all, std::string("measurement"), &Declaration::name) + 1;
         std::rotate(after, all.end() - 1, all.end());
@@ -108,8 +111,8 @@ private:
     /// What was a setting of the user's is memory of the program's now.
     void take_over(const FollowedSetting& setting) {
         for (Declaration& known : program_.variables)
-            if (known.name == setting.name && known.role == Role::parameter) {
-                known.role = Role::state;
+            if (known.name == setting.name && known.role == VariableRole::parameter) {
+                known.role = VariableRole::state;
                 known.comment += ", as of the last call";
                 followed_.push_back(setting);
             }
@@ -122,14 +125,16 @@ private:
     Block row_as_it_is(std::size_t row) const {
         Block block;
         for (const FollowedSetting& setting : followed_)
-            block.push_back(assign(variable_of(Role::state, setting.name), value(setting, row)));
+            block.push_back(assign(variable_of(VariableRole::state, setting.name), value(setting, row)));
         return block;
     }
 
     void add_steps() {
         const double half = 0.5 * schedule_.hysteresis;
-        const Expr row = program_.declare(
-            {.role = Role::state, .type = Type::integer, .name = "schedule_row", .comment = "the row in use, from 0"});
+        const Expr row = program_.declare({.role = VariableRole::state,
+                                           .type = Type::integer,
+                                           .name = "schedule_row",
+                                           .comment = "the row in use, from 0"});
         const std::size_t count = schedule_.rows.size();
         for (std::size_t k = 1; k < count; ++k)
             body_.push_back(
@@ -147,12 +152,12 @@ private:
         body_.insert(body_.end(), first.begin(), first.end());
         if (schedule_.rows.size() < 2) return;
         const Expr share = program_.declare(
-            {.role = Role::local, .name = "share", .comment = "how far on the way to the next row: 0 to 1"});
+            {.role = VariableRole::local, .name = "share", .comment = "how far on the way to the next row: 0 to 1"});
         for (std::size_t k = 0; k + 1 < schedule_.rows.size(); ++k) {
             const double from = schedule_.rows[k].at, to = schedule_.rows[k + 1].at;
             Block part{assign(share, (at_ - from) / (to - from)), when(share > 1, {assign(share, 1.0)})};
             for (const FollowedSetting& setting : followed_)
-                part.push_back(assign(variable_of(Role::state, setting.name), between(setting, k, share)));
+                part.push_back(assign(variable_of(VariableRole::state, setting.name), between(setting, k, share)));
             body_.push_back(when(at_ > from, std::move(part)));
         }
     }

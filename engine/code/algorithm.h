@@ -33,7 +33,7 @@ struct CodeOptions {
     std::optional<double> tracking_time = {};               ///< > 0; without it tracking_time() of settings.h, or Ts
 };
 
-constexpr int kMostSlopeSamples = 1000;
+constexpr int kMaxSlopeSamples = 1000;
 constexpr double kNoLimit = 1e30;  ///< what u_min and u_max are in size where there is none
 
 /// Errors (invalid_argument or unsupported, `where` names the field): Ts, Tf, slope_samples or limits out of range; the

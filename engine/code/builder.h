@@ -27,18 +27,18 @@ public:
 
 private:
     Expr input(const char* name, Type type, const char* comment) {
-        return program_.declare({.role = Role::input, .type = type, .name = name, .comment = comment});
+        return program_.declare({.role = VariableRole::input, .type = type, .name = name, .comment = comment});
     }
     Expr setting(const char* name, double value, const char* comment, Type type = Type::real) {
         return program_.declare(
-            {.role = Role::parameter, .type = type, .name = name, .comment = comment, .initial = value});
+            {.role = VariableRole::parameter, .type = type, .name = name, .comment = comment, .initial = value});
     }
     Expr state(const char* name, const char* comment, Type type = Type::real, int length = 0) {
         return program_.declare(
-            {.role = Role::state, .type = type, .name = name, .comment = comment, .length = length});
+            {.role = VariableRole::state, .type = type, .name = name, .comment = comment, .length = length});
     }
     Expr local(const char* name, const char* comment, Type type = Type::real) {
-        return program_.declare({.role = Role::local, .type = type, .name = name, .comment = comment});
+        return program_.declare({.role = VariableRole::local, .type = type, .name = name, .comment = comment});
     }
     void add(Statement statement) { program_.body.push_back(std::move(statement)); }
 
@@ -78,7 +78,7 @@ private:
     Expr measurement_ = input("measurement", Type::real, "y");
     Expr manual_ = input("manual", Type::boolean, "true: u is manual_output");
     Expr manual_output_ = input("manual_output", Type::real, "the operator's u");
-    Expr u_ = program_.declare({.role = Role::output, .name = "u", .comment = "the controller's output"});
+    Expr u_ = program_.declare({.role = VariableRole::output, .name = "u", .comment = "the controller's output"});
 
     // Set by the declaring functions as far as the plan needs them.
     Expr Kp_ = 0, Ti_ = 0, Td_ = 0, Ki_ = 0, Kd_ = 0, b_ = 0, direct_ = 0, u_min_ = 0, u_max_ = 0, rate_limit_ = 0;

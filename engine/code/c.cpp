@@ -12,8 +12,8 @@ class C : public Dialect {
 public:
     std::string real(double value) const override { return real_literal(value, 'e'); }
     std::string boolean(bool value) const override { return value ? "true" : "false"; }
-    std::string variable(const Place& place) const override {
-        const bool field = place.role == Role::parameter || place.role == Role::state;
+    std::string variable(const VariableReference& place) const override {
+        const bool field = place.role == VariableRole::parameter || place.role == VariableRole::state;
         return field ? "pid->" + place.name : place.name;
     }
     std::string exponential(const std::string& argument) const override { return "exp(" + argument + ")"; }
@@ -68,16 +68,16 @@ std::string initial(const Declaration& variable) {
 
 void add_struct(const Program& program, std::string& out) {
     out += "typedef struct {\n    /* Settings. */\n";
-    for (const Declaration& variable : of_role(program, Role::parameter)) out += field(variable);
+    for (const Declaration& variable : of_role(program, VariableRole::parameter)) out += field(variable);
     out += "\n    /* Memory; nothing to write to. */\n";
-    for (const Declaration& variable : of_role(program, Role::state)) out += field(variable);
+    for (const Declaration& variable : of_role(program, VariableRole::state)) out += field(variable);
     out += "} tunewright_pid;\n\n";
 }
 
 void add_init(const Program& program, std::string& out) {
     out += "/* The settings as they were tuned, and a first call to come. */\n";
     out += "static inline void tunewright_pid_init(tunewright_pid *pid)\n{\n";
-    for (const Role role : {Role::parameter, Role::state})
+    for (const VariableRole role : {VariableRole::parameter, VariableRole::state})
         for (const Declaration& variable : of_role(program, role)) out += initial(variable);
     out += "}\n\n";
 }
@@ -85,13 +85,13 @@ void add_init(const Program& program, std::string& out) {
 void add_step(const Program& program, std::string& out) {
     out += "/* One call every Ts seconds; the answer is u. */\n";
     out += "static inline double tunewright_pid_step(\n    tunewright_pid *pid";
-    for (const Declaration& variable : of_role(program, Role::input))
+    for (const Declaration& variable : of_role(program, VariableRole::input))
         out += std::string(", ") + type_text(variable.type) + variable.name;
     out += ")\n{\n";
-    for (const Role role : {Role::local, Role::output})
+    for (const VariableRole role : {VariableRole::local, VariableRole::output})
         for (const Declaration& variable : of_role(program, role)) out += field(variable);
-    out +=
-        "\n" + text_of(program.body, C(), 1) + "    return " + of_role(program, Role::output).front().name + ";\n}\n";
+    out += "\n" + text_of(program.body, C(), 1) + "    return " + of_role(program, VariableRole::output).front().name +
+           ";\n}\n";
 }
 
 bool uses_exponential(const std::string& text) { return text.find("exp(") != text.npos; }

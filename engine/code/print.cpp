@@ -110,7 +110,7 @@ std::string text_of(const Expr& expression, const Dialect& dialect) {
         Type type;
         const Dialect& dialect;
         std::string operator()(const Literal& what) const { return literal_text(what, type, dialect); }
-        std::string operator()(const Place& what) const {
+        std::string operator()(const VariableReference& what) const {
             const std::string name = dialect.variable(what);
             return what.index.empty() ? name : name + "[" + text_of(what.index[0], dialect) + "]";
         }
@@ -140,7 +140,7 @@ std::string real_literal(double value, char exponent) {
 
 std::string indentation(int depth) { return std::string(static_cast<std::size_t>(4 * depth), ' '); }
 
-std::vector<Declaration> of_role(const Program& program, Role role) {
+std::vector<Declaration> of_role(const Program& program, VariableRole role) {
     std::vector<Declaration> out;
     for (const Declaration& variable : program.variables)
         if (variable.role == role) out.push_back(variable);
@@ -148,14 +148,15 @@ std::vector<Declaration> of_role(const Program& program, Role role) {
 }
 
 std::string example_setting(const Program& program) {
-    const auto settings = of_role(program, Role::parameter);
+    const auto settings = of_role(program, VariableRole::parameter);
     return std::ranges::any_of(settings, [](const Declaration& setting) { return setting.name == "Kp"; }) ? "Kp"
                                                                                                           : "u_max";
 }
 
 std::string example_arguments(const Program& program, const std::function<std::string(const Declaration&)>& argument) {
     std::string out;
-    for (const Declaration& input : of_role(program, Role::input)) out += (out.empty() ? "" : ", ") + argument(input);
+    for (const Declaration& input : of_role(program, VariableRole::input))
+        out += (out.empty() ? "" : ", ") + argument(input);
     return out;
 }
 
@@ -225,7 +226,7 @@ void wrap(const std::string& text, std::size_t hanging, std::vector<std::string>
 
 std::string settings_line(const Program& program) {
     std::string out;
-    for (const Declaration& setting : of_role(program, Role::parameter)) {
+    for (const Declaration& setting : of_role(program, VariableRole::parameter)) {
         if (setting.type == Type::real && std::abs(setting.initial) < kNoLimit)
             out += (out.empty() ? "" : ", ") + setting.name + " " + text(setting.initial, 6);
     }

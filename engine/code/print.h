@@ -29,7 +29,7 @@ public:
 
     virtual std::string real(double value) const = 0;
     virtual std::string boolean(bool value) const = 0;
-    virtual std::string variable(const Place& place) const = 0;
+    virtual std::string variable(const VariableReference& place) const = 0;
     /// Between two operands with its blanks (" + "), or before the one ("-").
     virtual std::string mark(Operation operation) const = 0;
     virtual std::string exponential(const std::string& argument) const = 0;
@@ -58,7 +58,7 @@ std::vector<std::string> head_lines(const Program& program, const Provenance& pr
 
 std::string indentation(int depth);
 
-std::vector<Declaration> of_role(const Program& program, Role role);
+std::vector<Declaration> of_role(const Program& program, VariableRole role);
 
 /// A setting that the user may write, for the words on how: Kp, or a limit where the program computes Kp itself.
 std::string example_setting(const Program& program);

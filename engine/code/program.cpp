@@ -45,9 +45,9 @@ Expr truth(bool value) { return Expr(Expression{Type::boolean, Literal{value ? 1
 Expr whole(int value) { return Expr(Expression{Type::integer, Literal{static_cast<double>(value)}}); }
 
 Expr element(const Expr& array, const Expr& index) {
-    const auto* place = std::get_if<Place>(&array->what);
+    const auto* place = std::get_if<VariableReference>(&array->what);
     require(place != nullptr && index->type == Type::integer, "an element has an array and a whole number");
-    return Expr(Expression{array->type, Place{place->role, place->name, {index}}});
+    return Expr(Expression{array->type, VariableReference{place->role, place->name, {index}}});
 }
 
 Expr operator+(const Expr& a, const Expr& b) { return arithmetic(Operation::add, a, b); }
@@ -77,8 +77,8 @@ Expr exponential(const Expr& a) {
 }
 
 Statement assign(const Expr& target, const Expr& value) {
-    const auto* place = std::get_if<Place>(&target->what);
-    require(place != nullptr && place->role != Role::input && place->role != Role::parameter,
+    const auto* place = std::get_if<VariableReference>(&target->what);
+    require(place != nullptr && place->role != VariableRole::input && place->role != VariableRole::parameter,
             "only states, locals and the output are assigned");
     require(target->type == value->type, "an assignment keeps the type");
     return {Assignment{target, value}};
@@ -98,7 +98,7 @@ Statement remark(std::string text) { return {Remark{std::move(text)}}; }
 
 Expr Program::declare(Declaration declaration) {
     for (const Declaration& known : variables) require(!same_name(known.name, declaration.name), "a name is taken");
-    Expr variable(Expression{declaration.type, Place{declaration.role, declaration.name}});
+    Expr variable(Expression{declaration.type, VariableReference{declaration.role, declaration.name}});
     variables.push_back(std::move(declaration));
     return variable;
 }

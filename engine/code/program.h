@@ -4,8 +4,8 @@
 // comparisons, and, or, not, exp. That is what Structured Text, C and Python have in common, with one meaning.
 //
 //     Program program;
-//     const Expr x = program.declare({.role = Role::state, .name = "x", .comment = "the sum"});
-//     program.body.push_back(assign(x, x + 2 * program.declare({.role = Role::input, .name = "y"})));
+//     const Expr x = program.declare({.role = VariableRole::state, .name = "x", .comment = "the sum"});
+//     program.body.push_back(assign(x, x + 2 * program.declare({.role = VariableRole::input, .name = "y"})));
 #pragma once
 
 #include <memory>
@@ -18,7 +18,7 @@ namespace tunewright::code {
 enum class Type { real, boolean, integer };
 
 /// Whose a variable is, and how long it lives.
-enum class Role {
+enum class VariableRole {
     input,      ///< given with each call
     parameter,  ///< a setting: has an initial value, the user may write it between two calls
     state,      ///< kept from call to call, nobody else's business
@@ -27,7 +27,7 @@ enum class Role {
 };
 
 struct Declaration {
-    Role role = Role::local;
+    VariableRole role = VariableRole::local;
     Type type = Type::real;
     std::string name = {};
     std::string comment = {};  ///< a phrase for the reader, one line
@@ -72,8 +72,8 @@ struct Literal {
 };
 
 /// A variable, or an element of one.
-struct Place {
-    Role role = Role::local;
+struct VariableReference {
+    VariableRole role = VariableRole::local;
     std::string name;
     std::vector<Expr> index = {};  ///< none, or one
 };
@@ -85,7 +85,7 @@ struct Operated {
 
 struct Expression {
     Type type = Type::real;
-    std::variant<Literal, Place, Operated> what;
+    std::variant<Literal, VariableReference, Operated> what;
 };
 
 Expr truth(bool value);

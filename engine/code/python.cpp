@@ -7,8 +7,8 @@ class Python : public Dialect {
 public:
     std::string real(double value) const override { return real_literal(value, 'e'); }
     std::string boolean(bool value) const override { return value ? "True" : "False"; }
-    std::string variable(const Place& place) const override {
-        const bool field = place.role == Role::parameter || place.role == Role::state;
+    std::string variable(const VariableReference& place) const override {
+        const bool field = place.role == VariableRole::parameter || place.role == VariableRole::state;
         return field ? "self." + place.name : place.name;
     }
     std::string exponential(const std::string& argument) const override { return "math.exp(" + argument + ")"; }
@@ -55,7 +55,7 @@ std::string attribute(const Declaration& variable) {
 
 std::string arguments(const Program& program) {
     std::string out = "self";
-    for (const Declaration& variable : of_role(program, Role::input)) {
+    for (const Declaration& variable : of_role(program, VariableRole::input)) {
         out += ", " + variable.name;
         // Whoever knows no manual leaves it out.
         if (variable.name == "manual") out += "=False";
@@ -82,12 +82,12 @@ std::string print_python(const Program& program, const Provenance& provenance) {
     const std::string body = text_of(program.body, Python(), 2);
     out += body.find("math.") == body.npos ? "\n\n" : "\nimport math\n\n\n";
     out += "class TunewrightPid:\n    \"\"\"A sampled PID controller.\"\"\"\n\n    def __init__(self):\n";
-    for (const Declaration& variable : of_role(program, Role::parameter)) out += attribute(variable);
+    for (const Declaration& variable : of_role(program, VariableRole::parameter)) out += attribute(variable);
     out += "\n        # Memory; nothing to write to.\n";
-    for (const Declaration& variable : of_role(program, Role::state)) out += attribute(variable);
+    for (const Declaration& variable : of_role(program, VariableRole::state)) out += attribute(variable);
     out += "\n    def step(" + arguments(program) +
            "):\n        \"\"\"One call every Ts seconds; the answer is u.\"\"\"\n";
-    return out + body + "        return " + of_role(program, Role::output).front().name + "\n";
+    return out + body + "        return " + of_role(program, VariableRole::output).front().name + "\n";
 }
 
 }  // namespace tunewright::code

@@ -10,12 +10,12 @@
 namespace tunewright::code {
 namespace {
 
-constexpr int kMostDigits = 17;  // that a double needs
+constexpr int kMaxDigits = 17;  // that a double needs
 
 // The shortest decimal near `x` that `gives` accepts; x itself where no decimal is accepted.
 template <class Test>
 double shortest(double x, const Test& gives) {
-    for (int digits = 1; digits <= kMostDigits; ++digits) {
+    for (int digits = 1; digits <= kMaxDigits; ++digits) {
         const double candidate = std::strtod(text(x, digits).c_str(), nullptr);
         if (gives(candidate)) return candidate;
     }
@@ -31,11 +31,11 @@ double integral_time(const ParallelPid& gains) { return gains.Ki == 0 ? 0 : std:
 double derivative_time(const ParallelPid& gains) { return gains.Kp == 0 ? 0 : std::abs(gains.Kd / gains.Kp); }
 
 double one_two_five_below(double x) {
-    constexpr double kRounding = 1 + 1e-12;  // 0.2 is 0.2, however it was computed
-    const double power = std::floor(std::log10(x * kRounding));
+    constexpr double kRoundingFactor = 1 + 1e-12;  // 0.2 is 0.2, however it was computed
+    const double power = std::floor(std::log10(x * kRoundingFactor));
     for (const char* digit : {"5", "2"}) {
         const double value = std::strtod((std::string(digit) + "e" + text(power)).c_str(), nullptr);
-        if (value <= x * kRounding) return value;
+        if (value <= x * kRoundingFactor) return value;
     }
     return std::strtod(("1e" + text(power)).c_str(), nullptr);
 }

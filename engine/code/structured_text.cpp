@@ -9,7 +9,7 @@ class StructuredText : public Dialect {
 public:
     std::string real(double value) const override { return real_literal(value, 'E'); }
     std::string boolean(bool value) const override { return value ? "TRUE" : "FALSE"; }
-    std::string variable(const Place& place) const override { return place.name; }
+    std::string variable(const VariableReference& place) const override { return place.name; }
     std::string exponential(const std::string& argument) const override { return "EXP(" + argument + ")"; }
     std::string mark(Operation operation) const override {
         switch (operation) {
@@ -50,7 +50,7 @@ std::string type_text(const Declaration& variable) {
 }
 
 std::string initial_text(const Declaration& variable) {
-    if (variable.role == Role::local || variable.role == Role::output || variable.length > 0) return {};
+    if (variable.role == VariableRole::local || variable.role == VariableRole::output || variable.length > 0) return {};
     if (variable.type == Type::real) return " := " + real_literal(variable.initial, 'E');
     if (variable.type == Type::boolean) return variable.initial != 0 ? " := TRUE" : " := FALSE";
     return " := 0";
@@ -85,13 +85,13 @@ std::string print_structured_text(const Program& program, const Provenance& prov
     for (const std::string& line : head_lines(program, provenance, call))
         out += line.empty() ? "\n" : "  " + line + "\n";
     out += "*)\nFUNCTION_BLOCK TunewrightPid\n";
-    std::vector<Declaration> inputs = of_role(program, Role::input);
-    const std::vector<Declaration> settings = of_role(program, Role::parameter);
+    std::vector<Declaration> inputs = of_role(program, VariableRole::input);
+    const std::vector<Declaration> settings = of_role(program, VariableRole::parameter);
     inputs.insert(inputs.end(), settings.begin(), settings.end());
     add_section("VAR_INPUT", inputs, out);
-    add_section("VAR_OUTPUT", of_role(program, Role::output), out);
-    add_section("VAR", of_role(program, Role::state), out);
-    add_section("VAR_TEMP", of_role(program, Role::local), out);
+    add_section("VAR_OUTPUT", of_role(program, VariableRole::output), out);
+    add_section("VAR", of_role(program, VariableRole::state), out);
+    add_section("VAR_TEMP", of_role(program, VariableRole::local), out);
     return out + "\n" + text_of(program.body, StructuredText(), 0) + "END_FUNCTION_BLOCK\n";
 }
 

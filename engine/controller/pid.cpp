@@ -9,10 +9,10 @@
 namespace tunewright {
 namespace {
 
-constexpr double kRounding = 1e-13;            // relative to sum^2: less than that is no distance between two zeros
-constexpr double kLargeArgument = 300;         // beyond it the Bessel functions' asymptote is exact enough
-constexpr double kLargestAmplitude = 1e12;     // in delta_r: the gain is below 1e-35 there
-constexpr double kAmplitudeTolerance = 1e-13;  // of the bracket's upper end, at most twice the amplitude
+constexpr double kDiscriminantTolerance = 1e-13;  // relative to sum^2: less than that is no distance between two zeros
+constexpr double kMinAsymptoticArgument = 300;    // beyond it the Bessel functions' asymptote is exact enough
+constexpr double kMaxAmplitude = 1e12;            // in delta_r: the gain is below 1e-35 there
+constexpr double kAmplitudeTolerance = 1e-13;     // of the bracket's upper end, at most twice the amplitude
 
 // With `derivative` the series form's filter covers the whole lead (1 + s Td)/(1 + s Tf), the ideal form's only Td s;
 // the measurement filters stand outside the law in both forms, as if Tf were 0 here.
@@ -110,7 +110,7 @@ Expected<SeriesPid> to_series(const IdealPid& pid) {
     // Equals sum^2 - 4 Ti (Td + Tf), written so that Td = 0 gives a square exactly.
     double discriminant = std::pow(pid.Ti - Tf, 2) - 4 * pid.Ti * pid.Td;
     // Two equal zeros (Ti = 4 Td, as of equal lags) may miss 0 by rounding.
-    if (std::abs(discriminant) < kRounding * sum * sum) discriminant = 0;
+    if (std::abs(discriminant) < kDiscriminantTolerance * sum * sum) discriminant = 0;
     if (!(discriminant >= 0) || pid.Ti == 0) return no_series(pid, Tf);
     const Roots roots = real_roots(sum, pid.Ti * (pid.Td + Tf), discriminant);
     series.Ti = roots.larger;
@@ -156,14 +156,14 @@ ParallelPid gains(const Controller& controller) {
 double ErrorScaling::gain_of_amplitude(double A) const {
     const double x = 0.5 * A / delta_r, b = x * x;
     // e^-b (I0 - I1) -> (1 + 3/(8 b))/(2 b sqrt(2 pi b)).
-    if (b > kLargeArgument) return (1 + 0.375 / b) / (2 * b * std::sqrt(2 * std::numbers::pi * b));
+    if (b > kMinAsymptoticArgument) return (1 + 0.375 / b) / (2 * b * std::sqrt(2 * std::numbers::pi * b));
     return std::exp(-b) * (std::cyl_bessel_i(0.0, b) - std::cyl_bessel_i(1.0, b));
 }
 
 double ErrorScaling::amplitude_of_gain(double k) const {
     const auto surplus = [&](double A) { return gain_of_amplitude(A) - k; };
     double high = delta_r, at_high = surplus(high);
-    while (at_high > 0 && high < kLargestAmplitude * delta_r) at_high = surplus(high *= 2);
+    while (at_high > 0 && high < kMaxAmplitude * delta_r) at_high = surplus(high *= 2);
     return root_between(surplus, 0, high, 1 - k, at_high, kAmplitudeTolerance * high);
 }
 

@@ -6,20 +6,21 @@
 
 namespace tunewright {
 
-Expected<Evaluation> evaluate(const Subject& subject, const Controller& controller, const EvaluateOptions& options) {
+Expected<Evaluation> evaluate(const AnalysedPlant& subject, const Controller& controller,
+                              const EvaluateOptions& options) {
     return subject.visit(
-        OfKinds{[&](const LinearSubject& plant) { return evaluate_linear(plant, controller, options); },
+        OfKinds{[&](const AnalysedLinear& plant) { return evaluate_linear(plant, controller, options); },
                 [&](const MeasuredPlant& plant) { return evaluate_measured(plant, controller, options); },
-                [&](const NonlinearSubject& plant) { return evaluate_nonlinear(plant, controller, options); }});
+                [&](const AnalysedNonlinear& plant) { return evaluate_nonlinear(plant, controller, options); }});
 }
 
 Expected<Evaluation> evaluate(const PlantModel& plant, const Controller& controller, const EvaluateOptions& options) {
-    const auto made = Subject::make(plant);
+    const auto made = AnalysedPlant::make(plant);
     if (const auto* faults = std::get_if<std::vector<Error>>(&made)) return faults->front();
-    return evaluate(std::get<Subject>(made), controller, options);
+    return evaluate(std::get<AnalysedPlant>(made), controller, options);
 }
 
-std::optional<Error> loop_fault(const Subject& subject, const Controller& controller) {
+std::optional<Error> loop_fault(const AnalysedPlant& subject, const Controller& controller) {
     const auto fault_with = [&](const LinearPlant& plant) -> std::optional<Error> {
         const auto loop = Loop::make(plant, gains(controller));
         return loop ? std::nullopt : std::optional(loop.error());
@@ -33,7 +34,7 @@ std::optional<Error> loop_fault(const Subject& subject, const Controller& contro
     return std::nullopt;
 }
 
-EvaluateOptions on_linearisation(const Subject& subject, EvaluateOptions options) {
+EvaluateOptions on_linearisation(const AnalysedPlant& subject, EvaluateOptions options) {
     const NonlinearSystem* system = subject.equations();
     return system ? limited_as(*system, options) : options;
 }

@@ -4,7 +4,7 @@
 #include "engine/controller/pid.h"
 #include "engine/evaluation/evaluation.h"
 #include "engine/expected.h"
-#include "engine/plant/subject.h"
+#include "engine/plant/analysed_plant.h"
 
 namespace tunewright {
 
@@ -17,16 +17,17 @@ namespace tunewright {
 /// Of a nonlinear plant performance and responses are its own, for these step sizes, within its input's limits; figures
 /// over frequency and noise belong to its linearisation. Where the linearised loop is unstable, responses show what
 /// happens all the same.
-Expected<Evaluation> evaluate(const Subject& subject, const Controller& controller, const EvaluateOptions& options);
+Expected<Evaluation> evaluate(const AnalysedPlant& subject, const Controller& controller,
+                              const EvaluateOptions& options);
 
 /// The same of a plant that has not been looked at; the first of its faults is the error.
 Expected<Evaluation> evaluate(const PlantModel& plant, const Controller& controller, const EvaluateOptions& options);
 
 /// What keeps the controller from forming a loop with the plant, or with one of several: `where` = "controller/...".
-std::optional<Error> loop_fault(const Subject& subject, const Controller& controller);
+std::optional<Error> loop_fault(const AnalysedPlant& subject, const Controller& controller);
 
 /// The options for the plant's linearisation, on which the limits of its input are the actuator's; of other plants the
 /// same options.
-EvaluateOptions on_linearisation(const Subject& subject, EvaluateOptions options);
+EvaluateOptions on_linearisation(const AnalysedPlant& subject, EvaluateOptions options);
 
 }  // namespace tunewright

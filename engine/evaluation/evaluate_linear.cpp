@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "engine/controller/pid.h"
-#include "engine/evaluation/course.h"
 #include "engine/evaluation/evaluation_start.h"
 #include "engine/evaluation/measured_response.h"
 #include "engine/evaluation/performance_figures.h"
+#include "engine/evaluation/response_pair.h"
 #include "engine/evaluation/robustness_figures.h"
 #include "engine/loop/integral_sector.h"
 #include "engine/loop/measured_loop.h"
@@ -21,11 +21,11 @@ namespace tunewright {
 
 namespace {
 
-constexpr double kRounding = 1e-9;  // of a count of samples over their number
+constexpr double kCountRounding = 1e-9;  // of a count of samples over their number
 
-constexpr double kMayEncircle = 0.5;  // of |L|, with room for what lies between two frequencies
-constexpr int kLeastNodes = 8;
-constexpr double kMostFurtherNodes = 12;
+constexpr double kMinEncirclingModulus = 0.5;  // of |L|, with room for what lies between two frequencies
+constexpr int kMinNodes = 8;
+constexpr double kMaxFurtherNodes = 12;
 
 constexpr double kFinalTolerance = 1e-4;      // interpolation within a step, relative to the local deviation
 constexpr double kNonlinearTolerance = 1e-5;  // of what the integral sees too
@@ -37,8 +37,8 @@ constexpr int kMaxNonlinearSteps = 20000;  // a stalled integral may need any nu
 int nodes_for(const Loop& loop, const LoopGrid& grid) {
     double highest = 0;
     for (std::size_t i = 0; i < grid.omega.size(); ++i)
-        if (magnitude(grid.point[i].L) > kMayEncircle) highest = grid.omega[i];
-    return kLeastNodes + static_cast<int>(std::min(2 * highest * loop.plant().dead_time(), kMostFurtherNodes));
+        if (magnitude(grid.point[i].L) > kMinEncirclingModulus) highest = grid.omega[i];
+    return kMinNodes + static_cast<int>(std::min(2 * highest * loop.plant().dead_time(), kMaxFurtherNodes));
 }
 
 /// What the loop itself says; `add_performance` adds what its responses do.
@@ -120,14 +120,15 @@ void add_performance(Evaluation& evaluation, const LinearPlant& plant, const Loo
         warn_of_limits(evaluation, load, *o.actuator, "load");
     }
     if (!setpoint.settles || !load.settles) warn_of_no_rest(evaluation);
-    evaluation.responses = drawn(Run::of(std::move(of_setpoint.response)), Run::of(std::move(of_load.response)), o);
+    evaluation.responses =
+        drawn(KnownResponse::of(std::move(of_setpoint.response)), KnownResponse::of(std::move(of_load.response)), o);
 }
 
 /// In percent, rounded down and never to all or to nothing.
 std::string share(double fraction) {
     if (fraction > 0.999) return "more than 99.9 %";
     if (fraction < 0.001) return "less than 0.1 %";
-    return text(std::floor(1000 * fraction + kRounding) / 10) + " %";
+    return text(std::floor(1000 * fraction + kCountRounding) / 10) + " %";
 }
 
 void add_region(Evaluation& evaluation, const PlantFamily& family) {
@@ -151,7 +152,7 @@ std::vector<double> marked(const Robustness& r) {
 
 }  // namespace
 
-Expected<Evaluation> evaluate_linear(const LinearSubject& subject, const Controller& controller,
+Expected<Evaluation> evaluate_linear(const AnalysedLinear& subject, const Controller& controller,
                                      const EvaluateOptions& options) {
     if (auto error = refuse_evaluation(controller, options)) return *error;
     const auto loop = Loop::make(subject.nominal, gains(controller));
@@ -204,7 +205,7 @@ Expected<Evaluation> evaluate_measured(const MeasuredPlant& plant, const Control
 
 namespace {
 
-constexpr double kStall = 1.5;  // times delta_r: the integral sees less than a third of the error
+constexpr double kStallLevel = 1.5;  // times delta_r: the integral sees less than a third of the error
 
 std::string statement_of(const IntegralSector& sector, const NonlinearFigures& figures) {
     if (sector.absolutely_stable())
@@ -227,11 +228,11 @@ std::string statement_of(const IntegralSector& sector, const NonlinearFigures& f
 }
 
 void warn_of_stall(Evaluation& evaluation, const char* step, double largest_error, double delta_r) {
-    if (largest_error <= kStall * delta_r) return;
+    if (largest_error <= kStallLevel * delta_r) return;
     const double share = std::exp(-0.5 * std::pow(largest_error / delta_r, 2));
     evaluation.warnings.push_back(
         {"integral-stalls", std::string("The ") + step + " step drives the error to " + text(largest_error) +
-                                ", beyond 1.5 delta_r = " + text(kStall * delta_r) + ": the integral sees " +
+                                ", beyond 1.5 delta_r = " + text(kStallLevel * delta_r) + ": the integral sees " +
                                 text(100 * share) +
                                 " % of it there and hardly moves until P and D action have brought it back. A larger "
                                 "delta_r or the linear PID recovers faster."});

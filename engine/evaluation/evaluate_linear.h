@@ -7,14 +7,14 @@
 #include "engine/evaluation/evaluation.h"
 #include "engine/expected.h"
 #include "engine/loop/loop.h"
+#include "engine/plant/analysed_plant.h"
 #include "engine/plant/frequency_response.h"
-#include "engine/plant/subject.h"
 #include "engine/simulation/linear/linear_response.h"
 
 namespace tunewright {
 
 /// As evaluate().
-Expected<Evaluation> evaluate_linear(const LinearSubject& subject, const Controller& controller,
+Expected<Evaluation> evaluate_linear(const AnalysedLinear& subject, const Controller& controller,
                                      const EvaluateOptions& options);
 
 /// As evaluate(): everything in time is empty.

@@ -4,10 +4,10 @@
 #include <array>
 #include <cmath>
 
-#include "engine/evaluation/course.h"
 #include "engine/evaluation/evaluate_linear.h"
 #include "engine/evaluation/evaluation_start.h"
 #include "engine/evaluation/performance_figures.h"
+#include "engine/evaluation/response_pair.h"
 #include "engine/loop/loop.h"
 #include "engine/loop/stability.h"
 #include "engine/number_text.h"
@@ -19,9 +19,9 @@ namespace tunewright {
 namespace {
 
 constexpr int kMaxSteps = 20000;
-constexpr double kUnstableHorizon = 10;  // of the plant's dead time and lags: what an unstable loop shows
-constexpr double kFarIntegral = 0.2;     // relative difference of an IAE
-constexpr double kFarOvershoot = 10;     // difference of an overshoot, percent of the step
+constexpr double kUnstableHorizon = 10;                // of the plant's dead time and lags: what an unstable loop shows
+constexpr double kMaxIaeDifference = 0.2;              // relative difference of an IAE
+constexpr double kMaxOvershootDifferencePercent = 10;  // difference of an overshoot, percent of the step
 
 struct Runs {
     NonlinearResponse setpoint, load;
@@ -66,11 +66,11 @@ void warn_of_distance(Evaluation& evaluation) {
         differences += (differences.empty() ? "" : ", ") + what + " " + text(a) + unit + " against " + text(b) + unit;
     };
     const auto compare = [&](const std::optional<double>& a, const std::optional<double>& b, const char* what) {
-        if (a && b && std::abs(*a - *b) > kFarIntegral * std::min(*a, *b)) say(what, *a, *b, "");
+        if (a && b && std::abs(*a - *b) > kMaxIaeDifference * std::min(*a, *b)) say(what, *a, *b, "");
     };
     compare(own.setpoint.IAE, linear.setpoint.IAE, "set-point IAE");
     const auto &a = own.setpoint.overshoot_percent, &b = linear.setpoint.overshoot_percent;
-    if (a && b && std::abs(*a - *b) > kFarOvershoot) say("overshoot", *a, *b, " %");
+    if (a && b && std::abs(*a - *b) > kMaxOvershootDifferencePercent) say("overshoot", *a, *b, " %");
     compare(own.load.IAE, linear.load.IAE, "load IAE");
     if (differences.empty()) return;
     evaluation.warnings.push_back(
@@ -84,7 +84,7 @@ void warn_of_distance(Evaluation& evaluation) {
 void add_responses(Evaluation& evaluation, Runs runs, const EvaluateOptions& options) {
     if (runs.setpoint.loop.nodes.empty() || runs.load.loop.nodes.empty()) return;
     const auto run_of = [](NonlinearResponse& run) {
-        Run known = Run::of(std::move(run.loop));
+        KnownResponse known = KnownResponse::of(std::move(run.loop));
         if (Runs::incomplete(run)) known.known_to = run.t_end;
         return known;
     };
@@ -117,7 +117,7 @@ EvaluateOptions limited_as(const NonlinearSystem& plant, EvaluateOptions options
     return options;
 }
 
-Expected<Evaluation> evaluate_nonlinear(const NonlinearSubject& subject, const Controller& controller,
+Expected<Evaluation> evaluate_nonlinear(const AnalysedNonlinear& subject, const Controller& controller,
                                         const EvaluateOptions& options) {
     if (auto error = refuse_evaluation(controller, options)) return *error;
     const NonlinearSystem& system = subject.system;

@@ -4,12 +4,12 @@
 
 #include "engine/evaluation/evaluation.h"
 #include "engine/expected.h"
-#include "engine/plant/subject.h"
+#include "engine/plant/analysed_plant.h"
 
 namespace tunewright {
 
 /// As evaluate().
-Expected<Evaluation> evaluate_nonlinear(const NonlinearSubject& subject, const Controller& controller,
+Expected<Evaluation> evaluate_nonlinear(const AnalysedNonlinear& subject, const Controller& controller,
                                         const EvaluateOptions& options);
 
 /// The limits of the plant's input in place of the actuator's, where they are narrower.

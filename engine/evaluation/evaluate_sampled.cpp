@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/evaluation/course.h"
 #include "engine/evaluation/evaluate_nonlinear.h"
 #include "engine/evaluation/evaluation_start.h"
 #include "engine/evaluation/performance_figures.h"
+#include "engine/evaluation/response_pair.h"
 #include "engine/evaluation/robustness_figures.h"
 #include "engine/loop/sampled/sampled_loop.h"
 #include "engine/simulation/sampled/sampled_response.h"
@@ -21,8 +21,8 @@ bool rests(const ProgramLimits& limits) {
     return limits.u_resolution == 0 && limits.y_resolution == 0 && limits.dead_band == 0;
 }
 
-Run run_of(StepResponse response, const ProgramLimits& limits) {
-    Run run = Run::of(std::move(response));
+KnownResponse run_of(StepResponse response, const ProgramLimits& limits) {
+    KnownResponse run = KnownResponse::of(std::move(response));
     if (!rests(limits)) run.known_to = run.response.nodes.back().t;
     return run;
 }
@@ -35,36 +35,36 @@ StepResponse respond(const Simulate& simulate, const ProgramLimits& limits, cons
     return simulate(limits, inputs, without.nodes.back().t);
 }
 
-void add_performance(BuiltLoop& built, const Simulate& simulate, const ProgramLimits& limits,
+void add_performance(DeviceLoop& on_device, const Simulate& simulate, const ProgramLimits& limits,
                      const EvaluateOptions& options) {
     StepResponse setpoint = respond(simulate, limits, {options.setpoint_step, 0}, options),
                  load = respond(simulate, limits, {0, options.load_step}, options);
     const bool to_infinity = !options.horizon && rests(limits);
-    built.performance.setpoint = setpoint_figures(setpoint, options.setpoint_step, to_infinity);
-    built.performance.load = load_figures(load, to_infinity);
-    built.responses = drawn(run_of(std::move(setpoint), limits), run_of(std::move(load), limits), options);
+    on_device.performance.setpoint = setpoint_figures(setpoint, options.setpoint_step, to_infinity);
+    on_device.performance.load = load_figures(load, to_infinity);
+    on_device.responses = drawn(run_of(std::move(setpoint), limits), run_of(std::move(load), limits), options);
 }
 
 }  // namespace
 
-Expected<BuiltLoop> evaluate_sampled(const Subject& subject, const SampledPid& law, const ProgramLimits& limits,
-                                     const EvaluateOptions& options) {
+Expected<DeviceLoop> evaluate_sampled(const AnalysedPlant& subject, const SampledPid& law, const ProgramLimits& limits,
+                                      const EvaluateOptions& options) {
     const LinearPlant* linear = subject.linear();
     if (linear == nullptr)
         return Error{ErrorKind::unsupported, "implement",
                      "A loop as it is built needs a model of the plant: points of a frequency response do not say what "
                      "lies above half the sampling frequency. Identify a model first."};
     if (const auto error = refuse_sampling(*linear, law.Ts, law.computation_delay)) return *error;
-    BuiltLoop built;
+    DeviceLoop on_device;
     const SampledLoop loop(*linear, law);
     const LoopGrid grid = loop.grid();
     const StabilityCount count = loop.count_unstable_poles(grid);
     if (!count.stable()) {
-        built.robustness = unstable_robustness(count);
-        built.performance = no_performance("On the controller as it is built the loop is unstable.");
-        return built;
+        on_device.robustness = unstable_robustness(count);
+        on_device.performance = no_performance("On the controller as it is built the loop is unstable.");
+        return on_device;
     }
-    built.robustness = robustness_of(loop.peaks(grid), loop.margins(grid));
+    on_device.robustness = robustness_of(loop.peaks(grid), loop.margins(grid));
     if (auto error = stopped(options)) return *error;
     const NonlinearSystem* system = subject.equations();
     ProgramLimits all = limits;
@@ -76,9 +76,9 @@ Expected<BuiltLoop> evaluate_sampled(const Subject& subject, const SampledPid& l
         if (system != nullptr) return simulate_sampled(*system, law, program, inputs, run);
         return simulate_sampled(*linear, law, program, inputs, run);
     };
-    add_performance(built, simulate, all, options);
+    add_performance(on_device, simulate, all, options);
     if (auto error = stopped(options)) return *error;
-    return built;
+    return on_device;
 }
 
 }  // namespace tunewright

@@ -69,12 +69,13 @@ struct Trace {
     std::vector<double> t, y, u;
 };
 
-struct Course;  // course.h
+struct ResponsePair;  // response_pair.h
 
 struct Responses {
     Trace setpoint, load;
     bool settles = true;
-    std::shared_ptr<const Course> course = {};  ///< until all of an answer are drawn together; no part of the answer
+    std::shared_ptr<const ResponsePair> course =
+        {};  ///< until all of an answer are drawn together; no part of the answer
 };
 
 struct FrequencyTraces {

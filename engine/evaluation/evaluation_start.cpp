@@ -70,12 +70,12 @@ Equivalents equivalents_of(const Controller& controller) {
 }  // namespace
 
 std::optional<Error> refuse_traces(const EvaluateOptions& options, std::size_t controllers) {
-    constexpr std::size_t most = 100'000;  // an answer of some ten megabytes
-    if (options.points <= 0 || static_cast<std::size_t>(options.points) * controllers <= most) return std::nullopt;
+    constexpr std::size_t max = 100'000;  // an answer of some ten megabytes
+    if (options.points <= 0 || static_cast<std::size_t>(options.points) * controllers <= max) return std::nullopt;
     return Error{ErrorKind::invalid_argument, "evaluate/points",
                  "points is " + std::to_string(options.points) + " for each of " + std::to_string(controllers) +
-                     " controllers; an answer has at most " + std::to_string(most) + " altogether. Give at most " +
-                     std::to_string(most / controllers) + ", or ask for fewer controllers."};
+                     " controllers; an answer has at most " + std::to_string(max) + " altogether. Give at most " +
+                     std::to_string(max / controllers) + ", or ask for fewer controllers."};
 }
 
 std::optional<Error> refuse_evaluation(const Controller& controller, const EvaluateOptions& options) {

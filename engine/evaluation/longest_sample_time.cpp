@@ -19,33 +19,33 @@ namespace {
 
 constexpr const char* kNone = "No sample time was found that keeps Ms within 5 % and a longer one that does not.";
 
-constexpr double kFirstSample = 0.1;       // of 1/omega_Ms: where the search starts
-constexpr double kShortest = 1e-3;         // of 1/omega_Ms
-constexpr double kLongest = 1e3;           // of 1/omega_Ms: where it ends
-constexpr double kMostInDelay = 3e4;       // sample times in the dead time: a loop is looked at once for each
-constexpr double kShorter = 0.6;           // of a sample time: a shorter one that the whole loop must bear too
-constexpr double kLightDamping = 0.5;      // of a pole
-constexpr double kNext = 1.04;             // from one sample time to the next, where they are looked at one by one
-constexpr double kNextNear = 1.01;         // the same where Ms is near its limit,
-constexpr double kNearLimit = 0.98;        // of it
-constexpr double kNextShort = 1.2;         // the same where the program is as good as continuous
-constexpr double kAsContinuous = 0.2;      // rad of the fastest swing in a sample, and
-constexpr double kFarBelowPeak = 0.1;      // of 1/omega_Ms: below both that is so
-constexpr double kSwing = 0.15;            // rad of the fastest swing, from one sample time to the next
-constexpr double kMaxUnseenExcess = 5e-3;  // relative, of |S|: what a mode may do that is not followed swing by swing
-constexpr int kMaxLooks = 5000;            // at the whole loop, one after the other: some seconds
-constexpr double kRoughly = 4e-3;          // of ln Ms: what a quick look may miss
+constexpr double kFirstSample = 0.1;           // of 1/omega_Ms: where the search starts
+constexpr double kShortest = 1e-3;             // of 1/omega_Ms
+constexpr double kLongest = 1e3;               // of 1/omega_Ms: where it ends
+constexpr double kMaxSamplesInDelay = 3e4;     // sample times in the dead time: a loop is looked at once for each
+constexpr double kShorterFactor = 0.6;         // of a sample time: a shorter one that the whole loop must bear too
+constexpr double kLightDamping = 0.5;          // of a pole
+constexpr double kStepFactor = 1.04;           // from one sample time to the next, where they are looked at one by one
+constexpr double kStepFactorNearLimit = 1.01;  // the same where Ms is near its limit,
+constexpr double kMinMsShareNearLimit = 0.98;  // of it
+constexpr double kStepFactorShort = 1.2;       // the same where the program is as good as continuous
+constexpr double kMaxContinuousSwing = 0.2;    // rad of the fastest swing in a sample, and
+constexpr double kMaxContinuousTimeRatio = 0.1;  // of 1/omega_Ms: below both that is so
+constexpr double kMaxSwingStep = 0.15;           // rad of the fastest swing, from one sample time to the next
+constexpr double kMaxUnseenExcess = 5e-3;   // relative, of |S|: what a mode may do that is not followed swing by swing
+constexpr int kMaxLooks = 5000;             // at the whole loop, one after the other: some seconds
+constexpr double kMaxRoughLogError = 4e-3;  // of ln Ms: what a quick look may miss
 constexpr double kSmoothingLag = 15;  // sample times: so long a lag leaves no edge where the dead time is whole samples
-constexpr double kMostTurn = 1.5;    // rad of omega_Ms in a sample: beyond, the peak near it is not the loop's any more
-constexpr double kScanFrom = 0.1;    // of a guess: where the peak is followed from
-constexpr double kScanNext = 1.03;   // from one sample time to the next there
-constexpr int kMostWholeLooks = 16;  // of the whole loop, at dead times of whole samples
-constexpr double kSameTime = 1e-9;   // relative: sample times that differ by less are one
-constexpr double kTolerance = 5e-5;  // of a sample time that is a guess
-constexpr double kExact = 1e-6;      // of one that is none, and of the Ms there
-constexpr double kNearby = 1.03;     // from one sample time to the next, where a guess was inexact
-constexpr int kMostNearby = 10;
-constexpr double kWholeLoop = 1e-3;  // relative: how far the whole loop's Ms may be from that of the guess
+constexpr double kMaxTurn = 1.5;    // rad of omega_Ms in a sample: beyond, the peak near it is not the loop's any more
+constexpr double kScanFrom = 0.1;   // of a guess: where the peak is followed from
+constexpr double kScanNext = 1.03;  // from one sample time to the next there
+constexpr int kMaxWholeLoopEvaluations = 16;  // of the whole loop, at dead times of whole samples
+constexpr double kTimeTolerance = 1e-9;       // relative: sample times that differ by less are one
+constexpr double kTolerance = 5e-5;           // of a sample time that is a guess
+constexpr double kExactTolerance = 1e-6;      // of one that is none, and of the Ms there
+constexpr double kNearbyFactor = 1.03;        // from one sample time to the next, where a guess was inexact
+constexpr int kMaxNearby = 10;
+constexpr double kMaxWholeLoopDifference = 1e-3;  // relative: how far the whole loop's Ms may be from that of the guess
 
 /// |S| at the top of its hill near where it was last, as the sample time changes. Another hill that takes over is not
 /// seen.
@@ -60,30 +60,31 @@ public:
     double exactly(double Ts) {
         const SampledLoop loop = sampled(Ts);
         walk(loop);
-        const double left = omega_ / kStep, right = std::min(omega_ * kStep, loop.highest_frequency());
+        const double left = omega_ / kFrequencyStep,
+                     right = std::min(omega_ * kFrequencyStep, loop.highest_frequency());
         const auto S = [&](double omega) { return magnitude(loop.at(omega).S); };
         const double ends = std::max(S(left), S(right)), here = S(omega_);
         return here < ends ? ends : log_maximum(S, left, {omega_, here}, right).value;
     }
 
 private:
-    static constexpr double kStep = 1.12;
-    static constexpr int kMostSteps = 30;
+    static constexpr double kFrequencyStep = 1.12;
+    static constexpr int kMaxSteps = 30;
 
     SampledLoop sampled(double Ts) const { return {plant_, {.gains = gains_, .Ts = Ts}}; }
 
     double walk(const SampledLoop& loop) {
         const double highest = loop.highest_frequency();
         const auto S = [&](double omega) { return magnitude(loop.at(std::min(omega, highest)).S); };
-        omega_ = std::min(omega_, highest / kStep);
-        double below = S(omega_ / kStep), here = S(omega_), above = S(omega_ * kStep);
-        for (int i = 0; i < kMostSteps && (below > here || above > here); ++i) {
+        omega_ = std::min(omega_, highest / kFrequencyStep);
+        double below = S(omega_ / kFrequencyStep), here = S(omega_), above = S(omega_ * kFrequencyStep);
+        for (int i = 0; i < kMaxSteps && (below > here || above > here); ++i) {
             const bool up = above > below;
-            if (up && omega_ * kStep * kStep > highest) break;
-            omega_ *= up ? kStep : 1 / kStep;
+            if (up && omega_ * kFrequencyStep * kFrequencyStep > highest) break;
+            omega_ *= up ? kFrequencyStep : 1 / kFrequencyStep;
             (up ? below : above) = here;
             here = up ? above : below;
-            (up ? above : below) = S(up ? omega_ * kStep : omega_ / kStep);
+            (up ? above : below) = S(up ? omega_ * kFrequencyStep : omega_ / kFrequencyStep);
         }
         const double bend = below - 2 * here + above, slope = 0.5 * (above - below);
         return bend < 0 ? here - 0.5 * slope * slope / bend : std::max({below, here, above});
@@ -145,8 +146,8 @@ bool has_edges(const LinearPlant& plant, double Ts) {
 double at_edge(const LinearPlant& plant, double Ts, double next) {
     const double L = plant.dead_time();
     if (L == 0) return next;
-    const double edge = L / std::ceil(L / next * (1 - kSameTime));
-    return edge > Ts * (1 + kSameTime) && edge <= next ? edge : next;
+    const double edge = L / std::ceil(L / next * (1 - kTimeTolerance));
+    return edge > Ts * (1 + kTimeTolerance) && edge <= next ? edge : next;
 }
 
 class Search {
@@ -171,7 +172,7 @@ public:
 private:
     SampledLoop loop(double Ts) const { return {plant_, {.gains = gains_, .Ts = Ts}}; }
     bool bears(double Ts) const { return loop(Ts).keeps(limit_); }
-    double shortest() const { return std::max(kShortest / omega_Ms_, plant_.dead_time() / kMostInDelay); }
+    double shortest() const { return std::max(kShortest / omega_Ms_, plant_.dead_time() / kMaxSamplesInDelay); }
     double longest() const { return kLongest / omega_Ms_; }
 
     /// Of |S| over the limit.
@@ -185,15 +186,15 @@ private:
         if (f_high <= 0) return std::nullopt;
         const double Ts = root_between(roughly, 0, high, at_0_, f_high, kTolerance * high);
         const double left = excess(peak.exactly(Ts));
-        return std::abs(left) <= kWholeLoop ? Ts : exactly_reached(peak, Ts, left);
+        return std::abs(left) <= kMaxWholeLoopDifference ? Ts : exactly_reached(peak, Ts, left);
     }
 
     /// The same near Ts, where the peak exceeds the limit by `f`.
     std::optional<double> exactly_reached(TrackedPeak& peak, double Ts, double f) const {
         const auto exactly = [&](double h) { return excess(peak.exactly(h)); };
-        for (int i = 0; i < kMostNearby; ++i) {
-            const double next = f > 0 ? Ts / kNearby : Ts * kNearby, f_next = exactly(next);
-            if ((f_next > 0) != (f > 0)) return root_between(exactly, Ts, next, f, f_next, kExact * Ts);
+        for (int i = 0; i < kMaxNearby; ++i) {
+            const double next = f > 0 ? Ts / kNearbyFactor : Ts * kNearbyFactor, f_next = exactly(next);
+            if ((f_next > 0) != (f > 0)) return root_between(exactly, Ts, next, f, f_next, kExactTolerance * Ts);
             Ts = next;
             f = f_next;
         }
@@ -205,17 +206,19 @@ private:
         TrackedPeak peak(plant_, gains_, omega_Ms_);
         const auto exactly = [&](double Ts) {
             const double roughly = excess(peak.roughly(Ts));
-            return roughly < -kRoughly ? roughly : excess(peak.exactly(Ts));
+            return roughly < -kMaxRoughLogError ? roughly : excess(peak.exactly(Ts));
         };
         double before = 0, low = kScanFrom * guess, f_before = at_0_, f_low = exactly(low);
         while (low < guess) {
             const double high = std::min(at_edge(plant_, low, kScanNext * low), guess), f_high = exactly(high);
-            if (f_high > 0 && f_low <= 0) return root_between(exactly, low, high, f_low, f_high, kExact * high);
+            if (f_high > 0 && f_low <= 0)
+                return root_between(exactly, low, high, f_low, f_high, kExactTolerance * high);
             // Behind an edge Ms may rise a little more before it falls.
             if (before > 0 && f_low >= f_before && f_low >= f_high &&
                 may_exceed(0, {before, f_before}, {low, f_low}, {high, f_high})) {
                 const Maximum top = log_maximum(exactly, before, {low, f_low}, high);
-                if (top.value > 0) return root_between(exactly, before, top.x, f_before, top.value, kExact * low);
+                if (top.value > 0)
+                    return root_between(exactly, before, top.x, f_before, top.value, kExactTolerance * low);
             }
             before = low;
             f_before = f_low;
@@ -228,9 +231,10 @@ private:
     /// True if the whole loop bears the sample times below at which the dead time is whole samples.
     bool bears_edges(double below, double from) const {
         double Ts = from;
-        for (int i = 0; i < kMostWholeLooks; ++i) {
-            const double next = at_edge(plant_, Ts, below * std::pow(from / below, 1 - (i + 1.0) / kMostWholeLooks));
-            if (next >= below * (1 - kWholeLoop)) return true;
+        for (int i = 0; i < kMaxWholeLoopEvaluations; ++i) {
+            const double next =
+                at_edge(plant_, Ts, below * std::pow(from / below, 1 - (i + 1.0) / kMaxWholeLoopEvaluations));
+            if (next >= below * (1 - kMaxWholeLoopDifference)) return true;
             if (next > Ts && !bears(next)) return false;
             Ts = std::max(Ts, next);
         }
@@ -242,18 +246,18 @@ private:
     std::optional<double> by_peak() {
         TrackedPeak peak(plant_, gains_, omega_Ms_);
         auto Ts = guess(peak);
-        if (!Ts || *Ts < shortest() || *Ts * omega_Ms_ > kMostTurn) return std::nullopt;
+        if (!Ts || *Ts < shortest() || *Ts * omega_Ms_ > kMaxTurn) return std::nullopt;
         const bool edges = has_edges(plant_, *Ts);
         if (edges) Ts = std::max(first_reached(*Ts), shortest());
-        low_ = std::max(kShorter * *Ts, shortest());
+        low_ = std::max(kShorterFactor * *Ts, shortest());
         bool borne = bears(*low_) && (!edges || bears_edges(*Ts, *low_));
         // The guess's own peak is at the limit: the whole loop is no better.
-        if (borne && loop(*Ts).keeps(limit_ * (1 + kWholeLoop))) return Ts;
+        if (borne && loop(*Ts).keeps(limit_ * (1 + kMaxWholeLoopDifference))) return Ts;
         // Another peak of the loop has become the higher one: what is looked for lies not far below, but where edges
         // let it come and go.
         if (edges) low_.reset();
         while (low_ && *low_ > shortest()) {
-            const double lower = std::max(kShorter * *low_, shortest());
+            const double lower = std::max(kShorterFactor * *low_, shortest());
             const bool lower_borne = bears(lower);
             if (borne && lower_borne) break;
             low_ = lower;
@@ -273,7 +277,7 @@ private:
                     "The plant oscillates so much faster than the loop that the sample times up to the "
                     "longest one were not all looked at: up to " +
                     text(low) + " Ms stays within 5 %.");
-            const bool near = !loop(low).keeps(limit_ * kNearLimit);
+            const bool near = !loop(low).keeps(limit_ * kMinMsShareNearLimit);
             const double high = next(low, near);
             if (!bears(high)) return between(low, high);
             low = high;
@@ -293,9 +297,9 @@ private:
     /// much of its way from sample to sample in between, and nearer where Ms is near its limit.
     double next(double Ts, bool near) const {
         const double swing = fastest_swing(Ts);
-        const bool as_continuous = Ts * swing < kAsContinuous && Ts * omega_Ms_ < kFarBelowPeak;
-        double further = Ts * (near ? kNextNear : as_continuous ? kNextShort : kNext);
-        if (!as_continuous && swing > 0) further = std::min(further, Ts + kSwing / swing);
+        const bool as_continuous = Ts * swing < kMaxContinuousSwing && Ts * omega_Ms_ < kMaxContinuousTimeRatio;
+        double further = Ts * (near ? kStepFactorNearLimit : as_continuous ? kStepFactorShort : kStepFactor);
+        if (!as_continuous && swing > 0) further = std::min(further, Ts + kMaxSwingStep / swing);
         return at_edge(plant_, Ts, further);
     }
 
@@ -304,9 +308,9 @@ private:
         const auto whole = [this](double Ts) { return excess(loop(Ts).sensitivity_peak().value); };
         double f_low = whole(low);
         // They look less closely than the whole loop's peak is sought: it has the last word.
-        for (; f_low > kExact && low > shortest(); f_low = whole(low)) {
+        for (; f_low > kExactTolerance && low > shortest(); f_low = whole(low)) {
             high = low;
-            low = std::max(low / kNext, shortest());
+            low = std::max(low / kStepFactor, shortest());
         }
         const Peak above = loop(high).sensitivity_peak();
         if (above.omega > 0) {
@@ -314,13 +318,13 @@ private:
             const auto exactly = [&](double Ts) { return excess(peak.exactly(Ts)); };
             const double at_high = exactly(high), at_low = exactly(low);
             if (at_low < 0 && at_high > 0) {
-                const double Ts = root_between(exactly, low, high, at_low, at_high, kExact * high);
-                if (std::abs(whole(Ts)) <= kExact) return Ts;
+                const double Ts = root_between(exactly, low, high, at_low, at_high, kExactTolerance * high);
+                if (std::abs(whole(Ts)) <= kExactTolerance) return Ts;
             }
         }
         // They agree with Ms but for its last digits.
         const double f_high = std::clamp(excess(above.value), 0.0, 1.0);
-        return root_between(whole, low, high, std::min(f_low, 0.0), f_high, kExact * high);
+        return root_between(whole, low, high, std::min(f_low, 0.0), f_high, kExactTolerance * high);
     }
 
     const LinearPlant& plant_;
@@ -339,7 +343,7 @@ Figure longest_sample_time(const LinearPlant& plant, const ParallelPid& gains, d
     return Search(plant, gains, Ms, omega_Ms, factor, stop).result();
 }
 
-std::optional<Figure> longest_sample_time_of(const Subject& subject, const Evaluation& evaluation,
+std::optional<Figure> longest_sample_time_of(const AnalysedPlant& subject, const Evaluation& evaluation,
                                              const std::stop_token& stop) {
     const LinearPlant* plant = subject.linear();
     const Robustness& r = evaluation.robustness;

@@ -11,8 +11,8 @@
 #include "engine/controller/pid.h"
 #include "engine/evaluation/evaluation.h"
 #include "engine/figure.h"
+#include "engine/plant/analysed_plant.h"
 #include "engine/plant/linear/linear_plant.h"
-#include "engine/plant/subject.h"
 
 namespace tunewright {
 
@@ -32,7 +32,7 @@ Figure longest_sample_time(const LinearPlant& plant, const ParallelPid& gains, d
 
 /// The one for kMsAsSampled, of an evaluated controller. Empty where the question makes no sense: an
 /// unstable loop, a nonlinear integral, a plant known by points alone.
-std::optional<Figure> longest_sample_time_of(const Subject& subject, const Evaluation& evaluation,
+std::optional<Figure> longest_sample_time_of(const AnalysedPlant& subject, const Evaluation& evaluation,
                                              const std::stop_token& stop = {});
 
 }  // namespace tunewright

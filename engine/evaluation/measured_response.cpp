@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kMaxRefinements = 5;
 constexpr double kHalvedSteps = 1.0 / 16;  // of a tolerance, where the error is of order 4
-constexpr double kTail = 1e-6;             // of the integral of t |e|, left after the run's end
+constexpr double kMaxTailShare = 1e-6;     // of the integral of t |e|, left after the run's end
 constexpr std::size_t kMaxNodes = 1000000;
 constexpr double kMoreNodes = 1.4;
 constexpr int kMaxTightenings = 3;
@@ -69,7 +69,7 @@ bool as_promised(const MeasuredResponse& measured) {
 }
 
 MeasuredResponse measure(const Simulate& simulate, ResponseOptions options, double target) {
-    options.tail = kTail;
+    options.tail = kMaxTailShare;
     const bool to_infinity = !options.horizon;
     MeasuredResponse measured{.response = simulate(options), .errors = {}, .indices = {}};
     if (!measured.response.settles) return measured;

@@ -10,7 +10,7 @@ namespace tunewright {
 namespace {
 
 constexpr double kSettlingBand = 0.02;
-constexpr double kAtTarget = 1e-9;  // of the largest y: an error at rest below it is none
+constexpr double kMaxRelativeRestError = 1e-9;  // of the largest y: an error at rest below it is none
 
 /// The indices of one kind of performance, or the reason why there are none. `cut`: the run ended before its horizon.
 template <class Figures>
@@ -35,7 +35,7 @@ const char* why_no_integral(const StepResponse& response, double target, bool to
     if (!to_infinity) return nullptr;
     double scale = std::abs(target);
     for (const auto& node : response.nodes) scale = std::max(scale, std::abs(node.y));
-    if (std::abs(target - response.y_final) > kAtTarget * scale)
+    if (std::abs(target - response.y_final) > kMaxRelativeRestError * scale)
         return "The error does not go to 0 (no integral action, or u rests at its limit), so its integral is infinite; "
                "give a "
                "horizon.";

@@ -109,18 +109,18 @@ RegionFigures region_figures(const PlantFamily& family, const ParallelPid& contr
 
 namespace {
 
-constexpr double kLeastShownS = 1e-3, kLeastShownT = 2e-3;  // beyond them the curves show nothing
-constexpr double kNear = 0.3;        // of |L|: a curve nearer to the origin is looked at less closely, and from
-constexpr double kUnseen = 0.02;     // here on its turns are not followed
-constexpr double kSameTurn = 0.1;    // rad of L that count as much as
-constexpr double kSameChange = 0.2;  // this change of ln |L| or
-constexpr double kSameRatio = 0.15;  // this one of ln omega
+constexpr double kMinShownS = 1e-3, kMinShownT = 2e-3;  // beyond them the curves show nothing
+constexpr double kFullDetailModulus = 0.3;   // of |L|: a curve nearer to the origin is looked at less closely, and from
+constexpr double kMinVisibleModulus = 0.02;  // here on its turns are not followed
+constexpr double kTurnUnit = 0.1;            // rad of L that count as much as
+constexpr double kLogModulusUnit = 0.2;      // this change of ln |L| or
+constexpr double kLogFrequencyUnit = 0.15;   // this one of ln omega
 
 /// The part of the grid that shows something.
 LoopGrid visible(const LoopGrid& grid) {
     std::size_t first = 0, last = grid.omega.size() - 1;
-    while (first + 2 <= last && magnitude(grid.point[first + 1].S) < kLeastShownS) ++first;
-    while (last > first + 2 && magnitude(grid.point[last - 1].T) < kLeastShownT) --last;
+    while (first + 2 <= last && magnitude(grid.point[first + 1].S) < kMinShownS) ++first;
+    while (last > first + 2 && magnitude(grid.point[last - 1].T) < kMinShownT) --last;
     LoopGrid seen;
     seen.omega.reserve(last - first + 1);
     seen.point.reserve(last - first + 1);
@@ -133,7 +133,9 @@ LoopGrid visible(const LoopGrid& grid) {
 }
 
 /// How much of a turn at |L| the eye sees: a chord leaves the arc by |L| turn^2 / 8.
-double seen_at(double gain) { return gain < kUnseen ? 0 : std::min(1.0, std::sqrt(gain / kNear)); }
+double seen_at(double gain) {
+    return gain < kMinVisibleModulus ? 0 : std::min(1.0, std::sqrt(gain / kFullDetailModulus));
+}
 
 /// How far the curves have come at each frequency, seen by the eye: turning of L, growth of |L|, omega, each in its
 /// measure. `turns`: the phase of L, unwrapped.
@@ -143,8 +145,8 @@ std::vector<double> progress_along(const LoopGrid& grid, const std::vector<doubl
     for (std::size_t i = 1; i < grid.omega.size(); ++i) {
         const double a = magnitude(grid.point[i - 1].L), b = magnitude(grid.point[i].L);
         const double seen = seen_at(std::max(a, b));
-        const double turn = (turns[i] - turns[i - 1]) / kSameTurn, change = std::log(b / a) / kSameChange;
-        const double ratio = std::log(grid.omega[i] / grid.omega[i - 1]) / kSameRatio;
+        const double turn = (turns[i] - turns[i - 1]) / kTurnUnit, change = std::log(b / a) / kLogModulusUnit;
+        const double ratio = std::log(grid.omega[i] / grid.omega[i - 1]) / kLogFrequencyUnit;
         const double curve = std::isfinite(change) ? std::hypot(turn, change) : std::abs(turn);
         along.push_back(along.back() + seen * curve + ratio);
     }
@@ -153,8 +155,8 @@ std::vector<double> progress_along(const LoopGrid& grid, const std::vector<doubl
 
 /// A phase on the turn that is next to `nearby`.
 double on_turn(double phase, double nearby) {
-    constexpr double kTurn = 2 * std::numbers::pi;
-    return phase - kTurn * std::floor((phase - nearby) / kTurn + 0.5);
+    constexpr double kFullTurn = 2 * std::numbers::pi;
+    return phase - kFullTurn * std::floor((phase - nearby) / kFullTurn + 0.5);
 }
 
 /// The phase of L at each frequency, the dead time's turns between neighbours counted.
@@ -169,12 +171,12 @@ std::vector<double> unwrapped(const LoopGrid& grid, double dead_time) {
     return turns;
 }
 
-/// At most `most` frequencies, evenly spread along the curves; `kept` (ascending) are among them.
-std::vector<double> spread(const LoopGrid& grid, const std::vector<double>& along, std::size_t most,
+/// At most `max` frequencies, evenly spread along the curves; `kept` (ascending) are among them.
+std::vector<double> spread(const LoopGrid& grid, const std::vector<double>& along, std::size_t max,
                            const std::vector<double>& kept) {
-    const std::size_t count = most > kept.size() + 2 ? most - kept.size() : most;
+    const std::size_t count = max > kept.size() + 2 ? max - kept.size() : max;
     std::vector<double> omega;
-    omega.reserve(most);
+    omega.reserve(max);
     std::size_t i = 1, spaced = 0;  // `ratio` is that of the frequencies around `spaced`
     double ratio = 0;
     for (std::size_t k = 0; k < count; ++k) {
@@ -189,7 +191,7 @@ std::vector<double> spread(const LoopGrid& grid, const std::vector<double>& alon
     }
     const double first = omega.front(), last = omega.back();
     const auto spread_evenly = static_cast<std::ptrdiff_t>(omega.size());
-    if (count < most)
+    if (count < max)
         for (const double frequency : kept)
             if (frequency > first && frequency < last) omega.push_back(frequency);
     std::ranges::inplace_merge(omega, omega.begin() + spread_evenly);
@@ -239,8 +241,8 @@ FrequencyTraces frequency_traces(const Loop& loop, const LoopGrid& grid, int poi
 FrequencyTraces frequency_traces(const MeasuredLoop& loop, int points) {
     const LoopGrid whole = loop.grid();
     LoopGrid some;
-    const std::size_t most = static_cast<std::size_t>(points),
-                      stride = std::max<std::size_t>(1, (whole.omega.size() + most - 1) / most);
+    const std::size_t max = static_cast<std::size_t>(points),
+                      stride = std::max<std::size_t>(1, (whole.omega.size() + max - 1) / max);
     const std::vector<double> turns = unwrapped(whole, 0);
     std::vector<double> phase;
     for (std::size_t i = 0; i < whole.omega.size(); i += stride) {

@@ -27,9 +27,9 @@ namespace {
 
 /// A change of u in the last samples shows nothing of the response.
 std::optional<Error> refuse_late_step(const CleanRecord& r) {
-    constexpr int kTooFew = 3;  // a gain, a lag and a dead time take one sample each
+    constexpr int kMaxTooFewSamples = 3;  // a gain, a lag and a dead time take one sample each
     const auto after = std::count_if(r.t.begin(), r.t.end(), [&](double t) { return t > r.v_time.front(); });
-    if (after > kTooFew) return std::nullopt;
+    if (after > kMaxTooFewSamples) return std::nullopt;
     return Error{
         ErrorKind::not_identifiable, "record",
         "u first changes at t = " + text(r.scale.t_origin + r.scale.t_scale * r.v_time.front()) + ", with " +
@@ -92,12 +92,12 @@ std::vector<FrequencyConstraint> anchors_of(const ModelSearch& search, const Rec
     const std::complex<double> G = cycle.harmonics.front().G;
     std::vector<FrequencyConstraint> anchors = {
         {cycle.omega(), G, rms / (kHeldWithin * std::abs(G)), cycle.harmonics.front().G_std}};
-    constexpr double kMoved = 0.01;  // of half a swing of u: less divides noise by noise
-    constexpr double kKnown = 0.3;   // relative error beyond which the structure knows the gain as well
+    constexpr double kMinBias = 0.01;      // of half a swing of u: less divides noise by noise
+    constexpr double kMaxGainError = 0.3;  // relative error beyond which the structure knows the gain as well
     const double gain = cycle.static_gain(), sign = cycle.reversed ? -1 : 1;
-    const bool shows_gain = cycle.biased() && std::abs(cycle.v_mean - cycle.rest.v) > kMoved * cycle.v_half &&
+    const bool shows_gain = cycle.biased() && std::abs(cycle.v_mean - cycle.rest.v) > kMinBias * cycle.v_half &&
                             cycle.drift == 0 && !search.disturbances.slope && !search.disturbances.load &&
-                            gain * sign > std::abs(G) && cycle.static_gain_std() < kKnown * std::abs(gain);
+                            gain * sign > std::abs(G) && cycle.static_gain_std() < kMaxGainError * std::abs(gain);
     if (shows_gain) anchors.push_back({0, gain, rms / (kHeldWithin * std::abs(gain)), cycle.static_gain_std()});
     return anchors;
 }
@@ -121,11 +121,11 @@ void warn_mismatch(const RecordedCycle& cycle, bool gain_held, double left, std:
 /// the plant's: then what it says far from the oscillation is open.
 void warn_extrapolated_gain(const std::optional<double>& omega, const Fit& fit, double left,
                             std::vector<Warning>& warnings) {
-    constexpr double kFar = 2;         // lag times omega from which a lag looks like an integrator
-    constexpr double kPlainly = 0.02;  // of y's variation, beyond noise
-    constexpr double kPattern = 2;     // samples of correlation time: white noise has 1
+    constexpr double kMinLagTimesOmega = 2;        // lag times omega from which a lag looks like an integrator
+    constexpr double kMaxUnexplainedShare = 0.02;  // of y's variation, beyond noise
+    constexpr double kMinCorrelationTime = 2;      // samples of correlation time: white noise has 1
     const Structure structure = fit.form.structure;
-    const bool another = left > kPlainly || correlation_time(fit.residual) > kPattern;
+    const bool another = left > kMaxUnexplainedShare || correlation_time(fit.residual) > kMinCorrelationTime;
     if (is_integrating(structure) || structure == Structure::unstable) {
         if (!another) return;
         warnings.push_back({"gain-from-oscillation",
@@ -134,7 +134,7 @@ void warn_extrapolated_gain(const std::optional<double>& omega, const Fit& fit, 
         return;
     }
     const double lag = has_quadratic(structure) ? fit.shape.a1() : fit.shape.T();
-    if (omega && lag * *omega >= kFar) {
+    if (omega && lag * *omega >= kMinLagTimesOmega) {
         warnings.push_back({"gain-from-oscillation",
                             "The relay's oscillation shows the plant where its lags times omega are " +
                                 text(lag * *omega, 2) +
@@ -184,21 +184,21 @@ double quickest_lag(const Fit& fit) {
 /// The models of a record, its false readings left out. Of a long one, means over blocks are fitted, u as it is: a
 /// block of length h changes what a lag T leaves by (h/T)^2/24, 5e-4 for ten blocks. Quicker plants get shorter ones.
 ModelSearch searched(CleanRecord& record, ModelChoice model, const RunControl& control) {
-    constexpr int kEnough = 20'000, kMaxFitted = 100'000;  // more samples add time, and no digits that count
-    constexpr double kBlocks = 10;                         // in the quickest lag
-    const auto search_of = [&](int most) {
-        return search_with_further(block_means(record, most), model, kind_of(record) == RecordKind::relay, control);
+    constexpr int kFirstSamples = 20'000, kMaxFitted = 100'000;  // more samples add time, and no digits that count
+    constexpr double kBlocks = 10;                               // in the quickest lag
+    const auto search_of = [&](int max) {
+        return search_with_further(block_means(record, max), model, kind_of(record) == RecordKind::relay, control);
     };
-    ModelSearch search = search_of(kEnough);
-    const bool quick = search.choice.index < 0 || quickest_lag(search.chosen()) * kEnough < kBlocks;
-    if (quick && record.samples() > kEnough && !control.stop.stop_requested()) search = search_of(kMaxFitted);
+    ModelSearch search = search_of(kFirstSamples);
+    const bool quick = search.choice.index < 0 || quickest_lag(search.chosen()) * kFirstSamples < kBlocks;
+    if (quick && record.samples() > kFirstSamples && !control.stop.stop_requested()) search = search_of(kMaxFitted);
     if (search.choice.index < 0 || control.stop.stop_requested()) return search;
     return without_false_readings(std::move(search), record, model, control);
 }
 
 Expected<IdentifiedModel> by_output_error(const CleanRecord& record, ModelSearch search, const IdentifyOptions& options,
                                           const RunControl& control) {
-    constexpr double kUnexplained = 0.004;  // of y's variation: less is not worth another structure
+    constexpr double kMinUnexplainedShare = 0.004;  // of y's variation: less is not worth another structure
     const RecordKind kind = kind_of(record);
     if (control.stop.stop_requested()) return cancelled();
     if (search.choice.index < 0 || !responds(search.context.record, search.chosen())) {
@@ -213,7 +213,7 @@ Expected<IdentifiedModel> by_output_error(const CleanRecord& record, ModelSearch
     std::vector<Warning> warnings;
     const double left = unexplained_share(search.context, search.chosen());
     // Where the rows show u late, the phase that they show at the oscillation is late too.
-    const bool unexplained = left > kUnexplained && leaves_a_pattern(search.context, search.chosen());
+    const bool unexplained = left > kMinUnexplainedShare && leaves_a_pattern(search.context, search.chosen());
     if (whole && cycle && unexplained && cycle->periods > 1 && !search.context.record.moved_between_rows) {
         const std::vector<FrequencyConstraint> anchors = anchors_of(search, *cycle);
         constrain(search, anchors, options.model, control);
@@ -252,7 +252,7 @@ struct Fitted {
 /// Where u runs beyond ends that are usual for a controller's output and the fit leaves a pattern: with u cut to them,
 /// kept if that leaves a third of the sum of squares or less.
 void try_limits(const Record& record, ModelChoice model, const RunControl& control, Fitted& fitted) {
-    constexpr double kMuchLess = 3;  // times, so that chance alone never cuts u
+    constexpr double kMinVarianceRatio = 3;  // times, so that chance alone never cuts u
     if (record.u_limits || fitted.search.choice.index < 0) return;
     if (!leaves_a_pattern(fitted.search.context, fitted.search.chosen())) return;
     for (const InputLimits& limits : plain_limits(record)) {
@@ -263,7 +263,7 @@ void try_limits(const Record& record, ModelChoice model, const RunControl& contr
         ModelSearch search = searched(*clean, model, control);
         if (search.choice.index < 0) continue;
         const auto mean_square = [](const Fit& fit) { return fit.sse / static_cast<double>(fit.residual.size()); };
-        if (kMuchLess * mean_square(search.chosen()) > mean_square(fitted.search.chosen())) continue;
+        if (kMinVarianceRatio * mean_square(search.chosen()) > mean_square(fitted.search.chosen())) continue;
         fitted = {std::move(*clean), std::move(search), limits};
     }
 }

@@ -29,7 +29,7 @@ Record counted_down(const Record& record) {
 
 Expected<IdentifiedModel> model_in_time(Expected<IdentifiedModel> newest_first, Expected<IdentifiedModel> countdown,
                                         bool in_loop) {
-    constexpr double kPlainlyLess = 0.5;  // of what the other direction leaves
+    constexpr double kMaxShareOfOther = 0.5;  // of what the other direction leaves
     const std::string counted = "The times count down from row to row, and the rows were used in their order, at -t: ";
     if (!countdown) return newest_first;
     const bool may_be_inverse = in_loop || countdown->data_quality.closed_loop;
@@ -40,8 +40,8 @@ Expected<IdentifiedModel> model_in_time(Expected<IdentifiedModel> newest_first, 
         return countdown;
     }
     const double turned = share_left_by(*newest_first), as_they_stand = share_left_by(*countdown);
-    if (turned < kPlainlyLess * as_they_stand) return newest_first;
-    if (as_they_stand < kPlainlyLess * turned && !may_be_inverse) {
+    if (turned < kMaxShareOfOther * as_they_stand) return newest_first;
+    if (as_they_stand < kMaxShareOfOther * turned && !may_be_inverse) {
         add(*countdown, counted + "so y follows u, turned round it does not " + fits(*countdown, *newest_first) + ".",
             WarningLevel::warning);
         return countdown;

@@ -38,16 +38,16 @@ Expected<TwoPointModel> two_point(const CleanRecord& r) {
     }
     const auto first = static_cast<std::size_t>(std::lower_bound(r.t.begin(), r.t.end(), levels.time[1]) - r.t.begin());
     const std::size_t after = r.y.size() - first, tenth = after / 10;
-    constexpr std::size_t kMinTenth = 2;  // samples: two means that differ by more than noise
-    constexpr double kSettled = 0.05;     // of the response
-    constexpr double kTiny = 1e-300;      // keeps a division by what may be 0 finite
+    constexpr std::size_t kMinTenth = 2;         // samples: two means that differ by more than noise
+    constexpr double kMaxUnsettledShare = 0.05;  // of the response
+    constexpr double kMinDivisor = 1e-300;       // keeps a division by what may be 0 finite
     if (tenth < kMinTenth) return refused("The two-point construction needs 20 samples after the step.");
     const std::span<const double> y(r.y);
     const double end = mean(y.last(tenth)), earlier = mean(y.subspan(r.y.size() - 2 * tenth, tenth));
     const double y0 = r.y_rest ? *r.y_rest : first > 0 ? mean(y.first(first)) : y.front();
-    if (std::abs(end - earlier) > kSettled * std::abs(end - y0)) {
+    if (std::abs(end - earlier) > kMaxUnsettledShare * std::abs(end - y0)) {
         return refused("y has not settled: over the last tenth of the record it still moves by " +
-                       text(100 * std::abs(end - earlier) / std::max(kTiny, std::abs(end - y0)), 2) +
+                       text(100 * std::abs(end - earlier) / std::max(kMinDivisor, std::abs(end - y0)), 2) +
                        " % of the response.");
     }
     const std::size_t window = std::max<std::size_t>(1, after / 200);

@@ -18,11 +18,13 @@ constexpr double kClosestNeighbours = 1e-7;  // relative distance below which no
 constexpr double kHalfOfArc = 0.55;
 
 constexpr double kBelowCorners = 1e-3, kAboveCorners = 1e2;  // of the outermost corners: L is its asymptote beyond
-constexpr double kFarBelow = 1e-2, kFarAbove = 1e2;          // of the corners: where the asymptotes are read
-constexpr double kFlat = 0.1;  // slope of |L| in decades a decade: a flatter asymptote gives no reliable crossing
-constexpr double kFarthestCrossing = 30;  // of ln omega from where the asymptote is read
-constexpr double kLightDamping = 0.3;     // below it a pole or zero shows as a resonance
-constexpr double kLeastWidth = 1e-6;      // of a resonance, relative: an undamped one has none
+constexpr double kAsymptoteBelowCorners = 1e-2,
+                 kAsymptoteAboveCorners = 1e2;  // of the corners: where the asymptotes are read
+constexpr double kMinAsymptoteSlope =
+    0.1;  // slope of |L| in decades a decade: a flatter asymptote gives no reliable crossing
+constexpr double kMaxLogCrossingDistance = 30;  // of ln omega from where the asymptote is read
+constexpr double kLightDamping = 0.3;           // below it a pole or zero shows as a resonance
+constexpr double kMinWidth = 1e-6;              // of a resonance, relative: an undamped one has none
 
 using OpenLoop = std::function<std::complex<double>(double)>;
 
@@ -50,13 +52,13 @@ void add_asymptote_crossings(std::vector<double>& corners, const OpenLoop& open_
         const double here = magnitude(open_loop(omega));
         const double there = magnitude(open_loop(omega * ratio));
         const double slope = std::log(there / here) / std::log(ratio);
-        if (!std::isfinite(slope) || std::abs(slope) < kFlat) return 0.0;
-        return omega * std::exp(std::clamp(-std::log(here) / slope, -kFarthestCrossing, kFarthestCrossing));
+        if (!std::isfinite(slope) || std::abs(slope) < kMinAsymptoteSlope) return 0.0;
+        return omega * std::exp(std::clamp(-std::log(here) / slope, -kMaxLogCrossingDistance, kMaxLogCrossingDistance));
     };
-    const double below = slope_crossing(low * kFarBelow, 0.5);
+    const double below = slope_crossing(low * kAsymptoteBelowCorners, 0.5);
     if (below < low) add_corner(corners, below);
-    if (high * kFarAbove > highest) return;
-    const double above = slope_crossing(high * kFarAbove, 2.0);
+    if (high * kAsymptoteAboveCorners > highest) return;
+    const double above = slope_crossing(high * kAsymptoteAboveCorners, 2.0);
     if (above > high) add_corner(corners, above);
 }
 
@@ -108,7 +110,7 @@ std::vector<double> base_frequencies(const LinearPlant& plant, const ParallelPid
     // A lightly damped pole or zero shows between two points of any grid only if one is put there.
     const auto add_resonance = [&](std::complex<double> root) {
         if (root.imag() <= 0 || std::abs(root.real()) > kLightDamping * std::abs(root)) return;
-        const double centre = std::abs(root), width = std::max(std::abs(root.real()), kLeastWidth * centre);
+        const double centre = std::abs(root), width = std::max(std::abs(root.real()), kMinWidth * centre);
         for (const double offset : {-3.0, -1.0, -0.3, 0.0, 0.3, 1.0, 3.0})
             if (centre + offset * width > 0 && centre + offset * width < highest)
                 omega.push_back(centre + offset * width);

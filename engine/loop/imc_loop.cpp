@@ -12,21 +12,22 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double kLargestTurn = 0.4;  // |D2 - D1| relative to the smaller: below it the argument cannot be mistaken
+constexpr double kMaxRelativeChange =
+    0.4;  // |D2 - D1| relative to the smaller: below it the argument cannot be mistaken
 constexpr int kMaxHalvings = 40;
-constexpr double kBoundary = 1e-9;     // |D|: closer to 0 counts as on the axis
-constexpr double kTurnsResolved = 60;  // periods of the longer dead time that are followed one by one
+constexpr double kMaxAxisDistance = 1e-9;  // |D|: closer to 0 counts as on the axis
+constexpr double kTurnsResolved = 60;      // periods of the longer dead time that are followed one by one
 constexpr int kPointsPerDecade = 24;
 
 constexpr double kBelowCorners = 1e-3, kAboveCorners = 1e2;  // of the outermost corners
 constexpr double kGridStep = 0.05;                           // of S between neighbours
-constexpr double kHigher = 1 + 1e-12;  // a limit must exceed a peak by more than rounding to stand for it
+constexpr double kMinPeakRatio = 1 + 1e-12;  // a limit must exceed a peak by more than rounding to stand for it
 
 using Function = std::function<Complex(double)>;
 
 double turn_between(const Function& D, double left, Complex D_left, double right, Complex D_right, int depth) {
     const double smaller = std::min(std::abs(D_left), std::abs(D_right));
-    if (depth == 0 || std::abs(D_right - D_left) <= kLargestTurn * smaller) return std::arg(D_right / D_left);
+    if (depth == 0 || std::abs(D_right - D_left) <= kMaxRelativeChange * smaller) return std::arg(D_right / D_left);
     const double middle = std::sqrt(left * right);
     const Complex D_middle = D(middle);
     return turn_between(D, left, D_left, middle, D_middle, depth - 1) +
@@ -49,7 +50,7 @@ Complex ImcLoop::characteristic(double omega) const {
 bool ImcLoop::stable() const {
     const Function D = [this](double omega) { return characteristic(omega); };
     const Complex start = D(0);
-    if (!(start.real() > kBoundary)) return false;  // an odd number of turns: P(0) and the model differ in sign
+    if (!(start.real() > kMaxAxisDistance)) return false;  // an odd number of turns: P(0) and the model differ in sign
     const double ratio = std::pow(10.0, 1.0 / kPointsPerDecade);
     double angle = 0, omega = lowest_corner() * kBelowCorners;
     Complex last = D(omega);
@@ -58,7 +59,7 @@ bool ImcLoop::stable() const {
     const double end = kAboveCorners * highest_corner();
     while (omega < end) {
         const Complex next = D(omega * ratio);
-        if (std::abs(next) < kBoundary) return false;
+        if (std::abs(next) < kMaxAxisDistance) return false;
         angle += turn_between(D, omega, last, omega * ratio, next, kMaxHalvings);
         omega *= ratio;
         last = next;
@@ -97,7 +98,7 @@ LoopGrid ImcLoop::grid() const {
 Peaks ImcLoop::peaks(const LoopGrid& grid) const {
     Peaks peaks = find_interior_peaks([this](double omega) { return at(omega); }, grid);
     const auto raise = [](Peak& peak, double value, double omega) {
-        if (value > peak.value * kHigher || (value >= peak.value && omega == 0)) peak = {value, omega};
+        if (value > peak.value * kMinPeakRatio || (value >= peak.value && omega == 0)) peak = {value, omega};
     };
     const LoopPoint zero = at(0);
     raise(peaks.S, std::abs(zero.S), 0);

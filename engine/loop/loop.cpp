@@ -13,7 +13,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double kNotWellPosed = 1e-12;  // of 1 + L(infinity): below it the algebraic loop has no accurate solution
+constexpr double kMinWellPosedness = 1e-12;  // of 1 + L(infinity): below it the algebraic loop has no accurate solution
 
 Error invalid(const std::string& message) { return {ErrorKind::invalid_argument, "controller", message}; }
 
@@ -51,7 +51,7 @@ Expected<Loop> Loop::make(const LinearPlant& plant, const ParallelPid& gains) {
         return Error{ErrorKind::invalid_argument, "controller/filter",
                      "A derivative without filter on a plant with a direct term has infinite loop gain. Give the "
                      "controller a filter."};
-    if (plant.dead_time() == 0 && std::abs(1 + q) < kNotWellPosed)
+    if (plant.dead_time() == 0 && std::abs(1 + q) < kMinWellPosedness)
         return invalid(
             "The loop is not well posed: 1 + L is 0 at infinite frequency. Add a filter or change the gain.");
     return loop;

@@ -18,20 +18,21 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kPi = std::numbers::pi;
-constexpr double kToRounding = 1e-13;  // of ln omega
-constexpr double kBetween = 1.05;      // |L| may be larger by it between neighbours than at both
-constexpr double kLongTurn = 1;        // rad of the dead time between neighbours: L may cross the axis more than once
-constexpr double kStride = 0.25;       // rad of the dead time from one look at L to the next
-constexpr int kMostStrides = 1000;     // a turn is 26: lags turn L as well
+constexpr double kLogFrequencyTolerance = 1e-13;  // of ln omega
+constexpr double kMaxModulusRatioBetween = 1.05;  // |L| may be larger by it between neighbours than at both
+constexpr double kMaxSingleCrossingTurn =
+    1;                             // rad of the dead time between neighbours: L may cross the axis more than once
+constexpr double kStride = 0.25;   // rad of the dead time from one look at L to the next
+constexpr int kMaxStrides = 1000;  // a turn is 26: lags turn L as well
 
 constexpr double kFirstGain = 1.02, kGainRatio = 1.15, kLastGain = 1e3;  // of 1/K: where an unstable plant is tried
 constexpr std::array<double, 3> kStartGains = {0.2, 0.01, 1e-4};  // of 1/K: the first that leaves the loop stable
 constexpr double kMaxTurn = 0.25;                                 // rad of d between two frequencies that are evaluated
-constexpr int kMaxParts = 200;            // between two points of the grid, for a d far beyond the loop's time scale
-constexpr double kNoGain = 0.5;           // below it no turn of the dead time can bring |T| |e^(-jwd) - 1| to 1
-constexpr double kEdgeTolerance = 1e-13;  // relative, of the frequency at which |T| passes 1/2
-constexpr double kWorthRefining = 0.9;    // of the largest value so far: a grid point below it is no peak's top
-constexpr double kTooSmall = 0.45;        // of the largest value so far: 2 |T| cannot come near it
+constexpr int kMaxParts = 200;              // between two points of the grid, for a d far beyond the loop's time scale
+constexpr double kMinModulusOfT = 0.5;      // below it no turn of the dead time can bring |T| |e^(-jwd) - 1| to 1
+constexpr double kEdgeTolerance = 1e-13;    // relative, of the frequency at which |T| passes 1/2
+constexpr double kMinShareOfMaximum = 0.9;  // of the largest value so far: a grid point below it is no peak's top
+constexpr double kMinRelevantShare = 0.45;  // of the largest value so far: 2 |T| cannot come near it
 
 using OpenLoop = std::function<std::complex<double>(double)>;
 
@@ -42,14 +43,14 @@ double real_crossing(const OpenLoop& open_loop, double left, double right, std::
         const auto L = open_loop(omega);
         return L.imag() / magnitude(L);
     };
-    return log_root(imaginary, left, right, a.imag() / magnitude(a), b.imag() / magnitude(b), kToRounding);
+    return log_root(imaginary, left, right, a.imag() / magnitude(a), b.imag() / magnitude(b), kLogFrequencyTolerance);
 }
 
 /// The frequency at which |L| = 1, between two such frequencies.
 double unit_crossing(const OpenLoop& open_loop, double left, double right, std::complex<double> a,
                      std::complex<double> b) {
     const auto log_gain = [&](double omega) { return std::log(magnitude(open_loop(omega))); };
-    return log_root(log_gain, left, right, std::log(magnitude(a)), std::log(magnitude(b)), kToRounding);
+    return log_root(log_gain, left, right, std::log(magnitude(a)), std::log(magnitude(b)), kLogFrequencyTolerance);
 }
 
 /// The first frequency on the way at which L is negative: where |L| falls, or rises, all the way from 1 or from a top
@@ -57,7 +58,7 @@ double unit_crossing(const OpenLoop& open_loop, double left, double right, std::
 void note_first_crossing(Margins& margins, const OpenLoop& open_loop, double delay, double from, double to) {
     const double stride = std::copysign(kStride / delay, to - from);
     auto a = open_loop(from);
-    for (int i = 0; i < kMostStrides && from != to; ++i) {
+    for (int i = 0; i < kMaxStrides && from != to; ++i) {
         const bool last = (from + stride - to) * stride >= 0;
         const double next = last ? to : from + stride;
         const auto b = open_loop(next);
@@ -138,8 +139,9 @@ Margins find_interior_margins(const OpenLoop& open_loop, const LoopGrid& grid, d
         const double left = grid.omega[i - 1], right = grid.omega[i];
         if (!std::isfinite(magnitude(a)) || !std::isfinite(magnitude(b))) continue;
         // A crossing nearer to 0 than one that is known says nothing new.
-        const bool counts = kBetween * std::max(magnitude(a), magnitude(b)) > std::min(1.0, 1 / margins.gain_margin);
-        if (counts && delay * (right - left) > kLongTurn) {
+        const bool counts =
+            kMaxModulusRatioBetween * std::max(magnitude(a), magnitude(b)) > std::min(1.0, 1 / margins.gain_margin);
+        if (counts && delay * (right - left) > kMaxSingleCrossingTurn) {
             note_crossings_of_turns(margins, open_loop, grid, i, delay);
         } else if (counts && (a.imag() < 0) != (b.imag() < 0) && (a.real() < 0 || b.real() < 0)) {
             const double omega = real_crossing(open_loop, left, right, a, b);
@@ -205,20 +207,22 @@ std::optional<UltimatePoint> ultimate_point(const LinearPlant& plant) {
 namespace {
 
 /// 1/d at one frequency: 0 where |T| is too small to matter.
-double inverse_tolerance(double omega, double gain) { return gain < kNoGain ? 0 : omega / (2 * std::asin(0.5 / gain)); }
+double inverse_tolerance(double omega, double gain) {
+    return gain < kMinModulusOfT ? 0 : omega / (2 * std::asin(0.5 / gain));
+}
 
 /// The frequency at which |T| passes 1/2 between neighbouring points i and k of the grid.
 double band_edge(const Loop& loop, const LoopGrid& grid, std::size_t i, std::size_t k) {
-    const auto gain = [&](std::size_t at) { return std::abs(grid.point[at].T) - kNoGain; };
-    return log_root([&](double omega) { return std::abs(loop.at(omega).T) - kNoGain; }, grid.omega[i], grid.omega[k],
-                    gain(i), gain(k), kEdgeTolerance);
+    const auto gain = [&](std::size_t at) { return std::abs(grid.point[at].T) - kMinModulusOfT; };
+    return log_root([&](double omega) { return std::abs(loop.at(omega).T) - kMinModulusOfT; }, grid.omega[i],
+                    grid.omega[k], gain(i), gain(k), kEdgeTolerance);
 }
 
 }  // namespace
 
 double small_gain_dead_time(const Loop& loop, const LoopGrid& grid) {
     const double q = loop.high_frequency_gain();
-    if (q >= kNoGain * (1 - q)) return 0;
+    if (q >= kMinModulusOfT * (1 - q)) return 0;
     const auto f = [&](double omega) { return inverse_tolerance(omega, std::abs(loop.at(omega).T)); };
     const auto value = [&](std::size_t i) { return inverse_tolerance(grid.omega[i], std::abs(grid.point[i].T)); };
     double largest = 0;
@@ -241,7 +245,7 @@ double dead_time_mismatch(const Loop& loop, const LoopGrid& grid, double d) {
     double largest = 2 * q / (1 - q);
     double before = 0, here = 0, at = 0, from = 0;  // the last two frequencies and their values
     const auto visit = [&](double omega, double value) {
-        if (here >= before && here >= value && from > 0 && here > kWorthRefining * largest)
+        if (here >= before && here >= value && from > 0 && here > kMinShareOfMaximum * largest)
             largest = std::max(largest, log_maximum(f, from, {at, here}, omega).value);
         from = at;
         before = here;
@@ -251,7 +255,7 @@ double dead_time_mismatch(const Loop& loop, const LoopGrid& grid, double d) {
     for (std::size_t i = 0; i < grid.omega.size(); ++i) {
         const double gain = std::abs(grid.point[i].T), omega = grid.omega[i];
         const double last_gain = i > 0 ? std::abs(grid.point[i - 1].T) : 1;
-        if (std::max(gain, last_gain) < kTooSmall * largest) continue;
+        if (std::max(gain, last_gain) < kMinRelevantShare * largest) continue;
         const double turn = i > 0 ? (omega - grid.omega[i - 1]) * d : 0;
         const int parts = static_cast<int>(std::min<double>(kMaxParts, std::ceil(turn / kMaxTurn)));
         for (int k = 1; k < parts; ++k) {

@@ -12,11 +12,11 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kLargestStep = 0.06;  // between neighbours, of S
-constexpr double kLargestRatio = 1.2;  // of neighbouring frequencies
+constexpr double kMaxStepOfS = 0.06;        // between neighbours, of S
+constexpr double kMaxFrequencyRatio = 1.2;  // of neighbouring frequencies
 constexpr std::size_t kMaxPoints = 20000;
 constexpr double kClosestNeighbours = 1e-6;  // relative distance below which no point is added
-constexpr double kBoundary = 1e-9;           // |1 + L|: closer to 0 counts as on the axis
+constexpr double kMaxAxisDistance = 1e-9;    // |1 + L|: closer to 0 counts as on the axis
 
 }  // namespace
 
@@ -29,8 +29,8 @@ MeasuredLoop::MeasuredLoop(const MeasuredPlant& plant, const ParallelPid& gains)
         while (!pending.empty()) {
             const double left = omega_.back(), right = pending.back();
             const Complex a = at(left).S, b = at(right).S;
-            const bool far = right > left * kLargestRatio ||
-                             std::abs(a - b) > kLargestStep * std::max(1.0, std::min(std::abs(a), std::abs(b)));
+            const bool far = right > left * kMaxFrequencyRatio ||
+                             std::abs(a - b) > kMaxStepOfS * std::max(1.0, std::min(std::abs(a), std::abs(b)));
             if (far && right > left * (1 + kClosestNeighbours) && omega_.size() + pending.size() < kMaxPoints) {
                 pending.push_back(std::sqrt(left * right));
                 continue;
@@ -74,7 +74,7 @@ StabilityCount MeasuredLoop::count_unstable_poles() const {
     }
     for (const double omega : omega_) {
         const Complex here = 1.0 + at(omega).L;
-        if (std::abs(here) < kBoundary) return {.unstable_poles = 0, .on_the_boundary = true};
+        if (std::abs(here) < kMaxAxisDistance) return {.unstable_poles = 0, .on_the_boundary = true};
         angle += std::arg(here / before);
         before = here;
     }

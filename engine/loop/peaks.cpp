@@ -19,16 +19,17 @@ double magnitude_T(const LoopPoint& p) { return magnitude(p.T); }
 double magnitude_CS(const LoopPoint& p) { return magnitude(p.CS); }
 double magnitude_C(const LoopPoint& p) { return magnitude(p.CS) * magnitude(1.0 + p.L); }
 
-constexpr double kWorthRefining = 0.8;  // of the largest grid value: neighbours on the grid differ by less than that
+constexpr double kMinShareOfMaximum =
+    0.8;  // of the largest grid value: neighbours on the grid differ by less than that
 
 constexpr double kLongTurn = 0.3;  // rad of the dead time between neighbours of the grid: more hides a peak
 // rad between two looks there. Where |L| is small, hills along a turn are as wide as those of a sine.
-constexpr double kTurnStep = 0.15, kSmall = 0.3, kTurnStepOfSmall = 0.5;
-constexpr double kPlainTurn = 1;   // rad: up to it both ends say how near L comes to -1 between them
-constexpr double kBetween = 0.01;  // |L| and |C| may be larger by it between neighbours than at both
+constexpr double kTurnStep = 0.15, kMaxSmallModulus = 0.3, kTurnStepOfSmall = 0.5;
+constexpr double kPlainTurn = 1;                 // rad: up to it both ends say how near L comes to -1 between them
+constexpr double kMaxModulusRiseBetween = 0.01;  // |L| and |C| may be larger by it between neighbours than at both
 
-constexpr double kHigher = 1 + 1e-12;  // a limit must exceed a peak by more than rounding to stand for it
-constexpr double kLowRise = 0.3;       // of |S| - 1: below it the usual grid is too coarse for so flat a maximum
+constexpr double kMinPeakRatio = 1 + 1e-12;  // a limit must exceed a peak by more than rounding to stand for it
+constexpr double kMaxLowRise = 0.3;          // of |S| - 1: below it the usual grid is too coarse for so flat a maximum
 constexpr double kFinestStep = 5e-3, kUsualStep = 0.15;  // of S between neighbours
 
 Peak interior_peak(const LoopFunction& at, const LoopGrid& grid, Magnitude magnitude) {
@@ -37,7 +38,7 @@ Peak interior_peak(const LoopFunction& at, const LoopGrid& grid, Magnitude magni
     for (std::size_t i = 0; i < n; ++i) value[i] = magnitude(grid.point[i]);
     const auto largest = std::max_element(value.begin(), value.end());
     Peak best{*largest, grid.omega[static_cast<std::size_t>(largest - value.begin())]};
-    const double threshold = kWorthRefining * *largest;
+    const double threshold = kMinShareOfMaximum * *largest;
     const auto f = [&](double omega) { return magnitude(at(omega)); };
     const auto point = [&](std::size_t i) -> Maximum { return {grid.omega[i], value[i]}; };
     const auto refine = [&](std::size_t i) {
@@ -65,7 +66,7 @@ void raise_by_fast_turning(const Loop& loop, const LoopGrid& grid, Peaks& peaks)
         for (int k = 1; k < 72; ++k) {
             const double omega = from + k * step;
             const double here = f(omega);
-            if (here < kWorthRefining * best.value || here < f(omega - step) || here < f(omega + step)) continue;
+            if (here < kMinShareOfMaximum * best.value || here < f(omega - step) || here < f(omega + step)) continue;
             const auto peak = log_maximum(f, omega - step, {omega, here}, omega + step);
             if (peak.value > best.value) best = {peak.value, peak.x};
         }
@@ -95,7 +96,7 @@ void raise_by_fast_turning(const Loop& loop, const LoopGrid& grid, Peaks& peaks)
 }
 
 void raise(Peak& peak, double value, double omega) {
-    if (value > peak.value * kHigher || (value >= peak.value && omega == 0)) peak = {value, omega};
+    if (value > peak.value * kMinPeakRatio || (value >= peak.value && omega == 0)) peak = {value, omega};
 }
 
 void raise_by_limits(const Loop& loop, Peaks& peaks) {
@@ -119,9 +120,9 @@ LoopGrid make_peak_grid(const Loop& loop) {
     for (const auto& point : grid.point) largest = std::max(largest, magnitude(point.S));
     // Where S never rises far above one, its maximum is as flat: look closer.
     const double rise = largest - 1;
-    if (rise < kLowRise)
+    if (rise < kMaxLowRise)
         grid = refined_grid([&](double omega) { return loop.at(omega); }, grid,
-                            std::clamp(kLowRise * rise, kFinestStep, kUsualStep));
+                            std::clamp(kMaxLowRise * rise, kFinestStep, kUsualStep));
     return grid;
 }
 
@@ -172,7 +173,7 @@ std::vector<Stretch> stretches_of(const LoopGrid& grid, double time) {
                              .CS = C / nearest,
                              .change_S = change,
                              .change_CS = change + std::abs(C_a - C_b) / C,
-                             .step = large < kSmall ? kTurnStepOfSmall : kTurnStep});
+                             .step = large < kMaxSmallModulus ? kTurnStepOfSmall : kTurnStep});
     }
     return stretches;
 }
@@ -181,23 +182,23 @@ std::vector<Stretch> stretches_of(const LoopGrid& grid, double time) {
 /// the stretches beside it.
 void give_room(std::vector<Stretch>& stretches) {
     const auto room = [&](std::size_t i, double Stretch::*change) {
-        if (i == 0 || i + 1 == stretches.size()) return kBetween;
+        if (i == 0 || i + 1 == stretches.size()) return kMaxModulusRiseBetween;
         const Stretch &before = stretches[i - 1], &here = stretches[i], &after = stretches[i + 1];
-        if (before.right != here.left || here.right != after.left) return kBetween;
-        const double most = std::max({before.*change, here.*change, after.*change});
-        return most < kBetween ? most : kBetween;
+        if (before.right != here.left || here.right != after.left) return kMaxModulusRiseBetween;
+        const double max = std::max({before.*change, here.*change, after.*change});
+        return max < kMaxModulusRiseBetween ? max : kMaxModulusRiseBetween;
     };
     for (std::size_t i = 0; i < stretches.size(); ++i) {
         stretches[i].S *= 1 + room(i, &Stretch::change_S);
-        stretches[i].T *= 1 + kBetween;
+        stretches[i].T *= 1 + kMaxModulusRiseBetween;
         stretches[i].CS *= 1 + room(i, &Stretch::change_CS);
     }
 }
 
 /// Looks along the stretch, step by step and at the tops of the hills that may be higher.
 void look_along(const Stretch& s, double time, const std::function<double(double)>& f, Peak& best) {
-    constexpr double kMostLooks = 1e8;
-    const int looks = static_cast<int>(std::min(std::ceil(time * (s.right - s.left) / s.step), kMostLooks));
+    constexpr double kMaxEvaluations = 1e8;
+    const int looks = static_cast<int>(std::min(std::ceil(time * (s.right - s.left) / s.step), kMaxEvaluations));
     const double step = (s.right - s.left) / looks;
     Maximum before{s.left - step, f(s.left - step)}, here{s.left, f(s.left)};
     for (int k = 0; k <= looks; ++k) {

@@ -18,15 +18,15 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr int kMaxHalvings = 60;
-constexpr double kBoundary = 1e-9;  // |g| relative to its parts: closer to 0 counts as on the axis
+constexpr double kMaxAxisDistance = 1e-9;  // |g| relative to its parts: closer to 0 counts as on the axis
 
-constexpr double kBelowOne = 0.99;     // of |L|: 1 + L stays in the right half-plane, with room for rounding
-constexpr double kLargestSlope = 1.5;  // of the open loop's turn: it is less than a radian then
-constexpr double kGridStep = 0.5;      // of S between neighbours: coarse, since each step's turn is checked by itself
-constexpr int kGridDensity = 8;        // points a decade, for the same reason
-constexpr int kTurnsToSpare = 6;       // of the dead time beyond what the states can undo
-constexpr double kSmallEnough = 0.3;   // of |L|: beyond the grid the rest of the axis turns 1 + L no further
-constexpr double kFarthest = 1e18;     // of the loop's own frequency: the search for a small |L| ends
+constexpr double kMaxModulusBelowOne = 0.99;  // of |L|: 1 + L stays in the right half-plane, with room for rounding
+constexpr double kLargestSlope = 1.5;         // of the open loop's turn: it is less than a radian then
+constexpr double kGridStep = 0.5;        // of S between neighbours: coarse, since each step's turn is checked by itself
+constexpr int kGridDensity = 8;          // points a decade, for the same reason
+constexpr int kSpareTurns = 6;           // of the dead time beyond what the states can undo
+constexpr double kMaxTailModulus = 0.3;  // of |L|: beyond the grid the rest of the axis turns 1 + L no further
+constexpr double kMaxFrequencyRatio = 1e18;  // of the loop's own frequency: the search for a small |L| ends
 
 /// g(jw) = (D + N e^(-jwL))/(jw + a)^n: bounded, never infinite, g -> 1 + L(infinity).
 class Characteristic {
@@ -47,7 +47,7 @@ public:
         const Divisor normalised(normaliser);
         const Complex open = normalised.under(denominator), fed_back = normalised.under(numerator);
         const double of_open = magnitude(open), of_feedback = magnitude(fed_back);
-        return {omega, open + fed_back, open, of_open + of_feedback, of_feedback < kBelowOne * of_open};
+        return {omega, open + fed_back, open, of_open + of_feedback, of_feedback < kMaxModulusBelowOne * of_open};
     }
 
 private:
@@ -60,7 +60,8 @@ private:
 /// as that.
 bool follow(const Characteristic& g, Winding& winding, const Characteristic::Value& left,
             const Characteristic::Value& right, int depth = kMaxHalvings) {
-    if (std::min(magnitude(left.g), magnitude(right.g)) <= kBoundary * std::max(left.size, right.size)) return false;
+    if (std::min(magnitude(left.g), magnitude(right.g)) <= kMaxAxisDistance * std::max(left.size, right.size))
+        return false;
     if (Winding::is_short(left.g, right.g)) {
         winding.follow(right.g);
         return true;
@@ -92,7 +93,7 @@ int turns_outside_unit_circle(const Loop& loop, const LoopGrid& grid) {
     for (std::size_t i = grid.omega.size(); L > 0 && i-- > 0;) {
         if (!(magnitude(grid.point[i].L) > 1)) continue;
         const double turns = grid.omega[i] * L / (2 * std::numbers::pi);
-        return turns > loop.denominator_degree() + kTurnsToSpare ? static_cast<int>(std::min(2 * turns, 1e9)) : 0;
+        return turns > loop.denominator_degree() + kSpareTurns ? static_cast<int>(std::min(2 * turns, 1e9)) : 0;
     }
     return 0;
 }
@@ -145,7 +146,7 @@ StabilityCount count_unstable_poles(const Loop& loop) {
     const double scale = std::sqrt(grid.omega.front() * grid.omega.back());
     const Characteristic g(loop, scale);
     auto left = g.at(0);
-    if (magnitude(left.g) <= kBoundary * left.size || left.size == 0)
+    if (magnitude(left.g) <= kMaxAxisDistance * left.size || left.size == 0)
         return {.unstable_poles = 0, .on_the_boundary = true};
 
     Winding winding(left.g);
@@ -163,7 +164,8 @@ StabilityCount count_unstable_poles(const Loop& loop) {
         }
         // Past the grid |L| must be small (or q) before the rest of the axis is taken in one step.
         const double rest = std::abs(loop.open_loop({0, omega}));
-        if (rest < std::max(kSmallEnough, 0.5 * (1 + std::abs(q)) * (L > 0 ? 1 : 4)) || omega > kFarthest * scale)
+        if (rest < std::max(kMaxTailModulus, 0.5 * (1 + std::abs(q)) * (L > 0 ? 1 : 4)) ||
+            omega > kMaxFrequencyRatio * scale)
             break;
         omega *= 10;
     }

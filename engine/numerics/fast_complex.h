@@ -10,14 +10,14 @@
 namespace tunewright {
 
 /// Squares of numbers within these bounds neither over- nor underflow, with room for a sum of two of them.
-constexpr double kLeastSquare = 1e-280, kLargestSquare = 1e280;
+constexpr double kMinSquare = 1e-280, kMaxSquare = 1e280;
 /// Reciprocals of numbers within these bounds are normal numbers.
-constexpr double kLeastDivisor = 1e-290, kLargestDivisor = 1e290;
+constexpr double kMinDivisor = 1e-290, kMaxDivisor = 1e290;
 
 /// |z|, free of overflow.
 inline double magnitude(std::complex<double> z) {
     const double squared = std::norm(z);
-    return squared > kLeastSquare && squared < kLargestSquare ? std::sqrt(squared) : std::abs(z);
+    return squared > kMinSquare && squared < kMaxSquare ? std::sqrt(squared) : std::abs(z);
 }
 
 /// a b for finite numbers.
@@ -28,7 +28,7 @@ inline std::complex<double> product(std::complex<double> a, std::complex<double>
 /// n/d, free of overflow in between; for d = 0 as the library says.
 inline std::complex<double> quotient(std::complex<double> n, std::complex<double> d) {
     const double size = std::max(std::abs(d.real()), std::abs(d.imag()));
-    if (!(size > kLeastDivisor && size < kLargestDivisor)) return n / d;
+    if (!(size > kMinDivisor && size < kMaxDivisor)) return n / d;
     const double scale = 1 / size, re = d.real() * scale, im = d.imag() * scale;
     const double inverse = scale / (re * re + im * im);
     return {(n.real() * re + n.imag() * im) * inverse, (n.imag() * re - n.real() * im) * inverse};
@@ -39,7 +39,7 @@ class Divisor {
 public:
     explicit Divisor(std::complex<double> d) : d_(d), inverse_(quotient(1, d)) {
         const double size = std::max(std::abs(d.real()), std::abs(d.imag()));
-        ordinary_ = size > kLeastDivisor && size < kLargestDivisor;
+        ordinary_ = size > kMinDivisor && size < kMaxDivisor;
     }
     std::complex<double> under(std::complex<double> n) const {
         if (!ordinary_) return quotient(n, d_);

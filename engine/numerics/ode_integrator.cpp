@@ -18,20 +18,21 @@ using Explicit = boost::numeric::odeint::runge_kutta_dopri5<Vector>;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kShortest = 16 * kEpsilon;  // step, relative to the time
-constexpr double kFirstStep = 0.02;          // in units of the fastest time constant
+constexpr double kMinRelativeStep = 16 * kEpsilon;  // step, relative to the time
+constexpr double kFirstStep = 0.02;                 // in units of the fastest time constant
 constexpr double kSafety = 0.9, kMaxGrowth = 5, kMaxShrinking = 0.2;
 constexpr double kExplicitPower = 1.0 / 5, kImplicitPower = 1.0 / 4;
-constexpr double kRounding = 20 * kEpsilon;      // of a state: errors below it are none
-constexpr double kTiny = 1e-290;                 // stands for 0 where something is divided by it
-constexpr double kLargestSize = 1e280;           // of a state (sizes may be infinite): steps from it are still finite
-constexpr double kLeastShift = 1e-6;             // of a state at 0 without a size, for differences
-constexpr double kLaterShare = 1e-3;             // of a step: over it f's derivative in time is taken
-constexpr double kUnknownStep = 1e-3;            // of the way to the stop, where no time constant is known
-constexpr double kLeastError = 1e-12;            // in tolerances: an exact step grows no more than this one
-constexpr double kExpected = 1e-2;               // of the movement expected: errors are relative to at least that
-constexpr int kStiffnessInterval = 20;           // steps between two looks at the spectrum
-constexpr double kStiff = 2.5, kNotStiff = 0.5;  // step times spectral radius; the explicit method is stable up to 3.3
+constexpr double kStateRounding = 20 * kEpsilon;  // of a state: errors below it are none
+constexpr double kMinDivisor = 1e-290;            // stands for 0 where something is divided by it
+constexpr double kLargestSize = 1e280;            // of a state (sizes may be infinite): steps from it are still finite
+constexpr double kMinShift = 1e-6;                // of a state at 0 without a size, for differences
+constexpr double kLaterShare = 1e-3;              // of a step: over it f's derivative in time is taken
+constexpr double kUnknownStep = 1e-3;             // of the way to the stop, where no time constant is known
+constexpr double kMinError = 1e-12;               // in tolerances: an exact step grows no more than this one
+constexpr double kExpected = 1e-2;                // of the movement expected: errors are relative to at least that
+constexpr int kStiffnessInterval = 20;            // steps between two looks at the spectrum
+constexpr double kMinStiffProduct = 2.5,
+                 kMaxNonstiffProduct = 0.5;  // step times spectral radius; the explicit method is stable up to 3.3
 
 }  // namespace
 
@@ -45,21 +46,21 @@ struct OdeIntegrator::Work {
     bool implicit = false, last_implicit = false, fault = false;
 
     double t = 0, t_before = 0, h = 0;
-    Vector x, dx, x_before, dx_before, error, trial, trial_dx, least, expected, first, moved;
+    Vector x, dx, x_before, dx_before, error, trial, trial_dx, min, expected, first, moved;
     Vector jacobian, ft, shifted, rates_shifted;
     bool started = false;
     int steps_since_look = 0;
 
     Work(OdeSystem s, double tol)
         : system(std::move(s)), tolerance(tol), n(Index(system.order)), implicit_stepper(system.order) {
-        for (Vector* v : {&x, &dx, &x_before, &dx_before, &error, &trial, &trial_dx, &least, &expected, &first, &moved,
+        for (Vector* v : {&x, &dx, &x_before, &dx_before, &error, &trial, &trial_dx, &min, &expected, &first, &moved,
                           &ft, &shifted, &rates_shifted})
             v->assign(n, 0.0);
         jacobian.assign(n * n, 0.0);
     }
 
     double size(Index i) const {
-        return std::max({least[i], expected[i], moved[i], kRounding / tolerance * std::abs(x[i]), kTiny});
+        return std::max({min[i], expected[i], moved[i], kStateRounding / tolerance * std::abs(x[i]), kMinDivisor});
     }
 
     /// f, remembered where it does not exist: the rest of the step is not worth its evaluations.
@@ -75,7 +76,7 @@ struct OdeIntegrator::Work {
         std::copy(at.begin(), at.end(), shifted.begin());
         for (Index j = 0; j < n; ++j) {
             const double step =
-                std::sqrt(kEpsilon) * std::max({std::abs(at[j]), std::min(size(j), kLargestSize), kLeastShift});
+                std::sqrt(kEpsilon) * std::max({std::abs(at[j]), std::min(size(j), kLargestSize), kMinShift});
             shifted[j] = at[j] + step;
             if (!system.rates(time, shifted, rates_shifted)) return false;
             for (Index i = 0; i < n; ++i) jacobian[i * n + j] = (rates_shifted[i] - base[i]) / (shifted[j] - at[j]);
@@ -196,7 +197,7 @@ struct OdeIntegrator::Work {
             const double worst = attempt(length);
             const double power = implicit ? kImplicitPower : kExplicitPower;
             double factor =
-                std::isfinite(worst) ? kSafety * std::pow(std::max(worst, kLeastError), -power) : kMaxShrinking;
+                std::isfinite(worst) ? kSafety * std::pow(std::max(worst, kMinError), -power) : kMaxShrinking;
             if (!(factor >= kMaxShrinking)) factor = kMaxShrinking;
             if (worst <= 1) {
                 factor = std::min(factor, rejected ? 1.0 : kMaxGrowth);
@@ -208,7 +209,8 @@ struct OdeIntegrator::Work {
             }
             rejected = true;
             h = length * std::min(factor, kSafety);
-            if (h <= kShortest * std::max(std::abs(t), kTiny)) return fault ? OdeStep::left_domain : OdeStep::stalled;
+            if (h <= kMinRelativeStep * std::max(std::abs(t), kMinDivisor))
+                return fault ? OdeStep::left_domain : OdeStep::stalled;
         }
     }
 
@@ -230,8 +232,8 @@ struct OdeIntegrator::Work {
         if (++steps_since_look < kStiffnessInterval) return;
         steps_since_look = 0;
         const double reach = std::min(h, t - t_before) * spectral_radius();
-        if (!implicit && reach > kStiff) implicit = true;
-        if (implicit && reach < kNotStiff) implicit = false;
+        if (!implicit && reach > kMinStiffProduct) implicit = true;
+        if (implicit && reach < kMaxNonstiffProduct) implicit = false;
     }
 
     void at(double time, std::span<double> out) {
@@ -254,7 +256,7 @@ OdeIntegrator::~OdeIntegrator() = default;
 OdeIntegrator::OdeIntegrator(OdeIntegrator&&) noexcept = default;
 OdeIntegrator& OdeIntegrator::operator=(OdeIntegrator&&) noexcept = default;
 
-void OdeIntegrator::set_least_size(int i, double size) { work_->least[Index(i)] = size; }
+void OdeIntegrator::set_least_size(int i, double size) { work_->min[Index(i)] = size; }
 bool OdeIntegrator::start(double t, std::span<const double> x) { return work_->start(t, x); }
 OdeStep OdeIntegrator::step(double t_stop) { return work_->step(t_stop); }
 OdeStep OdeIntegrator::shorten(double t_end) { return work_->shorten(t_end); }

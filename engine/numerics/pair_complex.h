@@ -39,24 +39,22 @@ inline PairComplex quotient(PairComplex n, PairComplex d, Pair square) {
 
 /// Whether both squares are far enough from over- and underflow.
 inline bool ordinary(Pair square) {
-    return square[0] > kLeastSquare && square[0] < kLargestSquare && square[1] > kLeastSquare &&
-           square[1] < kLargestSquare;
+    return square[0] > kMinSquare && square[0] < kMaxSquare && square[1] > kMinSquare && square[1] < kMaxSquare;
 }
 
 /// The largest angle that `unit_circle` takes, rad.
-constexpr double kLargestPairAngle = 1e6;
-inline bool in_reach(Pair angle) {
-    return std::abs(angle[0]) <= kLargestPairAngle && std::abs(angle[1]) <= kLargestPairAngle;
-}
+constexpr double kMaxPairAngle = 1e6;
+inline bool in_reach(Pair angle) { return std::abs(angle[0]) <= kMaxPairAngle && std::abs(angle[1]) <= kMaxPairAngle; }
 
-/// e^(j angle) to 2e-16 for |angle| <= kLargestPairAngle: the remainder to the nearest multiple of pi/2, in three parts
+/// e^(j angle) to 2e-16 for |angle| <= kMaxPairAngle: the remainder to the nearest multiple of pi/2, in three parts
 /// of 33 bits, whose products with the multiple are exact (Cody and Waite, Software Manual for the Elementary
 /// Functions, 1980), and the Taylor polynomials of sine and cosine up to pi/4.
 inline PairComplex unit_circle(Pair angle) {
     constexpr double kRounder = 0x1.8p52;  // added, it leaves the nearest whole number in the last bits
-    constexpr double kFirst = 0x1.921fb544p0, kSecond = 0x1.0b4611a6p-34, kThird = 0x1.3198a2e037073p-69;
+    constexpr double kHalfPiFirst = 0x1.921fb544p0, kHalfPiSecond = 0x1.0b4611a6p-34,
+                     kHalfPiThird = 0x1.3198a2e037073p-69;
     const Pair shifted = angle * (2 / std::numbers::pi) + kRounder, quarters = shifted - kRounder;
-    const Pair r = ((angle - quarters * kFirst) - quarters * kSecond) - quarters * kThird, s = r * r;
+    const Pair r = ((angle - quarters * kHalfPiFirst) - quarters * kHalfPiSecond) - quarters * kHalfPiThird, s = r * r;
     Pair sine = s * (-1.0 / 1307674368000) + 1.0 / 6227020800;
     sine = sine * s - 1.0 / 39916800;
     sine = sine * s + 1.0 / 362880;

@@ -14,8 +14,9 @@ namespace {
 using Complex = std::complex<double>;
 using Index = std::size_t;
 
-constexpr double kRounding = 4096 * std::numeric_limits<double>::epsilon();  // of coefficients and of roots beside
-constexpr double kSpread = 4;    // a torn root's distance from its centre, in eps^(1/m)
+constexpr double kRelativeRootTolerance =
+    4096 * std::numeric_limits<double>::epsilon();  // of coefficients and of roots beside
+constexpr double kRootSpreadFactor = 4;             // a torn root's distance from its centre, in eps^(1/m)
 constexpr int kNewtonSteps = 3;  // a simple root is good to half its digits: they double at each step
 
 Complex horner(std::span<const double> coefficients, Complex x) {
@@ -151,7 +152,7 @@ private:
     }
 
     static double reach(Index m) {
-        return kSpread * std::pow(std::numeric_limits<double>::epsilon(), 1.0 / static_cast<double>(m));
+        return kRootSpreadFactor * std::pow(std::numeric_limits<double>::epsilon(), 1.0 / static_cast<double>(m));
     }
 
     /// On one point, a real one unless the group lies on one side of the axis.
@@ -189,7 +190,7 @@ private:
         return s * given_.scale();
     }
 
-    bool is_given(const std::vector<Complex>& roots) const { return given_.error_of(roots) <= kRounding; }
+    bool is_given(const std::vector<Complex>& roots) const { return given_.error_of(roots) <= kRelativeRootTolerance; }
 
     const Given& given_;
     std::vector<Complex>& roots_;

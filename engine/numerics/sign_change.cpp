@@ -10,11 +10,12 @@
 namespace tunewright {
 namespace {
 
-constexpr double kRounding = 2 * std::numeric_limits<double>::epsilon();  // of a root: neighbouring numbers, nearly
-constexpr double kLargest = 1e100;  // of a value: differences and quotients of two such are still finite
+constexpr double kRelativeRootTolerance =
+    2 * std::numeric_limits<double>::epsilon();  // of a root: neighbouring numbers, nearly
+constexpr double kMaxValue = 1e100;              // of a value: differences and quotients of two such are still finite
 constexpr std::uintmax_t kMaxEvaluations = 200;
 
-double finite(double value) { return value < -kLargest ? -kLargest : value < kLargest ? value : kLargest; }
+double finite(double value) { return value < -kMaxValue ? -kMaxValue : value < kMaxValue ? value : kMaxValue; }
 
 /// Ends of an interval that holds a change of sign and is shorter than `is_short` asks for; equal where f is 0.
 template <class Function, class IsShort>
@@ -50,7 +51,7 @@ double first_positive(const std::function<double(double)>& f, double low, double
     // 0 counts as just below it, so that the search ends between two numbers and not on a zero.
     const auto below_at_zero = [](double value) { return value == 0 ? -std::numeric_limits<double>::min() : value; };
     const auto is_short = [](double left, double right) {
-        return right - left <= kRounding * std::max(std::abs(left), std::abs(right));
+        return right - left <= kRelativeRootTolerance * std::max(std::abs(left), std::abs(right));
     };
     return enclose([&](double x) { return below_at_zero(f(x)); }, low, high, below_at_zero(std::min(f_low, 0.0)),
                    f_high, is_short)

@@ -7,7 +7,8 @@
 namespace tunewright {
 namespace {
 
-constexpr double kBorder = 8 * std::numeric_limits<double>::epsilon();  // of the time: closer counts as a step's border
+constexpr double kBorderTolerance =
+    8 * std::numeric_limits<double>::epsilon();  // of the time: closer counts as a step's border
 
 using Matrix = std::array<std::array<double, 6>, 6>;
 
@@ -56,7 +57,7 @@ void SignalHistory::suppose_line(double time) {
 }
 
 const StepPolynomial* SignalHistory::find(double time, bool before) const {
-    const double slack = kBorder * std::abs(time);
+    const double slack = kBorderTolerance * std::abs(time);
     if (supposed_ && time > supposed_->t + slack) return &*supposed_;
     if (steps_.empty()) return nullptr;
     if (cursor_ >= steps_.size()) cursor_ = steps_.size() - 1;

@@ -12,9 +12,10 @@ namespace {
 
 constexpr std::size_t kMinPoints = 8;
 constexpr double kPi = std::numbers::pi;
-constexpr double kLargestTurn = 2;  // rad between neighbours: beyond it the next turn could be meant as well
+constexpr double kMaxTurn = 2;  // rad between neighbours: beyond it the next turn could be meant as well
 
-constexpr double kMostOffAxis = kPi / 3;  // from 0 or 180 degrees: beyond it a lag could have turned either sign there
+constexpr double kMaxPhaseOffAxis =
+    kPi / 3;  // from 0 or 180 degrees: beyond it a lag could have turned either sign there
 
 Error at_field(const std::string& field, const std::string& message, ErrorKind kind = ErrorKind::invalid_argument) {
     return {kind, "plant/" + field, message};
@@ -83,7 +84,7 @@ Expected<MeasuredPlant> MeasuredPlant::make(const FrequencyResponse& points) {
     const double start = std::remainder(std::arg(value(0)) + 0.5 * kPi * points.integrators, 2 * kPi);
     plant.static_sign_ = std::abs(start) <= 0.5 * kPi ? 1 : -1;
     const double off_axis = plant.static_sign_ > 0 ? std::abs(start) : kPi - std::abs(start);
-    if (off_axis > kMostOffAxis)
+    if (off_axis > kMaxPhaseOffAxis)
         return at_field("omega/0",
                         "At the lowest frequency, " + text(points.omega[0]) + ", the plant already turns by " +
                             text(off_axis * 180 / kPi) +
@@ -94,7 +95,7 @@ Expected<MeasuredPlant> MeasuredPlant::make(const FrequencyResponse& points) {
     plant.turned_ = -kPi * (std::round(start / kPi) + points.unstable_poles);
     for (std::size_t i = 0; i < points.omega.size(); ++i) {
         const double turn = i == 0 ? 0 : std::arg(value(i) / value(i - 1));
-        if (std::abs(turn) > kLargestTurn) break;
+        if (std::abs(turn) > kMaxTurn) break;
         phase += turn;
         plant.omega_.push_back(points.omega[i]);
         plant.log_omega_.push_back(std::log(points.omega[i]));

@@ -17,7 +17,7 @@ using Point = PlantRegion::Point;
 // distance from the centre, and with them answers that are kept and compared.
 constexpr std::array<double, 8> kChiSquare95 = {3.841459, 5.991465, 7.814728, 9.487729,
                                                 11.07050, 12.59159, 14.06714, 15.50731};
-constexpr double kNoLength = 1e-300;
+constexpr double kMinLength = 1e-300;
 constexpr double kMinShare = 0.05;  // of a time constant, before its sign would change
 
 /// The members that a plant type has, by name; transfer functions and state spaces answer to K and L alone here.
@@ -221,18 +221,18 @@ void PlantRegion::cut(std::vector<double> shares) {
     cut_ends_ = ends();
     for (Point& end : cut_ends_) {
         const double size = length(end);
-        for (double& x : end) x /= std::max(size, kNoLength);
+        for (double& x : end) x /= std::max(size, kMinLength);
     }
     shares_ = std::move(shares);
 }
 
 double PlantRegion::share_towards(const Point& z) const {
-    constexpr double kSame = 1e-6;  // 1 - cos of the angle to an end
+    constexpr double kAngleTolerance = 1e-6;  // 1 - cos of the angle to an end
     const double size = length(z);
     if (cut_ends_.empty() || size == 0) return 1;
     double sum = 0, weights = 0;
     for (std::size_t i = 0; i < cut_ends_.size(); ++i) {
-        const double apart = 1 - dot(cut_ends_[i], z) / size + kSame, weight = 1 / (apart * apart);
+        const double apart = 1 - dot(cut_ends_[i], z) / size + kAngleTolerance, weight = 1 / (apart * apart);
         sum += weight * shares_[i];
         weights += weight;
     }
@@ -246,9 +246,9 @@ Plant PlantRegion::at(const Point& z) const {
     double share = 1;
     for (std::size_t i = 0; i < n; ++i) {
         for (std::size_t k = 0; k < axes_.size(); ++k) moved[i] += inside * axes_[k][i] * z[k];
-        const double least = kMinShare * centre_[i];
+        const double min = kMinShare * centre_[i];
         if (!ball_ || !keeps_sign(names_[i]) || centre_[i] == 0) continue;
-        if ((centre_[i] + moved[i] - least) * centre_[i] < 0) share = std::min(share, (least - centre_[i]) / moved[i]);
+        if ((centre_[i] + moved[i] - min) * centre_[i] < 0) share = std::min(share, (min - centre_[i]) / moved[i]);
     }
     Plant plant = plant_;
     for (std::size_t i = 0; i < n; ++i) {

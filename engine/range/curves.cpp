@@ -12,33 +12,33 @@ namespace {
 constexpr double kUnstable = std::numeric_limits<double>::infinity();
 constexpr int kRefinements = 2;  // looks at the top of a parabola, for the worst place of a quantity
 
-double value_of(const Look& look, Quantity quantity) {
+double value_of(const PointEvaluation& look, Quantity quantity) {
     if (!look.stable) return kUnstable;
     if (quantity == Quantity::Ms) return look.Ms;
     if (quantity == Quantity::Mt) return look.Mt;
-    return std::exp(look.log_price);
+    return std::exp(look.log_cost_ratio);
 }
 
-PlaceFigures figures(const Look& look) {
+PointFigures figures(const PointEvaluation& look) {
     const std::string why = look.stable ? "The response does not settle." : "The loop is not stable here.";
-    PlaceFigures result{.at = look.at, .Ms = no_figure(why), .Mt = no_figure(why), .relative_IAE = no_figure(why)};
+    PointFigures result{.at = look.at, .Ms = no_figure(why), .Mt = no_figure(why), .relative_IAE = no_figure(why)};
     if (!look.stable) return result;
     result.Ms = look.Ms;
     result.Mt = look.Mt;
-    result.relative_IAE = finite_or(std::exp(look.log_price), why);
+    result.relative_IAE = finite_or(std::exp(look.log_cost_ratio), why);
     return result;
 }
 
 /// The looks of a curve, ascending, and the search for the worst between them.
 class CurveLooks {
 public:
-    CurveLooks(Places& places, OwnOptima& own, const SettingsInUse& settings)
+    CurveLooks(PointDesigns& places, OwnOptima& own, const SettingsInUse& settings)
         : places_(places), own_(own), settings_(settings) {}
 
     std::optional<Error> take(double at) {
-        const auto look = look_between(places_, own_, settings_(at), at, true);
+        const auto look = evaluate_between(places_, own_, settings_(at), at, true);
         if (!look) return look.error();
-        looks_.insert(std::ranges::upper_bound(looks_, at, {}, &Look::at), *look);
+        looks_.insert(std::ranges::upper_bound(looks_, at, {}, &PointEvaluation::at), *look);
         return std::nullopt;
     }
 
@@ -65,28 +65,28 @@ public:
         return worst;
     }
 
-    const std::vector<Look>& all() const { return looks_; }
+    const std::vector<PointEvaluation>& all() const { return looks_; }
 
 private:
-    Places& places_;
+    PointDesigns& places_;
     OwnOptima& own_;
     const SettingsInUse& settings_;
-    std::vector<Look> looks_;
+    std::vector<PointEvaluation> looks_;
 };
 
 /// The worst place again, against its own optimum and on the grid that no search sees.
-Expected<WorstPlace> checked(Places& places, const SettingsInUse& settings, double at, Quantity quantity,
+Expected<WorstPoint> checked(PointDesigns& places, const SettingsInUse& settings, double at, Quantity quantity,
                              double allowance) {
     const auto place = places.at(at);
     if (!place) return place.error();
-    const robust::Limits& limits = places.rules().limits;
-    WorstPlace worst{.quantity = quantity, .at = at, .value = {}, .limit = 1 + allowance};
+    const robust::RobustnessLimits& limits = places.rules().limits;
+    WorstPoint worst{.quantity = quantity, .at = at, .value = {}, .limit = 1 + allowance};
     if (quantity != Quantity::relative_IAE) worst.limit = quantity == Quantity::Ms ? limits.Ms : limits.Mt;
     for (const IdealPid& pid : settings(at)) {
-        const PlacePrice price = price_at(**place, pid);
-        const Figure& value = quantity == Quantity::Ms   ? price.Ms
-                              : quantity == Quantity::Mt ? price.Mt
-                                                         : price.relative_IAE;
+        const PointCost cost = cost_at(**place, pid);
+        const Figure& value = quantity == Quantity::Ms   ? cost.Ms
+                              : quantity == Quantity::Mt ? cost.Mt
+                                                         : cost.relative_IAE;
         if (!value) {
             worst.value = value;
             return worst;
@@ -98,7 +98,7 @@ Expected<WorstPlace> checked(Places& places, const SettingsInUse& settings, doub
 
 }  // namespace
 
-Expected<RangeCurve> curve_over(Places& places, OwnOptima& own, const SettingsInUse& settings, int count,
+Expected<RangeCurve> curve_over(PointDesigns& places, OwnOptima& own, const SettingsInUse& settings, int count,
                                 const std::vector<double>& extra, double allowance) {
     const double low = places.model().low(), high = places.model().high();
     std::vector<double> wanted = extra;
@@ -109,7 +109,7 @@ Expected<RangeCurve> curve_over(Places& places, OwnOptima& own, const SettingsIn
     for (const double at : wanted)
         if (auto error = looks.take(at)) return *error;
     RangeCurve curve;
-    for (const Look& look : looks.all()) curve.places.push_back(figures(look));
+    for (const PointEvaluation& look : looks.all()) curve.places.push_back(figures(look));
     for (const Quantity quantity : {Quantity::Ms, Quantity::Mt, Quantity::relative_IAE}) {
         if (auto error = looks.refine(quantity)) return *error;
         const auto worst = checked(places, settings, looks.all()[looks.largest(quantity)].at, quantity, allowance);
@@ -120,12 +120,12 @@ Expected<RangeCurve> curve_over(Places& places, OwnOptima& own, const SettingsIn
     return curve;
 }
 
-std::optional<Error> add_places(RangeCurve& curve, const Places& places, const OwnOptima& own,
+std::optional<Error> add_places(RangeCurve& curve, const PointDesigns& places, const OwnOptima& own,
                                 const SettingsInUse& settings, const std::vector<double>& at) {
     for (const double place : at) {
-        const auto after = std::ranges::lower_bound(curve.places, place, {}, &PlaceFigures::at);
+        const auto after = std::ranges::lower_bound(curve.places, place, {}, &PointFigures::at);
         if (after != curve.places.end() && after->at == place) continue;
-        const auto look = look_between(places, own, settings(place), place, true);
+        const auto look = evaluate_between(places, own, settings(place), place, true);
         if (!look) return look.error();
         curve.places.insert(after, figures(*look));
     }
@@ -134,15 +134,15 @@ std::optional<Error> add_places(RangeCurve& curve, const Places& places, const O
 
 double largest_relative_IAE(const RangeCurve& curve) {
     double largest = 0;
-    for (const PlaceFigures& place : curve.places) largest = std::max(largest, place.relative_IAE.value_or(kUnstable));
-    for (const WorstPlace& worst : curve.worst)
+    for (const PointFigures& place : curve.places) largest = std::max(largest, place.relative_IAE.value_or(kUnstable));
+    for (const WorstPoint& worst : curve.worst)
         if (worst.quantity == Quantity::relative_IAE) largest = std::max(largest, worst.value.value_or(kUnstable));
     return largest;
 }
 
 double largest_excess(const RangeCurve& curve) {
     double largest = -1;
-    for (const WorstPlace& worst : curve.worst)
+    for (const WorstPoint& worst : curve.worst)
         if (worst.quantity != Quantity::relative_IAE)
             largest = std::max(largest, worst.value.value_or(kUnstable) / worst.limit - 1);
     return largest;

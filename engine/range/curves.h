@@ -8,13 +8,13 @@
 
 #include "engine/expected.h"
 #include "engine/figure.h"
-#include "engine/range/schedule/look.h"
+#include "engine/range/schedule/point_evaluation.h"
 
 namespace tunewright::range {
 
 /// At one place the worst of the settings that may be in use there, on the worst of the place's plants; IAE on the
 /// nominal plant.
-struct PlaceFigures {
+struct PointFigures {
     double at = 0;
     Figure Ms, Mt, relative_IAE;  ///< empty: the loop is not stable there, or does not settle
 };
@@ -22,7 +22,7 @@ struct PlaceFigures {
 enum class Quantity { Ms, Mt, relative_IAE };
 
 /// Where a range comes nearest to a limit, or beyond it farthest.
-struct WorstPlace {
+struct WorstPoint {
     Quantity quantity = Quantity::Ms;
     double at = 0;
     Figure value;      ///< checked: on an independent grid, against the place's own optimum; empty: not stable there
@@ -30,23 +30,23 @@ struct WorstPlace {
 };
 
 struct RangeCurve {
-    std::vector<PlaceFigures> places;  ///< ascending; both ends and every `extra` place included
-    std::vector<WorstPlace> worst;     ///< one for each quantity, searched between the curve's places too
+    std::vector<PointFigures> places;  ///< ascending; both ends and every `extra` place included
+    std::vector<WorstPoint> worst;     ///< one for each quantity, searched between the curve's places too
 };
 
 /// The settings in use at a place.
 using SettingsInUse = std::function<std::vector<IdealPid>(double at)>;
 
-constexpr int kCurvePlaces = 61;  ///< of the curves that are answered
+constexpr int kCurvePoints = 61;  ///< of the curves that are answered
 
 /// At `count` places evenly over the range and at `extra` ones. The worst places join those of `places`, with their own
-/// optima. Errors: those of Places::at.
-Expected<RangeCurve> curve_over(Places& places, OwnOptima& own, const SettingsInUse& settings, int count,
+/// optima. Errors: those of PointDesigns::at.
+Expected<RangeCurve> curve_over(PointDesigns& places, OwnOptima& own, const SettingsInUse& settings, int count,
                                 const std::vector<double>& extra, double allowance);
 
 /// Takes further places into a curve that has some; those that it has already are passed over. Its worst places stay.
 /// Errors: the model's.
-std::optional<Error> add_places(RangeCurve& curve, const Places& places, const OwnOptima& own,
+std::optional<Error> add_places(RangeCurve& curve, const PointDesigns& places, const OwnOptima& own,
                                 const SettingsInUse& settings, const std::vector<double>& at);
 
 /// The largest relative IAE over a curve, infinite where some loop is not stable.

@@ -7,13 +7,13 @@
 #include "engine/evaluation/best_so_far.h"
 #include "engine/number_text.h"
 #include "engine/range/limit_remarks.h"
-#include "engine/range/schedule/look.h"
+#include "engine/range/schedule/point_evaluation.h"
 #include "engine/tuning/limits.h"
 
 namespace tunewright::range {
 namespace {
 
-constexpr int kMostPlacesAdded = 6;  // of one setting that must hold between its points
+constexpr int kMaxPointsAdded = 6;  // of one setting that must hold between its points
 
 SettingsInUse always(const IdealPid& controller) {
     return [controller](double) { return std::vector<IdealPid>{controller}; };
@@ -74,12 +74,12 @@ private:
             return one.error();
         if (!own) return unless_stopped(own.error());
         own_ = *own;
-        for (int round = 0; one && round <= kMostPlacesAdded; ++round) {
-            auto curve = curve_over(places_, own_, always(one->controller), kCurvePlaces, points, options_.allowance);
+        for (int round = 0; one && round <= kMaxPointsAdded; ++round) {
+            auto curve = curve_over(places_, own_, always(one->controller), kCurvePoints, points, options_.allowance);
             if (!curve) return unless_stopped(curve.error());
             design_.one = *one;
             design_.one_curve = std::move(*curve);
-            const WorstPlace* worst = worst_limit(design_.one_curve);
+            const WorstPoint* worst = worst_limit(design_.one_curve);
             if (!problem_.hold_between || !exceeds_limit(design_.one_curve) || one->partial) break;
             points.push_back(worst->at);
             std::ranges::sort(points);
@@ -144,8 +144,8 @@ private:
     std::optional<Error> take(ScheduleDesign schedule) {
         const auto in_use_at = [&](double at) { return in_use(schedule.schedule, at); };
         std::vector<double> extra = bends_of(*problem_.model, schedule.schedule);
-        for (const PlaceFigures& place : design_.one_curve.places) extra.push_back(place.at);
-        auto curve = curve_over(places_, own_, in_use_at, kCurvePlaces, extra, options_.allowance);
+        for (const PointFigures& place : design_.one_curve.places) extra.push_back(place.at);
+        auto curve = curve_over(places_, own_, in_use_at, kCurvePoints, extra, options_.allowance);
         design_.partial = design_.partial || schedule.partial;
         if (curve) {
             schedule.worst_relative_IAE = std::max(schedule.worst_relative_IAE, largest_relative_IAE(*curve));
@@ -157,7 +157,7 @@ private:
                     schedule_above_limit(*curve, std::max(largest_excess(*curve), excess), places_));
             }
         }
-        remark_price(schedule, options_.allowance);
+        remark_cost(schedule, options_.allowance);
         design_.warnings.insert(design_.warnings.end(), schedule.warnings.begin(), schedule.warnings.end());
         if (!curve) {
             design_.schedule = std::move(schedule);
@@ -186,7 +186,7 @@ private:
     }
 
     void judge() {
-        const std::string rule = " (a schedule is worth it above " + text(kWorthASchedule) + " times).";
+        const std::string rule = " (a schedule is worth it above " + text(kMinCostRatioForSchedule) + " times).";
         if (!design_.one) {
             design_.verdict = Verdict::schedule;
             design_.because = "No one setting keeps the limits over the range: it needs a schedule.";
@@ -194,7 +194,7 @@ private:
         }
         const double one = design_.one_curve.places.empty() ? design_.one->worst_relative_IAE
                                                             : largest_relative_IAE(design_.one_curve);
-        const std::string price =
+        const std::string cost =
             std::isfinite(one) ? "costs up to " + text(one, 3) + " times" : "has no finite part of";
         if (one <= 1 + options_.allowance) {
             design_.verdict = Verdict::one_setting;
@@ -202,9 +202,9 @@ private:
                               " times that of the place's own optimum" + rule;
             return;
         }
-        design_.verdict = one <= kWorthASchedule ? Verdict::optional : Verdict::schedule;
+        design_.verdict = one <= kMinCostRatioForSchedule ? Verdict::optional : Verdict::schedule;
         design_.because =
-            "One setting " + price + " the IAE of a place's own optimum" +
+            "One setting " + cost + " the IAE of a place's own optimum" +
             (design_.schedule ? ", a schedule of " + std::to_string(design_.schedule->schedule.rows.size()) +
                                     " rows up to " + text(design_.schedule->worst_relative_IAE, 3) + " times"
                               : std::string()) +
@@ -213,8 +213,8 @@ private:
 
     const RangeProblem& problem_;
     const RangeOptions& options_;
-    Places points_, integrated_;
-    Places& places_;  ///< of the schedule and the curves
+    PointDesigns points_, integrated_;
+    PointDesigns& places_;  ///< of the schedule and the curves
     const RunControl& control_;
     OwnOptima own_;
     RangeDesign design_;
@@ -241,7 +241,7 @@ std::vector<Error> option_faults(const RangeOptions& options) {
     check(within(options.b, 0, 1), "b", "b is " + text(options.b) + "; must be 0 to 1.");
     check(within(options.hysteresis, 0, 0.2), "hysteresis",
           "hysteresis is " + text(options.hysteresis) + " of the range; must be 0 to 0.2.");
-    check(!options.rows || within(*options.rows, 1, kMostRows), "rows",
+    check(!options.rows || within(*options.rows, 1, kMaxRows), "rows",
           "rows is " + std::to_string(options.rows.value_or(0)) + "; must be 1 to 20.");
     return faults;
 }
@@ -256,7 +256,7 @@ Expected<RangeDesign> design_range(const RangeProblem& problem, const RunControl
 
 namespace {
 
-constexpr std::size_t kOwnPlaces = 9;  // with optima of their own; the worst places join them
+constexpr std::size_t kOptimumPoints = 9;  // with optima of their own; the worst places join them
 
 }  // namespace
 
@@ -266,8 +266,8 @@ Expected<RangeDesign> judge_schedule(const RangeProblem& problem, const Schedule
     auto rules = design_rules(model, problem.options);
     if (!rules) return rules.error();
     rules->integrated = !model.has_responses();
-    Places places(model, problem.scheduling, *rules, control);
-    auto own = OwnOptima::over(places, kOwnPlaces);
+    PointDesigns places(model, problem.scheduling, *rules, control);
+    auto own = OwnOptima::over(places, kOptimumPoints);
     if (!own) return own.error();
 
     // The curve's places are too few to see every limit exceeded; it has those where one is.
@@ -276,7 +276,7 @@ Expected<RangeDesign> judge_schedule(const RangeProblem& problem, const Schedule
     std::vector<double> extra = bends_of(model, schedule);
     extra.insert(extra.end(), verified->worst.begin(), verified->worst.end());
     const auto settings = [&schedule](double at) { return in_use(schedule, at); };
-    auto curve = curve_over(places, *own, settings, kCurvePlaces, extra, problem.options.allowance);
+    auto curve = curve_over(places, *own, settings, kCurvePoints, extra, problem.options.allowance);
     if (!curve) return curve.error();
 
     RangeDesign design;

@@ -35,7 +35,7 @@ enum class Verdict {
 };
 
 /// The border between `optional` and `schedule`.
-constexpr double kWorthASchedule = 1.3;
+constexpr double kMinCostRatioForSchedule = 1.3;
 
 struct RangeDesign {
     std::optional<OneSetting> one;
@@ -61,16 +61,16 @@ std::vector<Error> option_faults(const RangeOptions& options);
 ///
 /// Warnings: the model's; "limit-exceeded-between" where one setting exceeds a limit between the points;
 /// "schedule-over-allowance"; "schedule-above-limit" where `holds_limits` is false. Errors: option_faults' first; those
-/// of Places::at; where neither a setting nor a schedule exists, that of the setting; cancelled before anything was
-/// found.
+/// of PointDesigns::at; where neither a setting nor a schedule exists, that of the setting; cancelled before anything
+/// was found.
 Expected<RangeDesign> design_range(const RangeProblem& problem, const RunControl& control);
 
-/// What a schedule does over the range, without a design: quick, so that it can follow a hand. Its price is measured
+/// What a schedule does over the range, without a design: quick, so that it can follow a hand. Its cost is measured
 /// against optima that are searched at a few places and interpolated between; the worst places against their own.
 /// `one` is empty and the verdict says nothing; a schedule beyond a limit has the warning "schedule-above-limit". Rows
 /// ascend; hysteresis is in the unit of `at`.
 ///
-/// Errors: option_faults' first; those of Places::at.
+/// Errors: option_faults' first; those of PointDesigns::at.
 Expected<RangeDesign> judge_schedule(const RangeProblem& problem, const Schedule& schedule, const RunControl& control);
 
 }  // namespace tunewright::range

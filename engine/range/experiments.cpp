@@ -16,7 +16,7 @@ std::optional<Error> fault_of(const SteadyBranch& branch, const ExperimentOption
     const auto fault = [](const char* where, std::string message) {
         return Error{ErrorKind::invalid_argument, where, std::move(message)};
     };
-    if (options.at.empty() || options.at.size() > std::size_t(kMostPoints))
+    if (options.at.empty() || options.at.size() > std::size_t(kMaxPoints))
         return fault("experiment/at", "There are " + std::to_string(options.at.size()) + " places; give 1 to 20.");
     for (std::size_t k = 0; k < options.at.size(); ++k) {
         const double at = options.at[k];

@@ -8,7 +8,7 @@
 namespace tunewright::range {
 namespace {
 
-constexpr int kMostDigits = 9;
+constexpr int kMaxDigits = 9;
 
 /// The value and its limit with as many digits as tell them apart.
 struct ValueAndLimit {
@@ -16,26 +16,26 @@ struct ValueAndLimit {
     std::string limit;
 };
 
-ValueAndLimit words_of(const WorstPlace& worst, const Places& places) {
+ValueAndLimit words_of(const WorstPoint& worst, const PointDesigns& places) {
     const std::string what = worst.quantity == Quantity::Ms ? "Ms" : "Mt";
     if (!worst.value) return {what + " is infinite at " + places.named(worst.at), text(worst.limit)};
     int digits = 4;
-    while (digits < kMostDigits && text(*worst.value, digits) == text(worst.limit, digits)) ++digits;
+    while (digits < kMaxDigits && text(*worst.value, digits) == text(worst.limit, digits)) ++digits;
     return {what + " is " + text(*worst.value, digits) + " at " + places.named(worst.at), text(worst.limit, digits)};
 }
 
 }  // namespace
 
-const WorstPlace* worst_limit(const RangeCurve& curve) {
-    const WorstPlace* worst = nullptr;
-    const auto over = [](const WorstPlace& place) { return place.value.value_or(INFINITY) / place.limit; };
-    for (const WorstPlace& place : curve.worst)
+const WorstPoint* worst_limit(const RangeCurve& curve) {
+    const WorstPoint* worst = nullptr;
+    const auto over = [](const WorstPoint& place) { return place.value.value_or(INFINITY) / place.limit; };
+    for (const WorstPoint& place : curve.worst)
         if (place.quantity != Quantity::relative_IAE && (worst == nullptr || over(place) > over(*worst)))
             worst = &place;
     return worst;
 }
 
-std::optional<Warning> one_above_limit(const RangeCurve& curve, const Places& places) {
+std::optional<Warning> one_above_limit(const RangeCurve& curve, const PointDesigns& places) {
     if (!exceeds_limit(curve)) return std::nullopt;
     const auto [value, limit] = words_of(*worst_limit(curve), places);
     return Warning{"limit-exceeded-between", "With one setting " + value +
@@ -43,9 +43,9 @@ std::optional<Warning> one_above_limit(const RangeCurve& curve, const Places& pl
                                                  " is held. Add a point there."};
 }
 
-Warning schedule_above_limit(const RangeCurve& curve, double excess, const Places& places) {
+Warning schedule_above_limit(const RangeCurve& curve, double excess, const PointDesigns& places) {
     const std::string percent = "by " + text(100 * excess, 3) + " %";
-    const WorstPlace* worst = worst_limit(curve);
+    const WorstPoint* worst = worst_limit(curve);
     if (worst != nullptr && (!worst->value || *worst->value > worst->limit)) {
         const auto [value, limit] = words_of(*worst, places);
         return {"schedule-above-limit", "With this schedule " + value + ", above its limit of " + limit +

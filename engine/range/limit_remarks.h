@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "engine/range/curves.h"
-#include "engine/range/search/places.h"
+#include "engine/range/search/point_designs.h"
 #include "engine/tuning/limits.h"
 #include "engine/warning.h"
 
@@ -18,13 +18,13 @@ namespace tunewright::range {
 inline bool exceeds_limit(const RangeCurve& curve) { return largest_excess(curve) > limits::kMaxRelativeExcessJudged; }
 
 /// The one of Ms and Mt that comes nearest to its limit or lies farthest beyond it; null for a curve without places.
-const WorstPlace* worst_limit(const RangeCurve& curve);
+const WorstPoint* worst_limit(const RangeCurve& curve);
 
 /// "limit-exceeded-between": one setting exceeds a limit between the points. Empty where it keeps them, but for 5e-5.
-std::optional<Warning> one_above_limit(const RangeCurve& curve, const Places& places);
+std::optional<Warning> one_above_limit(const RangeCurve& curve, const PointDesigns& places);
 
 /// "schedule-above-limit". `excess`: the largest relative excess that is known, infinite for an unstable loop; it may
 /// be of a place that the curve does not have.
-Warning schedule_above_limit(const RangeCurve& curve, double excess, const Places& places);
+Warning schedule_above_limit(const RangeCurve& curve, double excess, const PointDesigns& places);
 
 }  // namespace tunewright::range

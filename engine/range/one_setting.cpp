@@ -10,7 +10,7 @@
 #include "engine/loop/stability.h"
 #include "engine/number_text.h"
 #include "engine/range/one_setting_problem.h"
-#include "engine/range/schedule/look.h"
+#include "engine/range/schedule/point_evaluation.h"
 #include "engine/tuning/limits.h"
 #include "engine/tuning/robust/sqp.h"
 #include "engine/tuning/robust/verified_search.h"
@@ -20,19 +20,19 @@ namespace {
 
 using robust::DesignPoint;
 
-constexpr double kNowhere = std::numeric_limits<double>::infinity();
-constexpr double kCompareTolerance = 1e-3;  // of simulations that only compare starts
-constexpr double kPriceTolerance = 1e-5;    // of those that are reported
-constexpr double kSameDesign = 0.03;        // of each logarithm: another start that leads nowhere else
-constexpr int kRounds = 4;                  // of searches under tighter limits
-constexpr int kRegionRounds = 10;           // of adding the worst plants inside regions
+constexpr double kInfiniteLogCost = std::numeric_limits<double>::infinity();
+constexpr double kCompareTolerance = 1e-3;   // of simulations that only compare starts
+constexpr double kReportedTolerance = 1e-5;  // of those that are reported
+constexpr double kMaxSameDesignLog = 0.03;   // of each logarithm: another start that leads nowhere else
+constexpr int kRounds = 4;                   // of searches under tighter limits
+constexpr int kRegionRounds = 10;            // of adding the worst plants inside regions
 
 /// All plants of all points as one problem; nominal is the first point's.
 struct Together {
     std::vector<LinearPlant> others;
     robust::DesignProblem problem;
 
-    Together(const std::vector<Place*>& points, bool PI) : problem(points.front()->problem()) {
+    Together(const std::vector<PointDesign*>& points, bool PI) : problem(points.front()->problem()) {
         for (std::size_t k = 0; k < points.size(); ++k) {
             const auto& model = points[k]->model();
             if (k > 0) others.push_back(*model.nominal);
@@ -44,26 +44,26 @@ struct Together {
     }
 };
 
-double middle_reference(const std::vector<Place*>& points) {
+double middle_reference(const std::vector<PointDesign*>& points) {
     double sum = 0;
-    for (const Place* place : points) sum += std::log(place->sweep().reference());
+    for (const PointDesign* place : points) sum += std::log(place->sweep().reference());
     return std::exp(sum / double(points.size()));
 }
 
-double log_price_of(const std::vector<Place*>& points, const DesignPoint& x, Aim aim, double tolerance) {
-    double worst = -kNowhere, sum = 0;
-    for (const Place* place : points) {
-        if (!robust::is_stable(place->problem(), x)) return kNowhere;
-        const double price = place->log_price(x, tolerance);
-        worst = std::max(worst, price);
-        sum += std::exp(price);
+double log_cost_ratio_of(const std::vector<PointDesign*>& points, const DesignPoint& x, Aim aim, double tolerance) {
+    double worst = -kInfiniteLogCost, sum = 0;
+    for (const PointDesign* place : points) {
+        if (!robust::is_stable(place->problem(), x)) return kInfiniteLogCost;
+        const double cost = place->log_cost_ratio(x, tolerance);
+        worst = std::max(worst, cost);
+        sum += std::exp(cost);
     }
     return aim == Aim::worst ? worst : std::log(sum / double(points.size()));
 }
 
 /// Where searches begin: the least integrated error, which needs no simulation, and the cheapest own optimum that can
 /// be moved within the limits of all points. Cheapest first.
-Expected<std::vector<DesignPoint>> starts(const std::vector<Place*>& points, const RangeOptions& options, bool PI,
+Expected<std::vector<DesignPoint>> starts(const std::vector<PointDesign*>& points, const RangeOptions& options, bool PI,
                                           const RunControl& control) {
     Together together(points, PI);
     robust::DesignProblem problem = together.problem;
@@ -73,48 +73,51 @@ Expected<std::vector<DesignPoint>> starts(const std::vector<Place*>& points, con
     if (!integrated) return placed_in_options(integrated.error());
     std::vector<std::pair<double, DesignPoint>> found;
     const auto consider = [&](DesignPoint x) {
-        const double least = 1.01 * robust::kMinTd / middle_reference(points);
-        if (problem.pid) x[2] = std::max(x[2], std::log(least));
-        if (PI) x[2] = -kNowhere;
-        found.emplace_back(log_price_of(points, x, options.aim, kCompareTolerance), x);
+        const double min = 1.01 * robust::kMinTd / middle_reference(points);
+        if (problem.pid) x[2] = std::max(x[2], std::log(min));
+        if (PI) x[2] = -kInfiniteLogCost;
+        found.emplace_back(log_cost_ratio_of(points, x, options.aim, kCompareTolerance), x);
     };
     consider(integrated->x);
     const robust::Sweep sweep(together.problem, middle_reference(points));
-    for (const Place* place : points)
+    for (const PointDesign* place : points)
         if (const auto inside = robust::feasible_near(sweep, place->optimum())) consider(*inside);
     std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     std::vector<DesignPoint> result;
-    for (const auto& [price, x] : found) result.push_back(x);
+    for (const auto& [cost, x] : found) result.push_back(x);
     return result;
 }
 
-double largest_excess(const std::vector<Place*>& points, const DesignPoint& x) {
+double largest_excess(const std::vector<PointDesign*>& points, const DesignPoint& x) {
     double worst = -1;
-    for (const Place* place : points) worst = std::max(worst, place->excess(x));
+    for (const PointDesign* place : points) worst = std::max(worst, place->excess(x));
     return worst;
 }
 
-bool same(const Eigen::VectorXd& a, const Eigen::VectorXd& b) { return (a - b).cwiseAbs().maxCoeff() < kSameDesign; }
+bool same(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+    return (a - b).cwiseAbs().maxCoeff() < kMaxSameDesignLog;
+}
 
 class Progressing {
 public:
-    Progressing(const DesignRules& rules, const RunControl& control, const robust::Limits& limits)
+    Progressing(const DesignRules& rules, const RunControl& control, const robust::RobustnessLimits& limits)
         : rules_(rules), control_(control), limits_(limits) {}
 
     void operator()(const JointResult& result, const DesignPoint& x) {
         if (!control_.progress || !result.holds()) return;
         ++steps_;
         Progress progress{.fraction = 0.3 * (1 - std::pow(0.85, steps_)), .stage = "tune", .message = {}, .best = {}};
-        progress.message = "one setting: at worst " + text(std::exp(result.log_price), 3) + " times the own optimum.";
+        progress.message =
+            "one setting: at worst " + text(std::exp(result.log_cost_ratio), 3) + " times the own optimum.";
         progress.best = std::make_shared<const BestSoFar>(
-            BestSoFar{setting_at(rules_, x, 1), std::exp(result.log_price), limits_.Ms, limits_.Mt});
+            BestSoFar{setting_at(rules_, x, 1), std::exp(result.log_cost_ratio), limits_.Ms, limits_.Mt});
         control_.progress(progress);
     }
 
 private:
     const DesignRules& rules_;
     const RunControl& control_;
-    const robust::Limits& limits_;
+    const robust::RobustnessLimits& limits_;
     int steps_ = 0;
 };
 
@@ -131,7 +134,7 @@ JointResult best_end(const JointProblem& joint, const std::vector<DesignPoint>& 
         auto end = search_jointly(joint, v, search, [&](const JointResult& so_far) {
             progress(so_far, joint.settings(so_far.v, 0, nullptr));
         });
-        const bool better = !best || (end.holds() && (!best->holds() || end.log_price < best->log_price));
+        const bool better = !best || (end.holds() && (!best->holds() || end.log_cost_ratio < best->log_cost_ratio));
         const bool stopped = end.stopped;
         if (better) best = std::move(end);
         if (stopped || ++runs == 2) break;
@@ -154,7 +157,7 @@ IdealPid setting_at(const DesignRules& rules, const DesignPoint& x, double b) {
 namespace {
 
 /// Peaks on every plant of the place, those set aside too; empty where one loop is not stable.
-std::optional<Peaks> worst_peaks(const Place& place, const IdealPid& controller) {
+std::optional<Peaks> worst_peaks(const PointDesign& place, const IdealPid& controller) {
     const ParallelPid gains = to_parallel(controller);
     if (const auto& measured = place.model().measured) {
         const auto loop = MeasuredLoop::make(*measured, gains);
@@ -178,31 +181,32 @@ std::optional<Peaks> worst_peaks(const Place& place, const IdealPid& controller)
     return worst;
 }
 
-void add_peaks(const Place& place, const IdealPid& controller, PlacePrice& price) {
+void add_peaks(const PointDesign& place, const IdealPid& controller, PointCost& cost) {
     const std::string unstable = "The loop is not stable here.";
     const auto peaks = worst_peaks(place, controller);
-    price.Ms = peaks ? finite_or(peaks->S.value, unstable) : no_figure(unstable);
-    price.Mt = peaks ? finite_or(peaks->T.value, unstable) : no_figure(unstable);
+    cost.Ms = peaks ? finite_or(peaks->S.value, unstable) : no_figure(unstable);
+    cost.Mt = peaks ? finite_or(peaks->T.value, unstable) : no_figure(unstable);
 }
 
 }  // namespace
 
-PlacePrice price_at(const Place& place, const IdealPid& controller) {
+PointCost cost_at(const PointDesign& place, const IdealPid& controller) {
     const DesignRules rules{
         .pid = place.problem().pid, .filter = place.problem().filter, .limits = {}, .sign = place.problem().sign};
-    PlacePrice price{.at = place.at(),
-                     .own = setting_at(rules, place.own_design(), controller.b),
-                     .own_IAE = std::exp(place.optimum_log_cost()),
-                     .IAE = {},
-                     .relative_IAE = {},
-                     .Ms = {},
-                     .Mt = {}};
-    add_peaks(place, controller, price);
-    const double log_price = price.Ms ? place.log_price(point_of(controller), kPriceTolerance) : kNowhere;
-    const std::string why = price.Ms ? "The response does not settle." : "The loop is not stable here.";
-    price.relative_IAE = finite_or(std::exp(log_price), why);
-    price.IAE = finite_or(std::exp(log_price) * price.own_IAE, why);
-    return price;
+    PointCost cost{.at = place.at(),
+                   .own = setting_at(rules, place.own_design(), controller.b),
+                   .own_IAE = std::exp(place.optimum_log_cost()),
+                   .IAE = {},
+                   .relative_IAE = {},
+                   .Ms = {},
+                   .Mt = {}};
+    add_peaks(place, controller, cost);
+    const double log_cost_ratio =
+        cost.Ms ? place.log_cost_ratio(point_of(controller), kReportedTolerance) : kInfiniteLogCost;
+    const std::string why = cost.Ms ? "The response does not settle." : "The loop is not stable here.";
+    cost.relative_IAE = finite_or(std::exp(log_cost_ratio), why);
+    cost.IAE = finite_or(std::exp(log_cost_ratio) * cost.own_IAE, why);
+    return cost;
 }
 
 namespace {
@@ -213,7 +217,7 @@ struct VerifiedEnd {
 };
 
 /// The best end that holds the limits on the independent grid as well, searched again inside them where it does not.
-Expected<VerifiedEnd> verified_end(const std::vector<Place*>& points, const JointProblem& joint,
+Expected<VerifiedEnd> verified_end(const std::vector<PointDesign*>& points, const JointProblem& joint,
                                    const std::vector<DesignPoint>& from, const RunControl& control,
                                    Progressing& progress) {
     JointOptions search;
@@ -232,11 +236,12 @@ Expected<VerifiedEnd> verified_end(const std::vector<Place*>& points, const Join
                  "returned. Give a filter with a longer Tf, or raise the limits a little."};
 }
 
-OneSetting described(const std::vector<Place*>& points, const DesignRules& rules, const DesignPoint& x, double b) {
+OneSetting described(const std::vector<PointDesign*>& points, const DesignRules& rules, const DesignPoint& x,
+                     double b) {
     OneSetting one{.controller = setting_at(rules, x, b), .points = {}};
-    for (const Place* place : points) {
-        one.points.push_back(price_at(*place, one.controller));
-        const double relative = one.points.back().relative_IAE.value_or(kNowhere);
+    for (const PointDesign* place : points) {
+        one.points.push_back(cost_at(*place, one.controller));
+        const double relative = one.points.back().relative_IAE.value_or(kInfiniteLogCost);
         one.mean_relative_IAE += relative / double(points.size());
         if (relative <= one.worst_relative_IAE) continue;
         one.worst_relative_IAE = relative;
@@ -246,8 +251,8 @@ OneSetting described(const std::vector<Place*>& points, const DesignRules& rules
 }
 
 /// `PI`: with Td = 0, as one_setting_problem has it.
-Expected<OneSetting> found_setting(const std::vector<Place*>& points, Places& places, const RangeOptions& options,
-                                   bool PI) {
+Expected<OneSetting> found_setting(const std::vector<PointDesign*>& points, PointDesigns& places,
+                                   const RangeOptions& options, bool PI) {
     Progressing progress(places.rules(), places.control(), options.limits);
     auto from = starts(points, options, PI, places.control());
     if (!from) return from.error();
@@ -256,7 +261,7 @@ Expected<OneSetting> found_setting(const std::vector<Place*>& points, Places& pl
         const auto end = verified_end(points, joint, *from, places.control(), progress);
         if (!end) return end.error();
         bool added = false;
-        for (Place* place : points) added = place->add_worst_inside(end->x, places.control().stop) || added;
+        for (PointDesign* place : points) added = place->add_worst_inside(end->x, places.control().stop) || added;
         if (!added || end->stopped || round == kRegionRounds) {
             OneSetting one = described(points, places.rules(), end->x, options.b);
             one.partial = end->stopped;
@@ -268,8 +273,9 @@ Expected<OneSetting> found_setting(const std::vector<Place*>& points, Places& pl
 
 }  // namespace
 
-Expected<OneSetting> design_one_setting(Places& places, const std::vector<double>& at, const RangeOptions& options) {
-    std::vector<Place*> points;
+Expected<OneSetting> design_one_setting(PointDesigns& places, const std::vector<double>& at,
+                                        const RangeOptions& options) {
+    std::vector<PointDesign*> points;
     for (const double place : at) {
         const auto found = places.at_point(place);
         if (!found) return found.error();
@@ -277,7 +283,7 @@ Expected<OneSetting> design_one_setting(Places& places, const std::vector<double
     }
     auto one = found_setting(points, places, options, false);
     const bool cut_short = one ? one->partial : one.error().kind == ErrorKind::cancelled;
-    if (cut_short || std::ranges::none_of(points, &Place::optimum_is_PI)) return one;
+    if (cut_short || std::ranges::none_of(points, &PointDesign::optimum_is_PI)) return one;
     const auto PI = found_setting(points, places, options, true);
     const auto aim = [&](const OneSetting& setting) {
         return options.aim == Aim::worst ? setting.worst_relative_IAE : setting.mean_relative_IAE;

@@ -7,13 +7,13 @@
 #include "engine/expected.h"
 #include "engine/figure.h"
 #include "engine/range/problem.h"
-#include "engine/range/search/places.h"
+#include "engine/range/search/point_designs.h"
 
 namespace tunewright::range {
 
 /// A setting at a place of the range. IAE: of a unit load step, in y time per u; of a place known by its frequency
 /// response alone Ti/Kp (the integrated error), for both controllers.
-struct PlacePrice {
+struct PointCost {
     double at = 0;
     IdealPid own;  ///< the place's own optimum under the same limits
     double own_IAE = 0;
@@ -27,20 +27,21 @@ struct OneSetting {
     double worst_relative_IAE = 0;  ///< the largest at a point
     double mean_relative_IAE = 0;   ///< over the points
     double worst_at = 0;            ///< the point of the largest
-    std::vector<PlacePrice> points;
+    std::vector<PointCost> points;
     bool partial = false;  ///< stopped early: the best so far that holds the limits
 };
 
 /// The setting that keeps the limits at every point, with the least worst or mean IAE over that of each point's own
 /// optimum (problem.h). Searched by search_jointly from the least integrated error and from the best of the own optima.
-/// Errors: those of Places::at, of robust::verified_search for all plants together (no_feasible_controller names the
-/// smallest limit that works); numerical_failure where no end of a search holds the limits on an independent grid.
-Expected<OneSetting> design_one_setting(Places& places, const std::vector<double>& points, const RangeOptions& options);
+/// Errors: those of PointDesigns::at, of robust::verified_search for all plants together (no_feasible_controller names
+/// the smallest limit that works); numerical_failure where no end of a search holds the limits on an independent grid.
+Expected<OneSetting> design_one_setting(PointDesigns& places, const std::vector<double>& points,
+                                        const RangeOptions& options);
 
 /// The ideal controller at x with the options' set-point weight.
 IdealPid setting_at(const DesignRules& rules, const robust::DesignPoint& x, double b);
 
 /// A setting at a place: simulated finely, peaks refined on every plant of the place.
-PlacePrice price_at(const Place& place, const IdealPid& controller);
+PointCost cost_at(const PointDesign& place, const IdealPid& controller);
 
 }  // namespace tunewright::range

@@ -15,7 +15,7 @@ constexpr double kUnbounded = 700;                                  // a logarit
 
 }  // namespace
 
-JointProblem one_setting_problem(const std::vector<Place*>& points, const RangeOptions& options, bool PI) {
+JointProblem one_setting_problem(const std::vector<PointDesign*>& points, const RangeOptions& options, bool PI) {
     JointProblem joint;
     joint.places.assign(points.begin(), points.end());
     joint.aim = options.aim;
@@ -25,7 +25,7 @@ JointProblem one_setting_problem(const std::vector<Place*>& points, const RangeO
         return DesignPoint{v[0], v[1], n > 2 ? v[2] : PI ? kNoTd : 0};
     };
     double fastest = 0, slowest = std::numeric_limits<double>::infinity();
-    for (const Place* place : points) {
+    for (const PointDesign* place : points) {
         fastest = std::max(fastest, place->sweep().reference());
         slowest = std::min(slowest, place->sweep().reference());
     }

@@ -12,7 +12,7 @@
 
 #include "engine/range/problem.h"
 #include "engine/range/search/joint_search.h"
-#include "engine/range/search/place.h"
+#include "engine/range/search/point_design.h"
 #include "engine/tuning/robust/robust.h"
 
 namespace tunewright::range {
@@ -21,7 +21,7 @@ namespace tunewright::range {
 /// PID was asked for. A filter tied to Td shrinks with it, so that no small Td comes near a PI on a plant whose gain
 /// does not fall with frequency. Bounds: of Ti by the fastest place, of Td by the fastest and the slowest (kMinTi,
 /// kMinTd and kMaxTd of robust designs); Kp is free. The places live as long as the problem.
-JointProblem one_setting_problem(const std::vector<Place*>& points, const RangeOptions& options, bool PI = false);
+JointProblem one_setting_problem(const std::vector<PointDesign*>& points, const RangeOptions& options, bool PI = false);
 
 /// x as the unknowns of such a problem. Where it searches for a PID, Td is raised to the least that it allows: a design
 /// without derivative action has ln Td = -infinity, from where no search moves.

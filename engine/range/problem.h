@@ -36,7 +36,7 @@ enum class Aim { worst, mean };
 
 struct RangeOptions {
     ControllerKind controller = ControllerKind::PID;  ///< PI or PID
-    robust::Limits limits = {};                       ///< held everywhere; no m_circle
+    robust::RobustnessLimits limits = {};             ///< held everywhere; no m_circle
     RobustFilterOptions filter = {};                  ///< empty: range_filter_rule
     Aim aim = Aim::worst;
     double b = 1;                  ///< set-point weight of every row, 0 to 1
@@ -48,6 +48,6 @@ struct RangeOptions {
 };
 
 /// The fewest and most points, and the most rows.
-constexpr int kFewestPoints = 2, kMostPoints = 20, kMostRows = 20;
+constexpr int kFewestPoints = 2, kMaxPoints = 20, kMaxRows = 20;
 
 }  // namespace tunewright::range

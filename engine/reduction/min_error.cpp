@@ -116,11 +116,11 @@ double StepDifference::absolute(const ReducedModel& model) const {
 
 namespace {
 
-constexpr double kMinLag = 1e-6;      // of the time scale
-constexpr double kLeastScale = 1e-3;  // of the dead time, for a plant that is nearly nothing else
-constexpr double kMoved = 1e-6;       // of the static gain or slope: less is no response to fit
-constexpr int kMaxEvaluations = 150;  // of each search; most end by their tolerance before
-constexpr double kLargestLag = 1e4;   // of the time scale
+constexpr double kMinLag = 1e-6;            // of the time scale
+constexpr double kMinScale = 1e-3;          // of the dead time, for a plant that is nearly nothing else
+constexpr double kMinResponseShare = 1e-6;  // of the static gain or slope: less is no response to fit
+constexpr int kMaxEvaluations = 150;        // of each search; most end by their tolerance before
+constexpr double kMaxLag = 1e4;             // of the time scale
 
 double criterion(ReductionMethod method, const StepDifference& difference, const ReducedModel& model) {
     if (method == ReductionMethod::min_iae) return difference.absolute(model);
@@ -146,7 +146,7 @@ public:
     ReducedModel model(const std::vector<double>& x) const;
     std::vector<double> unknowns(const ReducedModel& model) const;
     double cost(const ReducedModel& model) const { return criterion(method_, difference_, model); }
-    ReducedModel least(const ReducedModel& start) const;
+    ReducedModel min(const ReducedModel& start) const;
     double moved() const { return difference_.moved(); }
 
 private:
@@ -161,7 +161,7 @@ private:
 ReducedModel ModelSearch::model(const std::vector<double>& x) const {
     ReducedModel model{.integrators = integrators_, .K = K_};
     model.L = std::max(0.0, x[0]) * scale_;
-    if (fits_T_) model.T1 = std::clamp(std::exp(x[1]), kMinLag, kLargestLag) * scale_;
+    if (fits_T_) model.T1 = std::clamp(std::exp(x[1]), kMinLag, kMaxLag) * scale_;
     if (ramp_delay_) {
         model.L = std::min(model.L, *ramp_delay_);
         model.T1 = *ramp_delay_ - model.L;
@@ -178,7 +178,7 @@ std::vector<double> ModelSearch::unknowns(const ReducedModel& model) const {
 }
 
 // A simplex, then subspaces from where it stopped: a kink of |.| may stall a simplex.
-ReducedModel ModelSearch::least(const ReducedModel& start) const {
+ReducedModel ModelSearch::min(const ReducedModel& start) const {
     std::vector<double> x = unknowns(start);
     const double unit = cost(start);
     if (!(unit > 0)) return start;
@@ -205,7 +205,7 @@ std::vector<ReducedModel> starts(const LinearPlant& plant, double scale) {
 double time_scale(const LinearPlant& plant) {
     double slowest = 0;
     for (const auto pole : plant.poles()) slowest = std::max(slowest, 1 / std::abs(pole));
-    return std::max({plant.lag_sum(), slowest, kLeastScale * plant.dead_time()});
+    return std::max({plant.lag_sum(), slowest, kMinScale * plant.dead_time()});
 }
 
 Error nothing_moved(double horizon, const LinearPlant& plant) {
@@ -222,12 +222,12 @@ Expected<ReducedModel> min_error(const LinearPlant& plant, const ReductionReques
         return ramp_asymptote(plant);
     const double scale = time_scale(plant);
     const ModelSearch search(plant, request, scale);
-    if (request.horizon && !(std::abs(search.moved()) > kMoved * std::abs(plant.low_frequency_gain())))
+    if (request.horizon && !(std::abs(search.moved()) > kMinResponseShare * std::abs(plant.low_frequency_gain())))
         return nothing_moved(*request.horizon, plant);
 
     auto models = starts(plant, scale);
     std::ranges::sort(models, {}, [&](const ReducedModel& model) { return search.cost(model); });
-    ReducedModel best = search.least(models.front());
+    ReducedModel best = search.min(models.front());
     best.warnings = plant.integrators() == 0 ? monotonicity_warnings(step_response(plant), plant.low_frequency_gain())
                                              : std::vector<Warning>{};
     if (request.horizon && best.T1 > *request.horizon)

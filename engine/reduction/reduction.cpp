@@ -29,10 +29,10 @@ std::optional<Error> beyond_reduction(const LinearPlant& plant, ReducedOrder ord
     }
     if (plant.integrators() < 0)
         return no_rule("The plant has a zero at s = 0: it has no static gain, so integral action cannot hold it.");
-    const int most = order == ReducedOrder::first ? 1 : 2;
-    if (plant.integrators() > most)
+    const int max = order == ReducedOrder::first ? 1 : 2;
+    if (plant.integrators() > max)
         return no_rule("The plant has " + std::to_string(plant.integrators()) + " integrators; the model can carry " +
-                       std::to_string(most) + ".");
+                       std::to_string(max) + ".");
     return std::nullopt;
 }
 

@@ -59,7 +59,7 @@ Error reduction_fails(const std::string& reason) { return {ErrorKind::unsupporte
 
 namespace {
 
-const double kReached = 1 - std::exp(-1.0);
+const double kShareAtTimeConstant = 1 - std::exp(-1.0);
 
 StepSample steepest(const LinearPlant& plant, const std::vector<StepSample>& samples, double sign) {
     const auto best = std::ranges::max_element(samples, {}, [&](const StepSample& s) { return sign * s.slope; });
@@ -87,7 +87,8 @@ Expected<ReducedModel> tangent(const LinearPlant& plant, TangentTime time) {
     const StepSample at = steepest(plant, samples, sign);
     const double foot = at.t - at.y / at.slope;
     model.L += foot;
-    model.T1 = time == TangentTime::by_slope ? model.K / at.slope : time_at(plant, samples, kReached * model.K) - foot;
+    model.T1 = time == TangentTime::by_slope ? model.K / at.slope
+                                             : time_at(plant, samples, kShareAtTimeConstant * model.K) - foot;
     if (!(std::isfinite(model.T1) && std::isfinite(model.L) && model.T1 > 0 && foot >= 0))
         return reduction_fails("the response passes 63 % of its change before the foot of its steepest tangent.");
 

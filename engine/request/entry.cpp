@@ -1,6 +1,6 @@
 #include "engine/request/entry.h"
 
-#include "engine/evaluation/course.h"
+#include "engine/evaluation/response_pair.h"
 
 namespace tunewright {
 
@@ -14,7 +14,7 @@ void draw_together(std::vector<TuningEntry>& entries) {
             add(entry.evaluation->responses);
             if (entry.evaluation->linear) add(entry.evaluation->linear->responses);
         }
-        if (entry.as_built) add(entry.as_built->loop.responses);
+        if (entry.on_device) add(entry.on_device->loop.responses);
     }
     draw_together(all);
 }

@@ -7,7 +7,7 @@
 
 #include "engine/error.h"
 #include "engine/evaluation/evaluation.h"
-#include "engine/request/as_built.h"
+#include "engine/request/device_entry.h"
 #include "engine/request/optimum_at_ms.h"
 #include "engine/request/verdict/finding.h"
 #include "engine/tuning/method/method.h"
@@ -28,7 +28,7 @@ struct Standing {
     bool settles = false;   ///< stable, and both responses come to rest where they should
     bool within = true;     ///< the limit on Ms that was asked of this entry, if one was
     Figure Ms;              ///< of the loop as it will run: on the worst plant, in the user's own controller
-    Figure least_limit;     ///< least limit on the Ms of all entries with which it holds; none where no limit does
+    Figure min_limit;       ///< least limit on the Ms of all entries with which it holds; none where no limit does
     Figure excess_percent;  ///< of the load IAE over the least at the same Ms; by it entries rank
     int order = 0;          ///< from 1: its place where no limit on the Ms of all is set
     std::string why;        ///< what keeps it from the first group; empty where nothing does
@@ -51,7 +51,7 @@ struct TuningEntry {
     Reports reports;                           ///< of the method, and what was asked for of every controller
     std::optional<OptimumAtMs> optimum_at_Ms;  ///< where asked for
     std::optional<double> best_PI_load_IAE;    ///< beside a robust PID: of the robust PI within the same limits
-    std::optional<AsBuilt> as_built;           ///< where asked for and possible
+    std::optional<DeviceEntry> on_device;      ///< where asked for and possible
     std::optional<Standing> standing;          ///< of what was tuned, and of the baseline
     /// The longest sample time of a program with backward rules that keeps Ms within 5 %; of designs.
     std::optional<Figure> longest_sample_time;

@@ -41,10 +41,11 @@ std::vector<int> by_load_IAE(const std::vector<TuningEntry>& entries) {
 
 }  // namespace
 
-Expected<EvaluationResult> evaluate_all(const Subject& subject, const std::vector<Controller>& controllers,
-                                        const EvaluateOptions& options, const std::optional<built::Build>& implement,
-                                        const verdict::Labels& labels, const RunControl& control,
-                                        const IdentifiedModel* model, const verdict::GivenSteps& given_steps) {
+Expected<EvaluationResult> evaluate_all(const AnalysedPlant& subject, const std::vector<Controller>& controllers,
+                                        const EvaluateOptions& options,
+                                        const std::optional<device::DeviceModel>& device, const verdict::Labels& labels,
+                                        const RunControl& control, const IdentifiedModel* model,
+                                        const verdict::GivenSteps& given_steps) {
     const auto now = [&] { return control.now_ms ? control.now_ms() : 0; };
     if (const auto error = refuse_traces(options, controllers.size())) return *error;
     EvaluationResult result;
@@ -67,13 +68,14 @@ Expected<EvaluationResult> evaluate_all(const Subject& subject, const std::vecto
         if (tradeoffs)
             entry.reports.push_back(std::make_shared<TradeoffReport>(tradeoffs->of(controllers[i], std::nullopt)));
         if (optima) entry.optimum_at_Ms = optima->compare_at_Ms(*evaluation, control);
-        if (implement)
-            take_as_built(built_from(subject, *implement, watched, *evaluation, control), *evaluation, entry.as_built);
+        if (device)
+            take_device_entry(device_entry_of(subject, *device, watched, *evaluation, control), *evaluation,
+                              entry.on_device);
         if (model != nullptr) warn_of_band(*evaluation, model->excited_band);
         evaluation->compute_ms = now() - start;
         entry.evaluation = std::move(*evaluation);
     }
-    const verdict::Context context{subject, options, labels,      implement ? implement->Ts : 0,
+    const verdict::Context context{subject, options, labels,      device ? device->Ts : 0,
                                    model,   nullptr, given_steps, control};
     draw_together(result.controllers);
     ranked(result.controllers, {options.rank_Ms, subject.linear() != nullptr});

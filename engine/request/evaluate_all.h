@@ -8,8 +8,8 @@
 #include "engine/evaluation/evaluation.h"
 #include "engine/expected.h"
 #include "engine/identification/identify.h"
+#include "engine/plant/analysed_plant.h"
 #include "engine/plant/nonlinear/linearisation.h"
-#include "engine/plant/subject.h"
 #include "engine/progress.h"
 #include "engine/request/entry.h"
 
@@ -25,13 +25,13 @@ struct EvaluationResult {
 /// result has none. `options` are the same for all: steps, actuator, horizon, traces.
 ///
 /// Errors: those of evaluate(), `where` = "controllers/<index>/..."; timeout where it was stopped.
-/// `labels`: in which verdicts speak. `implement`: each is also settled for the user's own controller and judged on it.
+/// `labels`: in which verdicts speak. `device`: each is also settled for the user's own controller and judged on it.
 /// `model`: the one from a record that `subject` is made of; null for a plant that was given.
 /// `given_steps`: those of `options` that the user names.
-Expected<EvaluationResult> evaluate_all(const Subject& subject, const std::vector<Controller>& controllers,
-                                        const EvaluateOptions& options, const std::optional<built::Build>& implement,
-                                        const verdict::Labels& labels, const RunControl& control,
-                                        const IdentifiedModel* model = nullptr,
+Expected<EvaluationResult> evaluate_all(const AnalysedPlant& subject, const std::vector<Controller>& controllers,
+                                        const EvaluateOptions& options,
+                                        const std::optional<device::DeviceModel>& device, const verdict::Labels& labels,
+                                        const RunControl& control, const IdentifiedModel* model = nullptr,
                                         const verdict::GivenSteps& given_steps = {});
 
 }  // namespace tunewright

@@ -18,7 +18,7 @@ bool breaks_limit(const Evaluation& evaluation, std::optional<double> Ms_limit) 
 }
 
 void warn_of_region(Evaluation& evaluation, std::optional<double> Ms_limit, bool identified) {
-    constexpr double kFar = 2;  // times the limit
+    constexpr double kMinBadRatio = 2;  // times the limit
     if (identified)
         for (Warning& warning : evaluation.warnings)
             if (warning.code == "unstable-in-region") warning.level = WarningLevel::bad;
@@ -28,7 +28,7 @@ void warn_of_region(Evaluation& evaluation, std::optional<double> Ms_limit, bool
     evaluation.warnings.push_back(
         {"above-limit-in-region",
          "On the worst plant of the region Ms is " + text(worst) + ", above the " + text(*Ms_limit) + " asked for.",
-         identified && worst > kFar * *Ms_limit ? WarningLevel::bad : WarningLevel::warning});
+         identified && worst > kMinBadRatio * *Ms_limit ? WarningLevel::bad : WarningLevel::warning});
 }
 
 void say_choice(Evaluation& held, const Evaluation& nominal) {
@@ -68,10 +68,10 @@ Expected<PlantFamily> identified_region(const IdentifiedModel& model) {
     return with_alternatives(std::move(*region), model);
 }
 
-Expected<Subject> subject_of(const IdentifiedModel& model) {
+Expected<AnalysedPlant> subject_of(const IdentifiedModel& model) {
     auto region = identified_region(model);
-    return Subject::of_family(region ? std::move(*region)
-                                     : with_alternatives(PlantRegion::of_ranges(model.plant), model));
+    return AnalysedPlant::of_family(region ? std::move(*region)
+                                           : with_alternatives(PlantRegion::of_ranges(model.plant), model));
 }
 
 }  // namespace tunewright

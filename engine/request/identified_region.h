@@ -6,8 +6,8 @@
 
 #include "engine/evaluation/evaluation.h"
 #include "engine/identification/identify.h"
+#include "engine/plant/analysed_plant.h"
 #include "engine/plant/plant_family.h"
-#include "engine/plant/subject.h"
 
 namespace tunewright {
 
@@ -17,7 +17,7 @@ Expected<PlantFamily> identified_region(const IdentifiedModel& model);
 
 /// The model with its region as what controllers are judged on; the model alone where it has no covariance. Errors:
 /// as LinearPlant::make of its plant.
-Expected<Subject> subject_of(const IdentifiedModel& model);
+Expected<AnalysedPlant> subject_of(const IdentifiedModel& model);
 
 /// Whether some plant of the region is unstable, or beyond the limit on Ms that the method was asked for, if it was.
 bool breaks_limit(const Evaluation& evaluation, std::optional<double> Ms_limit);

@@ -10,7 +10,7 @@
 #include "engine/figure.h"
 #include "engine/progress.h"
 #include "engine/tuning/method/method.h"
-#include "engine/tuning/robust/front.h"
+#include "engine/tuning/robust/pareto_front.h"
 
 namespace tunewright {
 
@@ -36,7 +36,7 @@ private:
 
     TuningProblem problem_;
     EvaluateOptions options_;
-    RobustFront front_;
+    ParetoFront front_;
 };
 
 /// The load IAE of the robust PI within the limits of a robust PID with these options, on the same plant. Empty where

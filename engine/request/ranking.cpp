@@ -17,8 +17,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Of the loop as it will run: on the worst plant that it must serve, and in the user's own controller.
 Figure judged_Ms(const TuningEntry& entry) {
     const Evaluation& evaluation = *entry.evaluation;
-    if (entry.as_built && (!evaluation.region || !entry.as_built->loop.robustness.Ms))
-        return entry.as_built->loop.robustness.Ms;
+    if (entry.on_device && (!evaluation.region || !entry.on_device->loop.robustness.Ms))
+        return entry.on_device->loop.robustness.Ms;
     return evaluation.region ? evaluation.region->worst_Ms : evaluation.robustness.Ms;
 }
 
@@ -35,7 +35,7 @@ std::string above(const TuningEntry& entry, const Figure& Ms, double limit) {
     if (Ms)
         return std::string(several ? "On the worst plant that it must serve Ms is " : "Ms is ") + text(*Ms) +
                ", above " + text(limit) + ".";
-    if (entry.as_built && !entry.as_built->loop.robustness.stable)
+    if (entry.on_device && !entry.on_device->loop.robustness.stable)
         return "The loop is unstable as the user's controller computes it.";
     return several ? "The loop is unstable on some plant that it must serve." : "The loop has no Ms.";
 }
@@ -57,9 +57,9 @@ Standing standing_of(const TuningEntry& entry, std::optional<double> own, const 
     standing.within = !own || (standing.Ms && *standing.Ms <= (1 + limits::kMaxRelativeExcessShownOfWorst) * *own);
     const std::string restless = terms.over_time ? unrest(evaluation.performance) : "";
     standing.settles = evaluation.robustness.stable && restless.empty();
-    standing.least_limit = standing.settles && standing.within && standing.Ms
-                               ? Figure(*standing.Ms / (1 + limits::kMaxRelativeExcessRanked))
-                               : no_figure("No limit on Ms makes it hold.");
+    standing.min_limit = standing.settles && standing.within && standing.Ms
+                             ? Figure(*standing.Ms / (1 + limits::kMaxRelativeExcessRanked))
+                             : no_figure("No limit on Ms makes it hold.");
     const auto behind = [&](StandingGroup group, std::string why) {
         standing.group = group;
         standing.why = std::move(why);
@@ -68,7 +68,7 @@ Standing standing_of(const TuningEntry& entry, std::optional<double> own, const 
     if (!evaluation.robustness.stable) return behind(StandingGroup::unstable, "The loop is unstable.");
     if (!standing.settles) return behind(StandingGroup::not_settled, restless);
     if (!standing.within) return behind(StandingGroup::above_limit, above(entry, standing.Ms, *own));
-    if (!standing.least_limit || *standing.least_limit > terms.rank_Ms)
+    if (!standing.min_limit || *standing.min_limit > terms.rank_Ms)
         return behind(StandingGroup::above_limit, above(entry, standing.Ms, terms.rank_Ms));
     standing.group = StandingGroup::holds;
     return standing;

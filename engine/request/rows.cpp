@@ -30,7 +30,7 @@ bool MadeRow::cancelled() const {
         entries, [](const TuningEntry& entry) { return entry.error && entry.error->kind == ErrorKind::cancelled; });
 }
 
-Rows::Rows(const TuningRequest& request, const Subject& subject, const std::optional<TuningProblem>& problem,
+Rows::Rows(const TuningRequest& request, const AnalysedPlant& subject, const std::optional<TuningProblem>& problem,
            const IdentifiedModel* model)
     : request_(request), subject_(subject), problem_(problem), model_(model) {}
 
@@ -75,15 +75,15 @@ void Rows::add_reports(TuningEntry& entry, std::shared_ptr<MethodReport> own) {
 // `fitted`: the settings, where the method designs for the controller as it is built.
 Expected<TunedController> Rows::tuned_with(const PlannedRow& planned, const std::optional<TuningProblem>& problem,
                                            const SetpointOptions& setpoint, const RunControl& control,
-                                           std::optional<built::Fitted>& fitted) const {
+                                           std::optional<device::Fitted>& fitted) const {
     const TuningMethod& method = *planned.method;
     const MethodOptions& options = planned.options;
     if (planned.refusal) return *planned.refusal;
-    if (problem && request_.implement && method.tune_as_built) {
-        auto design = method.tune_as_built(*problem, options, *request_.implement, control);
+    if (problem && request_.device && method.tune_for_device) {
+        auto design = method.tune_for_device(*problem, options, *request_.device, control);
         if (!design) return design.error();
         fitted = std::move(design->fitted);
-        weigh_setpoint(*fitted, *request_.implement, problem->linear, setpoint, design->tuned);
+        weigh_setpoint(*fitted, *request_.device, problem->linear, setpoint, design->tuned);
         return std::move(design->tuned);
     }
     if (problem) {
@@ -97,24 +97,24 @@ Expected<TunedController> Rows::tuned_with(const PlannedRow& planned, const std:
                      " needs a model of the plant; points of a frequency response serve the method robust."};
 }
 
-void Rows::add_as_built(TuningEntry& entry, std::optional<built::Fitted> fitted, const RunControl& control) const {
-    if (!request_.implement || !entry.evaluation) return;
-    const built::Build& build = *request_.implement;
+void Rows::add_device_entry(TuningEntry& entry, std::optional<device::Fitted> fitted, const RunControl& control) const {
+    if (!request_.device || !entry.evaluation) return;
+    const device::DeviceModel& device = *request_.device;
     Evaluation& ideal = *entry.evaluation;
-    take_as_built(fitted ? judge_as_built(subject_, build, std::move(*fitted), request_.evaluate, ideal)
-                         : built_from(subject_, build, request_.evaluate, ideal, control),
-                  ideal, entry.as_built);
+    take_device_entry(fitted ? judge_device(subject_, device, std::move(*fitted), request_.evaluate, ideal)
+                             : device_entry_of(subject_, device, request_.evaluate, ideal, control),
+                      ideal, entry.on_device);
 }
 
 // Settings that were given as typed are judged as they stand, whatever the others are made for.
-void Rows::add_baseline_as_built(TuningEntry& entry, const RunControl& control) const {
-    if (!request_.baseline_settings || !entry.evaluation) return add_as_built(entry, std::nullopt, control);
-    const auto& [build, settings] = *request_.baseline_settings;
-    auto fitted = built::fit(build, settings);
+void Rows::add_baseline_on_device(TuningEntry& entry, const RunControl& control) const {
+    if (!request_.baseline_settings || !entry.evaluation) return add_device_entry(entry, std::nullopt, control);
+    const auto& [device, settings] = *request_.baseline_settings;
+    auto fitted = device::fit(device, settings);
     Evaluation& ideal = *entry.evaluation;
-    take_as_built(fitted ? judge_as_built(subject_, build, std::move(*fitted), request_.evaluate, ideal)
-                         : Expected<AsBuilt>(fitted.error()),
-                  ideal, entry.as_built);
+    take_device_entry(fitted ? judge_device(subject_, device, std::move(*fitted), request_.evaluate, ideal)
+                             : Expected<DeviceEntry>(fitted.error()),
+                      ideal, entry.on_device);
 }
 
 // What is said of a design, and of no controller that was given.
@@ -123,7 +123,7 @@ void Rows::add_to_design(const PlannedRow& planned, const std::optional<TuningPr
     entry.longest_sample_time = longest_sample_time_of(subject_, *entry.evaluation, control.stop);
     warn_of_region(*entry.evaluation, entry.Ms_limit, model_ != nullptr);
     if (model_ != nullptr) warn_of_band(*entry.evaluation, model_->excited_band);
-    if (problem && !planned.of_all && !request_.implement && entry.method == "robust" &&
+    if (problem && !planned.of_all && !request_.device && entry.method == "robust" &&
         entry.options.text("controller") == "PID")
         entry.best_PI_load_IAE = best_PI_load_IAE(*problem, entry.options, request_.evaluate, control);
 }
@@ -137,9 +137,9 @@ TuningEntry Rows::entry(const PlannedRow& planned, const std::optional<TuningPro
     const auto& on_points = planned.method->options_on_points;
     entry.options = with_defaults(problem || on_points.empty() ? planned.method->options : on_points, planned.options);
     SetpointOptions setpoint = problem ? wanted_setpoint(*planned.method, entry.options) : SetpointOptions{};
-    setpoint.may_filter = !request_.implement || request_.implement->product == nullptr;
+    setpoint.may_filter = !request_.device || request_.device->product == nullptr;
     const double started = now_of(control);
-    std::optional<built::Fitted> fitted;
+    std::optional<device::Fitted> fitted;
     auto tuned = tuned_with(planned, problem, setpoint, control, fitted);
     if (!tuned) {
         entry.error = placed(request_, tuned.error(), planned.where);
@@ -152,7 +152,7 @@ TuningEntry Rows::entry(const PlannedRow& planned, const std::optional<TuningPro
     partial = partial || tuned->partial;
     evaluate_into(entry, controller_of(*tuned), tuned->warnings);
     add_reports(entry, tuned->report);
-    add_as_built(entry, std::move(fitted), control);
+    add_device_entry(entry, std::move(fitted), control);
     if (entry.evaluation) {
         add_to_design(planned, problem, control, entry);
         entry.evaluation->compute_ms = now_of(control) - started;
@@ -193,10 +193,10 @@ TuningEntry Rows::baseline(const RunControl& control) {
     const double started = now_of(control);
     Controller given = *request_.baseline;
     if (auto* pid = std::get_if<IdealPid>(&given); pid != nullptr && request_.baseline_settings)
-        *pid = built::continuous(*pid);
+        *pid = device::continuous(*pid);
     evaluate_into(entry, given, {});
     add_reports(entry, nullptr);
-    add_baseline_as_built(entry, control);
+    add_baseline_on_device(entry, control);
     if (entry.evaluation && model_ != nullptr) warn_of_band(*entry.evaluation, model_->excited_band);
     if (entry.evaluation) entry.evaluation->compute_ms = now_of(control) - started;
     if (entry.error && entry.error->where.starts_with("controller"))

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "engine/identification/identify.h"
-#include "engine/plant/subject.h"
+#include "engine/plant/analysed_plant.h"
 #include "engine/progress.h"
 #include "engine/request/entry.h"
 #include "engine/request/plan.h"
@@ -34,7 +34,7 @@ class Rows {
 public:
     /// `subject`: what every controller is judged on. `problem`: what methods work on, empty where the plant is known
     /// by points alone. `model`: the record's, null where there is none.
-    Rows(const TuningRequest& request, const Subject& subject, const std::optional<TuningProblem>& problem,
+    Rows(const TuningRequest& request, const AnalysedPlant& subject, const std::optional<TuningProblem>& problem,
          const IdentifiedModel* model);
 
     MadeRow of(const PlannedRow& planned, const RunControl& control);
@@ -54,17 +54,17 @@ private:
                       bool& partial);
     Expected<TunedController> tuned_with(const PlannedRow& planned, const std::optional<TuningProblem>& problem,
                                          const SetpointOptions& setpoint, const RunControl& control,
-                                         std::optional<built::Fitted>& fitted) const;
+                                         std::optional<device::Fitted>& fitted) const;
     Expected<Evaluation> evaluated(const Controller& controller);
     void evaluate_into(TuningEntry& entry, const Controller& controller, std::vector<Warning> warnings);
     void add_reports(TuningEntry& entry, std::shared_ptr<MethodReport> own);
-    void add_as_built(TuningEntry& entry, std::optional<built::Fitted> fitted, const RunControl& control) const;
-    void add_baseline_as_built(TuningEntry& entry, const RunControl& control) const;
+    void add_device_entry(TuningEntry& entry, std::optional<device::Fitted> fitted, const RunControl& control) const;
+    void add_baseline_on_device(TuningEntry& entry, const RunControl& control) const;
     void add_to_design(const PlannedRow& planned, const std::optional<TuningProblem>& problem,
                        const RunControl& control, TuningEntry& entry) const;
 
     const TuningRequest& request_;
-    const Subject& subject_;
+    const AnalysedPlant& subject_;
     const std::optional<TuningProblem>& problem_;
     const IdentifiedModel* model_;
     std::mutex lock_;  // of what follows

@@ -49,8 +49,8 @@ private:
 
     const TuningRequest& request_;
     const RunControl& control_;
-    std::optional<Subject> subject_;   // what every controller is judged on
-    std::optional<PlantFamily> held_;  // where limits must hold, if that is more than one plant
+    std::optional<AnalysedPlant> subject_;  // what every controller is judged on
+    std::optional<PlantFamily> held_;       // where limits must hold, if that is more than one plant
     std::optional<double> dead_time_std_;
     std::optional<TuningProblem> problem_;  // what methods work on, unless the plant is known by points alone
     std::shared_ptr<const BestSoFar> best_;
@@ -176,7 +176,7 @@ private:
 bool TuningRun::tune_rows(const std::vector<PlannedRow>& planned, double from, double to) {
     RowsProgress progress(*this, planned.size(), from, to);
     std::vector<std::optional<MadeRow>> made(planned.size());
-    run_each(control_.spread, static_cast<int>(planned.size()), [&](int index) {
+    parallel_for(control_.spread, static_cast<int>(planned.size()), [&](int index) {
         if (stopped()) return;
         const auto row = static_cast<std::size_t>(index);
         progress.begin(row, planned[row].title());
@@ -249,7 +249,7 @@ Expected<TuningResult> TuningRun::result() {
     const verdict::Context context{*subject_,
                                    request_.evaluate,
                                    request_.labels,
-                                   request_.implement ? request_.implement->Ts : 0,
+                                   request_.device ? request_.device->Ts : 0,
                                    result_.model ? &*result_.model : nullptr,
                                    problem_ ? &*problem_ : nullptr,
                                    request_.given_steps,

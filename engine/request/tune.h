@@ -7,8 +7,8 @@
 
 #include "engine/evaluation/evaluation.h"
 #include "engine/identification/identify.h"
+#include "engine/plant/analysed_plant.h"
 #include "engine/plant/nonlinear/linearisation.h"
-#include "engine/plant/subject.h"
 #include "engine/progress.h"
 #include "engine/request/entry.h"
 #include "engine/request/plan.h"
@@ -34,7 +34,7 @@ struct UltimateTest {
 };
 
 struct TuningRequest {
-    std::optional<Subject> subject;  ///< exactly one of subject, record, model and ultimate
+    std::optional<AnalysedPlant> subject;  ///< exactly one of subject, record, model and ultimate
     std::optional<Record> record;
     std::optional<IdentifiedModel> model;  ///< what an earlier request found in its record
     std::optional<UltimateTest> ultimate;
@@ -44,11 +44,11 @@ struct TuningRequest {
     EvaluateOptions evaluate;
     verdict::GivenSteps given_steps;  ///< those of `evaluate` that the user names
     struct TypedSettings {
-        built::Build build;
+        device::DeviceModel device;
         product::Settings settings;
     };
     std::optional<TypedSettings> baseline_settings;  ///< whose ideal twin `baseline` is
-    std::optional<built::Build> implement;  ///< the user's own controller, for which entries are settled and judged
+    std::optional<device::DeviceModel> device;  ///< the user's own controller, for which entries are settled and judged
     IdentifiedRegion identified_region = IdentifiedRegion::where_needed;
     verdict::Labels labels;  ///< in which verdicts speak
 };

@@ -54,7 +54,7 @@ int make_key(const KeyCommand& command);
 /// that has no key from the one that cannot be used.
 class KeyRing {
 public:
-    static constexpr std::chrono::seconds kPatience = WatchedFile::kPatience;
+    static constexpr std::chrono::seconds kMaxBrokenTime = WatchedFile::kMaxBrokenTime;
     using Clock = WatchedFile::Clock;
 
     /// Reads the file. Throws std::invalid_argument with a sentence where it cannot be read or has no key.

@@ -4,14 +4,14 @@
 
 namespace tunewright::server {
 
-RateLimit::RateLimit(double rate, double burst, std::size_t most_clients)
-    : rate_(rate), burst_(std::max(burst, 1.0)), most_clients_(most_clients) {}
+RateLimit::RateLimit(double rate, double burst, std::size_t max_clients)
+    : rate_(rate), burst_(std::max(burst, 1.0)), max_clients_(max_clients) {}
 
 std::optional<std::chrono::duration<double>> RateLimit::refuse(const std::string& client, Time now) {
     const std::lock_guard lock(mutex_);
     const auto found = places_.find(client);
     if (found == places_.end()) {
-        if (buckets_.size() >= most_clients_) {
+        if (buckets_.size() >= max_clients_) {
             places_.erase(buckets_.back().client);
             buckets_.pop_back();
         }

@@ -111,9 +111,9 @@ void WatchedFile::look() {
     const auto stamp = stamp_of(path_);
     // What cannot be read may be readable again without having changed.
     if (!stamp || stamp != stamp_ || !usable_) read_again(stamp);
-    if (broken_since_ && now - *broken_since_ >= kPatience)
-        hold_nothing("it has had a line that is no " + meaning_.kind + "'s for " + std::to_string(kPatience.count()) +
-                     " s");
+    if (broken_since_ && now - *broken_since_ >= kMaxBrokenTime)
+        hold_nothing("it has had a line that is no " + meaning_.kind + "'s for " +
+                     std::to_string(kMaxBrokenTime.count()) + " s");
 }
 
 void WatchedFile::read_again(const std::optional<Stamp>& stamp) {

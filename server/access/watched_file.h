@@ -2,7 +2,8 @@
 // second at most, and read again when it has changed.
 //
 // - A file that is gone or cannot be read holds nothing: what was taken out of it never comes back because of a fault.
-// - A file with a line that cannot be read is perhaps being written: what it held last stays in force for kPatience,
+// - A file with a line that cannot be read is perhaps being written: what it held last stays in force for
+// kMaxBrokenTime,
 //   then it holds nothing.
 #pragma once
 
@@ -38,7 +39,7 @@ bool append_line(const std::string& path, const std::string& line);
 
 class WatchedFile {
 public:
-    static constexpr std::chrono::seconds kPatience{10};
+    static constexpr std::chrono::seconds kMaxBrokenTime{10};
     using Clock = std::chrono::steady_clock;
 
     struct Meaning {

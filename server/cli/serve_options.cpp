@@ -34,14 +34,14 @@ void quantity(CLI::App& app, const std::string& name, T& value, T (*read)(const 
 }
 
 /// CLI::Range takes what is no number, as nan is neither below nor above.
-CLI::Validator number_within(double least, double most) {
-    const auto judge = [least, most](const std::string& text) -> std::string {
+CLI::Validator number_within(double min, double max) {
+    const auto judge = [min, max](const std::string& text) -> std::string {
         double value = 0;
         const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-        if (error == std::errc{} && end == text.data() + text.size() && value >= least && value <= most) return {};
-        return fmt::format("\"{}\" must be a number from {:g} to {:g}", text, least, most);
+        if (error == std::errc{} && end == text.data() + text.size() && value >= min && value <= max) return {};
+        return fmt::format("\"{}\" must be a number from {:g} to {:g}", text, min, max);
     };
-    return {judge, fmt::format("{:g} to {:g}", least, most)};
+    return {judge, fmt::format("{:g} to {:g}", min, max)};
 }
 
 void duration(CLI::App& app, const std::string& name, double& seconds, const std::string& shown,

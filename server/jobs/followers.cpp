@@ -5,8 +5,8 @@
 namespace tunewright::server {
 namespace {
 
-constexpr std::chrono::milliseconds kLook{100};
-constexpr std::chrono::hours kNothing{1};
+constexpr std::chrono::milliseconds kPollInterval{100};
+constexpr std::chrono::hours kIdleWait{1};
 
 std::shared_ptr<const JobView> view_of(const JobState& state) {
     auto view = std::make_shared<JobView>();
@@ -24,7 +24,7 @@ std::shared_ptr<const JobView> view_of(const HeldJob& held) {
 
 }  // namespace
 
-Followers::Followers(JobArchive& archive, const HeldJobs& held, Outage& outage, std::chrono::milliseconds poll)
+Followers::Followers(JobArchive& archive, const HeldJobs& held, StoreOutageLog& outage, std::chrono::milliseconds poll)
     : archive_(archive), held_(held), outage_(outage), poll_(poll) {
     pulse_ = std::make_unique<PeriodicThread>([this] { return beat(); });
 }
@@ -105,7 +105,7 @@ std::chrono::milliseconds Followers::beat() {
     }
     for (const Message& message : messages) message.listener(message.news);
     const std::lock_guard lock(mutex_);
-    return followed_.empty() ? std::chrono::milliseconds(kNothing) : std::min(kLook, poll_);
+    return followed_.empty() ? std::chrono::milliseconds(kIdleWait) : std::min(kPollInterval, poll_);
 }
 
 void Followers::look_here(std::vector<Message>& messages, std::vector<std::string>& elsewhere) {

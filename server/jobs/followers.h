@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "engine/progress.h"
-#include "server/jobs/outage.h"
 #include "server/jobs/running/held.h"
+#include "server/jobs/store_outage_log.h"
 #include "server/store/archive.h"
 #include "server/threads/periodic_thread.h"
 
@@ -46,7 +46,7 @@ public:
     using Listener = std::function<void(const JobNews&)>;
 
     /// All must outlive the followers.
-    Followers(JobArchive& archive, const HeldJobs& held, Outage& outage, std::chrono::milliseconds poll);
+    Followers(JobArchive& archive, const HeldJobs& held, StoreOutageLog& outage, std::chrono::milliseconds poll);
 
     /// `listener` learns how the job stands at once, then of changes, at most about ten a second.
     Key follow(const std::string& id, Listener listener);
@@ -89,7 +89,7 @@ private:
 
     JobArchive& archive_;
     const HeldJobs& held_;
-    Outage& outage_;
+    StoreOutageLog& outage_;
     std::chrono::milliseconds poll_;
     mutable std::mutex mutex_;
     std::map<std::string, Followed> followed_;

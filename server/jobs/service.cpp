@@ -55,7 +55,7 @@ JobService::~JobService() { drain(std::chrono::seconds(0)); }
 
 Recovery JobService::start() {
     Recovery recovery =
-        store_.recover(settings_.now(), settings_.most_attempts, given_up_problem(settings_.most_attempts));
+        store_.recover(settings_.now(), settings_.max_attempts, given_up_problem(settings_.max_attempts));
     if (settings_.observer.recovered) settings_.observer.recovered(recovery);
     depth_.refresh(store_);
     looking_ = std::make_unique<PeriodicThread>([this] { return look(); });
@@ -247,7 +247,7 @@ ClaimSettings JobService::claim_settings() {
     made.worker = settings_.name;
     made.lease = settings_.lease;
     made.now = settings_.now;
-    made.most_held += settings_.workers;
+    made.max_held += settings_.workers;
     made.claimed = [this](const std::vector<JobRecord>& jobs) {
         std::size_t singles = 0;
         for (const JobRecord& job : jobs) singles += job.batch.empty() ? 1U : 0U;
@@ -287,8 +287,8 @@ RescuerSettings JobService::rescuer_settings() {
     made.lease = settings_.lease;
     made.period = 2 * settings_.poll;
     made.shared = store_.shared();
-    made.most_attempts = settings_.most_attempts;
-    made.given_up = given_up_problem(settings_.most_attempts);
+    made.max_attempts = settings_.max_attempts;
+    made.given_up = given_up_problem(settings_.max_attempts);
     made.now = settings_.now;
     made.clock_jumped = [this] { heartbeats_.beat(); };
     made.recovered = [this](const Recovery& found) {
@@ -363,9 +363,9 @@ bool JobService::drain(std::chrono::duration<double> grace) {
 namespace {
 
 constexpr int kPollsPerUpkeep = 2;
-constexpr int kCountingShare = 20;  // of the time at most one part goes into counting a long queue
+constexpr int kMinPauseOverCounting = 20;  // of the time at most one part goes into counting a long queue
 constexpr std::chrono::milliseconds kShortest{1};
-constexpr std::chrono::milliseconds kUnbegun{250};  // then others may have what no worker here has begun
+constexpr std::chrono::milliseconds kMaxUnbegunTime{250};  // then others may have what no worker here has begun
 
 }  // namespace
 
@@ -384,7 +384,7 @@ std::chrono::milliseconds JobService::tend() {
         next_beat_ = now + heartbeats_.interval();
         heartbeats_.beat();
         if (store_.shared())
-            for (const auto& held : claims_.withdraw(now - kUnbegun)) outbox_.release(held);
+            for (const auto& held : claims_.withdraw(now - kMaxUnbegunTime)) outbox_.release(held);
     }
     if (now >= next_upkeep_) {
         next_upkeep_ = now + kPollsPerUpkeep * settings_.poll;
@@ -411,8 +411,8 @@ std::chrono::milliseconds JobService::look() {
             claims_.suspects(depth_.now().suspects);
             if (depth_.now().paused) give_back_unbegun();
             const auto took = HeldJob::Clock::now() - now;
-            next_depth_ =
-                now + std::max<HeldJob::Clock::duration>(kPollsPerUpkeep * settings_.poll, kCountingShare * took);
+            next_depth_ = now + std::max<HeldJob::Clock::duration>(kPollsPerUpkeep * settings_.poll,
+                                                                   kMinPauseOverCounting * took);
         }
         std::vector<std::string> ids;
         if (look_again_.exchange(false) || store_.shared()) ids = waits_.ids();

@@ -12,7 +12,6 @@
 #include "api/service.h"
 #include "engine/progress.h"
 #include "server/jobs/followers.h"
-#include "server/jobs/outage.h"
 #include "server/jobs/queue_bound.h"
 #include "server/jobs/running/claims.h"
 #include "server/jobs/running/heartbeats.h"
@@ -20,6 +19,7 @@
 #include "server/jobs/running/rescuer.h"
 #include "server/jobs/running/result_outbox.h"
 #include "server/jobs/running/workers.h"
+#include "server/jobs/store_outage_log.h"
 #include "server/jobs/sweeper.h"
 #include "server/jobs/waits.h"
 #include "server/store/store.h"
@@ -43,7 +43,7 @@ struct JobSettings {
     std::size_t queue_limit = 10'000;     ///< single jobs that may wait, all processes together
     std::size_t entry_limit = 1'000'000;  ///< entries of batches that may wait
     std::size_t client_jobs = 0;          ///< single jobs of one client that may wait or run; 0: any number
-    int most_attempts = 10;               ///< a job that was interrupted that often is given up
+    int max_attempts = 10;                ///< a job that was interrupted that often is given up
     std::chrono::milliseconds lease{10'000};
     /// How often the store is looked at for what other processes have done, notices or none.
     std::chrono::milliseconds poll{500};
@@ -168,7 +168,7 @@ private:
     JobSettings settings_;
     std::atomic<bool> draining_ = false;
     std::optional<bool> drained_;  ///< what drain() returned
-    Outage outage_;
+    StoreOutageLog outage_;
     QueueBound depth_;
     HeldJobs held_;
     Waits waits_;

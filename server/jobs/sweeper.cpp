@@ -9,12 +9,12 @@
 namespace tunewright::server {
 namespace {
 
-constexpr std::size_t kSlice = 5000;  // which the store parts again, so that others come between
+constexpr std::size_t kSweepSlice = 5000;  // which the store parts again, so that others come between
 constexpr std::chrono::milliseconds kBetweenSlices{20};
 constexpr int kPauseShare = 4;  // of a slice's time: the pause before the next one
-constexpr std::chrono::milliseconds kRest{10'000};
-constexpr std::chrono::seconds kJump{60};
-constexpr std::chrono::hours kPause{1};
+constexpr std::chrono::milliseconds kMaxRest{10'000};
+constexpr std::chrono::seconds kMaxClockJump{60};
+constexpr std::chrono::hours kPauseAfterJump{1};
 
 /// Nothing where all are kept for ever.
 std::optional<std::chrono::milliseconds> shortest(const Retention& retention) {
@@ -28,7 +28,7 @@ std::optional<std::chrono::milliseconds> shortest(const Retention& retention) {
 
 std::chrono::milliseconds Sweeper::sweep() {
     const std::optional<std::chrono::milliseconds> first = shortest(retention_);
-    if (!first) return kRest;
+    if (!first) return kMaxRest;
     if (!sweeping_ && more_.exchange(false)) next_ = Clock::now() + pause_.load();
     // While a slice is under way: soon enough for the next one.
     if (sweeping_) return kBetweenSlices;
@@ -36,17 +36,17 @@ std::chrono::milliseconds Sweeper::sweep() {
     const auto wait = std::chrono::ceil<std::chrono::milliseconds>(*next_ - Clock::now());
     if (wait.count() > 0) return wait;
     sweeping_ = true;
-    next_ = Clock::now() + std::min(kRest, *first);
+    next_ = Clock::now() + std::min(kMaxRest, *first);
     const UnixMs now = now_();
     if (!store_.shared() && clock_jumped(now)) {
         sweeping_ = false;
         return kBetweenSlices;
     }
     const auto begun = Clock::now();
-    store_.sweep(now, retention_, kSlice, [this, begun](const Outcome<std::size_t>& outcome) {
+    store_.sweep(now, retention_, kSweepSlice, [this, begun](const Outcome<std::size_t>& outcome) {
         pause_ = std::chrono::ceil<std::chrono::milliseconds>((Clock::now() - begun) / kPauseShare);
         const auto* count = std::get_if<std::size_t>(&outcome);
-        more_ = count != nullptr && *count >= kSlice;
+        more_ = count != nullptr && *count >= kSweepSlice;
         if (count != nullptr) swept(*count);
         sweeping_ = false;
     });
@@ -57,7 +57,7 @@ std::chrono::milliseconds Sweeper::sweep() {
 /// there has not seen a jump: what would be deleted waits as long as after one.
 std::chrono::milliseconds Sweeper::before_first() const {
     if (store_.shared()) return std::chrono::milliseconds(0);
-    return std::min<std::chrono::milliseconds>(kPause, *shortest(retention_));
+    return std::min<std::chrono::milliseconds>(kPauseAfterJump, *shortest(retention_));
 }
 
 /// Of the first sweep the log says what went: it comes all at once where the process, or its clock, was away for long.
@@ -75,8 +75,8 @@ void Sweeper::swept(std::size_t count) {
 bool Sweeper::clock_jumped(UnixMs now) {
     const auto jump =
         std::chrono::duration_cast<std::chrono::seconds>(drift_.since_last(now).value_or(std::chrono::milliseconds(0)));
-    if (std::chrono::abs(jump) <= kJump) return false;
-    next_ = Clock::now() + kPause;
+    if (std::chrono::abs(jump) <= kMaxClockJump) return false;
+    next_ = Clock::now() + kPauseAfterJump;
     log_error("the clock of this machine was set by " + std::to_string(jump.count()) +
               " s; for an hour no ended job is deleted. Stop the service within that time if the clock is wrong");
     return true;

@@ -26,9 +26,9 @@ std::optional<std::size_t> limit_in(const std::string& file) {
 /// The limit of the control group that the process is in, or of one above it.
 std::optional<std::size_t> group_limit() {
     std::ifstream groups("/proc/self/cgroup");
-    std::optional<std::size_t> least = limit_in("/sys/fs/cgroup/memory/memory.limit_in_bytes");
+    std::optional<std::size_t> min = limit_in("/sys/fs/cgroup/memory/memory.limit_in_bytes");
     const auto take = [&](const std::optional<std::size_t>& limit) {
-        if (limit) least = std::min(least.value_or(*limit), *limit);
+        if (limit) min = std::min(min.value_or(*limit), *limit);
     };
     for (std::string line; std::getline(groups, line);) {
         const std::size_t colon = line.rfind(':');
@@ -41,7 +41,7 @@ std::optional<std::size_t> group_limit() {
             take(limit_in(root + path + file));
         take(limit_in(root + file));
     }
-    return least;
+    return min;
 }
 
 }  // namespace

@@ -113,8 +113,8 @@ struct Metrics::Families {
         family(BuildCounter(), registry, "tunewright_notify_deliveries_total",
                "Tries to tell somebody of an end, by outcome: delivered, failed (it is tried again), given_up");
     Counter& delivered = told_family.Add({{"outcome", "delivered"}});
-    Counter& not_told = told_family.Add({{"outcome", "failed"}});
-    Counter& never_told = told_family.Add({{"outcome", "given_up"}});
+    Counter& failed_deliveries = told_family.Add({{"outcome", "failed"}});
+    Counter& abandoned_deliveries = told_family.Add({{"outcome", "given_up"}});
     prometheus::Family<Histogram>& wait_family =
         family(BuildHistogram(), registry, "tunewright_job_wait_seconds",
                "Time from a job's acceptance to the begin of its computation, by class: single, or entry of a batch");
@@ -141,7 +141,7 @@ struct Metrics::Families {
     Gauge& resident = gauge("process_resident_memory_bytes", "Resident memory");
     Gauge& address_space = gauge("process_virtual_memory_bytes", "Virtual memory");
     Gauge& files = gauge("process_open_fds", "Open file descriptors");
-    Gauge& most_files = gauge("process_max_fds", "Most file descriptors that may be open");
+    Gauge& max_files = gauge("process_max_fds", "Most file descriptors that may be open");
     Gauge& threads = gauge("process_threads", "Threads of this process");
     Gauge& started = gauge("process_start_time_seconds", "Start of this process, in seconds since 1970");
 
@@ -198,9 +198,12 @@ void Metrics::count_begun(bool entry_of_batch, double waited_s) {
     (entry_of_batch ? families_->entry_wait : families_->single_wait).Observe(waited_s);
 }
 
-void Metrics::count(Told outcome) {
+void Metrics::count(DeliveryOutcome outcome) {
     Families& all = *families_;
-    (outcome == Told::delivered ? all.delivered : outcome == Told::failed ? all.not_told : all.never_told).Increment();
+    (outcome == DeliveryOutcome::delivered ? all.delivered
+     : outcome == DeliveryOutcome::failed  ? all.failed_deliveries
+                                           : all.abandoned_deliveries)
+        .Increment();
 }
 
 void Metrics::count(const Recovery& found) {
@@ -229,7 +232,7 @@ std::string Metrics::text(const Standing& standing) {
     put(all.resident, process.resident_bytes);
     put(all.address_space, process.virtual_bytes);
     put(all.files, process.open_files);
-    put(all.most_files, process.most_files);
+    put(all.max_files, process.max_files);
     put(all.threads, process.threads);
     all.started.Set(process.start_time);
     return prometheus::TextSerializer().Serialize(all.registry.Collect());

@@ -11,7 +11,7 @@
 
 namespace tunewright::server {
 
-enum class Told;
+enum class DeliveryOutcome;
 
 /// How things stand when somebody looks. Nothing in it waits for the store: what the queue holds is as last counted.
 struct Standing {
@@ -43,7 +43,7 @@ public:
     void count_begun(bool entry_of_batch, double waited_s);
     void count(const Recovery& found);
     /// A try to tell somebody of an end.
-    void count(Told outcome);
+    void count(DeliveryOutcome outcome);
     /// An operation of the store; its name must be one of a few.
     void count_store(std::string_view operation, double seconds, bool done);
 

@@ -64,7 +64,7 @@ ProcessFigures process_figures() {
     }
     figures.open_files = open_files();
     rlimit limit{};
-    if (::getrlimit(RLIMIT_NOFILE, &limit) == 0) figures.most_files = limit.rlim_cur;
+    if (::getrlimit(RLIMIT_NOFILE, &limit) == 0) figures.max_files = limit.rlim_cur;
     return figures;
 }
 

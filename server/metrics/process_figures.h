@@ -9,7 +9,7 @@ struct ProcessFigures {
     double cpu_seconds = 0;  ///< user and system, since the start
     double start_time = 0;   ///< seconds since 1970
     std::size_t resident_bytes = 0, virtual_bytes = 0;
-    std::size_t open_files = 0, most_files = 0;
+    std::size_t open_files = 0, max_files = 0;
     std::size_t threads = 0;
 };
 

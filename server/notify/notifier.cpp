@@ -12,8 +12,8 @@
 namespace tunewright::server {
 namespace {
 
-constexpr std::chrono::milliseconds kWatch{500};  ///< between looks at what is under way
-constexpr int kGone = 410;
+constexpr std::chrono::milliseconds kWatchInterval{500};  ///< between looks at what is under way
+constexpr int kHttpGone = 410;
 
 static_assert(Notifier::kHold > 2 * Sender::kLongest);
 
@@ -35,8 +35,8 @@ double chance() {
 
 /// The same trace, in which this note is a span of its own (W3C Trace Context).
 std::string continued(const std::string& traceparent) {
-    constexpr std::size_t kSpan = 36, kLength = 16;
-    return std::string(traceparent).replace(kSpan, kLength, random_hex(kLength / 2));
+    constexpr std::size_t kSpanOffset = 36, kSpanLength = 16;
+    return std::string(traceparent).replace(kSpanOffset, kSpanLength, random_hex(kSpanLength / 2));
 }
 
 }  // namespace
@@ -67,28 +67,28 @@ bool Notifier::stop(std::chrono::milliseconds patience) {
         const std::lock_guard lock(mutex_);
         for (const auto& [seq, one] : under_way_) one->sender.cut();
     }
-    return lanes_.stop(patience);
+    return delivery_pool_.stop(patience);
 }
 
 std::chrono::milliseconds Notifier::look() {
     cut_long_ones();
     if (!closed_) take();
     const std::lock_guard lock(mutex_);
-    return under_way_.empty() ? kPoll : kWatch;
+    return under_way_.empty() ? kPoll : kWatchInterval;
 }
 
 void Notifier::cut_long_ones() {
-    const auto now = Lanes::Clock::now();
+    const auto now = DeliveryPool::Clock::now();
     const std::lock_guard lock(mutex_);
     for (const auto& [seq, one] : under_way_)
         if (now - one->since > Sender::kLongest) one->sender.cut();
 }
 
 void Notifier::take() {
-    const std::size_t most = lanes_.room();
-    if (most == 0 || taking_.exchange(true)) return;
-    const auto when = Lanes::Clock::now();
-    store_.take_deliveries(settings_.now(), kHold, most, [this, when, most](Outcome<std::vector<Delivery>> outcome) {
+    const std::size_t max = delivery_pool_.room();
+    if (max == 0 || taking_.exchange(true)) return;
+    const auto when = DeliveryPool::Clock::now();
+    store_.take_deliveries(settings_.now(), kHold, max, [this, when, max](Outcome<std::vector<Delivery>> outcome) {
         if (const auto* fault = std::get_if<StoreFault>(&outcome)) {
             if (!store_failed_.exchange(true)) log_error("nobody is told of an end: " + fault->detail);
             taking_ = false;
@@ -99,15 +99,16 @@ void Notifier::take() {
         taken(due, when);
         taking_ = false;
         // There may be more, of which some are for others.
-        if (due.size() == most) wake();
+        if (due.size() == max) wake();
     });
 }
 
 /// What finds no place here comes again when its hold is over.
-void Notifier::taken(const std::vector<Delivery>& due, Lanes::Clock::time_point when) {
+void Notifier::taken(const std::vector<Delivery>& due, DeliveryPool::Clock::time_point when) {
     if (closed_) return;
     for (const Delivery& delivery : due)
-        lanes_.add({shown(delivery.target.url), when + kHold - Sender::kLongest, [this, delivery] { tell(delivery); }});
+        delivery_pool_.add(
+            {shown(delivery.target.url), when + kHold - Sender::kLongest, [this, delivery] { tell(delivery); }});
 }
 
 void Notifier::tell(const Delivery& delivery) {
@@ -125,16 +126,16 @@ void Notifier::tell(const Delivery& delivery) {
     }
     // Deleted, or begun anew, meanwhile: there is no end to tell of.
     if (!news) return settle(delivery, std::nullopt);
-    const auto begun = Lanes::Clock::now();
+    const auto begun = DeliveryPool::Clock::now();
     const Reply reply = send(delivery, where, *news);
     if (reply.status >= 200 && reply.status < 300) {
-        const auto took = std::chrono::duration_cast<std::chrono::milliseconds>(Lanes::Clock::now() - begun);
+        const auto took = std::chrono::duration_cast<std::chrono::milliseconds>(DeliveryPool::Clock::now() - begun);
         log_info(what_ended(delivery) + " was told to " + where.origin() + " in " + std::to_string(took.count()) +
                  " ms, try " + std::to_string(delivery.tries + 1));
-        settings_.count(Told::delivered);
+        settings_.count(DeliveryOutcome::delivered);
         return settle(delivery, std::nullopt);
     }
-    if (reply.status == kGone) return give_up(delivery, "it answers 410: it wants no more");
+    if (reply.status == kHttpGone) return give_up(delivery, "it answers 410: it wants no more");
     std::string why = reply.status == 0 ? reply.fault : "it answers " + std::to_string(reply.status);
     if (reply.status >= 300 && reply.status < 400) why += ", and redirects are not followed";
     failed(delivery, where.origin(), why, read_retry_after(reply.retry_after, settings_.now()));
@@ -161,7 +162,7 @@ Reply Notifier::send(const Delivery& delivery, const WebAddress& address, const 
     const std::string ended = delivery.batch.empty() ? delivery.job : delivery.batch;
     const SignedNote note{"evt_" + ended + "_" + std::to_string(delivery.seq), settings_.now() / 1000, news.body};
     const auto under_way = std::make_shared<UnderWay>();
-    under_way->since = Lanes::Clock::now();
+    under_way->since = DeliveryPool::Clock::now();
     {
         const std::lock_guard lock(mutex_);
         if (closed_) return {0, "the service is being stopped", {}};
@@ -187,14 +188,14 @@ void Notifier::failed(const Delivery& delivery, const std::string& where, const 
     if (closed_) return;
     const auto pause = pause_after({delivery.tries, delivery.created_at, settings_.now(), chance(), retry_after});
     if (!pause) return give_up(delivery, why);
-    settings_.count(Told::failed);
+    settings_.count(DeliveryOutcome::failed);
     log_info(what_ended(delivery) + " could not be told to " + where + ": " + why + "; the next try comes in " +
              std::to_string(pause->count() / 1000) + " s");
     settle(delivery, pause);
 }
 
 void Notifier::give_up(const Delivery& delivery, const std::string& why) {
-    settings_.count(Told::given_up);
+    settings_.count(DeliveryOutcome::given_up);
     log_error(what_ended(delivery) + " will not be told to " + shown(delivery.target.url) + " any more, after " +
               std::to_string(delivery.tries + 1) + " tries: " + why);
     settle(delivery, std::nullopt);
@@ -204,8 +205,8 @@ void Notifier::give_up(const Delivery& delivery, const std::string& why) {
 /// long as for a receiver.
 void Notifier::leave_to_others(const Delivery& delivery, const std::string& why) {
     // By chance, so that not the same process comes first each time.
-    const auto least = std::chrono::duration_cast<std::chrono::milliseconds>(kPoll * (0.3 + 2 * chance()));
-    const auto pause = pause_for_others({0, delivery.created_at, settings_.now(), chance()}, least);
+    const auto min = std::chrono::duration_cast<std::chrono::milliseconds>(kPoll * (0.3 + 2 * chance()));
+    const auto pause = pause_for_others({0, delivery.created_at, settings_.now(), chance()}, min);
     if (!pause) return give_up(delivery, why);
     if (!left_some_.exchange(true))
         log_info("ends of jobs that this process may not tell (" + why + ") are left to others");

@@ -12,7 +12,7 @@
 #include <optional>
 #include <string>
 
-#include "server/notify/lanes.h"
+#include "server/notify/delivery_pool.h"
 #include "server/notify/policy.h"
 #include "server/notify/sender.h"
 #include "server/store/store.h"
@@ -20,7 +20,7 @@
 
 namespace tunewright::server {
 
-enum class Told {
+enum class DeliveryOutcome {
     delivered,
     failed,    ///< it is tried again
     given_up,  ///< it is not
@@ -31,7 +31,7 @@ struct NotifierSettings {
     /// An ended job, or batch, as `data` shows it.
     std::function<std::string(const JobRecord& job)> job_text;
     std::function<std::string(const BatchSummary& batch)> batch_text;
-    std::function<void(Told outcome)> count;
+    std::function<void(DeliveryOutcome outcome)> count;
     std::string version;  ///< of the program
 };
 
@@ -61,12 +61,12 @@ public:
 private:
     struct UnderWay {
         Sender sender;
-        Lanes::Clock::time_point since;
+        DeliveryPool::Clock::time_point since;
     };
 
     std::chrono::milliseconds look();
     void take();
-    void taken(const std::vector<Delivery>& due, Lanes::Clock::time_point when);
+    void taken(const std::vector<Delivery>& due, DeliveryPool::Clock::time_point when);
     void tell(const Delivery& delivery);
     struct News {
         std::string body;
@@ -90,7 +90,7 @@ private:
     std::atomic<bool> left_some_ = false;  ///< to others, which the log has said
     std::mutex mutex_;
     std::map<std::int64_t, std::shared_ptr<UnderWay>> under_way_;  ///< by the delivery
-    Lanes lanes_;
+    DeliveryPool delivery_pool_;
     std::unique_ptr<PeriodicThread> looking_;
 };
 

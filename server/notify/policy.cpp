@@ -5,10 +5,10 @@
 namespace tunewright::server {
 namespace {
 
-constexpr std::size_t kMostShown = 200;
+constexpr std::size_t kMaxShownLength = 200;
 
 std::string quoted(const std::string& text) {
-    return "\"" + text.substr(0, kMostShown) + (text.size() > kMostShown ? "..." : "") + "\"";
+    return "\"" + text.substr(0, kMaxShownLength) + (text.size() > kMaxShownLength ? "..." : "") + "\"";
 }
 
 api::Problem invalid(std::vector<api::FieldError> errors) {

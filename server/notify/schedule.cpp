@@ -21,7 +21,7 @@ constexpr std::array<seconds, 6> kPauses{seconds(5),
                                          std::chrono::hours(10)};
 constexpr double kJitter = 0.1;
 constexpr int kShareOfAge = 8;  // of a note that is left to others
-constexpr seconds kMostAskedFor = std::chrono::hours(1);
+constexpr seconds kMaxRetryAfter = std::chrono::hours(1);
 
 milliseconds jittered(milliseconds pause, double chance) {
     return milliseconds(std::llround(static_cast<double>(pause.count()) * (1 + kJitter * (2 * chance - 1))));
@@ -39,13 +39,13 @@ std::optional<milliseconds> within_time(const FailedTry& failed, milliseconds pa
 std::optional<milliseconds> pause_after(const FailedTry& failed) {
     const auto number = static_cast<std::size_t>(std::clamp<int>(failed.earlier, 0, kPauses.size() - 1));
     milliseconds pause = jittered(kPauses[number], failed.chance);
-    if (failed.retry_after) pause = std::max<milliseconds>(pause, std::min(*failed.retry_after, kMostAskedFor));
+    if (failed.retry_after) pause = std::max<milliseconds>(pause, std::min(*failed.retry_after, kMaxRetryAfter));
     return within_time(failed, pause);
 }
 
-std::optional<milliseconds> pause_for_others(const FailedTry& left, milliseconds least) {
+std::optional<milliseconds> pause_for_others(const FailedTry& left, milliseconds min) {
     const milliseconds age(left.now - left.end);
-    const auto pause = std::clamp<milliseconds>(age / kShareOfAge, least, kPauses[1]);
+    const auto pause = std::clamp<milliseconds>(age / kShareOfAge, min, kPauses[1]);
     return within_time(left, jittered(pause, left.chance));
 }
 

@@ -27,9 +27,9 @@ constexpr std::chrono::hours kTellingTime{24};
 std::optional<std::chrono::milliseconds> pause_after(const FailedTry& failed);
 
 /// The pause of a note that this process may not send: an eighth of the time since the end, 10 % more or less, and not
-/// below `least`, so that whoever may send it finds it soon; at most 5 min, so that it is found when settings change.
+/// below `min`, so that whoever may send it finds it soon; at most 5 min, so that it is found when settings change.
 /// Nothing when the time is over.
-std::optional<std::chrono::milliseconds> pause_for_others(const FailedTry& left, std::chrono::milliseconds least);
+std::optional<std::chrono::milliseconds> pause_for_others(const FailedTry& left, std::chrono::milliseconds min);
 
 /// What the field Retry-After says: seconds, or a moment (RFC 9110, 10.2.3); nothing where it says neither.
 std::optional<std::chrono::seconds> read_retry_after(std::string_view field, UnixMs now);

@@ -10,7 +10,7 @@
 namespace tunewright::server {
 namespace {
 
-constexpr std::size_t kMostRead = 64 * 1024;  ///< of an answer's body, of which nothing is looked at
+constexpr std::size_t kMaxReadBytes = 64 * 1024;  ///< of an answer's body, of which nothing is looked at
 
 std::unique_ptr<httplib::ClientImpl> client_for(const WebAddress& address) {
     if (!address.tls) return std::make_unique<httplib::ClientImpl>(address.host, address.port);
@@ -79,7 +79,7 @@ Reply Sender::send(const OutgoingNote& note) {
     };
     request.content_receiver = [&](const char*, std::size_t length, std::uint64_t, std::uint64_t) {
         read += length;
-        return read <= kMostRead;
+        return read <= kMaxReadBytes;
     };
     httplib::Response response;
     httplib::Error error = httplib::Error::Success;

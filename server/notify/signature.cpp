@@ -7,19 +7,19 @@ namespace tunewright::server {
 namespace {
 
 constexpr std::string_view kPrefix = "whsec_";
-constexpr std::size_t kShortest = 24, kLongest = 64, kMade = 32;
+constexpr std::size_t kMinBytes = 24, kMaxBytes = 64, kMadeBytes = 32;
 
 }  // namespace
 
 std::optional<std::string> secret_bytes(std::string_view text) {
     if (!text.starts_with(kPrefix)) return std::nullopt;
     auto bytes = api::base64_bytes(text.substr(kPrefix.size()));
-    if (!bytes || bytes->size() < kShortest || bytes->size() > kLongest) return std::nullopt;
+    if (!bytes || bytes->size() < kMinBytes || bytes->size() > kMaxBytes) return std::nullopt;
     return bytes;
 }
 
 std::string new_secret() {
-    const std::vector<unsigned char> bytes = random_bytes(kMade);
+    const std::vector<unsigned char> bytes = random_bytes(kMadeBytes);
     return std::string(kPrefix) + api::base64({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 

@@ -13,8 +13,8 @@ namespace {
 
 constexpr std::size_t kMaxRows = 200, kFirstRows = 20;  // the store gives fewer where they are long
 constexpr std::size_t kPageBytes = 512 * 1024;
-constexpr std::chrono::seconds kPatience{10};  // for one job; then the client and the row are looked at again
-constexpr std::chrono::milliseconds kPause{500};
+constexpr std::chrono::seconds kMaxJobWait{10};  // for one job; then the client and the row are looked at again
+constexpr std::chrono::milliseconds kRetryInterval{500};
 
 /// One answer.
 class Results {
@@ -52,8 +52,8 @@ private:
     }
 
     Next read_page(std::string& text) {
-        const std::size_t most = rows_;
-        const std::vector<BatchRow> rows = batches_.rows(question_.batch, next_, most);
+        const std::size_t max = rows_;
+        const std::vector<BatchRow> rows = batches_.rows(question_.batch, next_, max);
         std::size_t taken = 0;
         for (; taken < rows.size(); ++taken) {
             // A batch that is being deleted loses its first rows first.
@@ -65,7 +65,7 @@ private:
         if (taken > 0) rows_ = std::clamp<std::size_t>(kPageBytes * taken / (text.size() + 1), 1, kMaxRows);
         awaited_ = taken < rows.size() ? rows[taken].id : "";
         if (taken < rows.size()) return Next::wait;
-        return !rows.empty() && rows.size() == most ? Next::page : after_last(!rows.empty());
+        return !rows.empty() && rows.size() == max ? Next::page : after_last(!rows.empty());
     }
 
     /// The store has given fewer rows than were asked for: they were long, or there are no more.
@@ -88,10 +88,10 @@ private:
     bool wait() {
         if (jobs_.draining() || out_.gone() || (question_.admitted && !question_.admitted())) return false;
         if (awaited_.empty())
-            std::this_thread::sleep_for(kPause);
+            std::this_thread::sleep_for(kRetryInterval);
         else
             await_end([&](const std::function<void()>& ended) {
-                jobs_.wait(awaited_, kPatience, [ended](const auto&) { ended(); });
+                jobs_.wait(awaited_, kMaxJobWait, [ended](const auto&) { ended(); });
             });
         return true;
     }

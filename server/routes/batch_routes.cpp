@@ -141,7 +141,7 @@ Response receipt_response(Batches& batches, const http::Request& request, const 
     return store_failed(receipt.fault);
 }
 
-Response post_batch(Batches& batches, Places& places, NotifyPolicy& policy, const BatchLimits& limits,
+Response post_batch(Batches& batches, LongRequestSlots& places, NotifyPolicy& policy, const BatchLimits& limits,
                     const Call& call) {
     BatchOrder order;
     if (auto refusal = read_order(call.request, policy, limits, order)) return *std::move(refusal);
@@ -159,7 +159,7 @@ Response get_batch(Batches& batches, const Call& call) {
     return response.set("Cache-Control", "no-cache");
 }
 
-Response list_batches(Batches& batches, Turns& listers, const Call& call) {
+Response list_batches(Batches& batches, ComputeSlots& listers, const Call& call) {
     if (auto refusal = refuse_form(call.request)) return *std::move(refusal);
     api::Problem problem = bad_parameters("list");
     int limit = 50;
@@ -215,7 +215,7 @@ std::optional<Response> read_results_question(const http::Request& request, Resu
     return std::nullopt;
 }
 
-Response get_results(Batches& batches, JobService& jobs, Places& places, Executor& lane, const Call& call) {
+Response get_results(Batches& batches, JobService& jobs, LongRequestSlots& places, Executor& lane, const Call& call) {
     ResultsQuestion question;
     question.batch = call.path.at("id");
     question.admitted = call.request.admitted;
@@ -228,7 +228,7 @@ Response get_results(Batches& batches, JobService& jobs, Places& places, Executo
     } else {
         response.set("Content-Type", "application/x-ndjson");
     }
-    const auto place = std::make_shared<std::optional<Places::Place>>(places.take(call.request.client));
+    const auto place = std::make_shared<std::optional<LongRequestSlots::Slot>>(places.take(call.request.client));
     if (!*place) return problem_response(503, "Too many results are being sent. Try again in a moment.");
     response.stream = [place, send = results_of(std::move(question), batches, jobs, lane)](http::BodyWriter& out) {
         return send(out);
@@ -267,8 +267,8 @@ Response delete_batch(Batches& batches, const Call& call) {
 
 }  // namespace
 
-void add_batch_routes(http::Router& router, Batches& batches, JobService& jobs, Places& places, Turns& listers,
-                      Executor& lane, NotifyPolicy& policy, const BatchLimits& limits) {
+void add_batch_routes(http::Router& router, Batches& batches, JobService& jobs, LongRequestSlots& places,
+                      ComputeSlots& listers, Executor& lane, NotifyPolicy& policy, const BatchLimits& limits) {
     router.streamed("POST", "/v1/batches", [&batches, &places, &policy, limits](const Call& call) {
         return post_batch(batches, places, policy, limits, call);
     });

@@ -35,7 +35,7 @@ Response code_of(const JobRecord& job, const Call& call, const std::function<Wri
     return response.set("Content-Disposition", "attachment; filename=\"" + code.file_name + "\"");
 }
 
-Response get_code(JobService& jobs, Turns& readers, const Call& call,
+Response get_code(JobService& jobs, ComputeSlots& readers, const Call& call,
                   const std::function<Written(const JobRecord&)>& write) {
     const std::string& id = call.path.at("id");
     return in_turn(readers, call.request, [&] {
@@ -47,7 +47,7 @@ Response get_code(JobService& jobs, Turns& readers, const Call& call,
 
 }  // namespace
 
-void add_code_routes(http::Router& router, JobService& jobs, Turns& readers) {
+void add_code_routes(http::Router& router, JobService& jobs, ComputeSlots& readers) {
     router.add("GET", "/v1/jobs/{id}/controllers/{index}/code", [&](const Call& call) {
         return get_code(jobs, readers, call, [&](const JobRecord& job) {
             return api::controller_code({job.result, job.request}, call.path.at("index"), words_of(call));

@@ -21,8 +21,8 @@ namespace {
 using http::Call;
 using http::Response;
 
-constexpr std::chrono::milliseconds kLook{1000};  // for clients that have gone
-constexpr int kHeartbeat = 15;                    // looks
+constexpr std::chrono::milliseconds kPollInterval{1000};  // for clients that have gone
+constexpr int kHeartbeat = 15;                            // looks
 constexpr const char* kRetry = "retry: 2000\n\n";
 
 /// Names one state of progress alike in every process: attempt and a sum of the text.
@@ -69,7 +69,7 @@ public:
         const auto news = std::make_shared<News>();
         const Followers::Key key = jobs_.follow(job_, [news](const JobNews& item) { news->put(item); });
         out.write(kRetry);
-        for (int silent = 0; goes_on(out, news->wait(kLook), silent);) {
+        for (int silent = 0; goes_on(out, news->wait(kPollInterval), silent);) {
         }
         jobs_.unfollow(key);
     }
@@ -88,7 +88,7 @@ private:
     /// Asked once a second: a key may be taken away while its owner follows.
     bool is_admitted() {
         const auto now = std::chrono::steady_clock::now();
-        if (!admitted_ || now - asked_ < kLook) return true;
+        if (!admitted_ || now - asked_ < kPollInterval) return true;
         asked_ = now;
         return admitted_();
     }
@@ -126,9 +126,9 @@ std::optional<Response> refuse_events(JobService& jobs, const Call& call) {
     return found;
 }
 
-Response follow_job(JobService& jobs, Places& places, const Call& call) {
+Response follow_job(JobService& jobs, LongRequestSlots& places, const Call& call) {
     if (auto refusal = refuse_events(jobs, call)) return *std::move(refusal);
-    const auto place = std::make_shared<std::optional<Places::Place>>(places.take(call.request.client));
+    const auto place = std::make_shared<std::optional<LongRequestSlots::Slot>>(places.take(call.request.client));
     if (!*place) return http::problem_response(503, "Too many clients follow jobs or wait for them. Ask for the job.");
     Response response;
     response.set("Content-Type", "text/event-stream");
@@ -145,7 +145,7 @@ Response follow_job(JobService& jobs, Places& places, const Call& call) {
 
 }  // namespace
 
-void add_event_routes(http::Router& router, JobService& jobs, Places& places) {
+void add_event_routes(http::Router& router, JobService& jobs, LongRequestSlots& places) {
     router.quick("GET", "/v1/jobs/{id}/events",
                  [&jobs, &places](const Call& call) { return follow_job(jobs, places, call); });
 }

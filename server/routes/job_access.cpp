@@ -26,13 +26,14 @@ Response store_failed(const StoreFault& fault) {
     return problem_response(503, "The store of the service cannot be used just now; nothing was changed. Try again.");
 }
 
-Response in_turn(Turns& readers, const http::Request& request, const std::function<Response()>& work) {
+Response in_turn(ComputeSlots& readers, const http::Request& request, const std::function<Response()>& work) {
     constexpr std::chrono::seconds longest{10};
-    switch (readers.take(request.client, Turns::Clock::now() + longest, request.left)) {
-        case Turns::Wait::full:
-        case Turns::Wait::late: return problem_response(503, "Too many jobs are being read. Try again in a moment.");
-        case Turns::Wait::left: return client_gone();
-        case Turns::Wait::granted: break;
+    switch (readers.take(request.client, ComputeSlots::Clock::now() + longest, request.left)) {
+        case ComputeSlots::Wait::full:
+        case ComputeSlots::Wait::late:
+            return problem_response(503, "Too many jobs are being read. Try again in a moment.");
+        case ComputeSlots::Wait::left: return client_gone();
+        case ComputeSlots::Wait::granted: break;
     }
     const std::shared_ptr<void> turn(nullptr,
                                      [&readers, client = request.client](void*) { readers.give_back(client); });

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "server/access/turns.h"
+#include "server/access/compute_slots.h"
 #include "server/http/app/router.h"
 #include "server/jobs/service.h"
 
@@ -29,7 +29,8 @@ http::Response guarded(Work work) {
 /// Runs `work`, which reads a job as a whole and answers with it, when the client's turn has come: a job may have tens
 /// of megabytes, several times over while its answer is made. The turn ends when the answer counts among those that
 /// clients have not taken.
-http::Response in_turn(Turns& readers, const http::Request& request, const std::function<http::Response()>& work);
+http::Response in_turn(ComputeSlots& readers, const http::Request& request,
+                       const std::function<http::Response()>& work);
 
 /// Whose jobs the caller may know of: nothing for everybody's, where nobody asks who he is or he runs the service.
 std::optional<std::string> visible_owner(const http::Request& request);

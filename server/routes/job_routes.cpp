@@ -18,9 +18,9 @@ using http::Call;
 using http::problem_response;
 using http::Response;
 
-constexpr std::size_t kLarge = 256 * 1024;  // bytes of a body that is read in turn
+constexpr std::size_t kMinLargeBody = 256 * 1024;  // bytes of a body that is read in turn
 
-Response job_response(JobService& jobs, Turns& readers, const http::Request& request, const std::string& id,
+Response job_response(JobService& jobs, ComputeSlots& readers, const http::Request& request, const std::string& id,
                       int status) {
     return in_turn(readers, request, [&] {
         const std::optional<JobView> view = jobs.find(id);
@@ -68,7 +68,7 @@ Response waited(const JobView& view, std::optional<std::chrono::seconds> wait) {
     return response.set("Location", "/v1/jobs/" + view.job.id);
 }
 
-Response waited(JobService& jobs, Turns& readers, const http::Request& request, const std::string& id,
+Response waited(JobService& jobs, ComputeSlots& readers, const http::Request& request, const std::string& id,
                 std::optional<std::chrono::seconds> wait) {
     return in_turn(readers, request, [&] {
         const std::optional<JobView> view = jobs.find(id);
@@ -77,7 +77,7 @@ Response waited(JobService& jobs, Turns& readers, const http::Request& request, 
 }
 
 /// What becomes of a job that is there: at once, or when it has ended or the wait is over.
-Response after_wait(JobService& jobs, Turns& readers, const http::Request& request, const std::string& id,
+Response after_wait(JobService& jobs, ComputeSlots& readers, const http::Request& request, const std::string& id,
                     std::chrono::seconds wait) {
     if (wait.count() == 0) return waited(jobs, readers, request, id, std::nullopt);
     try {
@@ -130,14 +130,15 @@ std::optional<Response> refuse_parameters(const http::Request& request) {
 }
 
 /// A large body takes a turn as what is computed does: reading it may take a second.
-std::variant<api::PreparedJob, api::Problem, Response> prepared_in_turn(Turns& computing, const http::Request& request,
+std::variant<api::PreparedJob, api::Problem, Response> prepared_in_turn(ComputeSlots& computing,
+                                                                        const http::Request& request,
                                                                         const api::JobLimits& limits) {
     std::variant<api::PreparedJob, api::Problem, Response> made;
     const auto prepare = [&] {
         std::visit([&](auto&& value) { made = std::forward<decltype(value)>(value); },
                    api::prepare_job(request.body, limits));
     };
-    if (request.body.size() <= kLarge) {
+    if (request.body.size() <= kMinLargeBody) {
         prepare();
         return made;
     }
@@ -149,7 +150,7 @@ std::variant<api::PreparedJob, api::Problem, Response> prepared_in_turn(Turns& c
     return made;
 }
 
-Response post_job(JobService& jobs, Places& places, const SharedTurns& turns, NotifyPolicy& policy,
+Response post_job(JobService& jobs, LongRequestSlots& places, const SharedTurns& turns, NotifyPolicy& policy,
                   const api::JobLimits& limits, Call& call) {
     if (auto refusal = refuse_call(call.request)) return *std::move(refusal);
     const std::string key(call.request.header("Idempotency-Key"));
@@ -171,7 +172,7 @@ Response post_job(JobService& jobs, Places& places, const SharedTurns& turns, No
     order.origin = {call.request.request_id, call.request.traceparent};
     // Where too many wait already this one does not: it gets its job at once, as without the preference.
     std::chrono::seconds wait = http::preferred_wait(call.request).value_or(std::chrono::seconds(0));
-    std::optional<Places::Place> place;
+    std::optional<LongRequestSlots::Slot> place;
     if (wait.count() > 0 && !(place = places.take(call.request.client))) wait = {};
     order.wait = wait;
     std::string().swap(call.request.body);
@@ -204,7 +205,7 @@ std::optional<Response> unchanged(JobService& jobs, const Call& call) {
     return response;
 }
 
-Response get_job(JobService& jobs, Turns& readers, const Call& call) {
+Response get_job(JobService& jobs, ComputeSlots& readers, const Call& call) {
     if (auto refusal = refuse_form(call.request)) return *std::move(refusal);
     const std::string& id = call.path.at("id");
     Response response = in_turn(readers, call.request, [&] {
@@ -264,7 +265,7 @@ Response list_jobs(JobService& jobs, const SharedTurns& turns, const Call& call)
     return query.text ? in_turn(turns.searchers, call.request, list) : list();
 }
 
-Response cancel_job(JobService& jobs, Turns& readers, const Call& call) {
+Response cancel_job(JobService& jobs, ComputeSlots& readers, const Call& call) {
     if (auto refusal = refuse_call(call.request)) return *std::move(refusal);
     if (auto refusal = refuse_stranger(jobs, call)) return *std::move(refusal);
     const std::string& id = call.path.at("id");
@@ -289,7 +290,7 @@ Response not_requeued(const JobService& jobs, const std::string& id, RequeueEffe
     return no_such_job(id);
 }
 
-Response requeue_job(JobService& jobs, Turns& readers, const Call& call) {
+Response requeue_job(JobService& jobs, ComputeSlots& readers, const Call& call) {
     if (auto refusal = refuse_call(call.request)) return *std::move(refusal);
     if (auto refusal = refuse_stranger(jobs, call)) return *std::move(refusal);
     const std::string& id = call.path.at("id");
@@ -342,7 +343,7 @@ Response delete_job(JobService& jobs, const Call& call) {
 
 }  // namespace
 
-void add_job_routes(http::Router& router, JobService& jobs, Places& places, const SharedTurns& turns,
+void add_job_routes(http::Router& router, JobService& jobs, LongRequestSlots& places, const SharedTurns& turns,
                     NotifyPolicy& policy, const api::JobLimits& limits) {
     router.add("POST", "/v1/jobs", [&jobs, &places, turns, &policy, limits](Call& call) {
         return post_job(jobs, places, turns, policy, limits, call);

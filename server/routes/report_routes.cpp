@@ -52,7 +52,7 @@ Response report_of(const JobRecord& job, const Call& call, const std::string& co
     return response.set("Content-Security-Policy", api::report_policy());
 }
 
-Response get_report(JobService& jobs, Turns& readers, const Call& call) {
+Response get_report(JobService& jobs, ComputeSlots& readers, const Call& call) {
     if (!http::accepts(call.request, "text/html"))
         return problem_response(406, "The answer is text/html, which the Accept field does not allow.");
     std::string controller;
@@ -67,7 +67,7 @@ Response get_report(JobService& jobs, Turns& readers, const Call& call) {
 
 }  // namespace
 
-void add_report_routes(http::Router& router, JobService& jobs, Turns& readers) {
+void add_report_routes(http::Router& router, JobService& jobs, ComputeSlots& readers) {
     router.add("GET", "/v1/jobs/{id}/report.html", [&](const Call& call) { return get_report(jobs, readers, call); });
 }
 

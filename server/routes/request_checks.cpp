@@ -40,11 +40,11 @@ std::size_t handling_weight(const http::Request& request) {
 std::string fit_body(std::size_t& max_body, std::size_t memory) {
     constexpr std::size_t any = 1 + kStoredCopies + kCells;  // what any body takes, in its bytes; JSON more
     const std::size_t half = memory / 2, fits = half / (any + kTree);
-    const std::size_t asked = max_body, most = fits <= api::kMaxTree / kTree ? fits : (half - api::kMaxTree) / any;
-    if (asked <= most) return {};
-    max_body = most;
+    const std::size_t asked = max_body, max = fits <= api::kMaxTree / kTree ? fits : (half - api::kMaxTree) / any;
+    if (asked <= max) return {};
+    max_body = max;
     const auto kib = [](std::size_t bytes) { return std::to_string(bytes >> 10) + "KiB"; };
-    return "--max-body is lowered from " + kib(asked) + " to " + kib(most) +
+    return "--max-body is lowered from " + kib(asked) + " to " + kib(max) +
            ", the largest whose answer takes no more than half of --memory, " + kib(memory) +
            ". Give more --memory for larger bodies.";
 }

@@ -51,9 +51,9 @@ void refuse_parameter(api::Problem& problem, const std::string& name, const std:
 
 /// False where the text is no whole number within the bounds.
 template <class Number>
-bool read_whole(const std::string& text, Number least, Number most, Number& target) {
+bool read_whole(const std::string& text, Number min, Number max, Number& target) {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), target);
-    return error == std::errc{} && end == text.data() + text.size() && target >= least && target <= most;
+    return error == std::errc{} && end == text.data() + text.size() && target >= min && target <= max;
 }
 
 }  // namespace tunewright::server

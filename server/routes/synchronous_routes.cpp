@@ -32,7 +32,7 @@ constexpr std::chrono::seconds kRangeTime{20};
 constexpr std::chrono::seconds kIdentifyTime{30};
 constexpr std::chrono::seconds kRelayTime{10};
 constexpr std::chrono::seconds kConversionTime{10};
-constexpr std::chrono::milliseconds kGoneLook{250};  // for clients that have gone
+constexpr std::chrono::milliseconds kGonePollInterval{250};  // for clients that have gone
 
 bool is_file(const http::Request& request) {
     const std::string type = http::media_type(request);
@@ -58,22 +58,22 @@ Response too_busy(std::chrono::seconds limit) {
 Response closing_down() { return problem_response(503, "The service is being stopped. Try again shortly."); }
 
 /// Stops a computation at its deadline, when the service stops, or when nobody waits for it any more.
-class Overseer : public std::enable_shared_from_this<Overseer> {
+class ComputationWatchdog : public std::enable_shared_from_this<ComputationWatchdog> {
 public:
-    Overseer(Timer& timer, Turns::Clock::time_point deadline, std::function<bool()> left)
+    ComputationWatchdog(Timer& timer, ComputeSlots::Clock::time_point deadline, std::function<bool()> left)
         : timer_(timer), deadline_(deadline), left_(std::move(left)) {}
 
     void look() {
         const std::lock_guard lock(mutex_);
         if (over_) return;
         gone_ = left_ && left_();
-        if (gone_ || Turns::Clock::now() >= deadline_) return stop();
+        if (gone_ || ComputeSlots::Clock::now() >= deadline_) return stop();
         look_later();
     }
     /// What is over soon is not looked after: the first look comes after a while.
     void look_later() {
-        const std::chrono::duration<double> rest = deadline_ - Turns::Clock::now();
-        timer_.after(std::min<std::chrono::duration<double>>(kGoneLook, rest),
+        const std::chrono::duration<double> rest = deadline_ - ComputeSlots::Clock::now();
+        timer_.after(std::min<std::chrono::duration<double>>(kGonePollInterval, rest),
                      [self = shared_from_this()] { self->look(); });
     }
     void stop() { stop_.request_stop(); }
@@ -88,7 +88,7 @@ public:
 
 private:
     Timer& timer_;
-    const Turns::Clock::time_point deadline_;
+    const ComputeSlots::Clock::time_point deadline_;
     const std::function<bool()> left_;
     std::stop_source stop_;
     std::mutex mutex_;
@@ -98,17 +98,17 @@ private:
 
 /// The answer of `work`, which runs on this thread. Its turn has come.
 Response compute(const SyncCall& work, const Call& call, std::chrono::seconds limit, SpareCores& spare_cores,
-                 const std::shared_ptr<Overseer>& overseer, const std::stop_token& closing) {
-    const std::stop_callback on_closing(closing, [overseer] { overseer->stop(); });
+                 const std::shared_ptr<ComputationWatchdog>& watchdog, const std::stop_token& closing) {
+    const std::stop_callback on_closing(closing, [watchdog] { watchdog->stop(); });
     RunControl control;
-    control.stop = overseer->token();
+    control.stop = watchdog->token();
     control.now_ms = monotonic_ms;
     SpareCores::Computation computation(spare_cores);
     control.spread = computation.spread();
     const double start = monotonic_ms();
     api::Answer answer = work(call, control);
     if (answer.status >= 400 && closing.stop_requested()) return closing_down();
-    if (answer.status >= 400 && overseer->gone()) return client_gone();
+    if (answer.status >= 400 && watchdog->gone()) return client_gone();
     if (answer.status >= 400 && control.stop.stop_requested()) return too_slow(limit);
 
     Response response = response_of(std::move(answer));
@@ -128,26 +128,26 @@ api::Answer preview(const Call& call, const RunControl&) {
 }
 
 /// The time counts from the arrival of the request, waiting for its turn included.
-http::Handler synchronous(const SyncCall& work, std::chrono::seconds limit, Turns& turns, Timer& timer,
+http::Handler synchronous(const SyncCall& work, std::chrono::seconds limit, ComputeSlots& turns, Timer& timer,
                           SpareCores& spare_cores, const std::stop_token& closing, Refusal refuse) {
     return [=, &turns, &timer, &spare_cores](const Call& call) {
-        const auto deadline = Turns::Clock::now() + limit;
+        const auto deadline = ComputeSlots::Clock::now() + limit;
         if (auto refusal = refuse(call.request)) return *std::move(refusal);
         if (closing.stop_requested()) return closing_down();
         switch (turns.take(call.request.client, deadline, call.request.left)) {
-            case Turns::Wait::full:
+            case ComputeSlots::Wait::full:
                 return problem_response(429, "Too many computations are waiting. Try again after a moment.");
-            case Turns::Wait::late: return too_busy(limit);
-            case Turns::Wait::left: return client_gone();
-            case Turns::Wait::granted: break;
+            case ComputeSlots::Wait::late: return too_busy(limit);
+            case ComputeSlots::Wait::left: return client_gone();
+            case ComputeSlots::Wait::granted: break;
         }
-        const auto overseer = std::make_shared<Overseer>(timer, deadline, call.request.left);
-        overseer->look_later();
+        const auto watchdog = std::make_shared<ComputationWatchdog>(timer, deadline, call.request.left);
+        watchdog->look_later();
         const std::shared_ptr<void> ended(nullptr, [&, client = call.request.client](void*) {
-            overseer->end();
+            watchdog->end();
             turns.give_back(client);
         });
-        return compute(work, call, limit, spare_cores, overseer, closing);
+        return compute(work, call, limit, spare_cores, watchdog, closing);
     };
 }
 
@@ -169,7 +169,7 @@ Response parse_plant(const Call& call) {
 
 }  // namespace
 
-void add_synchronous_routes(http::Router& router, Turns& turns, Timer& timer, SpareCores& spare_cores,
+void add_synchronous_routes(http::Router& router, ComputeSlots& turns, Timer& timer, SpareCores& spare_cores,
                             const std::stop_token& closing) {
     const auto add = [&](const char* path, const SyncCall& work, std::chrono::seconds limit,
                          Refusal refuse = refuse_call) {

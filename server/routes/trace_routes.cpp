@@ -50,7 +50,7 @@ Response traces_of(const JobRecord& job, api::Traces traces) {
     return response.set("Content-Disposition", "attachment; filename=\"job-" + job.id + ".csv\"");
 }
 
-Response get_traces(JobService& jobs, Turns& readers, const Call& call) {
+Response get_traces(JobService& jobs, ComputeSlots& readers, const Call& call) {
     if (!http::accepts(call.request, "text/csv"))
         return problem_response(406, "The answer is text/csv, which the Accept field does not allow.");
     api::Traces traces = api::Traces::responses;
@@ -65,7 +65,7 @@ Response get_traces(JobService& jobs, Turns& readers, const Call& call) {
 
 }  // namespace
 
-void add_trace_routes(http::Router& router, JobService& jobs, Turns& readers) {
+void add_trace_routes(http::Router& router, JobService& jobs, ComputeSlots& readers) {
     router.add("GET", "/v1/jobs/{id}/result.csv", [&](const Call& call) { return get_traces(jobs, readers, call); });
 }
 

@@ -98,11 +98,11 @@ public:
     virtual std::optional<JobState> job_of_key(const std::string& owner, const std::string& idempotency_key) = 0;
     virtual JobPage list(const JobQuery& query) = 0;
     virtual void remove(std::string id, Done<RemoveEffect> done) = 0;
-    /// Deletes at most `most` single jobs that ended longer before `now` than `retention` says, and batches whose last
+    /// Deletes at most `max` single jobs that ended longer before `now` than `retention` says, and batches whose last
     /// job did (one batch counts as its jobs do). A shared store goes by its own clock where that is behind `now`: a
     /// process whose clock is ahead deletes nothing too early; and one process sweeps at a time. Returns how many jobs
-    /// went; fewer than `most`: nothing is left to sweep.
-    virtual void sweep(UnixMs now, Retention retention, std::size_t most, Done<std::size_t> done) = 0;
+    /// went; fewer than `max`: nothing is left to sweep.
+    virtual void sweep(UnixMs now, Retention retention, std::size_t max, Done<std::size_t> done) = 0;
 };
 
 }  // namespace tunewright::server

@@ -40,7 +40,7 @@ public:
     virtual ~DeliveryStore() = default;
 
     /// Those that are due, the oldest first; they are nobody else's for `hold` from now.
-    virtual void take_deliveries(UnixMs now, std::chrono::milliseconds hold, std::size_t most,
+    virtual void take_deliveries(UnixMs now, std::chrono::milliseconds hold, std::size_t max,
                                  Done<std::vector<Delivery>> done) = 0;
     /// Delivered or given up: it goes. With a pause: the next try is due so long after `now`; one that was `tried` has
     /// failed once more, another was not for this process to send.

@@ -15,7 +15,7 @@
 //              process stops (service.cpp, drain). A cancellation is only noted; the worker learns of it and ends the
 //              job. When its process has died, nobody gives its signs of life (heartbeats.h): once its lease is over
 //              another process releases the job (rescuer.h; on a store of one process the next start does, recover),
-//              ends it as cancelled where that was asked for, and as failed from `most_attempts` crashes on. A worker
+//              ends it as cancelled where that was asked for, and as failed from `max_attempts` crashes on. A worker
 //              that then comes with the old attempts learns that it no longer has the job, and drops what it has.
 //   succeeded, failed, cancelled
 //              Its owner may have one that failed or was cancelled queued again; nothing else moves it. He deletes it,

@@ -98,12 +98,12 @@ public:
     void remove_batch(std::string id, Done<RemoveEffect> done) override {
         store_->remove_batch(std::move(id), timed("remove_batch", std::move(done)));
     }
-    void sweep(UnixMs now, Retention retention, std::size_t most, Done<std::size_t> done) override {
-        store_->sweep(now, retention, most, timed("sweep", std::move(done)));
+    void sweep(UnixMs now, Retention retention, std::size_t max, Done<std::size_t> done) override {
+        store_->sweep(now, retention, max, timed("sweep", std::move(done)));
     }
-    void take_deliveries(UnixMs now, std::chrono::milliseconds hold, std::size_t most,
+    void take_deliveries(UnixMs now, std::chrono::milliseconds hold, std::size_t max,
                          Done<std::vector<Delivery>> done) override {
-        store_->take_deliveries(now, hold, most, timed("take_deliveries", std::move(done)));
+        store_->take_deliveries(now, hold, max, timed("take_deliveries", std::move(done)));
     }
     void settle_delivery(std::int64_t seq, UnixMs now, std::optional<std::chrono::milliseconds> pause, bool tried,
                          Done<bool> done) override {

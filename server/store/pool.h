@@ -15,20 +15,20 @@ public:
     explicit Pool(std::size_t places) : places_(places) { idle_.reserve(places); }
 
     /// One of the places, held while somebody reads.
-    class Place {
+    class Slot {
     public:
-        explicit Place(Pool& pool) : pool_(pool) {
+        explicit Slot(Pool& pool) : pool_(pool) {
             std::unique_lock lock(pool.mutex_);
             pool.left_.wait(lock, [&] { return pool.busy_ < pool.places_; });
             enter();
         }
         /// Waits no longer than `patience`: connection(), keep() only where it `is_held`.
         template <class Duration>
-        Place(Pool& pool, Duration patience) : pool_(pool) {
+        Slot(Pool& pool, Duration patience) : pool_(pool) {
             std::unique_lock lock(pool.mutex_);
             if (pool.left_.wait_for(lock, patience, [&] { return pool.busy_ < pool.places_; })) enter();
         }
-        ~Place() {
+        ~Slot() {
             if (!held_) return;
             {
                 const std::lock_guard lock(pool_.mutex_);
@@ -36,8 +36,8 @@ public:
             }
             pool_.left_.notify_one();
         }
-        Place(const Place&) = delete;
-        Place& operator=(const Place&) = delete;
+        Slot(const Slot&) = delete;
+        Slot& operator=(const Slot&) = delete;
 
         bool is_held() const { return held_; }
         /// The idle connection that came with it; nothing where there was none.

@@ -80,7 +80,7 @@ struct Claim {
     std::string worker;  ///< names the process
     UnixMs now = 0;
     std::chrono::milliseconds lease{10'000};  ///< a sign of life, as Heartbeat has it
-    std::size_t most = 1;
+    std::size_t max = 1;
     /// Only jobs during which a process ended twice, when their pause is over; else none of them.
     bool suspects = false;
     bool low_first = false;  ///< jobs of low priority before the others
@@ -142,10 +142,10 @@ struct Recovery {
 
 struct Reclaim {
     UnixMs now = 0;
-    int most_attempts = 10;  ///< crashes
-    std::string error;       ///< of a job that was interrupted so often
-    bool leases = true;      ///< false: batches alone. Who has the store for himself has all running jobs, however late
-                             ///< his signs of life are
+    int max_attempts = 10;  ///< crashes
+    std::string error;      ///< of a job that was interrupted so often
+    bool leases = true;     ///< false: batches alone. Who has the store for himself has all running jobs, however late
+                            ///< his signs of life are
     /// In a shared store one process does it: nothing where another did within that time.
     std::chrono::milliseconds period{0};
 };

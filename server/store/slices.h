@@ -18,7 +18,7 @@
 namespace tunewright::server {
 
 /// Entries that one slice touches.
-constexpr std::size_t kSlice = 250;
+constexpr std::size_t kSliceEntries = 250;
 
 /// The end of a batch's upload. `leaving` is the seq of the batch that has to be deleted: the one that was sent, where
 /// the answer is `existing` or `conflict`.
@@ -72,13 +72,13 @@ public:
     }
 
     void drop(std::string batch, Done<bool> done) {
-        using Found = std::optional<std::int64_t>;
-        run<Found>([batch = std::move(batch)](Context& store) { return leave_batch(store, batch); }, done,
-                   [this, done](Found found) {
-                       if (!found) return done(false);
-                       erase(*found,
-                             [done](const std::optional<StoreFault>& fault) { fault ? done(*fault) : done(true); });
-                   });
+        using MaybeSeq = std::optional<std::int64_t>;
+        run<MaybeSeq>([batch = std::move(batch)](Context& store) { return leave_batch(store, batch); }, done,
+                      [this, done](MaybeSeq found) {
+                          if (!found) return done(false);
+                          erase(*found,
+                                [done](const std::optional<StoreFault>& fault) { fault ? done(*fault) : done(true); });
+                      });
     }
 
     void remove(std::string id, Done<RemoveEffect> done) {
@@ -92,19 +92,19 @@ public:
     }
 
     void cancel(std::string id, UnixMs now, Done<std::optional<Ids>> done) {
-        using Found = std::optional<std::int64_t>;
-        run<Found>([id = std::move(id)](Context& store) { return begin_cancel(store, id); }, done,
-                   [this, now, done](Found found) {
-                       if (!found) return done(std::nullopt);
-                       cancel_on(*found, 0, now, [done](Outcome<Ids> ids) {
-                           if (const auto* fault = std::get_if<StoreFault>(&ids)) return done(*fault);
-                           done(std::optional(std::get<Ids>(std::move(ids))));
-                       });
-                   });
+        using MaybeSeq = std::optional<std::int64_t>;
+        run<MaybeSeq>([id = std::move(id)](Context& store) { return begin_cancel(store, id); }, done,
+                      [this, now, done](MaybeSeq found) {
+                          if (!found) return done(std::nullopt);
+                          cancel_on(*found, 0, now, [done](Outcome<Ids> ids) {
+                              if (const auto* fault = std::get_if<StoreFault>(&ids)) return done(*fault);
+                              done(std::optional(std::get<Ids>(std::move(ids))));
+                          });
+                      });
     }
 
-    void sweep(UnixMs now, const Retention& retention, std::size_t most, Done<std::size_t> done) {
-        sweep_on(now, retention, most, 0, std::move(done));
+    void sweep(UnixMs now, const Retention& retention, std::size_t max, Done<std::size_t> done) {
+        sweep_on(now, retention, max, 0, std::move(done));
     }
 
     /// What others left undone; nobody waits for it. To be called where changes are reported, as all that it starts is.
@@ -129,7 +129,7 @@ private:
     }
 
     void erase(std::int64_t batch, Finished done) {
-        run<std::size_t>([batch](Context& store) { return delete_entries(store, batch, kSlice); }, done,
+        run<std::size_t>([batch](Context& store) { return delete_entries(store, batch, kSliceEntries); }, done,
                          [this, batch, done](std::size_t gone) { gone > 0 ? erase(batch, done) : done(std::nullopt); });
     }
 
@@ -143,12 +143,12 @@ private:
                   });
     }
 
-    void sweep_on(UnixMs now, const Retention& retention, std::size_t most, std::size_t gone, Done<std::size_t> done) {
-        const auto slice = [now, retention, left = most - gone](Context& store) -> std::size_t {
+    void sweep_on(UnixMs now, const Retention& retention, std::size_t max, std::size_t gone, Done<std::size_t> done) {
+        const auto slice = [now, retention, left = max - gone](Context& store) -> std::size_t {
             return left == 0 ? 0 : sweep_slice(store, now, retention, left);
         };
         run<std::size_t>(slice, done, [=, this](std::size_t more) {
-            more > 0 ? sweep_on(now, retention, most, gone + more, done) : done(gone);
+            more > 0 ? sweep_on(now, retention, max, gone + more, done) : done(gone);
         });
     }
 

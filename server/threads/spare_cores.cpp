@@ -7,7 +7,7 @@
 namespace tunewright::server {
 
 /// What is shared out. Helpers may look at it after the call has returned, but not at `f`.
-struct SpareCores::Share {
+struct SpareCores::SharedCall {
     const std::function<void(int)>& f;
     const int n;
     std::atomic<int> next = 0, done = 0;
@@ -33,19 +33,19 @@ struct SpareCores::Share {
 SpareCores::SpareCores(std::size_t cores)
     : cores_(static_cast<int>(std::max<std::size_t>(1, cores))), helpers_(static_cast<std::size_t>(cores_) - 1) {}
 
-Spread SpareCores::Computation::spread() {
+ParallelFor SpareCores::Computation::spread() {
     return [&cores = cores_](int n, const std::function<void(int)>& f) { cores.spread(n, f); };
 }
 
 /// A helper leaves to computations of their own what they need.
-void SpareCores::help(Share& share) {
+void SpareCores::help(SharedCall& share) {
     while (busy_ <= cores_ && share.take_one()) {
     }
     --busy_;
 }
 
 void SpareCores::spread(int n, const std::function<void(int)>& f) {
-    const auto share = std::make_shared<Share>(f, n);
+    const auto share = std::make_shared<SharedCall>(f, n);
     for (int helpers = std::min(cores_ - busy_, n - 1); helpers > 0; --helpers) {
         ++busy_;
         if (!helpers_.post([this, share] { help(*share); })) --busy_;

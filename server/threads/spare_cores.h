@@ -24,17 +24,17 @@ public:
         Computation& operator=(const Computation&) = delete;
 
         /// For its RunControl; it must outlive its use. What f throws is thrown on, once the others have returned.
-        Spread spread();
+        ParallelFor spread();
 
     private:
         SpareCores& cores_;
     };
 
 private:
-    struct Share;
+    struct SharedCall;
 
     void spread(int n, const std::function<void(int)>& f);
-    void help(Share& share);
+    void help(SharedCall& share);
 
     const int cores_;
     std::atomic<int> busy_ = 0;

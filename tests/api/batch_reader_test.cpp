@@ -183,14 +183,14 @@ TEST(BatchReader, RefusesAnotherShapeWithTheCure) {
 
 TEST(BatchReader, TellsWhatIsWrongFirst) {
     BatchQuestion question = form(BatchForm::json);
-    question.most_entries = 2;
+    question.max_entries = 2;
     EXPECT_THAT(refusal(question, "{\"jobs\": [{}, {}, {}, {]}"), HasSubstr("more than 2 requests"));
     EXPECT_THAT(refusal(question, "{\"jobs\": [{}, {}, {]}"), HasSubstr("400 The body is not JSON"));
 }
 
 TEST(BatchReader, TakesNoMoreRequestsThanAllowed) {
     BatchQuestion question = form(BatchForm::ndjson);
-    question.most_entries = 3;
+    question.max_entries = 3;
     EXPECT_EQ(read(question, "{}\n{}\n{}\n").entries.size(), 3u);
     EXPECT_THAT(refusal(question, "{}\n{}\n{}\n{}\n"), HasSubstr("422 The batch has more than 3 requests"));
 }

@@ -57,16 +57,16 @@ TEST(Implement, SettingsThatAreNoneOfTheProductAreRefusedByName) {
 
 TEST(Implement, ADesignForAProductHoldsItsLimitsOnTheLoopAsTyped) {
     const Json entry = tuned(product("emerson_deltav_series", R"(, "sample_time": 0.5)"))["controllers"][0];
-    const Json& built = entry["implemented"];
-    EXPECT_EQ(built["sample_time"], 0.5);
-    EXPECT_LE(built["robustness"]["Ms"].get<double>(), 1.4 + 1e-4);
-    EXPECT_LE(built["robustness"]["Mt"].get<double>(), 1.4 + 1e-4);
-    EXPECT_GT(built["robustness"]["Ms"].get<double>(), 1.39);
+    const Json& on_device = entry["implemented"];
+    EXPECT_EQ(on_device["sample_time"], 0.5);
+    EXPECT_LE(on_device["robustness"]["Ms"].get<double>(), 1.4 + 1e-4);
+    EXPECT_LE(on_device["robustness"]["Mt"].get<double>(), 1.4 + 1e-4);
+    EXPECT_GT(on_device["robustness"]["Ms"].get<double>(), 1.39);
     for (const char* name : {"GAIN", "RESET", "RATE", "ALPHA"})
         EXPECT_TRUE(entry["as_entered"]["as_typed"].contains(name));
     // The entry's controller is the ideal twin of what is typed.
     EXPECT_EQ(entry["controller"]["Kp"], entry["as_entered"]["realised"]["Kp"]);
-    EXPECT_EQ(built["responses"]["load"]["t"].size(), 400U);
+    EXPECT_EQ(on_device["responses"]["load"]["t"].size(), 400U);
     EXPECT_TRUE(entry["longest_sample_time"].is_number());
 }
 
@@ -82,17 +82,17 @@ TEST(Implement, MovesOfMoreThanTwoPercentAreWarnedOf) {
     ASSERT_GT(entry["implemented"]["difference"]["Ms_percent"].get<double>(), 2);
     EXPECT_EQ(entry["warnings"].back()["code"], "differs-as-built");
     // The rule of 2 % on each figure, from the answer's own figures.
-    const Json& built = entry["implemented"];
+    const Json& on_device = entry["implemented"];
     const auto overshoot = [](const Json& loop) {
         return loop["performance"]["setpoint"]["overshoot_percent"].get<double>();
     };
-    const double points = built["difference"]["overshoot_points"].get<double>();
-    EXPECT_NEAR(points, overshoot(built) - overshoot(entry), 1e-9);
+    const double points = on_device["difference"]["overshoot_points"].get<double>();
+    EXPECT_NEAR(points, overshoot(on_device) - overshoot(entry), 1e-9);
     Json far = Json::array();
-    if (std::abs(built["difference"]["Ms_percent"].get<double>()) > 2) far.push_back("Ms");
-    if (std::abs(built["difference"]["load_IAE_percent"].get<double>()) > 2) far.push_back("load_IAE");
+    if (std::abs(on_device["difference"]["Ms_percent"].get<double>()) > 2) far.push_back("Ms");
+    if (std::abs(on_device["difference"]["load_IAE_percent"].get<double>()) > 2) far.push_back("load_IAE");
     if (std::abs(points) > 2) far.push_back("overshoot");
-    EXPECT_EQ(built["difference"]["differs"], far);
+    EXPECT_EQ(on_device["difference"]["differs"], far);
 }
 
 TEST(Implement, ALoopThatIsBuiltAsDesignedDiffersInNothing) {

@@ -28,7 +28,7 @@ std::vector<OptionDescription> described() {
     Tf.exclusive_minimum = 0;
     OptionDescription poles = option("poles", OptionType::list);
     poles.fields = {option("pole", OptionType::complex)};
-    poles.most = 3;
+    poles.max = 3;
     OptionDescription step = option("setpoint_step", OptionType::number);
     step.required = true;
     OptionDescription scenario = option("scenario", OptionType::object);

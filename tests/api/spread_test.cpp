@@ -26,7 +26,7 @@ void on_threads(int n, const std::function<void(int)>& f) {
     work();
 }
 
-JobOutcome outcome_of(const std::string& request, const Spread& spread) {
+JobOutcome outcome_of(const std::string& request, const ParallelFor& spread) {
     const auto prepared = prepare_job(request);
     EXPECT_TRUE(std::holds_alternative<PreparedJob>(prepared)) << request;
     RunControl control;
@@ -41,12 +41,12 @@ void expect_the_same(const std::string& request) {
     EXPECT_EQ(one.result_json, several.result_json);
 }
 
-TEST(Spread, ComparisonIsTheSame) {
+TEST(ParallelFor, ComparisonIsTheSame) {
     expect_the_same(request_with(R"("tune": [{"method": "all"}], "baseline": {"form": "ideal", "Kp": 0.5, "Ti": 10},
                                      "evaluate": {"points": 50, "tradeoff": true})"));
 }
 
-TEST(Spread, ExamplesAreTheSame) {
+TEST(ParallelFor, ExamplesAreTheSame) {
     const Json document = Json::parse(examples_json());
     for (const Json& one : document["examples"]) {
         SCOPED_TRACE(one["id"].dump());
@@ -54,7 +54,7 @@ TEST(Spread, ExamplesAreTheSame) {
     }
 }
 
-TEST(Spread, ProgressOfRowsAtWorkAtOnceNeverFalls) {
+TEST(ParallelFor, ProgressOfRowsAtWorkAtOnceNeverFalls) {
     const auto prepared = prepare_job(request_with(R"("tune": [{"method": "all"}])"));
     std::vector<double> fractions;
     RunControl control;
@@ -67,7 +67,7 @@ TEST(Spread, ProgressOfRowsAtWorkAtOnceNeverFalls) {
     EXPECT_EQ(fractions.back(), 1);
 }
 
-TEST(Spread, RowsThatHaveEndedWhenItIsStoppedAreAnswered) {
+TEST(ParallelFor, RowsThatHaveEndedWhenItIsStoppedAreAnswered) {
     const auto prepared = prepare_job(request_with(R"("tune": [{"method": "all"}], "evaluate": {"points": 0})"));
     std::stop_source stop;
     RunControl control;

@@ -31,7 +31,7 @@ std::vector<FieldError> faults(const std::string& members) {
     return std::holds_alternative<Problem>(job) ? std::get<Problem>(job).errors : std::vector<FieldError>();
 }
 
-TEST(Terms, AreTakenFromARequest) {
+TEST(JobTerms, AreTakenFromARequest) {
     const PreparedJob job = prepared(kNotify + R"(, "priority": "low")");
     ASSERT_TRUE(job.notify);
     EXPECT_EQ(job.notify->url, "https://hooks.example.com/x?y=1");
@@ -52,7 +52,7 @@ std::string in_days(int days) {
     return text.str();
 }
 
-TEST(Terms, SayWhenAJobMayBegin) {
+TEST(JobTerms, SayWhenAJobMayBegin) {
     const auto at = [](const std::string& text) { return prepared("\"not_before\": \"" + text + "\"").not_before; };
     // 2026-05-04T06:00:00Z is 1,777,874,400 s after 1970 (date -u -d ... +%s).
     EXPECT_EQ(at("2026-05-04T06:00:00Z"), 1'777'874'400'000);
@@ -67,7 +67,7 @@ TEST(Terms, SayWhenAJobMayBegin) {
     EXPECT_FALSE(prepared("\"unique\": false").unique || prepared("").unique);
 }
 
-TEST(Terms, RefuseTimesThatAreNone) {
+TEST(JobTerms, RefuseTimesThatAreNone) {
     const auto refusal = [](const std::string& json) {
         return detail_at(faults("\"not_before\": " + json), "/not_before");
     };
@@ -82,7 +82,7 @@ TEST(Terms, RefuseTimesThatAreNone) {
     EXPECT_THAT(detail_at(std::get<Problem>(range).errors, "/not_before"), HasSubstr("must be a time"));
 }
 
-TEST(Terms, ChangeNeitherTheHashNorTheResult) {
+TEST(JobTerms, ChangeNeitherTheHashNorTheResult) {
     const PreparedJob plain = prepared(R"("evaluate": {"points": 0})");
     const PreparedJob termed = prepared(R"("evaluate": {"points": 0}, "priority": "low", "unique": true, )" +
                                         ("\"not_before\": \"" + in_days(1) + "\", ") + kNotify);
@@ -92,7 +92,7 @@ TEST(Terms, ChangeNeitherTheHashNorTheResult) {
     EXPECT_EQ(outcome.status, JobOutcome::Status::succeeded) << outcome.error_json;
 }
 
-TEST(Terms, AreRefusedWithTheirPlace) {
+TEST(JobTerms, AreRefusedWithTheirPlace) {
     EXPECT_THAT(detail_at(faults(R"("notify": {})"), "/notify/url"), HasSubstr("url is missing"));
     EXPECT_THAT(detail_at(faults(R"("notify": "https://a")"), "/notify"), HasSubstr("must be an object"));
     EXPECT_THAT(detail_at(faults(R"("notify": {"url": 5})"), "/notify/url"), HasSubstr("url is 5"));
@@ -105,13 +105,13 @@ TEST(Terms, AreRefusedWithTheirPlace) {
     EXPECT_THAT(detail_at(faults(R"("priority": 1)"), "/priority"), HasSubstr("normal or low"));
 }
 
-TEST(Terms, AreNotForCallsThatAreAnsweredAtOnce) {
+TEST(JobTerms, AreNotForCallsThatAreAnsweredAtOnce) {
     const std::string body = R"({"plant": {"type": "fopdt", "K": 2, "T": 10, "L": 3}, )" + kNotify + "}";
     EXPECT_EQ(design_call(body, {}).status, 422);
     EXPECT_THAT(design_call(body, {}).body, HasSubstr("/notify"));
 }
 
-TEST(Terms, OfABatchAreNotThoseOfItsEntries) {
+TEST(JobTerms, OfABatchAreNotThoseOfItsEntries) {
     const auto entry = [](const std::string& members) { return prepare_entry(request_with(members)); };
     EXPECT_THAT(detail_at(std::get<Problem>(entry(kNotify)).errors, "/notify"), HasSubstr("told as a whole"));
     EXPECT_THAT(detail_at(std::get<Problem>(entry(R"("priority": "normal")")).errors, "/priority"),
@@ -143,7 +143,7 @@ Read read(BatchQuestion question, const std::string& body, std::size_t piece) {
     return out;
 }
 
-TEST(Terms, StandBesideTheJobsOfABatchInAnyOrder) {
+TEST(JobTerms, StandBesideTheJobsOfABatchInAnyOrder) {
     const std::string jobs = R"("jobs": [{"plant": {"type": "fopdt", "K": 2, "T": 10, "L": 3}, "notify": {}}, {}])";
     for (const std::string& body :
          {"{" + kNotify + ", " + jobs + "}", "{" + jobs + ", " + kNotify + "}",
@@ -161,7 +161,7 @@ TEST(Terms, StandBesideTheJobsOfABatchInAnyOrder) {
             }
 }
 
-TEST(Terms, OfABatchAreRefusedAsAWhole) {
+TEST(JobTerms, OfABatchAreRefusedAsAWhole) {
     BatchQuestion json;
     json.form = BatchForm::json;
     const auto refusal = [&](const std::string& notify) {

@@ -102,22 +102,23 @@ TEST(EvaluateSampled, HasTheFiguresOfTheLoopAndOfItsResponse) {
     EvaluateOptions options;
     options.setpoint_step = -3;
     options.load_step = 0.5;
-    const BuiltLoop built = *evaluate_sampled(subject_of(plant), law, {}, options);
+    const DeviceLoop on_device = *evaluate_sampled(subject_of(plant), law, {}, options);
     const OwnPlant own({2}, {1, 1});
     const BrutePeaks peaks = peaks_of(*pulse_response_of(OwnLoop(own, 0.3, law), 5000, 2));
-    EXPECT_NEAR(*built.robustness.Ms, peaks.S, 1e-8);
-    EXPECT_NEAR(*built.robustness.Mt, peaks.T, 1e-8);
-    EXPECT_NEAR(*built.robustness.Mks, peaks.CS, 1e-8);
+    EXPECT_NEAR(*on_device.robustness.Ms, peaks.S, 1e-8);
+    EXPECT_NEAR(*on_device.robustness.Mt, peaks.T, 1e-8);
+    EXPECT_NEAR(*on_device.robustness.Mks, peaks.CS, 1e-8);
     const BruteForce brute{own, 0.3, law};
     const BruteResponse setpoint = brute.respond(-3, 0, -3), load = brute.respond(0, 0.5, 0);
-    EXPECT_NEAR(*built.performance.setpoint.IAE, setpoint.IAE, 1e-6 * setpoint.IAE);
-    EXPECT_NEAR(*built.performance.setpoint.TV, setpoint.TV, 1e-6 * setpoint.TV);
-    EXPECT_NEAR(*built.performance.setpoint.overshoot_percent, std::max(0.0, 100 * (setpoint.y_min / -3 - 1)), 1e-4);
-    EXPECT_NEAR(*built.performance.setpoint.first_move, -3 * (0.4 + 0.5 * 0.2), 1e-12);
-    EXPECT_NEAR(*built.performance.load.IAE, load.IAE, 1e-6 * load.IAE);
-    EXPECT_NEAR(*built.performance.load.peak, load.y_max, 1e-6);
-    ASSERT_TRUE(built.responses);
-    EXPECT_EQ(built.responses->setpoint.t.size(), 400u);
+    EXPECT_NEAR(*on_device.performance.setpoint.IAE, setpoint.IAE, 1e-6 * setpoint.IAE);
+    EXPECT_NEAR(*on_device.performance.setpoint.TV, setpoint.TV, 1e-6 * setpoint.TV);
+    EXPECT_NEAR(*on_device.performance.setpoint.overshoot_percent, std::max(0.0, 100 * (setpoint.y_min / -3 - 1)),
+                1e-4);
+    EXPECT_NEAR(*on_device.performance.setpoint.first_move, -3 * (0.4 + 0.5 * 0.2), 1e-12);
+    EXPECT_NEAR(*on_device.performance.load.IAE, load.IAE, 1e-6 * load.IAE);
+    EXPECT_NEAR(*on_device.performance.load.peak, load.y_max, 1e-6);
+    ASSERT_TRUE(on_device.responses);
+    EXPECT_EQ(on_device.responses->setpoint.t.size(), 400u);
 }
 
 }  // namespace

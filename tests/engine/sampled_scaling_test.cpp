@@ -77,14 +77,14 @@ Expected<TuningResult> sampled_answer(const SampledCase& c, OtherUnits s, const 
     request.evaluate.setpoint_step = s.gain;  // so that u stays as it is
     request.evaluate.optimum_at_Ms = false;
     request.evaluate.actuator = kind.limits;
-    built::Build build{.product = kind.product, .Ts = c.Ts * s.time};
+    device::DeviceModel device{.product = kind.product, .Ts = c.Ts * s.time};
     if (kind.product != nullptr) {
         // The block counts in seconds and in shares of its spans: both stay as they are.
-        build.context = product::Context::with_spans({0, 100 * s.gain, -50, 50}, c.Ts);
-        build.context.loop_clock_s = c.Ts;
-        build.context.seconds_per_time = 1 / s.time;
+        device.context = product::Context::with_spans({0, 100 * s.gain, -50, 50}, c.Ts);
+        device.context.loop_clock_s = c.Ts;
+        device.context.seconds_per_time = 1 / s.time;
     }
-    request.implement = build;
+    request.device = device;
     return tune(request, {});
 }
 
@@ -99,7 +99,7 @@ struct NearIn {
     }
 };
 
-void same_loop(const BuiltLoop& one, const BuiltLoop& other, OtherUnits s, const NearIn& near) {
+void same_loop(const DeviceLoop& one, const DeviceLoop& other, OtherUnits s, const NearIn& near) {
     ASSERT_EQ(one.robustness.stable, other.robustness.stable);
     near("Ms", one.robustness.Ms, other.robustness.Ms, 1);
     near("Mt", one.robustness.Mt, other.robustness.Mt, 1);
@@ -124,12 +124,12 @@ void sampled_scales(const char* method, const LoopKind& kind, const NearIn& near
             ASSERT_EQ(one.has_value(), other.has_value()) << (one ? other.error().message : one.error().message);
             if (!one) continue;
             const TuningEntry &a = one->controllers[0], &b = other->controllers[0];
-            ASSERT_EQ(a.as_built.has_value(), b.as_built.has_value());
+            ASSERT_EQ(a.on_device.has_value(), b.on_device.has_value());
             ASSERT_EQ(a.evaluation->warnings.size(), b.evaluation->warnings.size());
             near("Ms of the ideal loop", a.evaluation->robustness.Ms, b.evaluation->robustness.Ms, 1);
             near("load IAE of the ideal loop", a.evaluation->performance.load.IAE, b.evaluation->performance.load.IAE,
                  s.gain * s.time);
-            if (a.as_built) same_loop(a.as_built->loop, b.as_built->loop, s, near);
+            if (a.on_device) same_loop(a.on_device->loop, b.on_device->loop, s, near);
         }
     }
 }
@@ -151,7 +151,7 @@ TEST(SampledScaling, OfEveryProduct) {
     constexpr OtherUnits kTimes[] = {{1e-9, 1}, {1e9, 1}}, kBoth[] = {{1e-9, 1e9}, {1e9, 1e-9}};
     for (const product::Product& product : product::catalogue()) {
         const bool by_span = std::ranges::any_of(product.parameters, [](const product::Parameter& parameter) {
-            return parameter.role == product::Role::gain && parameter.term.Sy != 0;
+            return parameter.role == product::ParameterRole::gain && parameter.term.Sy != 0;
         });
         const LoopKind kind{std::string(product.id), {}, &product};
         sampled_scales("simc", kind, {1e-6},

@@ -94,7 +94,7 @@ std::string read_batch(const BatchQuestion& question, std::string_view body, uns
 
 void read_record(std::string_view bytes) {
     CsvOptions options;
-    options.most_samples = 1000;
+    options.max_samples = 1000;
     const auto read = read_csv_record(bytes, options);
     if (const auto* faults = std::get_if<std::vector<CsvFault>>(&read)) {
         require(!faults->empty(), "a reason");
@@ -118,7 +118,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::string_view body(reinterpret_cast<const char*>(data) + 2, size - 2);
     BatchQuestion question;
     question.longest_entry = 300;
-    question.most_entries = 50;
+    question.max_entries = 50;
     switch ((data[0] + 2) % 5) {  // the digits 0 to 4 stand for themselves
         case 0: break;
         case 1: question.form = BatchForm::json; break;

@@ -48,7 +48,7 @@ bool read_request(Connection& connection, std::string& text) {
 
 template <class Cut>
 std::string understood(std::string_view bytes, const Cut& next_size) {
-    Limits limits;
+    ServerLimits limits;
     limits.max_batch_body = kMaxStreamedBody;
     const CutBytes client(bytes, next_size);
     Connection connection(client.socket(), "", "", limits);

@@ -66,7 +66,7 @@ void judge_told(const MadeRecord& made, const IdentifiedModel& model, Judgement&
 }
 
 /// Of the default design for the true plant.
-std::optional<double> least_load_IAE(const TruePlant& plant) {
+std::optional<double> min_load_IAE(const TruePlant& plant) {
     TuningRequest request;
     request.subject = test::subject_of(PlantModel(Plant(plant.zpk())));
     request.evaluate.points = 0;
@@ -89,7 +89,7 @@ void judge_design(const MadeRecord& made, const TuningResult& result, Judgement&
     const auto evaluation = evaluate(PlantModel(Plant(made.plant.zpk())), first.evaluation->controller, options);
     if (evaluation && evaluation->robustness.stable) {
         j.Ms_true = evaluation->robustness.Ms;
-        const auto best = least_load_IAE(made.plant);
+        const auto best = min_load_IAE(made.plant);
         if (best && evaluation->performance.load.IAE) j.IAE_ratio = *evaluation->performance.load.IAE / *best;
     }
     const double omega =

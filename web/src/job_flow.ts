@@ -51,7 +51,7 @@ export function jobFlow(store: Store): JobFlow {
     const now = store.get().route;
     // The same job's screen: a slider that has moved since writes its own address.
     if (from.screen !== "design" || now.screen !== "design" || now.job !== from.job) return null;
-    const { values: _turned, ...before } = now;
+    const { values: _modified, ...before } = now;
     const route: Route = { ...before, job: job.id, entry: index };
     store.set((workspace) => ({ ...workspace, route, job, selected: index, jobTrouble: "" }));
     stepAddress(now, before, route);

@@ -8,7 +8,7 @@ import { h } from "./dom.ts";
 import { header } from "./header.ts";
 import { jobFlow } from "./job_flow.ts";
 import { rememberedMine } from "./my_controller.ts";
-import { rememberedTest, rememberTest } from "./record_at_hand.ts";
+import { rememberedTest, rememberTest } from "./current_record.ts";
 import { screens } from "./screens.ts";
 import { createStore } from "./store.ts";
 import { applyTheme } from "./theme.ts";

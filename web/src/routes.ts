@@ -13,7 +13,7 @@ export type Route =
   /** `values`: where its sliders stand, where that is not the proposal. */
   | { screen: "design"; job: string; entry: number | null; values?: Record<string, string> }
   /**
-   * The league table of a job. `sort`: a column's id, with a minus where it falls; "" is the ranking. `rankMs`: the
+   * The comparison of a job. `sort`: a column's id, with a minus where it falls; "" is the ranking. `rankMs`: the
    * limit on Ms below which it ranks, where that is not the request's.
    */
   | { screen: "compare"; job: string; sort: string; rows: number[] | null; rankMs?: number | null }
@@ -63,12 +63,12 @@ export function parseRoute(hash: string): Route {
     if (parts[2] === "identify") return { screen: "identify", job: parts[1] };
     if (parts[2] === "range") return { screen: "range", example: "", job: parts[1] };
     if (parts[2] === "edit") return { screen: "edit", job: parts[1] };
-    const { entry, ...turned } = values;
+    const { entry, ...modified } = values;
     return {
       screen: "design",
       job: parts[1],
       entry: /^\d+$/.test(entry ?? "") ? Number(entry) : null,
-      ...(Object.keys(turned).length > 0 ? { values: turned } : {}),
+      ...(Object.keys(modified).length > 0 ? { values: modified } : {}),
     };
   }
   return { screen: "start" };

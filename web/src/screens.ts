@@ -326,7 +326,7 @@ export function screens(
           ? { screen: "design", job: route.job, entry: selected }
           : { ...route, sort, rows: drawn, rankMs },
       );
-    // A range has no league table.
+    // A range has no comparison.
     if (route.screen === "compare" && workspace.job?.id === route.job && isRangeRequest(workspace.job.request))
       return location.replace(addressOfJob(route.job, "design"));
     const name = workspace.job?.name || workspace.job?.request?.name;

@@ -15,7 +15,7 @@ export interface Workspace {
   selected: number | null;
   /** Indices of the entries drawn, at most four. Null: the default choice. */
   drawn: number[] | null;
-  /** Order of the league table: a column's id, with a minus where it falls; "" is the ranking. */
+  /** Order of the comparison: a column's id, with a minus where it falls; "" is the ranking. */
   sort: string;
   /** The limit on Ms below which rows are ranked, as typed; null: the request's. */
   rankMs: number | null;

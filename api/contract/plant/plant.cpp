@@ -317,26 +317,26 @@ constexpr std::size_t kMaxSymbolLength = 60, kMaxExpressionLength = 10'000;
 
 Json expression_schema() { return {{"type", "string"}, {"maxLength", kMaxExpressionLength}}; }
 
-Json by_name_schema(Json value, std::size_t least, std::size_t most) {
+Json by_name_schema(Json value, std::size_t min, std::size_t max) {
     return {{"type", "object"},
             {"additionalProperties", std::move(value)},
             {"propertyNames", {{"maxLength", kMaxSymbolLength}}},
-            {"minProperties", least},
-            {"maxProperties", most}};
+            {"minProperties", min},
+            {"maxProperties", max}};
 }
 
-std::string count_fault(const Json& value, std::size_t least, std::size_t most, const Reader& reader) {
-    return reader.name() + " has " + std::to_string(value.size()) + " members; it must have " + std::to_string(least) +
-           " to " + std::to_string(most) + ".";
+std::string count_fault(const Json& value, std::size_t min, std::size_t max, const Reader& reader) {
+    return reader.name() + " has " + std::to_string(value.size()) + " members; it must have " + std::to_string(min) +
+           " to " + std::to_string(max) + ".";
 }
 
 // An object whose members have names of the user's own; `read_member` returns nothing after a fault.
 template <class Member, class ReadMember>
-auto members_by_name(std::size_t least, std::size_t most, const char* sample, ReadMember read_member) {
+auto members_by_name(std::size_t min, std::size_t max, const char* sample, ReadMember read_member) {
     return [=](const Json& value, std::vector<Member>& target, Reader& reader) {
         if (!value.is_object())
             return reader.fault(wrong_kind(value, std::string("an object such as ") + sample, reader));
-        if (value.size() < least || value.size() > most) return reader.fault(count_fault(value, least, most, reader));
+        if (value.size() < min || value.size() > max) return reader.fault(count_fault(value, min, max, reader));
         for (const auto& [name, content] : value.items()) {
             const Reader::At at(reader, name);
             if (name.size() > kMaxSymbolLength) {
@@ -472,18 +472,19 @@ void check_points(const Json&, FrequencyResponse& points, Reader& reader) {
 }
 
 const Description<FrequencyResponse>& frequency_response() {
-    constexpr std::size_t kMin = 8, kMax = 10'000;
+    constexpr std::size_t kMinPoints = 8, kMaxPoints = 10'000;
     constexpr int kMaxPoles = 20;
     static const auto description = [] {
         using F = FrequencyResponse;
         Description<F> d("FrequencyResponse",
                          "Measured points of P(j omega). Figures over time are null, and robust maximises Kp/Ti.");
         d.tag("type", "frequency_response")
-            .field("omega", &F::omega, numbers(kMin, kMax),
+            .field("omega", &F::omega, numbers(kMinPoints, kMaxPoints),
                    "Angular frequencies, ascending; they must reach beyond the phase crossover.",
                    {.required = true, .unit = "rad/time"})
-            .field("re", &F::re, numbers(kMin, kMax), "Real parts, one a frequency.", {.required = true, .unit = "y/u"})
-            .field("im", &F::im, numbers(kMin, kMax), "Imaginary parts, one a frequency.",
+            .field("re", &F::re, numbers(kMinPoints, kMaxPoints), "Real parts, one a frequency.",
+                   {.required = true, .unit = "y/u"})
+            .field("im", &F::im, numbers(kMinPoints, kMaxPoints), "Imaginary parts, one a frequency.",
                    {.required = true, .unit = "y/u"})
             .field("unstable_poles", &F::unstable_poles, integer(0, kMaxPoles),
                    "Poles of the plant in the open right half-plane, which the points cannot tell.")

@@ -127,7 +127,7 @@ const Description<ScheduleSettingsRequest>& schedule_settings_request_contract()
     static const auto contract = [] {
         using R = ScheduleSettingsRequest;
         Description<R> d("ScheduleSettingsRequest", "The rows of a schedule that are to be typed into a product.");
-        d.field("rows", &R::rows, list_of(object(given_row_contract()), 1, range::kMostRows),
+        d.field("rows", &R::rows, list_of(object(given_row_contract()), 1, range::kMaxRows),
                 "As range.schedule.rows of a result has them.", {.required = true})
             .field("interpolation", &R::interpolation, interpolation_word(), "Between rows, as the schedule has it.")
             .field("nearest", &R::nearest, boolean(),

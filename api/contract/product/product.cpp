@@ -28,12 +28,12 @@ void write_texts(const List& texts, Writer& out) {
 
 /// Members that only answers carry, from any part of T.
 template <class T>
-class Answers {
+class AnswerDescription {
 public:
-    Answers(std::string name, std::string sentence) : description(std::move(name), std::move(sentence)) {}
+    AnswerDescription(std::string name, std::string sentence) : description(std::move(name), std::move(sentence)) {}
 
     template <class Get>
-    Answers& text(std::string name, Get get, std::string sentence) {
+    AnswerDescription& text(std::string name, Get get, std::string sentence) {
         description.field(
             std::move(name), {}, [get](const T& value, Writer& out) { out.text(get(value)); }, text_schema,
             std::move(sentence));
@@ -41,14 +41,14 @@ public:
     }
     /// Left out where it is empty.
     template <class Get>
-    Answers& maybe_text(std::string name, Get get, std::string sentence) {
+    AnswerDescription& maybe_text(std::string name, Get get, std::string sentence) {
         description.field(
             std::move(name), {}, [get](const T& value, Writer& out) { out.text(get(value)); }, text_schema,
             std::move(sentence), {}, [get](const T& value) { return get(value).empty(); });
         return *this;
     }
     template <class Get>
-    Answers& texts(std::string name, Get get, std::string sentence) {
+    AnswerDescription& texts(std::string name, Get get, std::string sentence) {
         description.field(
             std::move(name), {}, [get](const T& value, Writer& out) { write_texts(get(value), out); }, texts_schema,
             std::move(sentence));
@@ -56,7 +56,7 @@ public:
     }
     /// null where there is none.
     template <class Get>
-    Answers& number(std::string name, Get get, std::string sentence, std::string unit = "") {
+    AnswerDescription& number(std::string name, Get get, std::string sentence, std::string unit = "") {
         description.field(std::move(name), {},
                           [get](const T& value, Writer& out) {
                               const std::optional<double> number = get(value);
@@ -66,14 +66,14 @@ public:
         return *this;
     }
     template <class Get>
-    Answers& flag(std::string name, Get get, std::string sentence) {
+    AnswerDescription& flag(std::string name, Get get, std::string sentence) {
         description.field(
             std::move(name), {}, [get](const T& value, Writer& out) { out.boolean(get(value)); }, flag_schema,
             std::move(sentence));
         return *this;
     }
     template <class Part, class Get>
-    Answers& part(std::string name, const Description<Part>& inner, Get get, std::string sentence) {
+    AnswerDescription& part(std::string name, const Description<Part>& inner, Get get, std::string sentence) {
         const Description<Part>* what = &inner;
         description.field(
             std::move(name), {}, [what, get](const T& value, Writer& out) { what->write(get(value), out); },
@@ -119,7 +119,7 @@ struct Row {
 
 const Description<Row>& parameter_contract() {
     static const auto contract = [] {
-        Answers<Row> a("ControllerParameter", "A parameter of a controller as its maker builds it.");
+        AnswerDescription<Row> a("ControllerParameter", "A parameter of a controller as its maker builds it.");
         a.text(
              "name", [](const Row& row) { return row.parameter->name; }, "The name in settings.")
             .text(
@@ -202,7 +202,7 @@ const char* rule_word(DerivativeRule rule) {
 
 const Description<product::Weights>& weights_contract() {
     static const auto contract = [] {
-        Answers<product::Weights> a("ControllerWeights", "Set-point weights where no parameter sets them.");
+        AnswerDescription<product::Weights> a("ControllerWeights", "Set-point weights where no parameter sets them.");
         a.number(
              "b", [](const product::Weights& w) { return std::optional(w.b); }, "Of the proportional part.")
             .number(
@@ -216,7 +216,7 @@ const Description<product::Weights>& weights_contract() {
 
 const Description<Product>& action_contract() {
     static const auto contract = [] {
-        Answers<Product> a("ControllerAction", "How the sign of Kp is typed.");
+        AnswerDescription<Product> a("ControllerAction", "How the sign of Kp is typed.");
         a.text("by", sign_word, "gain: its sign; switch: a parameter; reverse only: there is no direct action.")
             .maybe_text(
                 "name", [](const Product& p) { return p.action.name; }, "The switch's name in settings.")
@@ -234,7 +234,7 @@ const Description<Product>& action_contract() {
 const Description<product::Algorithm>& algorithm_contract() {
     static const auto contract = [] {
         using product::Algorithm;
-        Answers<Algorithm> a("ControllerAlgorithm", "How the law is computed.");
+        AnswerDescription<Algorithm> a("ControllerAlgorithm", "How the law is computed.");
         a.text(
              "integral", [](const Algorithm& x) { return rule_word(x.integral); }, "Rule of the integral.")
             .text(
@@ -265,7 +265,7 @@ const Description<product::Algorithm>& algorithm_contract() {
 const Description<product::Evidence>& evidence_contract() {
     static const auto contract = [] {
         using product::Evidence;
-        Answers<Evidence> a("ControllerEvidence", "What of this was read, and where.");
+        AnswerDescription<Evidence> a("ControllerEvidence", "What of this was read, and where.");
         a.text(
              "level", [](const Evidence& e) { return product::to_string(e.level); },
              "read: what fixes form, parameters and units was read in code or the maker's text; partly: of third "
@@ -284,7 +284,7 @@ const Description<product::Evidence>& evidence_contract() {
 const Description<product::Example>& example_contract() {
     static const auto contract = [] {
         using product::Example;
-        Answers<Example> a("ControllerExample", "A design and what is typed for it, to six digits.");
+        AnswerDescription<Example> a("ControllerExample", "A design and what is typed for it, to six digits.");
         a.number(
             "sample_time", [](const Example& e) { return std::optional(e.sample_time_s); }, "Sample time.", "s");
         const auto span = [](double Example::*member) {
@@ -306,7 +306,7 @@ const Description<product::Example>& example_contract() {
     return contract;
 }
 
-void add_head(Answers<Product>& a) {
+void add_head(AnswerDescription<Product>& a) {
     a.text(
          "id", [](const Product& p) { return p.id; }, "The name in requests.")
         .text(
@@ -330,7 +330,7 @@ void write_parameters(const Product& p, Writer& out) {
 
 const Description<Product>& product_summary_contract() {
     static const auto contract = [] {
-        Answers<Product> a("ControllerSummary", "A controller as its maker builds it, in short.");
+        AnswerDescription<Product> a("ControllerSummary", "A controller as its maker builds it, in short.");
         add_head(a);
         a.text(
              "evidence", [](const Product& p) { return product::to_string(p.evidence.level); },
@@ -350,7 +350,7 @@ const Description<Product>& product_summary_contract() {
 
 const Description<Product>& product_contract() {
     static const auto contract = [] {
-        Answers<Product> a("ControllerProduct", "A controller as its maker builds it.");
+        AnswerDescription<Product> a("ControllerProduct", "A controller as its maker builds it.");
         add_head(a);
         a.text(
              "law", [](const Product& p) { return p.law; }, "Its law over the parameters' names.")
@@ -393,7 +393,7 @@ const Description<Product>& product_contract() {
 
 namespace {
 
-constexpr std::size_t kMostSettings = 40;
+constexpr std::size_t kMaxSettings = 40;
 constexpr std::size_t kMaxWord = 200;
 
 void read_setting(const std::string& name, const Json& value, product::Settings& settings, Reader& reader) {
@@ -423,7 +423,7 @@ Codec<product::Settings> settings_codec() {
     Codec<product::Settings> codec;
     codec.read = [](const Json& value, product::Settings& settings, Reader& reader) {
         if (!value.is_object()) return reader.fault(wrong_kind(value, "an object such as {\"Gain\": 1.5}", reader));
-        if (value.size() > kMostSettings)
+        if (value.size() > kMaxSettings)
             return reader.fault("settings has " + std::to_string(value.size()) + " members; no product has so many.");
         settings.clear();
         for (const auto& [name, member] : value.items()) read_setting(name, member, settings, reader);

@@ -12,7 +12,7 @@ const Description<range::ExperimentOptions>& range_experiment_contract() {
         using enum range::ExperimentKind;
         Description<O> d("RangeExperiment", "The same test at each place, from rest there.");
         d.field("kind", &O::kind, choice<range::ExperimentKind>({{"step", step}, {"relay", relay}}), "Of which kind.")
-            .field("at", &O::at, numbers(1, range::kMostPoints), "The places, ascending, inside the range.",
+            .field("at", &O::at, numbers(1, range::kMaxPoints), "The places, ascending, inside the range.",
                    {.required = true})
             .field("size", &O::size, maybe(number({.not_zero = true})),
                    "Of the step of u, or half of the relay's swing; if not given, by y_part at each place.",

@@ -91,7 +91,7 @@ const Description<ScheduleWish>& schedule_wish_contract() {
                    "Of one setting: the least worst or mean IAE over each point's own optimum.")
             .field("allowance", &W::allowance, number({.exclusive_minimum = 0, .maximum = 1}),
                    "By which part the schedule's IAE may lie above that of each place's own optimum.")
-            .field("rows", &W::rows, maybe(integer(1, range::kMostRows)), "Number of rows; the fewest if not given.")
+            .field("rows", &W::rows, maybe(integer(1, range::kMaxRows)), "Number of rows; the fewest if not given.")
             .field("interpolation", &W::interpolation, interpolation_word(),
                    "Between rows: steps with hysteresis; Kp, 1/Ti, Td linear; Kp, Ti, Td linear.")
             .field("hysteresis", &W::hysteresis, number({.minimum = 0, .maximum = 0.2}),
@@ -102,7 +102,7 @@ const Description<ScheduleWish>& schedule_wish_contract() {
                    "The plants between points: logarithms of the parameters, or frequency responses for plants of "
                    "unlike structure.")
             .field("b", &W::b, number({.minimum = 0, .maximum = 1}), "Set-point weight of every row.")
-            .field("given", &W::given, maybe(list_of(object(given_row_contract()), 1, range::kMostRows)),
+            .field("given", &W::given, maybe(list_of(object(given_row_contract()), 1, range::kMaxRows)),
                    "A schedule to judge: nothing is designed then.")
             .check(check_rows);
         return d;
@@ -144,14 +144,14 @@ std::vector<ScheduleRow> rows_of(const ScheduleWish& wish) {
 
 namespace {
 
-constexpr std::size_t kMostNameLength = 100;
+constexpr std::size_t kMaxPointNameLength = 100;
 
 const Description<GivenScheduling>& scheduling_contract() {
     static const auto description = [] {
         using S = GivenScheduling;
         Description<S> d("Scheduling", "The quantity that the plant varies with: load, level, speed.");
-        d.field("name", &S::name, maybe(text(kMostNameLength)), "Its name.", {.no_default = true})
-            .field("unit", &S::unit, maybe(text(kMostNameLength)), "Label of its unit.", {.no_default = true});
+        d.field("name", &S::name, maybe(text(kMaxPointNameLength)), "Its name.", {.no_default = true})
+            .field("unit", &S::unit, maybe(text(kMaxPointNameLength)), "Label of its unit.", {.no_default = true});
         return d;
     }();
     return description;
@@ -291,7 +291,7 @@ const Description<GivenWay>& way_contract() {
         d.field("along", &GivenWay::along,
                 choice<range::Along>({{"output", output}, {"input", input}, {"parameter", parameter}}),
                 "What is moved: the output's steady value, the input's, or a parameter.")
-            .field("parameter", &GivenWay::parameter, maybe(text(kMostNameLength)),
+            .field("parameter", &GivenWay::parameter, maybe(text(kMaxPointNameLength)),
                    "Its name, along a parameter: one that is a number and in no other parameter's expression.")
             .field("from", &GivenWay::from, number(), "The range's lower end, absolute.", {.required = true})
             .field("to", &GivenWay::to, number(), "Its upper end, > from.", {.required = true})
@@ -341,7 +341,7 @@ const Description<RangeRequest>& range_request_contract() {
         d.field("scheduling", &R::scheduling, maybe(object(scheduling_contract())),
                 "What `at` is; of equations what they are followed along, if not given.")
             .field("points", &R::points,
-                   maybe(list_of(object(range_point_contract()), range::kFewestPoints, range::kMostPoints)),
+                   maybe(list_of(object(range_point_contract()), range::kFewestPoints, range::kMaxPoints)),
                    "Plants or records, ascending in `at`; exactly one of points and plant.")
             .field("plant", &R::plant, maybe(plant_model_or_text()),
                    "Equations, with `range`; exactly one of points and plant.")

@@ -63,7 +63,7 @@ struct RangeSubject {
     std::shared_ptr<const range::SteadyBranch> branch;
 };
 
-struct RangeRequest : RangeSubject, Terms {
+struct RangeRequest : RangeSubject, JobTerms {
     std::optional<GivenScheduling> scheduling;
     std::optional<std::vector<GivenRangePoint>> points;
     IdentifyQuestion identify;

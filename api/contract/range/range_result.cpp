@@ -23,9 +23,9 @@ void pid_field(Description<Owner>& d, const char* name, IdealPid Owner::*member,
         one_of(controller_contract()).schema, sentence);
 }
 
-const Description<range::PlacePrice>& place_price_contract() {
+const Description<range::PointCost>& point_cost_contract() {
     static const auto description = [] {
-        using P = range::PlacePrice;
+        using P = range::PointCost;
         Description<P> d("PlacePrice", "What one setting costs at a point.");
         d.field("at", &P::at, only_answered(number()), "The point.");
         pid_field(d, "own", &P::own, "The point's own optimum under the same limits.");
@@ -49,7 +49,7 @@ const Description<range::OneSetting>& one_setting_contract() {
         d.field("worst_relative_IAE", &O::worst_relative_IAE, only_answered(number()), "The largest at a point.")
             .field("mean_relative_IAE", &O::mean_relative_IAE, only_answered(number()), "The mean over the points.")
             .field("worst_at", &O::worst_at, only_answered(number()), "The point of the largest.")
-            .field("points", &O::points, list_of(answer(place_price_contract())), "Its price at each point.");
+            .field("points", &O::points, list_of(answer(point_cost_contract())), "Its price at each point.");
         return d;
     }();
     return description;
@@ -109,9 +109,9 @@ const Description<range::ScheduleDesign>& schedule_contract() {
     return description;
 }
 
-const Description<range::WorstPlace>& worst_place_contract() {
+const Description<range::WorstPoint>& worst_point_contract() {
     static const auto description = [] {
-        using W = range::WorstPlace;
+        using W = range::WorstPoint;
         using enum range::Quantity;
         Description<W> d("WorstPlace", "Where a quantity is largest over the range, computed again by itself.");
         d.field("quantity", &W::quantity,
@@ -129,7 +129,7 @@ const Description<range::WorstPlace>& worst_place_contract() {
 
 const Description<RangeWorst>& worst_contract() {
     static const auto description = [] {
-        const auto places = unless<std::vector<range::WorstPlace>>(list_of(answer(worst_place_contract())),
+        const auto places = unless<std::vector<range::WorstPoint>>(list_of(answer(worst_point_contract())),
                                                                    [](const auto& list) { return list.empty(); });
         Description<RangeWorst> d("RangeWorst", "The worst places of each.");
         d.field("one", &RangeWorst::one, places, "With one setting.")
@@ -280,7 +280,7 @@ double known(const std::optional<double>& value) { return value.value_or(kUnknow
 
 RangeTraces traces_of(const range::RangeCurve& curve) {
     RangeTraces traces;
-    for (const range::PlaceFigures& place : curve.places) {
+    for (const range::PointFigures& place : curve.places) {
         traces.Ms.push_back(known(place.Ms));
         traces.Mt.push_back(known(place.Mt));
         traces.relative_IAE.push_back(known(place.relative_IAE));
@@ -382,7 +382,7 @@ RangeCurves curves_of(const RangeResult& result) {
     if (!design.one_curve.places.empty()) curves.one = traces_of(design.one_curve);
     if (design.schedule_curve.places.empty() || !design.schedule) return curves;
     RangeTraces& schedule = curves.schedule.emplace(traces_of(design.schedule_curve));
-    for (const range::PlaceFigures& place : design.schedule_curve.places) {
+    for (const range::PointFigures& place : design.schedule_curve.places) {
         const IdealPid pid = settings_at(design.schedule->schedule, place.at);
         schedule.Kp.push_back(pid.Kp);
         schedule.Ti.push_back(pid.Ti);

@@ -25,7 +25,7 @@ struct RangeCurves {
 };
 
 struct RangeWorst {
-    std::vector<range::WorstPlace> one, schedule;
+    std::vector<range::WorstPoint> one, schedule;
 };
 
 /// The result in the shape of the contract.

@@ -13,8 +13,8 @@ struct FrontierRequest {
     std::optional<std::string> name;
     std::optional<Units> units;
     std::optional<PlantModel> plant;
-    std::optional<Subject> subject;  ///< that `plant` describes
-    MethodOptions options;           ///< those of the method frontier
+    std::optional<AnalysedPlant> subject;  ///< that `plant` describes
+    MethodOptions options;                 ///< those of the method frontier
 };
 
 const Description<FrontierRequest>& frontier_request_contract();

@@ -1,7 +1,7 @@
 #include "api/contract/result/result.h"
 
-#include "api/contract/built/built.h"
 #include "api/contract/controller.h"
+#include "api/contract/device/device.h"
 #include "api/contract/methods.h"
 #include "api/contract/plant/plant.h"
 #include "api/contract/product/conversion.h"
@@ -111,7 +111,7 @@ const Description<Standing>& standing_contract() {
                 "order", {}, [](const S& standing, Writer& out) { out.integer(standing.order); }, whole_number,
                 "Place, from 1, where no limit on the Ms of all is set: by this order and least_limit a client ranks "
                 "under another limit.")
-            .field("least_limit", &S::least_limit, figure(),
+            .field("least_limit", &S::min_limit, figure(),
                    "The least limit on the Ms of all with which the group is holds.")
             .field(
                 "why", {}, [](const S& standing, Writer& out) { out.text(standing.why); }, words().schema,
@@ -194,8 +194,8 @@ void add_method_fields(Description<TuningEntry>& d) {
             [](const TuningEntry& entry) { return entry.method.empty() || entry.method == "baseline"; });
 }
 
-void add_as_built(Description<TuningEntry>& d) {
-    const auto none = [](const TuningEntry& entry) { return !entry.as_built; };
+void add_device_entry(Description<TuningEntry>& d) {
+    const auto none = [](const TuningEntry& entry) { return !entry.on_device; };
     d.field(
          "longest_sample_time", {},
          [](const TuningEntry& entry, Writer& out) {
@@ -210,15 +210,15 @@ void add_as_built(Description<TuningEntry>& d) {
         .field(
             "as_entered", {},
             [](const TuningEntry& entry, Writer& out) {
-                const built::Fitted& f = entry.as_built->fitted;
+                const device::Fitted& f = entry.on_device->fitted;
                 settings_answer_contract().write({f.product, f.settings, f.typed, f.controller, f.notes}, out);
             },
             [](SchemaBook& book) { return settings_answer_contract().schema(book); },
             "With implement.product: what to type into the product.", {},
-            [](const TuningEntry& entry) { return !entry.as_built || entry.as_built->fitted.typed.empty(); })
+            [](const TuningEntry& entry) { return !entry.on_device || entry.on_device->fitted.typed.empty(); })
         .field(
             "implemented", {},
-            [](const TuningEntry& entry, Writer& out) { implemented_contract().write(*entry.as_built, out); },
+            [](const TuningEntry& entry, Writer& out) { implemented_contract().write(*entry.on_device, out); },
             [](SchemaBook& book) { return implemented_contract().schema(book); },
             "With implement: the loop as the user's controller computes it.", {}, none);
 }
@@ -274,7 +274,7 @@ const Description<TuningEntry>& entry_contract() {
                          "How the figures were checked.");
         evaluation_field(d, "region", &Evaluation::region, maybe(answer(region_contract())),
                          "On every plant that the controller must serve; left out where that is one.");
-        add_as_built(d);
+        add_device_entry(d);
         add_reports(d, false);
         d.field("optimum_at_Ms", &TuningEntry::optimum_at_Ms, maybe(answer(optimum_contract())),
                 "Beside the least load IAE that a PID reaches at the same Ms, where asked for.")

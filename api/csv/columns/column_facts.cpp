@@ -29,25 +29,25 @@ bool ColumnFacts::is_index(std::size_t column) const {
 
 bool ColumnFacts::mostly_one_way(std::size_t column) const {
     const ColumnProfile& p = profiles_[column];
-    constexpr int kFew = 10;
-    return kFew * p.falls <= p.numbers || kFew * (p.changes - p.falls) <= p.numbers;
+    constexpr int kMinRowsPerFall = 10;
+    return kMinRowsPerFall * p.falls <= p.numbers || kMinRowsPerFall * (p.changes - p.falls) <= p.numbers;
 }
 
 // One that goes up and down is none of times; a capital T that rises unevenly is rather a temperature.
 bool ColumnFacts::may_be_time(std::size_t column) const {
     const Heading& heading = headings_[column];
     const ColumnProfile& p = profiles_[column];
-    constexpr int kFew = 3;
+    constexpr int kMinRows = 3;
     if (p.stamps == 0 && !holds_numbers(column)) return false;
     if (is_spacing(heading) && p.changes == 0 && p.numbers != 2) return false;
     // "S:40" of a serial log is a set point rather than seconds.
-    if (heading.name == "s" && p.numbers >= kFew && !p.rises) return false;
+    if (heading.name == "s" && p.numbers >= kMinRows && !p.rises) return false;
     if (heading.name != "t" || p.stamps > 0) return true;
     if (!heading.unit.empty()) return seconds_per(heading.unit).has_value();
-    if (p.numbers < kFew) return true;
+    if (p.numbers < kMinRows) return true;
     if (4 * p.falls > p.numbers && 4 * p.falls < 3 * p.numbers) return false;
     if (heading.text.front() != 'T') return true;
-    return p.rises && p.largest_step < 2 * p.least_step;
+    return p.rises && p.largest_step < 2 * p.min_step;
 }
 
 bool ColumnFacts::is_clock(std::size_t column) const {

@@ -46,7 +46,7 @@ bool has_plain_output(const ColumnFacts& facts, std::size_t input, std::size_t o
 
 }  // namespace
 
-std::optional<NamedPair> german_letters(const ColumnFacts& facts) {
+std::optional<NamedPair> fold_umlauts(const ColumnFacts& facts) {
     std::array<std::optional<std::size_t>, 3> letters;
     for (std::size_t i = 0; i < facts.size(); ++i) {
         const std::string& name = facts.heading(i).name;

@@ -18,7 +18,7 @@ struct NamedPair {
 };
 
 /// w, x and y: set point, measurement and controller output in German textbooks and blocks.
-std::optional<NamedPair> german_letters(const ColumnFacts& facts);
+std::optional<NamedPair> fold_umlauts(const ColumnFacts& facts);
 
 /// "uEst" and "yEst" beside "uVal" and "yVal": the part to identify with, not the one to check with.
 std::optional<NamedPair> data_set(const ColumnFacts& facts);

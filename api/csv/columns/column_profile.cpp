@@ -22,7 +22,7 @@ void look_at(std::string_view cell, DecimalSign sign, double& last, ColumnProfil
             profile.rises = profile.rises && value > last;
             profile.falls += value < last ? 1 : 0;
             const double step = value - last;
-            profile.least_step = profile.numbers == 1 ? step : std::min(profile.least_step, step);
+            profile.min_step = profile.numbers == 1 ? step : std::min(profile.min_step, step);
             profile.largest_step = profile.numbers == 1 ? step : std::max(profile.largest_step, step);
         } else {
             profile.first = value;
@@ -59,13 +59,13 @@ std::vector<ColumnProfile> profiles(std::string_view text, const CsvLayout& layo
 }
 
 bool run_apart(std::string_view text, const CsvLayout& layout, std::size_t one, std::size_t other) {
-    constexpr int kLooked = 500;
-    constexpr double kEqual = 1e-3, kShare = 0.05;
+    constexpr int kProbedLines = 500;
+    constexpr double kEqualTolerance = 1e-3, kMaxShareApart = 0.05;
     CsvLines lines(text, layout);
     CsvLine line;
     std::optional<double> usual;
     int both = 0, apart = 0;
-    for (int n = 0; n < kLooked && lines.next(line); ++n) {
+    for (int n = 0; n < kProbedLines && lines.next(line); ++n) {
         double at[2] = {};
         bool read = std::max(one, other) < line.cells.size();
         for (std::size_t k = 0; read && k < 2; ++k) {
@@ -78,9 +78,9 @@ bool run_apart(std::string_view text, const CsvLayout& layout, std::size_t one, 
         ++both;
         const double distance = at[1] - at[0];
         if (!usual) usual = distance;
-        apart += std::abs(distance - *usual) > kEqual ? 1 : 0;
+        apart += std::abs(distance - *usual) > kEqualTolerance ? 1 : 0;
     }
-    return apart > kShare * both;
+    return apart > kMaxShareApart * both;
 }
 
 }  // namespace tunewright::api

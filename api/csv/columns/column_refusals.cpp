@@ -33,9 +33,11 @@ std::optional<CsvFault> two_clocks(const ColumnFacts& facts, std::size_t time, s
                                "stand in one line."};
 }
 
-CsvFault column_fault(Role role, std::string message) { return {"columns/" + role_name(role), std::move(message)}; }
+CsvFault column_fault(ColumnRole role, std::string message) {
+    return {"columns/" + role_name(role), std::move(message)};
+}
 
-CsvFault several_columns(const ColumnFacts& facts, Role role, const std::vector<std::size_t>& columns) {
+CsvFault several_columns(const ColumnFacts& facts, ColumnRole role, const std::vector<std::size_t>& columns) {
     return column_fault(role, "Several columns may be " + role_name(role) + " (" + role_meaning(role) +
                                   "): " + facts.shown(columns) + ". Choose one.");
 }
@@ -46,7 +48,7 @@ CsvFault names_apart(const ColumnFacts& facts, std::size_t u, std::size_t y) {
                                          "controller output, and that of y, the measurement.");
 }
 
-CsvFault missing_column(const ColumnFacts& facts, Role role) {
+CsvFault missing_column(const ColumnFacts& facts, ColumnRole role) {
     const std::string said = facts.layout().headings.empty() ? "The file has no headings."
                                                              : "The headings are " + facts.headings_listed() + ".";
     if (role == kTimeRole)
@@ -60,7 +62,7 @@ CsvFault missing_column(const ColumnFacts& facts, Role role) {
                             said);
 }
 
-CsvFault equal_columns(Role role, Role other) {
+CsvFault equal_columns(ColumnRole role, ColumnRole other) {
     return column_fault(role, role_name(role) + " and " + role_name(other) + " are the same column; choose another.");
 }
 

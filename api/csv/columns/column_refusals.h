@@ -16,19 +16,19 @@ namespace tunewright::api {
 std::optional<CsvFault> two_clocks(const ColumnFacts& facts, std::size_t time, std::size_t value);
 
 /// A fault at the choice of the role's column: `where` is "columns/t" and so on.
-CsvFault column_fault(Role role, std::string message);
+CsvFault column_fault(ColumnRole role, std::string message);
 
 /// Several headings name the role equally plainly.
-CsvFault several_columns(const ColumnFacts& facts, Role role, const std::vector<std::size_t>& columns);
+CsvFault several_columns(const ColumnFacts& facts, ColumnRole role, const std::vector<std::size_t>& columns);
 
 /// u and y were found, but their names are those of different devices.
 CsvFault names_apart(const ColumnFacts& facts, std::size_t u, std::size_t y);
 
 /// Neither headings nor contents say which column has the role.
-CsvFault missing_column(const ColumnFacts& facts, Role role);
+CsvFault missing_column(const ColumnFacts& facts, ColumnRole role);
 
 /// One column has both roles.
-CsvFault equal_columns(Role role, Role other);
+CsvFault equal_columns(ColumnRole role, ColumnRole other);
 
 /// A step of u is given, and the file has u in `columns`.
 CsvFault step_beside_column(const ColumnFacts& facts, const std::vector<std::size_t>& columns);

@@ -16,17 +16,17 @@ public:
                  const CsvOptions& options, std::vector<CsvFault>& faults)
         : facts_(text, layout, profiles), layout_(layout), profiles_(profiles), options_(options), faults_(faults) {}
 
-    FoundColumns find() {
+    DetectedColumns find() {
         const std::array<const std::optional<ColumnChoice>*, kRoleCount> choices = {
             &options_.columns.t, &options_.columns.u, &options_.columns.y, &options_.columns.r};
-        for (const Role role : kRoles) {
+        for (const ColumnRole role : kRoles) {
             if (*choices[role]) found_.at[role] = chosen_column(facts_, role, **choices[role], faults_);
         }
         found_.d = chosen_disturbances(facts_, options_.columns.d, found_.at, faults_);
         if (!faults_.empty()) return found_;
         chosen_ = found_.at;
         find_terms();
-        if (const auto letters = german_letters(facts_)) take_pair(*letters);
+        if (const auto letters = fold_umlauts(facts_)) take_pair(*letters);
         find_spacing();
         refuse_step_beside_column();
         if (wanted(kTimeRole)) take_fitting(kTimeRole, fits(kTimeRole));
@@ -39,7 +39,7 @@ public:
         if (wanted(kTimeRole)) found_.spacing = spacing_above(facts_.text(), layout_);
         rest_by_content();
         find_reference();
-        for (const Role role : {kTimeRole, kInputRole, kOutputRole}) {
+        for (const ColumnRole role : {kTimeRole, kInputRole, kOutputRole}) {
             if (wanted(role)) faults_.push_back(missing_column(facts_, role));
         }
         refuse_equal_columns();
@@ -49,7 +49,7 @@ public:
     }
 
 private:
-    bool wanted(Role role) const {
+    bool wanted(ColumnRole role) const {
         if (role == kTimeRole && (options_.dt || found_.spacing)) return false;
         return !found_.at[role] && !(role == kInputRole && options_.u_step);
     }
@@ -61,7 +61,7 @@ private:
 
     bool is_term(std::size_t column) const { return std::find(terms_.begin(), terms_.end(), column) != terms_.end(); }
 
-    bool may_be(std::size_t column, Role role) const {
+    bool may_be(std::size_t column, ColumnRole role) const {
         if (taken(column) || found_.spacing_column == column) return false;
         const ColumnProfile& p = profiles_[column];
         if (role == kTimeRole) return facts_.may_be_time(column);
@@ -79,18 +79,18 @@ private:
     /// None, or damaged cells.
     static bool rare(int count, const ColumnProfile& p) { return count == 0 || kDamagedShare * count <= p.numbers; }
 
-    void take(Role role, std::size_t column, const std::string& why = "") {
+    void take(ColumnRole role, std::size_t column, const std::string& why = "") {
         found_.at[role] = column;
         if (why.empty() && facts_.heading(column).name == role_name(role)) return;
         found_.notes.push_back("Column " + facts_.shown(column) + " is read as " + role_name(role) + ", " +
                                role_meaning(role) + why + ".");
     }
 
-    NameFits fits(Role role) const {
+    NameFits fits(ColumnRole role) const {
         return fits_by_name(facts_, role, [&](std::size_t column) { return may_be(column, role); });
     }
 
-    void take_fitting(Role role, const NameFits& fits) {
+    void take_fitting(ColumnRole role, const NameFits& fits) {
         if (fits.best.size() == 1 || (role == kTimeRole && !fits.best.empty())) {
             take(role, fits.best.front(), rivals(facts_, role, fits));
             return;
@@ -134,7 +134,7 @@ private:
         keep_moving(facts_, u, found_.notes);
         keep_moving(facts_, y, found_.notes);
         const bool chosen = chosen_[kInputRole] || chosen_[kOutputRole];
-        const auto known = [&](Role role, const NameFits& fits) {
+        const auto known = [&](ColumnRole role, const NameFits& fits) {
             return chosen_[role]           ? chosen_[role]
                    : fits.best.size() == 1 ? std::optional(fits.best.front())
                                            : std::nullopt;
@@ -179,7 +179,7 @@ private:
 
     void check_clocks() {
         if (!found_.at[kTimeRole]) return;
-        for (const Role role : {kInputRole, kOutputRole}) {
+        for (const ColumnRole role : {kInputRole, kOutputRole}) {
             if (!found_.at[role] || (found_.clock && *found_.clock + 1 == *found_.at[role])) continue;
             if (auto fault = two_clocks(facts_, *found_.at[kTimeRole], *found_.at[role]))
                 return faults_.push_back(*std::move(fault));
@@ -190,7 +190,7 @@ private:
     void check_surplus() {
         if (layout_.surplus.empty()) return;
         bool plain = faults_.empty();
-        for (const Role role : {kTimeRole, kInputRole, kOutputRole}) {
+        for (const ColumnRole role : {kTimeRole, kInputRole, kOutputRole}) {
             if (!found_.at[role]) continue;
             const std::size_t at = *found_.at[role];
             const bool named = chosen_[role] || match(facts_.heading(at), role);
@@ -238,7 +238,7 @@ private:
                 if (is_command(facts_.heading(i)) && may_be(i, kReferenceRole)) r.best.push_back(i);
             }
         }
-        for (const Role role : {kOutputRole, kInputRole}) {
+        for (const ColumnRole role : {kOutputRole, kInputRole}) {
             for (const auto same : {stem, number_behind}) {
                 if (found_.at[role]) keep_beside(facts_, *found_.at[role], same, r);
             }
@@ -274,7 +274,7 @@ private:
     }
 
     // A column of the very name that holds no number: reading it shows which line is wrong.
-    void by_very_name(Role role) {
+    void by_very_name(ColumnRole role) {
         for (std::size_t i = 0; i < layout_.headings.size(); ++i) {
             if (role == kTimeRole && profiles_[i].numbers > 0) continue;
             const auto now = taken(i) ? std::nullopt : match(facts_.heading(i), role);
@@ -318,9 +318,9 @@ private:
     }
 
     void rest_by_content() {
-        std::vector<Role> roles;
+        std::vector<ColumnRole> roles;
         std::vector<std::size_t> free, switching;
-        for (const Role role : {kTimeRole, kInputRole, kOutputRole}) {
+        for (const ColumnRole role : {kTimeRole, kInputRole, kOutputRole}) {
             if (wanted(role)) roles.push_back(role);
         }
         for (std::size_t i = 0; i < profiles_.size(); ++i) {
@@ -350,8 +350,8 @@ private:
     }
 
     bool stands_still(std::size_t column) const {
-        constexpr int kShown = 20;  // numbers
-        return profiles_[column].numbers >= kShown && profiles_[column].changes == 0;
+        constexpr int kMinNumbers = 20;  // numbers
+        return profiles_[column].numbers >= kMinNumbers && profiles_[column].changes == 0;
     }
 
     // Beside y: the only column left that moves, else the named one that stands still, for the engine to refuse.
@@ -368,9 +368,9 @@ private:
     }
 
     void refuse_equal_columns() {
-        for (const Role role : kRoles) {
+        for (const ColumnRole role : kRoles) {
             if (!found_.at[role]) continue;
-            for (const Role other : kRoles) {
+            for (const ColumnRole other : kRoles) {
                 if (other < role && found_.at[role] == found_.at[other]) faults_.push_back(equal_columns(role, other));
             }
         }
@@ -383,13 +383,13 @@ private:
     std::vector<CsvFault>& faults_;
     std::array<std::optional<std::size_t>, kRoleCount> chosen_;
     std::vector<std::size_t> terms_;
-    FoundColumns found_;
+    DetectedColumns found_;
 };
 
 }  // namespace
 
-FoundColumns find_columns(std::string_view text, const CsvLayout& layout, const std::vector<ColumnProfile>& profiles,
-                          const CsvOptions& options, std::vector<CsvFault>& faults) {
+DetectedColumns find_columns(std::string_view text, const CsvLayout& layout, const std::vector<ColumnProfile>& profiles,
+                             const CsvOptions& options, std::vector<CsvFault>& faults) {
     return ColumnFinder(text, layout, profiles, options, faults).find();
 }
 

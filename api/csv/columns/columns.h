@@ -15,7 +15,7 @@
 
 namespace tunewright::api {
 
-struct FoundColumns {
+struct DetectedColumns {
     std::array<std::optional<std::size_t>, kRoleCount> at;
     std::optional<std::size_t> clock;  ///< a second column of times of day, where at[kTimeRole] holds dates alone
     std::optional<std::size_t> spacing_column;  ///< instead of times: it holds the samples' spacing
@@ -42,7 +42,7 @@ struct FoundColumns {
 ///  9. Checks: all roles found, none twice, one clock, no more headings than values.
 ///
 /// The order matters: a column that a later step takes by its content must not have been named before.
-FoundColumns find_columns(std::string_view text, const CsvLayout& layout, const std::vector<ColumnProfile>& profiles,
-                          const CsvOptions& options, std::vector<CsvFault>& faults);
+DetectedColumns find_columns(std::string_view text, const CsvLayout& layout, const std::vector<ColumnProfile>& profiles,
+                             const CsvOptions& options, std::vector<CsvFault>& faults);
 
 }  // namespace tunewright::api

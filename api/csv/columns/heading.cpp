@@ -42,7 +42,7 @@ bool may_command(const Heading& heading) {
     return has_word(heading, "cmd") || has_word(heading, "command") || has_word(heading, "commanded");
 }
 
-bool names_role(const Heading& heading, Role role) {
+bool names_role(const Heading& heading, ColumnRole role) {
     return std::any_of(heading.words.begin(), heading.words.end(),
                        [&](const std::string& word) { return word_place(word, role).has_value(); });
 }
@@ -69,12 +69,12 @@ std::optional<NameMatch> reference_match(const Heading& heading) {
 
 }  // namespace
 
-std::string role_name(Role role) {
+std::string role_name(ColumnRole role) {
     constexpr std::array<const char*, kRoleCount + 1> kNames = {"t", "u", "y", "r", "d"};
     return kNames.at(role);
 }
 
-std::string role_meaning(Role role) {
+std::string role_meaning(ColumnRole role) {
     constexpr std::array<const char*, kRoleCount + 1> kMeanings = {"time", "the controller output", "the measurement",
                                                                    "the set point", "a measured disturbance"};
     return kMeanings.at(role);
@@ -96,7 +96,7 @@ Heading split_heading(std::string_view text) {
     return heading_of(text, text, {});
 }
 
-std::optional<NameMatch> match(const Heading& heading, Role role) {
+std::optional<NameMatch> match(const Heading& heading, ColumnRole role) {
     if (role == kReferenceRole) return reference_match(heading);
     // A capital T is a temperature before it is a time.
     constexpr int kLast = 1000;
@@ -122,7 +122,7 @@ std::optional<NameMatch> match(const Heading& heading, Role role) {
     }
     if (const auto at = word_place(parts.back(), role)) {
         bool other = false;
-        for (const Role rival : {kInputRole, kOutputRole}) {
+        for (const ColumnRole rival : {kInputRole, kOutputRole}) {
             for (std::size_t i = 0; i + 1 < parts.size() && heading.name.find(' ') != heading.name.npos; ++i)
                 other = other || (rival != role && role != kTimeRole && word_place(parts[i], rival));
         }

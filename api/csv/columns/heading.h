@@ -10,13 +10,13 @@
 namespace tunewright::api {
 
 /// The columns of a record. The values are the indices of arrays that hold something for each role.
-enum Role : std::size_t { kTimeRole, kInputRole, kOutputRole, kReferenceRole, kRoleCount };
+enum ColumnRole : std::size_t { kTimeRole, kInputRole, kOutputRole, kReferenceRole, kRoleCount };
 /// For any number of columns; none is found by itself.
-inline constexpr Role kDisturbanceRole = kRoleCount;
-constexpr std::array<Role, kRoleCount> kRoles = {kTimeRole, kInputRole, kOutputRole, kReferenceRole};
+inline constexpr ColumnRole kDisturbanceRole = kRoleCount;
+constexpr std::array<ColumnRole, kRoleCount> kRoles = {kTimeRole, kInputRole, kOutputRole, kReferenceRole};
 
-std::string role_name(Role role);     ///< "t", "u", "y", "r" or "d"
-std::string role_meaning(Role role);  ///< "time", "the controller output", "the measurement" or "the set point"
+std::string role_name(ColumnRole role);     ///< "t", "u", "y", "r" or "d"
+std::string role_meaning(ColumnRole role);  ///< "time", "the controller output", "the measurement" or "the set point"
 
 struct Heading {
     std::string text;                ///< as written, trimmed
@@ -35,7 +35,7 @@ struct NameMatch {
     int order = 0;
 };
 
-std::optional<NameMatch> match(const Heading& heading, Role role);
+std::optional<NameMatch> match(const Heading& heading, ColumnRole role);
 
 /// A heading that says that it is the measured one of a pair: "measured_rpm", "actual speed". Plain "speed" beside it
 /// may be the command.

@@ -234,7 +234,7 @@ constexpr std::string_view kReferenceNames[] = {"r",          "sp",           "s
                                                 "r(t)",       "w(t)",         "punto de consigna",
                                                 "y_ref",      "ysp",          "y_sp"};
 
-std::span<const std::string_view> names(Role role) {
+std::span<const std::string_view> names(ColumnRole role) {
     switch (role) {
         case kTimeRole: return kTimeNames;
         case kInputRole: return kInputNames;
@@ -245,7 +245,7 @@ std::span<const std::string_view> names(Role role) {
 
 }  // namespace
 
-std::optional<int> place(std::string_view name, Role role) {
+std::optional<int> place(std::string_view name, ColumnRole role) {
     const auto all = names(role);
     const auto found = std::find(all.begin(), all.end(), name);
     if (found == all.end()) return std::nullopt;
@@ -272,7 +272,7 @@ std::vector<std::string> words(std::string_view text) {
 
 // "pv1" -> "pv"; single letters say too little, and what else stands beside a word may say that another thing of it is
 // meant: motor speed, cooling water temperature.
-std::optional<int> word_place(std::string_view word, Role role) {
+std::optional<int> word_place(std::string_view word, ColumnRole role) {
     static constexpr std::string_view kOnlyAlone[] = {"heat", "heating", "cooling", "burner", "compressor", "relay",
                                                       "ssr",  "boiler",  "motor",   "bomba",  "pompe",      "voltage",
                                                       "min",  "ms",      "clock",   "hours",  "feedback",   "actual",

@@ -18,11 +18,11 @@ bool is_one_of(std::string_view word, const std::string_view (&list)[N]) {
 }
 
 /// Where a whole name stands in the role's list, in the order of preference from 0.
-std::optional<int> place(std::string_view name, Role role);
+std::optional<int> place(std::string_view name, ColumnRole role);
 
 /// The same of one word of a name, with or without digits behind it: "pv1" is "pv". Nothing for a single letter, and
 /// for words that name a role only where they stand alone, such as "motor".
-std::optional<int> word_place(std::string_view word, Role role);
+std::optional<int> word_place(std::string_view word, ColumnRole role);
 
 /// A heading apart into its words, lower case.
 std::vector<std::string> words(std::string_view text);

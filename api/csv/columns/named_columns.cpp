@@ -9,14 +9,15 @@
 namespace tunewright::api {
 namespace {
 
-std::optional<std::size_t> by_number(const ColumnFacts& facts, Role role, int number, std::vector<CsvFault>& faults) {
+std::optional<std::size_t> by_number(const ColumnFacts& facts, ColumnRole role, int number,
+                                     std::vector<CsvFault>& faults) {
     if (number >= 1 && static_cast<std::size_t>(number) <= facts.size()) return static_cast<std::size_t>(number) - 1;
     faults.push_back(column_fault(role, role_name(role) + " is column " + std::to_string(number) +
                                             "; the csv has columns 1 to " + std::to_string(facts.size()) + "."));
     return std::nullopt;
 }
 
-std::optional<std::size_t> loosely(const ColumnFacts& facts, Role role, const std::string& text,
+std::optional<std::size_t> loosely(const ColumnFacts& facts, ColumnRole role, const std::string& text,
                                    std::vector<CsvFault>& faults) {
     std::optional<std::size_t> found;
     const std::string wanted = lower_case(trimmed(text));
@@ -40,7 +41,7 @@ std::optional<std::size_t> loosely(const ColumnFacts& facts, Role role, const st
 
 }  // namespace
 
-std::optional<std::size_t> chosen_column(const ColumnFacts& facts, Role role, const ColumnChoice& choice,
+std::optional<std::size_t> chosen_column(const ColumnFacts& facts, ColumnRole role, const ColumnChoice& choice,
                                          std::vector<CsvFault>& faults) {
     if (const auto* number = std::get_if<int>(&choice)) return by_number(facts, role, *number, faults);
     const auto& text = std::get<std::string>(choice);
@@ -63,7 +64,7 @@ std::vector<std::size_t> chosen_disturbances(const ColumnFacts& facts, const std
     for (const ColumnChoice& choice : choices) {
         const auto column = chosen_column(facts, kDisturbanceRole, choice, faults);
         if (!column) continue;
-        for (const Role role : kRoles) {
+        for (const ColumnRole role : kRoles) {
             if (at[role] == column) faults.push_back(equal_columns(kDisturbanceRole, role));
         }
         if (std::find(found.begin(), found.end(), *column) != found.end())
@@ -74,7 +75,7 @@ std::vector<std::size_t> chosen_disturbances(const ColumnFacts& facts, const std
     return found;
 }
 
-NameFits fits_by_name(const ColumnFacts& facts, Role role, const std::function<bool(std::size_t)>& free) {
+NameFits fits_by_name(const ColumnFacts& facts, ColumnRole role, const std::function<bool(std::size_t)>& free) {
     std::optional<NameMatch> best;
     NameFits fits;
     for (std::size_t i = 0; i < facts.layout().headings.size(); ++i) {
@@ -119,7 +120,7 @@ void keep_beside(const ColumnFacts& facts, std::size_t column, std::string (*sam
     fits.others.insert(fits.others.end(), rest.begin(), rest.end());
 }
 
-std::string rivals(const ColumnFacts& facts, Role role, const NameFits& fits) {
+std::string rivals(const ColumnFacts& facts, ColumnRole role, const NameFits& fits) {
     if (role == kTimeRole || fits.others.empty()) return "";
     std::vector<std::size_t> moving;
     for (const std::size_t i : fits.others) {

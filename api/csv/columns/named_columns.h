@@ -18,7 +18,7 @@ namespace tunewright::api {
 /// The column that a request names, by its heading or its number from 1. A heading is found as it is written, else
 /// without regard to letter case, unit and blanks. Where the file has no such column, or several, the result is empty
 /// and a fault is added that says so.
-std::optional<std::size_t> chosen_column(const ColumnFacts& facts, Role role, const ColumnChoice& choice,
+std::optional<std::size_t> chosen_column(const ColumnFacts& facts, ColumnRole role, const ColumnChoice& choice,
                                          std::vector<CsvFault>& faults);
 
 /// The same for the measured disturbances. One that has a role in `at` already, or is named twice, is a fault.
@@ -33,7 +33,7 @@ struct NameFits {
 
 /// The plainest name wins; tags that end alike are not guessed among, so `best` may hold several. `free` says whether a
 /// column may have the role.
-NameFits fits_by_name(const ColumnFacts& facts, Role role, const std::function<bool(std::size_t)>& free);
+NameFits fits_by_name(const ColumnFacts& facts, ColumnRole role, const std::function<bool(std::size_t)>& free);
 
 /// Keeps the columns that move where some do: one that stands still was neither driven nor did it respond. Adds a note
 /// about those that were passed over.
@@ -43,6 +43,6 @@ void keep_moving(const ColumnFacts& facts, NameFits& fits, std::vector<std::stri
 void keep_beside(const ColumnFacts& facts, std::size_t column, std::string (*same)(const Heading&), NameFits& fits);
 
 /// ", which ...": the other columns that may have been meant, and how to choose them. "" where there are none.
-std::string rivals(const ColumnFacts& facts, Role role, const NameFits& fits);
+std::string rivals(const ColumnFacts& facts, ColumnRole role, const NameFits& fits);
 
 }  // namespace tunewright::api

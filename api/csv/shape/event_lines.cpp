@@ -37,17 +37,17 @@ std::optional<EventLine> event_of(std::string_view line) {
 }  // namespace
 
 std::optional<ShapedText> event_lines(std::string_view text) {
-    constexpr int kLooked = 200, kOther = 10;
+    constexpr int kProbedLines = 200, kMinLinesPerOther = 10;
     std::size_t at = 0;
     int named = 0, plain = 0, other = 0;
     bool turned = false;  // a line of the other kind has come
-    for (int n = 0; n < kLooked || (!turned && n < 100 * kLooked); ++n) {
+    for (int n = 0; n < kProbedLines || (!turned && n < 100 * kProbedLines); ++n) {
         const auto line = next_line(text, at);
         if (!line) break;
         const std::string_view content = trimmed(*line);
         if (content.empty() || is_comment(content)) continue;
         const auto event = event_of(content);
-        if (!event && ++other * kOther > 1 + named + plain) return std::nullopt;
+        if (!event && ++other * kMinLinesPerOther > 1 + named + plain) return std::nullopt;
         if (event) ++(event->name.empty() ? plain : named);
         turned = named > 0 && plain > 0;
     }

@@ -104,7 +104,7 @@ private:
     /// Without headings: a stamp, a word that comes back, a value.
     std::optional<LongColumns> by_contents() const {
         constexpr std::size_t kColumns = 3;
-        constexpr int kRepeats = 4;
+        constexpr int kMinRowsPerName = 4;
         if (layout_.pairs || profiles_.size() != kColumns) return std::nullopt;
         LongColumns out;
         std::optional<std::size_t> time, value;
@@ -127,7 +127,7 @@ private:
             ++rows;
             words.emplace(line.cells[out.tags.front()]);
         }
-        if (words.size() < 2 || static_cast<int>(words.size()) * kRepeats > rows) return std::nullopt;
+        if (words.size() < 2 || static_cast<int>(words.size()) * kMinRowsPerName > rows) return std::nullopt;
         out.time = *time;
         out.value = *value;
         out.time_heading = "time";
@@ -150,9 +150,9 @@ std::vector<std::size_t> varying(std::string_view text, const CsvLayout& layout,
     for (int n = 0; n < kProfiledLines && lines.next(line); ++n)
         for (std::size_t k = 0; k < tags.size(); ++k)
             if (tags[k] < line.cells.size()) seen[k].emplace(line.cells[tags[k]]);
-    std::size_t most = 0;
+    std::size_t max = 0;
     for (std::size_t k = 1; k < tags.size(); ++k)
-        if (seen[k].size() > seen[most].size()) most = k;
+        if (seen[k].size() > seen[max].size()) max = k;
     std::set<std::string> joint;
     CsvLines again(text, layout);
     for (int n = 0; n < kProfiledLines && again.next(line); ++n) {
@@ -161,7 +161,7 @@ std::vector<std::size_t> varying(std::string_view text, const CsvLayout& layout,
             if (tag < line.cells.size()) key += std::string(line.cells[tag]) + "\n";
         joint.insert(std::move(key));
     }
-    if (joint.size() == seen[most].size()) return {tags[most]};
+    if (joint.size() == seen[max].size()) return {tags[max]};
     return tags;
 }
 

@@ -130,11 +130,12 @@ private:
     }
 
     std::string listed_kinds() const {
-        constexpr std::size_t kShown = 12;
+        constexpr std::size_t kMaxListed = 12;
         std::string out = "Kinds:";
-        for (std::size_t i = 0; i < std::min(kinds_.size(), kShown); ++i)
+        for (std::size_t i = 0; i < std::min(kinds_.size(), kMaxListed); ++i)
             out += (i > 0 ? "; " : " ") + kinds_[i].name + " (" + listed(kinds_[i].columns, "and") + ")";
-        return out + (kinds_.size() > kShown ? "; and " + std::to_string(kinds_.size() - kShown) + " more." : ".");
+        return out +
+               (kinds_.size() > kMaxListed ? "; and " + std::to_string(kinds_.size() - kMaxListed) + " more." : ".");
     }
 
     /// "RATE.ROut", or "ROut" where it was chosen so.
@@ -185,10 +186,10 @@ private:
 }  // namespace
 
 std::optional<ShapedText> message_log(std::string_view text, const ColumnChoices& chosen) {
-    constexpr int kLooked = 50;
+    constexpr int kProbedLines = 50;
     std::size_t at = 0;
     bool defines = false;
-    for (int n = 0; n < kLooked && !defines; ++n) {
+    for (int n = 0; n < kProbedLines && !defines; ++n) {
         const auto line = next_line(text, at);
         if (!line) break;
         defines = line->starts_with("FMT,");

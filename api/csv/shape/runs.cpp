@@ -88,10 +88,10 @@ void turn_countdown(CsvRecord& record, const RowRun& run) {
 /// True if the rows that count up go on from those that count down.
 bool contiguous(const std::vector<double>& t, const RowRun& run) {
     if (run.countdown == 0 || run.rows() == run.countdown) return true;
-    constexpr double kSpacings = 3;
+    constexpr double kMaxSpacings = 3;
     const std::size_t last = run.first + run.countdown - 1;
     const double step = t[last - 1] - t[last], next = t[last + 1] - t[last];
-    return next >= 0 && next <= kSpacings * step;
+    return next >= 0 && next <= kMaxSpacings * step;
 }
 
 /// A countdown that does not lead to a test is a run of its own.
@@ -122,9 +122,9 @@ double range_of(const std::vector<double>& values) {
 
 /// True if u moves in the run and y then moves too: by a twentieth of `range_y`, what it does in the whole file.
 bool tests_something(const CsvRecord& record, const RowRun& run, double range_y) {
-    constexpr std::size_t kFewRows = 8;
-    constexpr double kAnswer = 0.05;
-    if (run.rows() < kFewRows) return false;
+    constexpr std::size_t kMinRunRows = 8;
+    constexpr double kMinAnswerShare = 0.05;
+    if (run.rows() < kMinRunRows) return false;
     double low = std::numeric_limits<double>::infinity(), high = -low;
     bool moved = record.u_stepped;
     double u = std::nan("");
@@ -137,7 +137,7 @@ bool tests_something(const CsvRecord& record, const RowRun& run, double range_y)
         low = std::min(low, record.y[i]);
         high = std::max(high, record.y[i]);
     }
-    return moved && high - low > kAnswer * range_y;
+    return moved && high - low > kMinAnswerShare * range_y;
 }
 
 void keep_rows(CsvRecord& record, const RowRun& run) {
@@ -162,14 +162,14 @@ std::string in_words(const CsvRun& run, std::size_t number) {
 }
 
 void note_runs(CsvRecord& record, int taken, bool chosen) {
-    constexpr std::size_t kShown = 6;
+    constexpr std::size_t kMaxListed = 6;
     std::string others;
     std::size_t shown = 0;
     for (std::size_t k = 0; k < record.runs.size(); ++k) {
-        if (static_cast<int>(k) + 1 == taken || ++shown > kShown) continue;
+        if (static_cast<int>(k) + 1 == taken || ++shown > kMaxListed) continue;
         others += (others.empty() ? "" : "; ") + in_words(record.runs[k], k + 1);
     }
-    if (shown > kShown) others += "; and " + std::to_string(shown - kShown) + " more";
+    if (shown > kMaxListed) others += "; and " + std::to_string(shown - kMaxListed) + " more";
     const std::string sentence =
         "The times begin again: the file holds " + std::to_string(record.runs.size()) + " runs. Read is " +
         in_words(record.runs[static_cast<std::size_t>(taken) - 1], static_cast<std::size_t>(taken)) +

@@ -136,15 +136,15 @@ double filter_time(const Parameter& parameter, const Quantities& quantities, dou
 double slope_filter_time(double samples, double Ts) { return (samples - 1) * Ts / 2; }
 
 int whole_samples(double samples) {
-    constexpr double kMost = 1e6;
-    return static_cast<int>(std::lround(std::clamp(samples, 1.0, kMost)));
+    constexpr double kMaxSamples = 1e6;
+    return static_cast<int>(std::lround(std::clamp(samples, 1.0, kMaxSamples)));
 }
 
 std::string formula_text(const Product& product, const Parameter& parameter) {
     switch (parameter.shape) {
         case Shape::power: return term_text(parameter.term, product.form == Form::series);
         case Shape::one_minus_b: return "1 - b";
-        case Shape::weight: return parameter.role == Role::weight_b ? "b" : "c";
+        case Shape::weight: return parameter.role == ParameterRole::weight_b ? "b" : "c";
         case Shape::feedforward: return "(b - 1) Kp";
         case Shape::alpha_code: return "100 + 100 (1 - b)";
         case Shape::plus_clock: return "Tf + dt";

@@ -66,7 +66,7 @@ std::vector<std::string> needs_of(const Product& product) {
     for (int k = 0; k < 3; ++k) {
         std::optional<Error> missing = missing_for_filter(product, context);
         for (const Parameter& parameter : product.parameters) {
-            if (!missing && parameter.role != Role::limit) missing = missing_for(product, parameter, context);
+            if (!missing && parameter.role != ParameterRole::limit) missing = missing_for(product, parameter, context);
         }
         if (!missing) break;
         needs.push_back(missing->where);

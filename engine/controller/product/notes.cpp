@@ -10,11 +10,11 @@
 namespace tunewright::product {
 namespace {
 
-constexpr double kSame = 1e-9;
+constexpr double kEqualTolerance = 1e-9;
 
 bool same(double a, double b) {
-    return a == b ||
-           (std::isfinite(a) && std::isfinite(b) && std::abs(a - b) <= kSame * std::max(std::abs(a), std::abs(b)));
+    return a == b || (std::isfinite(a) && std::isfinite(b) &&
+                      std::abs(a - b) <= kEqualTolerance * std::max(std::abs(a), std::abs(b)));
 }
 
 std::string with_text(const std::string& sentence, std::string_view text) {
@@ -67,7 +67,7 @@ std::string filter_words(const Filter& filter) {
 
 // A series block whose filter's ratio can be set has the design's own filter with another ratio than the settings'.
 void note_other_ratio(const Comparison& it, std::vector<Note>& notes) {
-    const Parameter* ratio = parameter_of(it.product, Role::filter);
+    const Parameter* ratio = parameter_of(it.product, ParameterRole::filter);
     if (it.product.form != Form::series || it.product.filter.kind != FilterKind::parameter || !ratio) return;
     if (it.asked.filter.type != FilterType::derivative || it.asked.Td == 0) return;
     const auto series = to_series(it.asked);
@@ -170,7 +170,7 @@ void note_percent(const Comparison& it, std::vector<Note>& notes) {
     constexpr double kPercent = 100;
     const double span = it.context.spans.u_high - it.context.spans.u_low;
     if (!it.product.in_percent || !it.context.u_span_given || same(span, kPercent)) return;
-    const Parameter& gain = *parameter_of(it.product, Role::gain);
+    const Parameter& gain = *parameter_of(it.product, ParameterRole::gain);
     notes.push_back({"percent", "The output of the block is in percent, and u spans " + text(span) +
                                     " here: where u is what the percent stand for, type " + std::string(gain.name) +
                                     " times " + text(kPercent / span) + ", or tune with u in percent."});

@@ -14,10 +14,10 @@ constexpr int kDecimalDigits = 15;  // as many as a decimal keeps through arithm
 bool depends_on_choice(const Product& product, const Parameter& parameter) {
     const auto decides = [&](const Option& option) {
         switch (parameter.role) {
-            case Role::weight_b:
-            case Role::weight_c: return option.free_weights;
-            case Role::integral: return option.integral.has_value();
-            case Role::derivative: return option.derivative.has_value();
+            case ParameterRole::weight_b:
+            case ParameterRole::weight_c: return option.free_weights;
+            case ParameterRole::integral: return option.integral.has_value();
+            case ParameterRole::derivative: return option.derivative.has_value();
             default: return false;
         }
     };
@@ -31,7 +31,7 @@ const Parameter* parameter_named(const Product& product, std::string_view name) 
     return found == all.end() ? nullptr : &*found;
 }
 
-const Parameter* parameter_of(const Product& product, Role role) {
+const Parameter* parameter_of(const Product& product, ParameterRole role) {
     const auto& all = product.parameters;
     const auto found = std::find_if(all.begin(), all.end(), [&](const Parameter& p) { return p.role == role; });
     return found == all.end() ? nullptr : &*found;
@@ -47,19 +47,19 @@ std::string_view to_string(Form form) {
     return "ideal";
 }
 
-std::string_view to_string(Role role) {
+std::string_view to_string(ParameterRole role) {
     switch (role) {
-        case Role::gain: return "gain";
-        case Role::multiplier: return "multiplier";
-        case Role::integral: return "integral";
-        case Role::derivative: return "derivative";
-        case Role::filter: return "filter";
-        case Role::weight_b: return "weight_b";
-        case Role::weight_c: return "weight_c";
-        case Role::choice: return "choice";
-        case Role::sample_time: return "sample_time";
-        case Role::fixed: return "fixed";
-        case Role::limit: return "limit";
+        case ParameterRole::gain: return "gain";
+        case ParameterRole::multiplier: return "multiplier";
+        case ParameterRole::integral: return "integral";
+        case ParameterRole::derivative: return "derivative";
+        case ParameterRole::filter: return "filter";
+        case ParameterRole::weight_b: return "weight_b";
+        case ParameterRole::weight_c: return "weight_c";
+        case ParameterRole::choice: return "choice";
+        case ParameterRole::sample_time: return "sample_time";
+        case ParameterRole::fixed: return "fixed";
+        case ParameterRole::limit: return "limit";
     }
     return "fixed";
 }

@@ -34,7 +34,7 @@ enum class Form {
     p_only,    ///< Kp alone
 };
 
-enum class Role {
+enum class ParameterRole {
     gain,
     multiplier,  ///< of all three parts; read before the gain
     integral,
@@ -92,12 +92,12 @@ struct Parameter {
     std::string_view name = "";   ///< as in `settings`
     std::string_view label = "";  ///< as in the maker's software or manual
     std::string_view unit = "";
-    Role role = Role::gain;
+    ParameterRole role = ParameterRole::gain;
     Shape shape = Shape::power;
     Term term = {};
     Range range = {};
     /// What the models whose manuals were read take at most: more gets a note, for others may take it.
-    double usual_most = std::numeric_limits<double>::infinity();
+    double usual_max = std::numeric_limits<double>::infinity();
     double resolution = 0;  ///< step of what can be typed; 0: a floating-point number
     /// The maker's default, where it is known; of a filter also what stands where the law leaves it open.
     std::optional<Value> standard = {};
@@ -206,10 +206,10 @@ bool depends_on_choice(const Product& product, const Parameter& parameter);
 /// The parameter of that name; null if there is none.
 const Parameter* parameter_named(const Product& product, std::string_view name);
 /// The first parameter of that role; null if there is none.
-const Parameter* parameter_of(const Product& product, Role role);
+const Parameter* parameter_of(const Product& product, ParameterRole role);
 
 std::string_view to_string(Form form);
-std::string_view to_string(Role role);
+std::string_view to_string(ParameterRole role);
 std::string_view to_string(EvidenceLevel level);  ///< "read", "partly", "unverified"
 
 /// "3", "PV", "false".

@@ -6,7 +6,7 @@ namespace tunewright::product {
 namespace {
 
 // Two equal zeros (Ti = 4 Td) may miss 0 by rounding.
-constexpr double kRounding = 1e-13;
+constexpr double kDiscriminantTolerance = 1e-13;
 
 RatioSeries nearest(double Kp, double Ti, double Td, double alpha) {
     RatioSeries series;
@@ -14,7 +14,7 @@ RatioSeries nearest(double Kp, double Ti, double Td, double alpha) {
     series.Kc = Kp * std::sqrt(Td / Ti);
     const double left = 1 - alpha;
     series.deviation = {
-        .least_Ti = 4 * Td / left, .proportional = series.Kc * (1 + left) / Kp, .derivative = left * left};
+        .min_Ti = 4 * Td / left, .proportional = series.Kc * (1 + left) / Kp, .derivative = left * left};
     return series;
 }
 
@@ -24,7 +24,7 @@ RatioSeries ratio_series(double Kp, double Ti, double Td, double alpha) {
     // Written over 1/Ti, so that no integral action is no special case and Td = 0 gives ti = Ti exactly.
     const double left = 1 - alpha;
     double discriminant = 1 - 4 * Td / (left * Ti);
-    if (std::abs(discriminant) < kRounding) discriminant = 0;
+    if (std::abs(discriminant) < kDiscriminantTolerance) discriminant = 0;
     if (discriminant < 0) return nearest(Kp, Ti, Td, alpha);
     const double td = 2 * Td / (left * (1 + std::sqrt(discriminant)));
     const double share = 1 - left * td / Ti;  // ti/Ti

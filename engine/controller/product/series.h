@@ -13,7 +13,7 @@ struct RatioSeries {
     double Kc = 0, ti = 0, td = 0;
     /// Of complex zeros, where these are the nearest: gain of P and D of its ideal twin relative to what was asked for.
     struct Deviation {
-        double least_Ti = 0;  ///< 4 Td/(1 - alpha): what Ti would have to reach
+        double min_Ti = 0;  ///< 4 Td/(1 - alpha): what Ti would have to reach
         double proportional = 1, derivative = 1;
     };
     std::optional<Deviation> deviation = {};

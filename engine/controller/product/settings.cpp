@@ -35,7 +35,7 @@ void refuse_complex_zeros(const RatioSeries& series, Work& work) {
     const double unit = work.context.seconds_per_time;
     work.refusals.push_back(
         "Its form is a series, whose zeros are real: Ti = " + text(work.pid.Ti) + " is below " +
-        text(series.deviation->least_Ti / unit) + ", 4 Td/(1 - alpha) with alpha = " + text(alpha_of(work.product)) +
+        text(series.deviation->min_Ti / unit) + ", 4 Td/(1 - alpha) with alpha = " + text(alpha_of(work.product)) +
         ". The nearest: both times sqrt(Ti Td) = " + text(series.ti / unit) + " and a gain of " +
         text(series.Kc / work.own.Kp) + " Kp. It keeps the integral gain; the proportional gain becomes " +
         text(series.deviation->proportional) + " times and the derivative gain " + text(series.deviation->derivative) +
@@ -83,20 +83,20 @@ void set_own_form(Work& work) {
 // If one option sets both weights, c decides among those of the same b only. Free weights cost less than any
 // difference that counts, so that they are taken where no fixed ones are the design's.
 constexpr double kLessThanB = 1e-6, kFreeWeights = 1e-12;
-constexpr double kAction = 10;  ///< of an action too much or too little: more than weights can differ
+constexpr double kActionMismatchCost = 10;  ///< of an action too much or too little: more than weights can differ
 
-bool law_role(Role role) {
-    return role == Role::gain || role == Role::multiplier || role == Role::integral || role == Role::derivative ||
-           role == Role::sample_time;
+bool law_role(ParameterRole role) {
+    return role == ParameterRole::gain || role == ParameterRole::multiplier || role == ParameterRole::integral ||
+           role == ParameterRole::derivative || role == ParameterRole::sample_time;
 }
 
-constexpr double kHardlyAny = 1e6;  // s, of an integral time
+constexpr double kMaxIntegralTime = 1e6;  // s, of an integral time
 
 // The law has no integral action: what stands for that, or what comes nearest to it.
 std::optional<double> without_integral(const Parameter& parameter, Work& work) {
     if (parameter.off) return *parameter.off;
     Quantities slow = work.own;
-    slow.Ti = kHardlyAny;
+    slow.Ti = kMaxIntegralTime;
     const double longest = rounded(parameter, value_of(parameter.term, slow));
     slow.Ti = solved(parameter.term, work.own, &Quantities::Ti, parameter.term.Ti, longest);
     work.refusals.push_back(std::string(parameter.name) +
@@ -111,7 +111,7 @@ std::optional<double> without_integral(const Parameter& parameter, Work& work) {
 // A value that the law determines, into the parameter's range.
 double within_range(const Parameter& parameter, double value, Work& work) {
     const double typed = rounded(parameter, value);
-    if (typed > parameter.usual_most)
+    if (typed > parameter.usual_max)
         work.notes.push_back({"range", std::string(parameter.name) + " is " + text(typed, 6) +
                                            ", and not every model takes that. " + std::string(parameter.remark)});
     const bool inside = value >= parameter.range.low - parameter.resolution / 2 &&
@@ -121,7 +121,7 @@ double within_range(const Parameter& parameter, double value, Work& work) {
         work.refusals.push_back(std::string(parameter.name) + " would be " + text(value, 6) + ", and it takes " +
                                 range_text(parameter) + ". The nearest: " + std::string(parameter.name) + " = " +
                                 text(typed, 6) + ".");
-    } else if (parameter.role == Role::filter) {
+    } else if (parameter.role == ParameterRole::filter) {
         work.notes.push_back({"range", std::string(parameter.name) + " would be " + text(value, 6) + ", and it takes " +
                                            range_text(parameter) + ": it is " + text(typed, 6) + "."});
     }
@@ -131,21 +131,21 @@ double within_range(const Parameter& parameter, double value, Work& work) {
 /// Back-calculation's time, sqrt(Ti Td), is Ti where there is no derivative.
 Term term_of(const Parameter& parameter, const Quantities& own) {
     Term term = parameter.term;
-    if (parameter.role == Role::limit && own.Td == 0) term.Ti += std::exchange(term.Td, 0);
+    if (parameter.role == ParameterRole::limit && own.Td == 0) term.Ti += std::exchange(term.Td, 0);
     return term;
 }
 
 std::optional<double> number_for(const Parameter& parameter, Work& work) {
-    if (parameter.role == Role::integral && !work.pid.has_integral() && work.own.Ti > 0) {
+    if (parameter.role == ParameterRole::integral && !work.pid.has_integral() && work.own.Ti > 0) {
         const double value = value_of(parameter.term, work.own);
         if (std::isinf(value)) return without_integral(parameter, work);
         if (!parameter.zero_remark.empty()) work.notes.push_back({"integral-off", std::string(parameter.zero_remark)});
     }
     const Clocks clocks = clocks_of(work.product, work.context);
     const double clock = work.product.algorithm.firmware_clock ? clocks.firmware : work.own.Ts;
-    const double value = parameter.role == Role::filter ? filter_value(parameter, work.own, clock)
-                                                        : value_of(term_of(parameter, work.own), work.own);
-    if (std::isfinite(value) && !(parameter.role == Role::filter && work.own.Td == 0 &&
+    const double value = parameter.role == ParameterRole::filter ? filter_value(parameter, work.own, clock)
+                                                                 : value_of(term_of(parameter, work.own), work.own);
+    if (std::isfinite(value) && !(parameter.role == ParameterRole::filter && work.own.Td == 0 &&
                                   work.product.filter.kind == FilterKind::parameter && parameter.standard))
         return within_range(parameter, value, work);
     if (law_role(parameter.role)) work.beyond = parameter.name;
@@ -157,8 +157,8 @@ std::optional<double> number_for(const Parameter& parameter, Work& work) {
 const Option& nearest_option(const Parameter& parameter, const IdealPid& pid) {
     const auto distance = [&](const Option& option) {
         double sum = option.free_weights ? kFreeWeights : 0;
-        if (option.integral.value_or(true) != pid.has_integral()) sum += kAction;
-        if (option.derivative.value_or(true) != (pid.Td != 0)) sum += kAction;
+        if (option.integral.value_or(true) != pid.has_integral()) sum += kActionMismatchCost;
+        if (option.derivative.value_or(true) != (pid.Td != 0)) sum += kActionMismatchCost;
         if (option.b) sum += std::abs(*option.b - pid.b);
         if (option.c && pid.Td != 0) sum += kLessThanB * std::abs(*option.c - pid.c);
         const bool measured = pid.filter.type == FilterType::measurement_first_order ||
@@ -187,13 +187,13 @@ void add_setting(const Parameter& parameter, Work& work) {
         case Shape::alpha_code: return add(parameter, encoded_alpha(1 - pid.b), work);
         case Shape::one_minus_b: return add(parameter, within_range(parameter, 1 - pid.b, work), work);
         case Shape::weight:
-            return add(parameter, within_range(parameter, parameter.role == Role::weight_b ? pid.b : pid.c, work),
-                       work);
+            return add(parameter,
+                       within_range(parameter, parameter.role == ParameterRole::weight_b ? pid.b : pid.c, work), work);
         case Shape::feedforward: return add(parameter, within_range(parameter, (pid.b - 1) * work.own.Kp, work), work);
         default: break;
     }
     const auto value = number_for(parameter, work);
-    if (parameter.role == Role::multiplier && value) work.own.K = *value;
+    if (parameter.role == ParameterRole::multiplier && value) work.own.K = *value;
     if (parameter.compiled_in && value && parameter.standard && Value(*value) != *parameter.standard)
         work.notes.push_back({"compiled-in", std::string(parameter.name) + " is " + text(*value, 4) + " here and " +
                                                  text_of(*parameter.standard) +
@@ -217,7 +217,7 @@ std::optional<Error> add_settings(Work& work) {
         if (parameter.elsewhere && parameter.shape != Shape::option) continue;
         if (!counts(work.product, parameter, work.choices)) continue;
         if (auto missing = missing_for(work.product, parameter, work.context)) {
-            if (parameter.role != Role::limit) return missing;
+            if (parameter.role != ParameterRole::limit) return missing;
             work.notes.push_back({"limit", std::string(parameter.name) + " is left out: it is " +
                                                formula_text(work.product, parameter) + ", which needs u_span. " +
                                                std::string(parameter.remark)});
@@ -287,7 +287,7 @@ Expected<Converted> to_settings(const Product& product, const IdealPid& pid, con
 std::optional<double> default_sample_time_s(const Product& product) { return product.algorithm.sample_time_s; }
 
 std::optional<double> compiled_filter_time(const Product& product, const Context& context) {
-    const Parameter* parameter = parameter_of(product, Role::filter);
+    const Parameter* parameter = parameter_of(product, ParameterRole::filter);
     if (parameter == nullptr || !parameter->compiled_in) return std::nullopt;
     const double* published = std::get_if<double>(&*parameter->standard);
     const Quantities quantities = quantities_of(product, context);
@@ -297,9 +297,10 @@ std::optional<double> compiled_filter_time(const Product& product, const Context
 std::vector<Tunable> tunable_parameters(const Product& product) {
     std::vector<Tunable> tunable;
     for (const Parameter& parameter : product.parameters) {
-        const Role role = parameter.role;
-        const bool law = role == Role::gain || role == Role::integral || role == Role::derivative;
-        if (!law && role != Role::filter) continue;
+        const ParameterRole role = parameter.role;
+        const bool law =
+            role == ParameterRole::gain || role == ParameterRole::integral || role == ParameterRole::derivative;
+        if (!law && role != ParameterRole::filter) continue;
         tunable.push_back({std::string(parameter.name), role, parameter.range, parameter.resolution});
     }
     return tunable;
@@ -333,7 +334,7 @@ void note_scheduling(const Product& product, const Schedule& schedule, std::vect
 bool is_switched(const Product& product, const std::string& name) {
     const Parameter* parameter = parameter_named(product, name);
     if (parameter == nullptr) return true;
-    using enum Role;
+    using enum ParameterRole;
     return parameter->role == gain || parameter->role == integral || parameter->role == derivative;
 }
 

@@ -86,7 +86,7 @@ std::optional<double> compiled_filter_time(const Product& product, const Context
 /// A numeric parameter that a search may vary: `to_controller` of the varied settings is what it designs with.
 struct Tunable {
     std::string name;
-    Role role = Role::gain;  ///< gain, integral, derivative or filter
+    ParameterRole role = ParameterRole::gain;  ///< gain, integral, derivative or filter
     Range range = {};
     double resolution = 0;  ///< 0: none
 };

@@ -10,7 +10,7 @@
 namespace tunewright::product {
 namespace {
 
-constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 // What the settings say, in seconds and units of u per y, in the block's own form.
 struct Law {
@@ -76,8 +76,8 @@ private:
 };
 
 // Sets one quantity from the parameter of its role; `absent` where nothing is known.
-std::optional<double> solve(const Product& product, Role role, double Quantities::*unknown, double Term::*exponent,
-                            const Quantities& own, double absent, Reading& reading) {
+std::optional<double> solve(const Product& product, ParameterRole role, double Quantities::*unknown,
+                            double Term::*exponent, const Quantities& own, double absent, Reading& reading) {
     const Parameter* parameter = parameter_of(product, role);
     if (!parameter || !reading.counts(*parameter)) return absent;
     const auto value = reading.number(*parameter);
@@ -94,13 +94,13 @@ double sign_of(const Product& product, const Settings& settings) {
 }
 
 std::optional<Error> read_gain(const Product& product, const Settings& settings, Reading& reading, Quantities& own) {
-    if (const Parameter* multiplier = parameter_of(product, Role::multiplier))
+    if (const Parameter* multiplier = parameter_of(product, ParameterRole::multiplier))
         own.K = reading.number(*multiplier).value_or(1);
-    const Parameter& gain = *parameter_of(product, Role::gain);
+    const Parameter& gain = *parameter_of(product, ParameterRole::gain);
     if (!setting_named(settings, gain.name))
         return Error{ErrorKind::invalid_argument, "settings/" + std::string(gain.name),
                      std::string(gain.name) + " is missing; it is the gain of " + std::string(product.name) + "."};
-    own.Kp = solve(product, Role::gain, &Quantities::Kp, &Term::Kp, own, 0, reading).value_or(0);
+    own.Kp = solve(product, ParameterRole::gain, &Quantities::Kp, &Term::Kp, own, 0, reading).value_or(0);
     if (own.Kp == 0 || !std::isfinite(own.Kp))
         return no_twin(product, gain.name,
                        std::string(gain.name) +
@@ -114,15 +114,15 @@ std::optional<Error> read_gain(const Product& product, const Settings& settings,
 }
 
 std::optional<Error> read_times(const Product& product, Reading& reading, Quantities& own) {
-    const auto Ti = solve(product, Role::integral, &Quantities::Ti, &Term::Ti, own, kNever, reading);
-    own.Ti = std::abs(*Ti) == kNever ? kNever : *Ti;
-    own.Td = *solve(product, Role::derivative, &Quantities::Td, &Term::Td, own, 0, reading);
+    const auto Ti = solve(product, ParameterRole::integral, &Quantities::Ti, &Term::Ti, own, kUnbounded, reading);
+    own.Ti = std::abs(*Ti) == kUnbounded ? kUnbounded : *Ti;
+    own.Td = *solve(product, ParameterRole::derivative, &Quantities::Td, &Term::Td, own, 0, reading);
     if (own.Ti > 0 && own.Td >= 0) return std::nullopt;
-    const Role role = own.Ti > 0 ? Role::derivative : Role::integral;
+    const ParameterRole role = own.Ti > 0 ? ParameterRole::derivative : ParameterRole::integral;
     const Parameter& parameter = *parameter_of(product, role);
     return no_twin(product, parameter.name,
-                   std::string(parameter.name) + " gives a " + (role == Role::integral ? "Ti" : "Td") + " of " +
-                       text(role == Role::integral ? own.Ti : own.Td) +
+                   std::string(parameter.name) + " gives a " + (role == ParameterRole::integral ? "Ti" : "Td") +
+                       " of " + text(role == ParameterRole::integral ? own.Ti : own.Td) +
                        " s; it must have the gain's sign, and an integral time must be above 0.");
 }
 
@@ -134,7 +134,7 @@ IdealPid ideal_without_filter(const Product& product, const Law& law) {
 }
 
 double filter_by_parameter(const Product& product, const Clocks& clocks, Reading& reading, const Quantities& own) {
-    const Parameter* parameter = parameter_of(product, Role::filter);
+    const Parameter* parameter = parameter_of(product, ParameterRole::filter);
     const auto value = parameter ? reading.number(*parameter) : std::nullopt;
     if (!value || (parameter->off && *value == *parameter->off)) return 0;
     const double clock = product.algorithm.firmware_clock ? clocks.firmware : own.Ts;
@@ -154,14 +154,15 @@ Filter read_filter(const Product& product, const Settings& settings, const Clock
             break;
         case FilterKind::chosen:
             for (const Parameter& parameter : product.parameters) {
-                if (parameter.role != Role::choice) continue;
+                if (parameter.role != ParameterRole::choice) continue;
                 if (const auto chosen = option_of(product, parameter, settings).filter) filter.type = *chosen;
             }
             filter.Tf = filter_by_parameter(product, clocks, reading, own);
             break;
         case FilterKind::slope:
-            filter.Tf = parameter_of(product, Role::filter) ? filter_by_parameter(product, clocks, reading, own)
-                                                            : slope_filter_time(product.filter.value, own.Ts);
+            filter.Tf = parameter_of(product, ParameterRole::filter)
+                            ? filter_by_parameter(product, clocks, reading, own)
+                            : slope_filter_time(product.filter.value, own.Ts);
             break;
         case FilterKind::four_points: filter.Tf = own.Ts; break;
     }
@@ -183,7 +184,7 @@ void read_weights(const Product& product, Reading& reading, Law& law) {
         } else if (parameter.shape == Shape::alpha_code) {
             law.b = 1 - reading.alpha(parameter);
         } else if (parameter.shape == Shape::weight) {
-            double& weight = parameter.role == Role::weight_b ? law.b : law.c;
+            double& weight = parameter.role == ParameterRole::weight_b ? law.b : law.c;
             weight = reading.number(parameter).value_or(weight);
         } else if (parameter.shape == Shape::one_minus_b) {
             if (const auto share = reading.number(parameter)) law.b = 1 - *share;
@@ -199,7 +200,8 @@ void note_outsiders(const Product& product, const Settings& settings, std::vecto
         if (given && !counts(product, parameter, settings))
             notes.push_back({"outside-the-twin", std::string(parameter.name) + " is " + text_of(*given) +
                                                      "; it has no effect with what is chosen beside it."});
-        if (parameter.role != Role::fixed || !given || !parameter.standard || *given == *parameter.standard) continue;
+        if (parameter.role != ParameterRole::fixed || !given || !parameter.standard || *given == *parameter.standard)
+            continue;
         notes.push_back({"outside-the-twin", std::string(parameter.name) + " is " + text_of(*given) +
                                                  "; the twin is that of " + text_of(*parameter.standard) +
                                                  " and does not contain what it does."});
@@ -212,7 +214,7 @@ void note_zeros(const Product& product, const Settings& settings, std::vector<No
         if (given && *given == Value(0.0) && !parameter.zero_remark.empty())
             notes.push_back({"integral-off", std::string(parameter.zero_remark)});
     }
-    const Parameter* integral = parameter_of(product, Role::integral);
+    const Parameter* integral = parameter_of(product, ParameterRole::integral);
     if (integral && !number_of(*integral, settings) && counts(product, *integral, settings))
         notes.push_back({"integral-off", std::string(integral->name) +
                                              " is not given and no default of it is known: the twin has no integral "
@@ -233,19 +235,20 @@ IdealPid twin(const Product& product, const Law& law) {
 
 // What no controller of the ideal form is: a filter that lets nothing pass, a series lead that its own filter outlasts.
 std::optional<Error> beyond(const Product& product, const IdealPid& pid) {
-    const auto at = [&](Role role, const std::string& reason) {
+    const auto at = [&](ParameterRole role, const std::string& reason) {
         const Parameter* parameter = parameter_of(product, role);
         return no_twin(product, parameter ? parameter->name : product.parameters.front().name, reason);
     };
     if (!std::isfinite(pid.filter.Tf))
-        return at(Role::filter,
+        return at(ParameterRole::filter,
                   "the filter's time becomes infinite, so no derivative is left. Give another value, or "
                   "no derivative.");
     if (pid.Td < 0)
-        return at(Role::derivative, "the filter outlasts the integral time, which makes the ideal form's Td " +
-                                        text(pid.Td) + ". Take a shorter derivative or a smaller ratio of the filter.");
+        return at(ParameterRole::derivative, "the filter outlasts the integral time, which makes the ideal form's Td " +
+                                                 text(pid.Td) +
+                                                 ". Take a shorter derivative or a smaller ratio of the filter.");
     if (!std::isfinite(pid.Kp) || !std::isfinite(pid.Td) || std::isnan(pid.Ti) || !std::isfinite(pid.b))
-        return at(Role::gain, "the values together are beyond any number.");
+        return at(ParameterRole::gain, "the values together are beyond any number.");
     return std::nullopt;
 }
 
@@ -258,7 +261,7 @@ Expected<IdealPid> to_controller(const Product& product, const Settings& setting
     Law law;
     law.own = quantities_of(product, context);
     bool period_known = clocks_of(product, context).sample_time.has_value();
-    if (const Parameter* period = parameter_of(product, Role::sample_time)) {
+    if (const Parameter* period = parameter_of(product, ParameterRole::sample_time)) {
         if (const auto value = number_of(*period, settings)) {
             law.own.Ts = solved(period->term, law.own, &Quantities::Ts, period->term.Ts, *value);
             period_known = true;
@@ -300,7 +303,7 @@ SampledPid sampled_law(const Product& product, const Settings& settings, const C
     law.trapezoidal_filter = law.derivative == DerivativeRule::filtered_trapezoidal;
     law.velocity = product.algorithm.velocity;
     if (product.filter.kind == FilterKind::slope) {
-        const Parameter* samples = parameter_of(product, Role::filter);
+        const Parameter* samples = parameter_of(product, ParameterRole::filter);
         const double M = samples ? number_of(*samples, settings).value_or(1) : product.filter.value;
         law.slope_samples = whole_samples(M);
     }

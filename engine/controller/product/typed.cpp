@@ -9,8 +9,8 @@
 namespace tunewright::product {
 namespace {
 
-constexpr int kDigits = 4;  // of a floating-point number as typed: off by 5e-4 of it at most
-constexpr int kLeastDecimals = 2;
+constexpr int kSignificantDigits = 4;  // of a floating-point number as typed: off by 5e-4 of it at most
+constexpr int kMinDecimals = 2;
 
 bool takes_number(const Parameter& parameter) {
     if (parameter.shape == Shape::option || parameter.shape == Shape::alpha_code) return false;
@@ -72,15 +72,15 @@ std::string fixed_text(double value, int decimals) {
 
 // Digits before the point count, so that 1234.567 keeps its two decimals and 0.0083333 gets six.
 std::string floating_text(double value) {
-    if (!std::isfinite(value) || std::abs(value) >= 1e15) return text(value, kDigits);
-    int decimals = kLeastDecimals;
+    if (!std::isfinite(value) || std::abs(value) >= 1e15) return text(value, kSignificantDigits);
+    int decimals = kMinDecimals;
     if (value != 0) {
         const int leading = static_cast<int>(std::floor(std::log10(std::abs(value))));
-        decimals = std::clamp(kDigits - 1 - leading, kLeastDecimals, 300);
+        decimals = std::clamp(kSignificantDigits - 1 - leading, kMinDecimals, 300);
     }
     std::string text = fixed_text(value, decimals);
-    const std::size_t least = text.find('.') + 1 + kLeastDecimals;
-    while (text.size() > least && text.back() == '0') text.pop_back();
+    const std::size_t min = text.find('.') + 1 + kMinDecimals;
+    while (text.size() > min && text.back() == '0') text.pop_back();
     return text;
 }
 
@@ -131,10 +131,11 @@ namespace {
 /// True if a parameter has an effect with one option of a choice.
 bool counts_with(const Parameter& parameter, const Parameter& choice, const Option& option) {
     switch (parameter.role) {
-        case Role::weight_b:
-        case Role::weight_c: return option.free_weights || std::ranges::none_of(choice.options, &Option::free_weights);
-        case Role::integral: return option.integral.value_or(true);
-        case Role::derivative: return option.derivative.value_or(true);
+        case ParameterRole::weight_b:
+        case ParameterRole::weight_c:
+            return option.free_weights || std::ranges::none_of(choice.options, &Option::free_weights);
+        case ParameterRole::integral: return option.integral.value_or(true);
+        case ParameterRole::derivative: return option.derivative.value_or(true);
         default: return true;
     }
 }
@@ -143,8 +144,8 @@ bool counts_with(const Parameter& parameter, const Parameter& choice, const Opti
 bool asks_for_effect(const Parameter& parameter, const Settings& settings) {
     const Value* given = setting_named(settings, parameter.name);
     if (!given) return false;
-    if (parameter.role == Role::integral) return !parameter.off || *given != Value(*parameter.off);
-    return parameter.role != Role::derivative || *given != Value(0.0);
+    if (parameter.role == ParameterRole::integral) return !parameter.off || *given != Value(*parameter.off);
+    return parameter.role != ParameterRole::derivative || *given != Value(0.0);
 }
 
 }  // namespace

@@ -29,11 +29,11 @@ struct Refined {
     std::size_t chosen() const { return static_cast<std::size_t>(search.choice.index); }
 };
 
-constexpr double kMismatch = 25;      ///< of InstrumentFit::mismatch: some 10 are chance
-constexpr double kUnknownGain = 0.5;  ///< standard error over the gain
-constexpr double kNoError = 1e-5;     ///< standard error over the gain that no record of a loop can give
-constexpr double kFits = 99;          ///< per cent: so good a free run may have so small an error
-constexpr double kTiny = 1e-300;      ///< keeps a division by what may be 0 finite
+constexpr double kMaxMismatch = 25;                ///< of InstrumentFit::mismatch: some 10 are chance
+constexpr double kMinUnknownGainError = 0.5;       ///< standard error over the gain
+constexpr double kMinGainError = 1e-5;             ///< standard error over the gain that no record of a loop can give
+constexpr double kMinFitPercentOfSmallError = 99;  ///< per cent: so good a free run may have so small an error
+constexpr double kMinDivisor = 1e-300;             ///< keeps a division by what may be 0 finite
 
 /// The sum of squares of what filters of the set point explain of a signal about its mean.
 double by_set_point(const std::vector<double>& signal, const SetPointPart& part) {
@@ -72,39 +72,44 @@ std::optional<Refined> refined(ModelSearch search, const CleanRecord& record, co
         fit = std::move(better->fit);
         out.search.percents[i] = fit_percent(record, fit);
         // A gain without any error is one that nothing in the equations depends on.
-        const bool empty = (better->gain_error < kNoError && out.search.percents[i] < kFits) || driven_away(loop, fit);
-        out.left[i] = by_set_point(fit.residual, part) / std::max(done, kTiny);
+        const bool empty =
+            (better->gain_error < kMinGainError && out.search.percents[i] < kMinFitPercentOfSmallError) ||
+            driven_away(loop, fit);
+        out.left[i] = by_set_point(fit.residual, part) / std::max(done, kMinDivisor);
         out.mismatch[i] = better->mismatch, out.gain_error[i] = empty ? 1 : better->gain_error;
     }
     return out;
 }
 
 bool usable(const Refined& r, std::size_t i) {
-    constexpr double kKnownGain = 0.3;                                     // standard error over the gain
+    constexpr double kMaxKnownGainError = 0.3;                             // standard error over the gain
     constexpr double kMaxLeft = 0.1, kBesideBest = 0.003, kTimesBest = 3;  // of what the set point did to y
-    const double least = *std::ranges::min_element(r.left);
-    return r.search.fits[i].determined && r.mismatch[i] < kMismatch && r.gain_error[i] < kKnownGain &&
-           r.left[i] < std::min(kMaxLeft, kBesideBest + kTimesBest * least);
+    const double min = *std::ranges::min_element(r.left);
+    return r.search.fits[i].determined && r.mismatch[i] < kMaxMismatch && r.gain_error[i] < kMaxKnownGainError &&
+           r.left[i] < std::min(kMaxLeft, kBesideBest + kTimesBest * min);
 }
 
 /// The structure whose residual the set point explains least, where the one that least squares preferred does not do,
 /// or leaves plainly more. A free run that is far worse is no model, and an integrator beside a slow disturbance
 /// whitens as well as a lag does: it must run as well.
 void choose_again(Refined& r) {
-    constexpr double kPrice = 3, kPlainly = 6;      // of mismatch: for a parameter; for another choice
-    constexpr double kFarWorse = 5, kAsWell = 1.2;  // ratios of sums of squares
-    const auto cost = [&](std::size_t i) { return r.mismatch[i] + kPrice * r.search.fits[i].form.parameters(); };
+    constexpr double kMismatchPerParameter = 3,
+                     kMinMismatchGain = 6;  // of mismatch: for a parameter; for another choice
+    constexpr double kMaxSseRatio = 5, kMaxSseRatioOfIntegrator = 1.2;  // ratios of sums of squares
+    const auto cost = [&](std::size_t i) {
+        return r.mismatch[i] + kMismatchPerParameter * r.search.fits[i].form.parameters();
+    };
     const auto integrating = [&](std::size_t i) { return is_integrating(r.search.fits[i].form.structure); };
     const std::size_t preferred = r.chosen();
     const auto runs = [&](std::size_t i) {
-        const double most = integrating(i) && !integrating(preferred) ? kAsWell : kFarWorse;
-        return r.search.fits[i].sse <= most * r.search.fits[preferred].sse;
+        const double max = integrating(i) && !integrating(preferred) ? kMaxSseRatioOfIntegrator : kMaxSseRatio;
+        return r.search.fits[i].sse <= max * r.search.fits[preferred].sse;
     };
     std::size_t best = preferred;
     for (std::size_t i = 0; i < r.search.fits.size(); ++i) {
         if (usable(r, i) && runs(i) && (!usable(r, best) || cost(i) < cost(best))) best = i;
     }
-    if (best == r.chosen() || (usable(r, r.chosen()) && cost(r.chosen()) < cost(best) + kPlainly)) return;
+    if (best == r.chosen() || (usable(r, r.chosen()) && cost(r.chosen()) < cost(best) + kMinMismatchGain)) return;
     r.search.choice = {static_cast<int>(best),
                        std::string(name_of(r.search.fits[best].form.structure)) +
                            ": of the structures whose gain the set point's moves tell, the one that leaves least of "
@@ -126,15 +131,15 @@ double gain_error(const IdentifiedModel& model) {
                 return 0.0;
         },
         model.plant);
-    return error->second / std::max(std::abs(K), kTiny);
+    return error->second / std::max(std::abs(K), kMinDivisor);
 }
 
 /// As the inverse of a proportional controller does.
 bool answers_at_once(const IdentifiedModel& model) {
-    constexpr double kRows = 2;  // spacings of the samples
+    constexpr double kMaxLagInSpacings = 2;  // spacings of the samples
     return std::any_of(model.candidates.begin(), model.candidates.end(), [&](const Candidate& candidate) {
         const auto* lag = std::get_if<Fopdt>(&candidate.plant);
-        return lag != nullptr && std::abs(lag->T) + lag->L < kRows * model.data_quality.sample_time;
+        return lag != nullptr && std::abs(lag->T) + lag->L < kMaxLagInSpacings * model.data_quality.sample_time;
     });
 }
 
@@ -145,7 +150,7 @@ double left_by_line(std::span<const double> y, std::span<const double> u) {
 
 /// As the inverse of a proportional controller whose law u keeps to.
 bool is_inverse_of_law(const CleanRecord& record, const IdentifiedModel& model) {
-    constexpr double kSame = 0.1;
+    constexpr double kMaxGainProductError = 0.1;
     if (!may_be_controlled(record) || !answers_at_once(model)) return false;
     const std::vector<double> u = input_at_samples(record);
     const std::span all_u(u), all_y(record.y);
@@ -154,16 +159,16 @@ bool is_inverse_of_law(const CleanRecord& record, const IdentifiedModel& model) 
     const std::optional<ControllerLaw> law = controller_law(record, u, {});
     const auto* lag = std::get_if<Fopdt>(&model.plant);
     const double unit = record.scale.y_scale / record.scale.u_scale;
-    return law && lag != nullptr && std::abs(law->gain * lag->K / unit - 1) < kSame;
+    return law && lag != nullptr && std::abs(law->gain * lag->K / unit - 1) < kMaxGainProductError;
 }
 
 }  // namespace
 
 Expected<IdentifiedModel> identify_in_loop(const CleanRecord& full, const LoopRecord& loop, ModelChoice model,
                                            const RunControl& control) {
-    constexpr double kWeak = 4, kPlainlyLess = 10;  // F ratio; difference of mismatch
+    constexpr double kMinFRatio = 4, kMinMismatchDifference = 10;  // F ratio; difference of mismatch
     if (!loop.part) return no_plant_in_loop(full, loop, "and nothing but feedback moves u");
-    if (loop.part->strength < kWeak)
+    if (loop.part->strength < kMinFRatio)
         return no_plant_in_loop(
             full, loop,
             "and moves of the set point explain too little of u (" + text(100 * loop.part->share, 2) + " %)");
@@ -180,21 +185,21 @@ Expected<IdentifiedModel> identify_in_loop(const CleanRecord& full, const LoopRe
     }
     const auto better = [&](const Refined& a, const Refined& b) {
         if (usable(a, a.chosen()) != usable(b, b.chosen())) return usable(a, a.chosen());
-        return a.mismatch[a.chosen()] + kPlainlyLess < b.mismatch[b.chosen()];
+        return a.mismatch[a.chosen()] + kMinMismatchDifference < b.mismatch[b.chosen()];
     };
     std::optional<Refined>& best = two_stage && (!direct || better(*two_stage, *direct)) ? two_stage : direct;
     const bool follows = best && best->search.chosen().determined &&
-                         (best->mismatch[best->chosen()] < kMismatch || responds(full, best->search.chosen()));
+                         (best->mismatch[best->chosen()] < kMaxMismatch || responds(full, best->search.chosen()));
     if (!follows) return no_plant_in_loop(full, loop, "and y does not plainly follow the moves from outside the loop");
     if (driven_away(loop, best->search.chosen()))
         return no_plant_in_loop(full, loop,
                                 "and the gain that the moves from outside the loop give has the sign with which this "
                                 "controller would have driven y away");
-    constexpr double kHalf = 0.5;  // of what the set point did to y
-    if (best->left[best->chosen()] > kHalf)
+    constexpr double kMaxUnexplainedShare = 0.5;  // of what the set point did to y
+    if (best->left[best->chosen()] > kMaxUnexplainedShare)
         return no_plant_in_loop(full, loop, "and no structure explains what the moves from outside the loop did to y");
     const double error = best->gain_error[best->chosen()];
-    if (!(error < kUnknownGain)) {
+    if (!(error < kMinUnknownGainError)) {
         return no_plant_in_loop(full, loop,
                                 "and the moves from outside the loop leave the gain unknown (its standard error is " +
                                     text(100 * error, 2) + " % of it)");
@@ -204,7 +209,7 @@ Expected<IdentifiedModel> identify_in_loop(const CleanRecord& full, const LoopRe
         for (Fit& fit : best->search.fits) fit.as_open_as_least_squares = true;
     }
     IdentifiedModel answer = searched_model(std::move(best->search), full);
-    if (loop.found.used == LoopExcitation::switched_on && !(gain_error(answer) < kUnknownGain)) {
+    if (loop.found.used == LoopExcitation::switched_on && !(gain_error(answer) < kMinUnknownGainError)) {
         return no_plant_in_loop(full, loop,
                                 "and its start leaves the gain unknown (its standard error is " +
                                     text(100 * gain_error(answer), 2) + " % of it)");
@@ -213,20 +218,22 @@ Expected<IdentifiedModel> identify_in_loop(const CleanRecord& full, const LoopRe
 }
 
 void doubt_open_loop(const CleanRecord& full, IdentifiedModel& model) {
-    constexpr double kHardly = 0.005, kSomewhat = 0.05, kPlainly = 0.15;  // restlessness
-    constexpr double kUnknown = 0.33;                                     // standard error over the gain
-    constexpr double kLess = 0.8, kNearly = 0.95;  // what the law leaves of u over what the model leaves of y
+    constexpr double kMinRestlessness = 0.005, kMinRestlessnessAtOnce = 0.05,
+                     kMinRestlessnessOfLaw = 0.15;  // restlessness
+    constexpr double kMinGainErrorOfLaw = 0.33;     // standard error over the gain
+    constexpr double kMaxLawShareUnknownGain = 0.8,
+                     kMaxLawShareAtOnce = 0.95;  // what the law leaves of u over what the model leaves of y
     const double restless = restlessness(looked_at_for_feedback(full));
     const CleanRecord record = condensed(full, kMaxLoopSamples);
     const bool inverse = is_inverse_of_law(record, model);
-    if (restless < kHardly && !inverse) return;
+    if (restless < kMinRestlessness && !inverse) return;
     const std::optional<SetPointPart> law = set_point_part(input_at_samples(record), record.y, record.y.front());
     const double left = share_left_by(model), unexplained = left * left;
     if (!law) return;
     const double by_law = (1 - law->share) / unexplained, error = gain_error(model);
-    const bool at_once = by_law < kNearly && restless > kSomewhat && answers_at_once(model);
-    const bool in_doubt =
-        (error > kUnknown && by_law < kLess) || (restless > kPlainly && by_law < 1) || at_once || inverse;
+    const bool at_once = by_law < kMaxLawShareAtOnce && restless > kMinRestlessnessAtOnce && answers_at_once(model);
+    const bool in_doubt = (error > kMinGainErrorOfLaw && by_law < kMaxLawShareUnknownGain) ||
+                          (restless > kMinRestlessnessOfLaw && by_law < 1) || at_once || inverse;
     if (!in_doubt) return;
     LoopRecord loop;
     loop.found.evidence = "u moves restlessly, and filters of y explain " + text(100 * law->share, 3) +

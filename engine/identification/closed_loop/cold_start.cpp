@@ -20,8 +20,8 @@
 namespace tunewright {
 namespace {
 
-constexpr double kAway = 0.02;     ///< of y's range: y has left its rest
-constexpr double kDeviations = 4;  ///< of noise, which is no movement
+constexpr double kMinDeparture = 0.02;  ///< of y's range: y has left its rest
+constexpr double kNoiseDeviations = 4;  ///< of noise, which is no movement
 
 /// How many rows u stands still at its first value.
 std::size_t still_rows(const std::vector<double>& u) {
@@ -30,13 +30,13 @@ std::size_t still_rows(const std::vector<double>& u) {
 
 /// True if u moves up to this row by small moves, or by single steps of its grid, and not by a step that somebody made.
 bool creeps(const std::vector<double>& u, std::size_t row) {
-    constexpr double kStep = 0.5, kOneOfGrid = 1.5;  // of the whole way; of the grid
-    constexpr std::size_t kFewLevels = 3;            // so few levels show no grid
-    if (std::set<double>(u.begin(), u.end()).size() <= kFewLevels) return false;
+    constexpr double kMaxStepShare = 0.5, kMaxStepInGrids = 1.5;  // of the whole way; of the grid
+    constexpr std::size_t kMaxFewLevels = 3;                      // so few levels show no grid
+    if (std::set<double>(u.begin(), u.end()).size() <= kMaxFewLevels) return false;
     double largest = 0;
     for (std::size_t i = 1; i <= row && i < u.size(); ++i) largest = std::max(largest, std::abs(u[i] - u[i - 1]));
     const double way = std::abs(u[std::min(row, u.size() - 1)] - u.front());
-    return largest <= std::max(kStep * way, kOneOfGrid * quantisation_step(u));
+    return largest <= std::max(kMaxStepShare * way, kMaxStepInGrids * quantisation_step(u));
 }
 
 /// The static gain; empty where the plant integrates.
@@ -46,10 +46,10 @@ std::optional<double> gain_of(const IdentifiedModel& model) {
 }
 
 bool knows_gain(const IdentifiedModel& model) {
-    constexpr double kKnown = 0.1;  // standard error over the gain
+    constexpr double kMaxKnownGainError = 0.1;  // standard error over the gain
     const std::optional<double> K = gain_of(model);
     const auto error = model.standard_errors.find("K");
-    return K && error != model.standard_errors.end() && error->second < kKnown * std::abs(*K);
+    return K && error != model.standard_errors.end() && error->second < kMaxKnownGainError * std::abs(*K);
 }
 
 bool same_sign(const IdentifiedModel& a, const IdentifiedModel& b) {
@@ -59,10 +59,11 @@ bool same_sign(const IdentifiedModel& a, const IdentifiedModel& b) {
 
 /// Gains a tenth apart, or three standard errors.
 bool agree(const IdentifiedModel& estimated, const IdentifiedModel& from_off) {
-    constexpr double kApart = 0.1, kErrors = 3;
+    constexpr double kMaxGainDifference = 0.1, kGainStandardErrors = 3;
     const std::optional<double> one = gain_of(estimated), other = gain_of(from_off);
-    const double most = one ? kApart * std::abs(*one) + kErrors * estimated.standard_errors.at("K") : 0;
-    return one && other && std::abs(*one - *other) < most;
+    const double max =
+        one ? kMaxGainDifference * std::abs(*one) + kGainStandardErrors * estimated.standard_errors.at("K") : 0;
+    return one && other && std::abs(*one - *other) < max;
 }
 
 IdentifiedModel warned(IdentifiedModel model, const std::string& taken, WarningLevel level) {
@@ -81,8 +82,8 @@ IdentifiedModel warned(IdentifiedModel model, const std::string& taken, WarningL
 double off_level(const Record& record) { return record.u_limits ? std::max(0.0, (*record.u_limits)[0]) : 0.0; }
 
 ColdStart cold_start(const Record& record, const CleanRecord& clean, bool in_loop) {
-    constexpr double kFar = 0.5;     // of y's range
-    constexpr std::size_t kFew = 3;  // rows that may all lie within the dead time
+    constexpr double kMinTravel = 0.5;     // of y's range
+    constexpr std::size_t kFirstRows = 3;  // rows that may all lie within the dead time
     constexpr std::size_t kShortest = 10 * kRestRows;
     if (record.u0 || clean.samples() < static_cast<int>(kShortest)) return ColdStart::none;
     const std::span<const double> y(clean.y);
@@ -92,14 +93,15 @@ ColdStart cold_start(const Record& record, const CleanRecord& clean, bool in_loo
     if (v.front() == off || (low < off && high > off)) return ColdStart::none;
     if (!record.r.empty() && std::ranges::any_of(record.r, [&](double r) { return r != record.r.front(); }))
         return ColdStart::none;
-    const double first = mean(y.first(kFew)), end = mean(y.last(y.size() / 5));
-    if (std::abs(end - first) < kFar) return ColdStart::none;
-    const double sign = end > first ? 1 : -1, most = kAway + kDeviations * noise_std(y) + quantisation_step(y);
-    if (std::ranges::any_of(y, [&](double value) { return sign * (value - first) < -most; })) return ColdStart::none;
+    const double first = mean(y.first(kFirstRows)), end = mean(y.last(y.size() / 5));
+    if (std::abs(end - first) < kMinTravel) return ColdStart::none;
+    const double sign = end > first ? 1 : -1,
+                 max = kMinDeparture + kNoiseDeviations * noise_std(y) + quantisation_step(y);
+    if (std::ranges::any_of(y, [&](double value) { return sign * (value - first) < -max; })) return ColdStart::none;
     const std::size_t still = still_rows(v);
-    if (still >= kRestRows && sign * (y[still - 1] - first) > most) return ColdStart::plain;
+    if (still >= kRestRows && sign * (y[still - 1] - first) > max) return ColdStart::plain;
     if (in_loop && still < kRestRows) return ColdStart::plain;
-    const auto leaves = std::ranges::find_if(y, [&](double value) { return sign * (value - first) > most; });
+    const auto leaves = std::ranges::find_if(y, [&](double value) { return sign * (value - first) > max; });
     const bool controlled = in_loop || may_be_controlled(clean);
     return controlled && creeps(v, static_cast<std::size_t>(leaves - y.begin())) ? ColdStart::possible
                                                                                  : ColdStart::none;
@@ -108,8 +110,8 @@ ColdStart cold_start(const Record& record, const CleanRecord& clean, bool in_loo
 Expected<IdentifiedModel> cold_start_model(ColdStart start, Expected<IdentifiedModel> estimated,
                                            Expected<IdentifiedModel> from_off, double off) {
     constexpr double kAsMuch = 1.05, kNoMore = 1;  // of what the other model leaves
-    const double most = start == ColdStart::plain ? kAsMuch : kNoMore;
-    const bool as_well = from_off && (estimated ? share_left_by(*from_off) <= most * share_left_by(*estimated)
+    const double max = start == ColdStart::plain ? kAsMuch : kNoMore;
+    const bool as_well = from_off && (estimated ? share_left_by(*from_off) <= max * share_left_by(*estimated)
                                                 : start == ColdStart::plain);
     if (!estimated && !as_well) return estimated;
     const bool rivals = estimated && (!from_off || share_left_by(*estimated) <= kAsMuch * share_left_by(*from_off));

@@ -20,18 +20,18 @@ struct MovingRows {
 };
 
 std::vector<MovingRows> moving_rows(std::span<const double> u) {
-    constexpr int kHeld = 3;
+    constexpr int kMinHeldRows = 3;
     const auto [low, high] = std::ranges::minmax(u);
     const int n = static_cast<int>(u.size());
     const auto at = [&](int i) { return u[static_cast<std::size_t>(i)]; };
     std::vector<MovingRows> found;
     int from = 0;
     while (from + 1 < n && at(from + 1) == at(0)) ++from;
-    if (from < kHeld) from = 0;
+    if (from < kMinHeldRows) from = 0;
     for (int i = from; i <= n;) {
         int held = i;
         while (held < n && (at(held) == low || at(held) == high) && at(held) == at(i)) ++held;
-        if (i < n && held - i < kHeld) {
+        if (i < n && held - i < kMinHeldRows) {
             i = std::max(held, i + 1);
             continue;
         }
@@ -105,11 +105,12 @@ Explained by_integral_of_itself(const CleanRecord& record, const std::vector<dou
 
 /// True if u is two periods or more of a sine about a straight line: u'' = -w^2 u, integrated twice.
 bool is_sine(const CleanRecord& record, const std::vector<double>& u, const MovingRows& rows) {
-    constexpr double kLeft = 0.02, kTwoPeriods = 12.566370614359172;  // share of the variance; radians
+    constexpr double kMaxUnexplainedShare = 0.02, kTwoPeriods = 12.566370614359172;  // share of the variance; radians
     const Explained sine = by_integral_of_itself(record, u, rows, 2);
     const double length =
         record.t[static_cast<std::size_t>(rows.to - 1)] - record.t[static_cast<std::size_t>(rows.from)];
-    return sine.left < kLeft && sine.coefficient[2] < 0 && std::sqrt(-sine.coefficient[2]) * length > kTwoPeriods;
+    return sine.left < kMaxUnexplainedShare && sine.coefficient[2] < 0 &&
+           std::sqrt(-sine.coefficient[2]) * length > kTwoPeriods;
 }
 
 /// Share of u's variance left by u as a lag that follows one step: u' = a + b u, integrated, and a straight line over
@@ -120,7 +121,7 @@ double left_by_lagged_step(const CleanRecord& record, const std::vector<double>&
 
 /// P or PI; PID only where the integral has its share, for y and its slope alone are also how a lag leads to its input.
 Explained law_of(const Eigen::MatrixXd& rows, double plain) {
-    constexpr double kHasShare = 4;  // times the variance that the law leaves without its integral
+    constexpr double kMinIntegralVarianceRatio = 4;  // times the variance that the law leaves without its integral
     const Eigen::Index m = rows.cols() - 1;
     const Eigen::VectorXd u = rows.col(m);
     const auto without_integral = [&](Eigen::Index columns) {
@@ -130,10 +131,10 @@ Explained law_of(const Eigen::MatrixXd& rows, double plain) {
     };
     const Explained pi = explain(rows.leftCols(m - 1), u), p = without_integral(m - 1);
     const auto one_sign = [](const Explained& law) { return law.coefficient[0] * law.coefficient[1] <= 0; };
-    if (p.left < kHasShare * pi.left && p.left < plain) return p;
+    if (p.left < kMinIntegralVarianceRatio * pi.left && p.left < plain) return p;
     if (pi.left < plain && one_sign(pi)) return pi;
     const Explained pid = explain(rows.leftCols(m), u);
-    if (one_sign(pid) && kHasShare * pid.left < without_integral(m).left) return pid;
+    if (one_sign(pid) && kMinIntegralVarianceRatio * pid.left < without_integral(m).left) return pid;
     return {Eigen::VectorXd::Zero(m), 1};
 }
 
@@ -141,13 +142,13 @@ Explained law_of(const Eigen::MatrixXd& rows, double plain) {
 
 std::optional<ControllerLaw> controller_law(const CleanRecord& record, const std::vector<double>& u,
                                             const std::vector<double>& r) {
-    constexpr double kPlain = 0.01;  // of u's variance
+    constexpr double kMaxUnexplainedOfLaw = 0.01;  // of u's variance
     const std::vector<MovingRows> segments = moving_rows(u);
     int rows = 0;
     for (const MovingRows& s : segments) rows += s.size();
     if (rows < kMinLawRows) return std::nullopt;
-    const Explained law = law_of(law_rows(record, u, r, segments), kPlain);
-    if (!(law.left < kPlain)) return std::nullopt;
+    const Explained law = law_of(law_rows(record, u, r, segments), kMaxUnexplainedOfLaw);
+    if (!(law.left < kMaxUnexplainedOfLaw)) return std::nullopt;
     const MovingRows& longest = *std::ranges::max_element(segments, {}, &MovingRows::size);
     if (is_sine(record, u, longest)) return std::nullopt;
     if (left_by_lagged_step(record, u, longest) <= law.left) return std::nullopt;

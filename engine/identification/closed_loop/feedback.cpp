@@ -29,9 +29,10 @@ double quantile(std::vector<double> values, double part) {
 
 /// At most a twentieth of the rows is left out: those beyond four deviations.
 Regression regress(const Eigen::MatrixXd& X, const Eigen::VectorXd& z) {
-    constexpr int kRounds = 6;                           // until the set of outliers no longer changes, in practice
-    constexpr double kMiddle = 0.8, kOfMiddle = 1.2816;  // that quantile of |normal|, in standard deviations
-    constexpr double kFar = 4, kKept = 0.95;
+    constexpr int kRounds = 6;  // until the set of outliers no longer changes, in practice
+    constexpr double kScaleQuantile = 0.8,
+                     kScaleQuantileInDeviations = 1.2816;  // that quantile of |normal|, in standard deviations
+    constexpr double kOutlierScales = 4, kMinKeptShare = 0.95;
     constexpr double kRidge = 1e-12;  // of a column's length squared: dependent columns share their coefficient
     const Eigen::Index n = z.size(), m = X.cols();
     Eigen::VectorXd length(m);
@@ -53,8 +54,8 @@ Regression regress(const Eigen::MatrixXd& X, const Eigen::VectorXd& z) {
         out.coefficient = scaled.cwiseQuotient(length);
         const Eigen::VectorXd size = out.residual.cwiseAbs();
         const std::vector<double> sizes(size.begin(), size.end());
-        out.scale = quantile(sizes, kMiddle) / kOfMiddle;
-        const double limit = std::max(kFar * out.scale, quantile(sizes, kKept));
+        out.scale = quantile(sizes, kScaleQuantile) / kScaleQuantileInDeviations;
+        const double limit = std::max(kOutlierScales * out.scale, quantile(sizes, kMinKeptShare));
         for (std::size_t i = 0; i < sizes.size(); ++i) out.usual[i] = sizes[i] <= limit ? 1 : 0;
     }
     return out;
@@ -128,34 +129,35 @@ double bent_on(const Moves& m, int j) {
 
 /// Ramps and slewing valves: most moves go on at the rate of the move before.
 bool on_ramps(const Moves& m) {
-    constexpr double kSame = 1e-3, kMax = 0.6;  // relative rounding of logged figures; share of the moves
+    constexpr double kRateTolerance = 1e-3,
+                     kMaxSameShare = 0.6;  // relative rounding of logged figures; share of the moves
     int same = 0, moved = 0;
     for (int j = 2; j < m.size(); ++j) {
         if (m.du[j] == 0) continue;
         ++moved;
-        same += std::abs(rate(m, j) - rate(m, j - 1)) <= kSame * std::abs(rate(m, j)) ? 1 : 0;
+        same += std::abs(rate(m, j) - rate(m, j - 1)) <= kRateTolerance * std::abs(rate(m, j)) ? 1 : 0;
     }
-    return same > kMax * moved;
+    return same > kMaxSameShare * moved;
 }
 
 Predictions predict_every_row(const Moves& m) {
-    constexpr int kOwn = 12, kShort = 4, kFirst = kOwn + 2;
-    const int n = m.size() - kFirst;
-    Eigen::MatrixXd own(n, kOwn + 2), same(n, kOwn + 2), past(n, kOwn + 2);
+    constexpr int kOwnLags = 12, kShortLags = 4, kFirstRow = kOwnLags + 2;
+    const int n = m.size() - kFirstRow;
+    Eigen::MatrixXd own(n, kOwnLags + 2), same(n, kOwnLags + 2), past(n, kOwnLags + 2);
     Eigen::VectorXd z(n);
     for (int i = 0; i < n; ++i) {
-        const int j = i + kFirst;
+        const int j = i + kFirstRow;
         z[i] = m.du[j];
-        own(i, kOwn) = same(i, kOwn) = past(i, kOwn) = carried_on(m, j);
-        own(i, kOwn + 1) = same(i, kOwn + 1) = past(i, kOwn + 1) = bent_on(m, j);
-        for (int l = 0; l < kOwn; ++l) own(i, l) = m.du[j - 1 - l];
-        for (int l = 0; l < kShort; ++l) same(i, l) = past(i, l) = m.du[j - 1 - l];
-        for (int l = 0; l < kOwn - kShort; ++l) {
-            same(i, kShort + l) = m.dy[j - l];
-            past(i, kShort + l) = m.dy[j - 1 - l];
+        own(i, kOwnLags) = same(i, kOwnLags) = past(i, kOwnLags) = carried_on(m, j);
+        own(i, kOwnLags + 1) = same(i, kOwnLags + 1) = past(i, kOwnLags + 1) = bent_on(m, j);
+        for (int l = 0; l < kOwnLags; ++l) own(i, l) = m.du[j - 1 - l];
+        for (int l = 0; l < kShortLags; ++l) same(i, l) = past(i, l) = m.du[j - 1 - l];
+        for (int l = 0; l < kOwnLags - kShortLags; ++l) {
+            same(i, kShortLags + l) = m.dy[j - l];
+            past(i, kShortLags + l) = m.dy[j - 1 - l];
         }
     }
-    return {regress(own, z), regress(same, z), regress(past, z), kOwn, kFirst, kShort};
+    return {regress(own, z), regress(same, z), regress(past, z), kOwnLags, kFirstRow, kShortLags};
 }
 
 /// From one move of u to the next: the differences of y and its integral, as a PI law with rests between its moves.
@@ -193,19 +195,19 @@ struct NewsOfY {
 };
 
 NewsOfY news_of_y(const CleanRecord& r, const std::vector<double>& u) {
-    constexpr int kOwn = 12, kShort = 4, kFirst = kOwn + 2;
-    const int n = r.samples() - kFirst;
-    Eigen::MatrixXd own(n, kOwn), both(n, kOwn);
+    constexpr int kOwnLags = 12, kShortLags = 4, kFirstRow = kOwnLags + 2;
+    const int n = r.samples() - kFirstRow;
+    Eigen::MatrixXd own(n, kOwnLags), both(n, kOwnLags);
     Eigen::VectorXd z(n);
     auto dy = [&](int i) { return r.y[i] - r.y[i - 1]; };
     for (int i = 0; i < n; ++i) {
-        const int j = i + kFirst;
+        const int j = i + kFirstRow;
         z[i] = dy(j);
-        for (int l = 0; l < kOwn; ++l) own(i, l) = dy(j - 1 - l);
-        for (int l = 0; l < kShort; ++l) both(i, l) = own(i, l);
-        for (int l = 0; l < kOwn - kShort; ++l) both(i, kShort + l) = u[j - 1 - l] - u[j - 2 - l];
+        for (int l = 0; l < kOwnLags; ++l) own(i, l) = dy(j - 1 - l);
+        for (int l = 0; l < kShortLags; ++l) both(i, l) = own(i, l);
+        for (int l = 0; l < kOwnLags - kShortLags; ++l) both(i, kShortLags + l) = u[j - 1 - l] - u[j - 2 - l];
     }
-    return {regress(own, z), regress(both, z), kFirst};
+    return {regress(own, z), regress(both, z), kFirstRow};
 }
 
 /// The part of u's news (what u's past does not predict of its moves) that y's news (what both pasts do not predict of
@@ -230,7 +232,8 @@ double unexplained_by_news(const Moves& m, const Predictions& p, const NewsOfY& 
 /// A logger that writes u after its answer shows y and u of the same row as a controller would. The law of a plant is
 /// a lag with a gain; that of a controller has no lag of y, or, with integral action, no gain from u to y.
 bool is_law_of_lag(const CleanRecord& r, const std::vector<double>& u) {
-    constexpr double kLag = 0.2, kGain = 0.7;  // coefficients that a controller's law stays below
+    constexpr double kMaxLagCoefficient = 0.2,
+                     kMaxGainCoefficient = 0.7;  // coefficients that a controller's law stays below
     const int n = r.samples() - 2;
     Eigen::MatrixXd X(n, 3);
     Eigen::VectorXd z(n);
@@ -240,21 +243,21 @@ bool is_law_of_lag(const CleanRecord& r, const std::vector<double>& u) {
         X.row(i) << r.y[j - 1] - r.y[j - 2], u[j] - u[j - 1], u[j - 1] - u[j - 2];
     }
     const Eigen::VectorXd c = regress(X, z).coefficient;
-    return c[0] > kLag && std::abs(c[1] + c[2]) > kGain * std::abs(c[1]);
+    return c[0] > kMaxLagCoefficient && std::abs(c[1] + c[2]) > kMaxGainCoefficient * std::abs(c[1]);
 }
 
 bool on_few_levels(std::vector<double> u) {
-    constexpr double kSame = 1e-3;  // of u's range: jitter of a level
-    constexpr int kFew = 3;
+    constexpr double kLevelTolerance = 1e-3;  // of u's range: jitter of a level
+    constexpr int kMaxLevels = 3;
     std::sort(u.begin(), u.end());
-    const double same = kSame * (u.back() - u.front());
+    const double same = kLevelTolerance * (u.back() - u.front());
     int levels = 1;
     double last = u.front();
     for (const double value : u) {
         if (value - last > same) ++levels;
         if (value - last > same) last = value;
     }
-    return levels <= kFew;
+    return levels <= kMaxLevels;
 }
 
 /// A pseudo-random sequence or a heater by pulse width, whatever jitter or grid u has.
@@ -262,17 +265,18 @@ bool switches_between_two(const CleanRecord& r) { return two_levels(input_levels
 
 /// Moves that the law of the controller leaves over, far beyond what it leaves elsewhere; the first of a few in a row.
 std::vector<OutsideMove> outside_moves(const CleanRecord& r, const Moves& m, const Predictions& p) {
-    constexpr double kFar = 10, kOfRange = 0.01;  // deviations of the law's residual; of u's range
-    constexpr int kApart = 8;                     // moves between two that count apart
+    constexpr double kMinResidualScales = 10,
+                     kMinShareOfRange = 0.01;  // deviations of the law's residual; of u's range
+    constexpr int kMinMovesBetween = 8;        // moves between two that count apart
     const double law = p.by_y.coefficient[p.y_column];
     std::vector<OutsideMove> found;
     if (law == 0) return found;
-    int last = -kApart;
+    int last = -kMinMovesBetween;
     for (Eigen::Index i = 0; i < p.by_y.residual.size(); ++i) {
         const double left = p.by_y.residual[i];
-        if (std::abs(left) < std::max(kFar * p.by_y.scale, kOfRange)) continue;
+        if (std::abs(left) < std::max(kMinResidualScales * p.by_y.scale, kMinShareOfRange)) continue;
         const int j = static_cast<int>(i) + p.first;
-        if (j - last >= kApart) found.push_back({r.t[m.row[j]], -left / law});
+        if (j - last >= kMinMovesBetween) found.push_back({r.t[m.row[j]], -left / law});
         last = j;
     }
     return found;
@@ -291,34 +295,34 @@ std::optional<Moves> possible_moves(const CleanRecord& r, const std::vector<doub
 }
 
 std::optional<Feedback> found_in_moves(const CleanRecord& r, const std::vector<double>& u, const Moves& moves) {
-    constexpr double kNoNews = 1e-6;         // of u's range: its own past predicts u to rounding
-    constexpr double kExact = 0.03;          // ratio of errors that no open-loop test shows
-    constexpr double kMoreThanChance = 1.6;  // standard errors of the log ratio; more where rows are uneven
+    constexpr double kMinOwnError = 1e-6;         // of u's range: its own past predicts u to rounding
+    constexpr double kMaxExactErrorRatio = 0.03;  // ratio of errors that no open-loop test shows
+    constexpr double kMoreThanChance = 1.6;       // standard errors of the log ratio; more where rows are uneven
     constexpr double kMoreUneven = 3;
-    constexpr double kNewsInY = 0.8;     // u's past must not lower y's error below that share
-    constexpr double kByNews = 0.3;      // of what y explains of u's moves, its news explain this
-    constexpr double kQuiet = 3e-4;      // of y's range: a y without news is a simulation's
-    constexpr double kLawIsPlain = 0.5;  // ratio of errors at which its outliers are the set point's moves
+    constexpr double kNewsInY = 0.8;                // u's past must not lower y's error below that share
+    constexpr double kByNews = 0.3;                 // of what y explains of u's moves, its news explain this
+    constexpr double kMinYError = 3e-4;             // of y's range: a y without news is a simulation's
+    constexpr double kMaxPlainLawErrorRatio = 0.5;  // ratio of errors at which its outliers are the set point's moves
     const Predictions p = moves.every_row ? predict_every_row(moves) : predict_moves(moves);
     const Errors same = compare(p.by_u, p.by_y), past = compare(p.by_u, p.by_past_y);
-    if (same.a < kNoNews) return std::nullopt;
+    if (same.a < kMinOwnError) return std::nullopt;
     const bool at_once = same.ratio() <= past.ratio();
     const double ratio = std::min(same.ratio(), past.ratio());
     const auto n = static_cast<double>(p.by_u.residual.size());
     const double margin = moves.every_row && unevenly_spaced(r) ? kMoreUneven : kMoreThanChance;
     if (ratio > std::exp(-margin * std::sqrt(p.coefficients / n))) return std::nullopt;
-    const bool exact = ratio < kExact;
+    const bool exact = ratio < kMaxExactErrorRatio;
     if (!exact || !moves.every_row) {
         const NewsOfY y = news_of_y(r, u);
         const Errors of_y = compare(y.by_y, y.by_both);
-        if (of_y.b < kQuiet) return std::nullopt;
+        if (of_y.b < kMinYError) return std::nullopt;
         if (!exact && of_y.ratio() < kNewsInY) return std::nullopt;
         const double left = unexplained_by_news(moves, p, y);
         if (!exact && 1 - left * left < kByNews * (1 - ratio * ratio)) return std::nullopt;
     }
     if (at_once && moves.every_row && !exact && is_law_of_lag(r, u)) return std::nullopt;
     Feedback feedback{same.a, at_once ? same.b : past.b, at_once, 0, {}};
-    if (same.ratio() < kLawIsPlain) {
+    if (same.ratio() < kMaxPlainLawErrorRatio) {
         feedback.gain = p.by_y.coefficient[p.y_column];
         feedback.outside = outside_moves(r, moves, p);
     }
@@ -341,10 +345,10 @@ std::vector<double> input_at_samples(const CleanRecord& r) {
 bool may_be_controlled(const CleanRecord& r) { return possible_moves(r, input_at_samples(r)).has_value(); }
 
 double restlessness(const CleanRecord& r) {
-    constexpr double kOften = 0.1;  // of the rows: tests move u in fewer
+    constexpr double kMinMovingShare = 0.1;  // of the rows: tests move u in fewer
     const std::vector<double> u = input_at_samples(r);
     const std::optional<Moves> moves = possible_moves(r, u);
-    if (!moves || moves->size() < kOften * r.samples() || is_law_of_lag(r, u)) return 0;
+    if (!moves || moves->size() < kMinMovingShare * r.samples() || is_law_of_lag(r, u)) return 0;
     const Predictions p = moves->every_row ? predict_every_row(*moves) : predict_moves(*moves);
     return compare(p.by_u, p.by_u).a / std::max(deviation(u), kTinyRoot);
 }

@@ -19,17 +19,17 @@ constexpr double kNoVariance = 1e-300;  ///< keeps a division by what may be 0 f
 
 /// The coefficients of 1 + a1 q^-1 + ...: the least of Akaike's criterion up to order 8, by Levinson and Durbin.
 VectorXd whitening(const VectorXd& e) {
-    constexpr int kMax = 8;                 // order
+    constexpr int kMaxOrder = 8;            // order
     constexpr double kPredictable = 1e-12;  // of the variance: what is left is rounding
     const Index n = e.size();
-    const int most = static_cast<int>(std::min<Index>(kMax, n / 10));
-    VectorXd covariance(most + 1);
-    for (int k = 0; k <= most; ++k) covariance[k] = e.head(n - k).dot(e.tail(n - k)) / static_cast<double>(n);
+    const int max = static_cast<int>(std::min<Index>(kMaxOrder, n / 10));
+    VectorXd covariance(max + 1);
+    for (int k = 0; k <= max; ++k) covariance[k] = e.head(n - k).dot(e.tail(n - k)) / static_cast<double>(n);
     VectorXd best = VectorXd::Ones(1), a = VectorXd::Ones(1);
     double variance = covariance[0];
     if (!(variance > 0)) return best;
-    double least = static_cast<double>(n) * std::log(variance);
-    for (int k = 1; k <= most && variance > kPredictable * covariance[0]; ++k) {
+    double min = static_cast<double>(n) * std::log(variance);
+    for (int k = 1; k <= max && variance > kPredictable * covariance[0]; ++k) {
         double sum = 0;
         for (int i = 0; i < k; ++i) sum += a[i] * covariance[k - i];
         const double reflection = -sum / variance;
@@ -40,7 +40,7 @@ VectorXd whitening(const VectorXd& e) {
         variance *= 1 - reflection * reflection;
         if (!(variance > 0)) break;
         const double criterion = static_cast<double>(n) * std::log(variance) + 2 * k;
-        if (criterion < least) least = criterion, best = a;
+        if (criterion < min) min = criterion, best = a;
     }
     return best;
 }
@@ -155,9 +155,9 @@ double allowed_part(const Fit& fit, const std::vector<Index>& free, const Vector
     for (std::size_t k = 0; k < free.size(); ++k) {
         const auto which = static_cast<std::size_t>(free[k]);
         if (which >= places.size()) continue;
-        const double most = is_time(places[which]) ? kDeadTime : kLogarithm;
+        const double max = is_time(places[which]) ? kDeadTime : kLogarithm;
         const double size = std::abs(step[static_cast<Index>(k)]);
-        if (size > most) part = std::min(part, most / size);
+        if (size > max) part = std::min(part, max / size);
     }
     return part;
 }
@@ -174,9 +174,9 @@ double mismatch_of(const SetPointPart& part, const InstrumentEquations& here, co
     const VectorXd explained = W * least_squares(W, e);
     const double total = e.squaredNorm();
     if (!(total > 0)) return 0;
-    constexpr double kUnexplained = 1e-12;  // of the variance: rounding
+    constexpr double kMinUnexplainedShare = 1e-12;  // of the variance: rounding
     const double share = explained.squaredNorm() / total;
-    return share / std::max(kUnexplained, 1 - share) *
+    return share / std::max(kMinUnexplainedShare, 1 - share) *
            effective_samples({e.data(), static_cast<std::size_t>(e.size())});
 }
 
@@ -186,7 +186,7 @@ double mismatch_of(const SetPointPart& part, const InstrumentEquations& here, co
 /// compared with.
 double jackknife(const InstrumentEquations& here, Index gain) {
     constexpr Index kStretches = 10;
-    constexpr double kCarriesAll = 25;  // times the gain's variance without the stretch
+    constexpr double kMaxGainVarianceRatio = 25;  // times the gain's variance without the stretch
     const Index length = here.e.size() / kStretches;
     const MatrixXd A = gram(here.Z, here.J), squares = gram(here.Z, here.Z);
     const VectorXd b = transpose_times(here.Z, here.e);
@@ -199,7 +199,7 @@ double jackknife(const InstrumentEquations& here, Index gain) {
     for (Index k = 0; k < kStretches; ++k) {
         const MatrixXd Z = here.Z.middleRows(k * length, length);
         const MatrixXd rest = A - gram(Z, here.J.middleRows(k * length, length));
-        if (!(variance(rest, squares - gram(Z, Z)) < kCarriesAll * whole)) continue;
+        if (!(variance(rest, squares - gram(Z, Z)) < kMaxGainVarianceRatio * whole)) continue;
         moved.push_back(solve_square(rest, b - transpose_times(Z, here.e.segment(k * length, length)))[gain]);
     }
     if (moved.size() < 2) return 0;
@@ -246,9 +246,9 @@ std::vector<std::vector<double>> deviations_of(const InstrumentEquations& here, 
 std::optional<InstrumentFit> fit_by_instrument(const CleanRecord& record, const SetPointPart& part, const Fit& start,
                                                const std::stop_token& stop) {
     constexpr int kIterations = 40, kFilterSettles = 4, kHalvings = 8;
-    constexpr double kSmall = 1e-6;        // step in standard lengths of the columns
-    constexpr double kUsualMismatch = 8;   // chance gives so much
-    constexpr double kOfUnfiltered = 0.5;  // of the variance that slow disturbances would give
+    constexpr double kMinStepLength = 1e-6;  // step in standard lengths of the columns
+    constexpr double kUsualMismatch = 8;     // chance gives so much
+    constexpr double kOfUnfiltered = 0.5;    // of the variance that slow disturbances would give
     LoopSensitivities rows(record, part);
     const ShapeBounds bounds = shape_bounds(record, start.form.structure);
     Fit fit = start;
@@ -277,7 +277,7 @@ std::optional<InstrumentFit> fit_by_instrument(const CleanRecord& record, const 
         }
         if (!better) rows.evaluate(fit);
         const double length = step.cwiseProduct(here.length).norm() * share;
-        if (!better || (iteration > kFilterSettles && length < kSmall)) break;
+        if (!better || (iteration > kFilterSettles && length < kMinStepLength)) break;
     }
     const InstrumentEquations here(rows, a, free);
     InstrumentFit out;

@@ -31,16 +31,16 @@ double left_of(std::span<const double> u, std::span<const double> y, const Line&
 }  // namespace
 
 std::optional<LevelLaw> level_law(const CleanRecord& record, const std::vector<double>& u) {
-    constexpr int kTurns = 12;
-    constexpr double kTimesRounding = 1.5;  // of the rounding's deviation
-    constexpr double kOfSpread = 0.3;       // of u's deviation: a line that explains less of u is none
-    if (turns_of(u) < kTurns) return std::nullopt;
+    constexpr int kMinTurns = 12;
+    constexpr double kMaxRoundingDeviations = 1.5;    // of the rounding's deviation
+    constexpr double kMaxUnexplainedDeviation = 0.3;  // of u's deviation: a line that explains less of u is none
+    if (turns_of(u) < kMinTurns) return std::nullopt;
     const double of_u = quantisation_step(u), of_y = quantisation_step(record.y);
     if (!(of_u > 0) || !(of_y > 0)) return std::nullopt;
     const std::span v(u), y(record.y);
     const Line line = straight_line(y, v);
     const double left = left_of(v, y, line), rounding = std::hypot(of_u, line.slope * of_y) / std::sqrt(12.0);
-    if (left > kTimesRounding * rounding || left > kOfSpread * deviation(u)) return std::nullopt;
+    if (left > kMaxRoundingDeviations * rounding || left > kMaxUnexplainedDeviation * deviation(u)) return std::nullopt;
     const auto before = v.first(v.size() - 1), after = y.last(y.size() - 1);
     if (left_of(before, after, straight_line(after, before)) < left) return std::nullopt;
     return LevelLaw{line.slope, left};

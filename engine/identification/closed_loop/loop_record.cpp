@@ -14,8 +14,8 @@
 namespace tunewright {
 namespace {
 
-constexpr int kMaxSeen = 20'000;                ///< rows
-constexpr double kFollows = 0.05, kPlain = 10;  ///< share of u's variance; F ratio
+constexpr int kMaxSeen = 20'000;                             ///< rows
+constexpr double kMinSetPointShare = 0.05, kMinFRatio = 10;  ///< share of u's variance; F ratio
 
 std::string by_news(const Feedback& feedback, const RecordScale& scale) {
     return "y, " + std::string(feedback.at_once ? "of the same and earlier rows" : "of earlier rows") +
@@ -25,13 +25,13 @@ std::string by_news(const Feedback& feedback, const RecordScale& scale) {
 
 /// Steps of a set point at the samples: changes below 2 % of its range are none, and a ramp is one.
 int moves_of(const std::vector<double>& r) {
-    constexpr double kJitter = 0.02;
+    constexpr double kMaxJitter = 0.02;
     const auto [low, high] = std::ranges::minmax(r);
     int moves = 0;
     double last = 0;
     for (std::size_t i = 1; i < r.size(); ++i) {
         const double change = r[i] - r[i - 1];
-        const bool moved = std::abs(change) > kJitter * (high - low);
+        const bool moved = std::abs(change) > kMaxJitter * (high - low);
         if (moved && change * last <= 0) ++moves;
         last = moved ? change : 0;
     }
@@ -82,7 +82,7 @@ void choose_excitation(const CleanRecord& record, const SetPoint& set_point, con
         loop.part = std::move(part);
         loop.u_rest.reset();
         if (!u0_given) loop.u_rest = level_before_set_point(record, outside.w);
-        if (loop.part->share > kFollows && loop.part->strength > kPlain) return;
+        if (loop.part->share > kMinSetPointShare && loop.part->strength > kMinFRatio) return;
     }
 }
 
@@ -115,7 +115,7 @@ Expected<std::optional<LoopRecord>> find_loop(const CleanRecord& full, const Rec
     if (feedback) kicks = of_whole_record(feedback->outside, seen.scale.t_scale / full.scale.t_scale);
     choose_excitation(record, set_point, kicks, full.u0_given, loop);
     const bool follows = set_point.moves && loop.found.used == LoopExcitation::set_point && loop.part &&
-                         loop.part->share > kFollows && loop.part->strength > kPlain;
+                         loop.part->share > kMinSetPointShare && loop.part->strength > kMinFRatio;
     if (feedback) {
         loop.found.evidence = by_news(*feedback, record.scale);
         loop.gain = feedback->gain;

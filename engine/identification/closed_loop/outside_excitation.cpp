@@ -14,28 +14,30 @@ namespace {
 
 /// True if r is y, as many controllers write it in manual: of this row or the one before, and rounded, in some rows.
 bool tracks(std::span<const double> r, std::span<const double> y) {
-    constexpr double kSame = 1e-3, kFine = 0.1;       // of y's range; more is a level of r, not a figure's rounding
-    constexpr double kMostMoves = 0.8, kOften = 0.1;  // of the moves of r; of the rows: a set point moves in fewer
-    const double grid = quantisation_step(r), same = kSame + (grid < kFine ? 0.5 * grid : 0);
+    constexpr double kLevelTolerance = 1e-3,
+                     kMaxGrid = 0.1;  // of y's range; more is a level of r, not a figure's rounding
+    constexpr double kMaxMoves = 0.8,
+                     kMinMovingShare = 0.1;  // of the moves of r; of the rows: a set point moves in fewer
+    const double grid = quantisation_step(r), same = kLevelTolerance + (grid < kMaxGrid ? 0.5 * grid : 0);
     int moves = 0, tracking = 0;
     for (std::size_t i = 1; i < r.size(); ++i) {
         if (r[i] == r[i - 1]) continue;
         ++moves;
         tracking += std::min(std::abs(r[i] - y[i]), std::abs(r[i] - y[i - 1])) < same ? 1 : 0;
     }
-    return moves > kOften * static_cast<double>(r.size()) && tracking > kMostMoves * moves;
+    return moves > kMinMovingShare * static_cast<double>(r.size()) && tracking > kMaxMoves * moves;
 }
 
 /// True if u is a straight line over r, of the same row or the one before, but for rounding.
 bool commands(std::span<const double> r, std::span<const double> u) {
-    constexpr double kSame = 1e-3;  // of u's deviation
+    constexpr double kMaxDeviationShare = 1e-3;  // of u's deviation
     const double spread = deviation(u), grid = quantisation_step(u);
     if (!(spread > 0) || !(deviation(r) > 0)) return false;
-    const double most = std::max(kSame * spread, grid < spread ? grid : 0.0);
+    const double max = std::max(kMaxDeviationShare * spread, grid < spread ? grid : 0.0);
     for (const std::size_t late : {0U, 1U}) {
         const auto from = r.first(r.size() - late), to = u.last(u.size() - late);
         const std::vector<double> left = residuals(straight_line(from, to), from, to);
-        if (std::ranges::all_of(left, [&](double e) { return std::abs(e) <= most; })) return true;
+        if (std::ranges::all_of(left, [&](double e) { return std::abs(e) <= max; })) return true;
     }
     return false;
 }
@@ -48,12 +50,12 @@ std::vector<double> column_at_samples(const CleanRecord& clean, const Record& re
     if (known.empty()) return {};
     std::stable_sort(known.begin(), known.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     const RecordScale& s = clean.scale;
-    constexpr double kRounding = 1e-9;  // of the record's length
+    constexpr double kTimeTolerance = 1e-9;  // of the record's length
     std::vector<double> r;
     std::size_t next = 0;
     double now = known.front().second;
     for (int i = 0; i < clean.samples(); ++i) {
-        const double t = s.t_origin + s.t_scale * (clean.t[i] + kRounding);
+        const double t = s.t_origin + s.t_scale * (clean.t[i] + kTimeTolerance);
         for (; next < known.size() && known[next].first <= t; ++next) now = known[next].second;
         r.push_back((now - s.y_origin) / s.y_scale);
     }
@@ -79,19 +81,20 @@ std::vector<double> stepped_from(double y_before, const std::vector<double>& r, 
 
 /// The mean of y's first rows if y is at rest there and goes far from it; else empty.
 std::optional<double> rest_at_first_row(const CleanRecord& record, const std::vector<double>& r) {
-    constexpr double kFar = 0.5, kAway = 0.02;  // of y's range
-    constexpr double kNoise = 3;                // deviations that noise may take y the other way
-    constexpr std::size_t kFew = 3;             // rows that may all lie within the dead time
+    constexpr double kMinTravel = 0.5, kMinDeparture = 0.02;  // of y's range
+    constexpr double kNoiseDeviations = 3;                    // deviations that noise may take y the other way
+    constexpr std::size_t kFirstRows = 3;                     // rows that may all lie within the dead time
     const std::span<const double> y(record.y);
     if (y.size() < static_cast<std::size_t>(10 * kRestRows)) return std::nullopt;
     // A u that stands still in the first rows shows them at rest: nobody has moved it yet.
     const std::vector<double> u = input_at_samples(record);
     if (std::all_of(u.begin(), u.begin() + kRestRows, [&](double value) { return value == u.front(); }))
         return std::nullopt;
-    const double first = mean(y.first(kFew)), end = r.empty() ? mean(y.last(y.size() / 5)) : r.front();
-    if (std::abs(end - first) < kFar) return std::nullopt;
-    const double sign = end > first ? 1 : -1, most = kAway + kNoise * noise_std(y) + quantisation_step(y);
-    const auto back = [&](double value) { return sign * (value - y.front()) < -most; };
+    const double first = mean(y.first(kFirstRows)), end = r.empty() ? mean(y.last(y.size() / 5)) : r.front();
+    if (std::abs(end - first) < kMinTravel) return std::nullopt;
+    const double sign = end > first ? 1 : -1,
+                 max = kMinDeparture + kNoiseDeviations * noise_std(y) + quantisation_step(y);
+    const auto back = [&](double value) { return sign * (value - y.front()) < -max; };
     return std::ranges::any_of(y, back) ? std::nullopt : std::optional(first);
 }
 

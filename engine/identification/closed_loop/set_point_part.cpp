@@ -57,7 +57,7 @@ std::optional<SetPointPart> set_point_part(const std::vector<double>& u, const s
     moved /= size;
     const double total = (target.array() - target.mean()).square().sum();
     constexpr double kRidge = 1e-9;  // dependent filters share their coefficients
-    double least = -1;
+    double min = -1;
     Eigen::MatrixXd best;
     Eigen::VectorXd coefficient, rest;
     for (int k = 0; k < kPoles; ++k) {
@@ -69,18 +69,18 @@ std::optional<SetPointPart> set_point_part(const std::vector<double>& u, const s
         const Eigen::VectorXd c = solve_symmetric(G, transpose_times(X, target));
         const Eigen::VectorXd left = target - X * c;
         const double sum = left.squaredNorm();
-        if (least >= 0 && sum >= least) continue;
-        least = sum, best = X, coefficient = c, rest = left;
+        if (min >= 0 && sum >= min) continue;
+        min = sum, best = X, coefficient = c, rest = left;
     }
-    constexpr double kTiny = 1e-300, kUnexplained = 1e-12;  // keep divisions by what may be 0 finite
+    constexpr double kMinDivisor = 1e-300, kMinUnexplainedShare = 1e-12;  // keep divisions by what may be 0 finite
     SetPointPart part;
     const Eigen::VectorXd explained = best * coefficient;
     for (const double value : explained) part.u.push_back(value - explained[0]);
     for (Eigen::Index k = 1; k < best.cols(); ++k) part.filtered.emplace_back(best.col(k).begin(), best.col(k).end());
-    part.share = std::clamp(1 - least / std::max(total, kTiny), 0.0, 1.0);
+    part.share = std::clamp(1 - min / std::max(total, kMinDivisor), 0.0, 1.0);
     const double independent = effective_samples({rest.data(), static_cast<std::size_t>(n)});
     const double freedom = std::max(1.0, independent - kFilters - 3);
-    part.strength = part.share * freedom / (std::max(1 - part.share, kUnexplained) * (kFilters + 2));
+    part.strength = part.share * freedom / (std::max(1 - part.share, kMinUnexplainedShare) * (kFilters + 2));
     return part;
 }
 

@@ -16,18 +16,18 @@ namespace {
 constexpr int kValleysRefined = 2;  ///< minima of the scan; twice as many with a zero, whose sign parts them
 constexpr int kStartsRefined = 2;   ///< starts from simpler fits
 constexpr int kThinSamples = 160;   ///< enough to rank starts
-constexpr Effort kCoarse{15, 1e-4};
-constexpr Effort kComparison{60, 1e-7};
+constexpr Effort kCoarseEffort{15, 1e-4};
+constexpr Effort kComparisonEffort{60, 1e-7};
 /// From the optimum on fewer samples: where noise is left, what remains after one step is of second order.
-constexpr Effort kOneStep{4, 1e-2};
-constexpr Effort kFinal{60, 1e-11};
+constexpr Effort kOneStepEffort{4, 1e-2};
+constexpr Effort kFinalEffort{60, 1e-11};
 
 Fit best_from(const FitContext& context, const FitData& data, const ModelForm& form,
               const std::vector<ModelShape>& starts, const Effort& effort) {
     Fit best;
     best.form = form;
     std::vector<Fit> fits(starts.size());
-    run_each(context.spread, static_cast<int>(starts.size()), [&](int i) {
+    parallel_for(context.spread, static_cast<int>(starts.size()), [&](int i) {
         const auto at = static_cast<std::size_t>(i);
         fits[at] = fit_shape(data, form, starts[at], effort, context.stop);
     });
@@ -37,8 +37,8 @@ Fit best_from(const FitContext& context, const FitData& data, const ModelForm& f
     return best;
 }
 
-std::vector<ModelShape> most_promising(const FitContext& context, const ModelForm& form,
-                                       const std::vector<ModelShape>& starts) {
+std::vector<ModelShape> best_points(const FitContext& context, const ModelForm& form,
+                                    const std::vector<ModelShape>& starts) {
     const std::vector<double> sums = sums_of_squares(context.few(), form, starts, context.stop);
     std::vector<int> order(starts.size());
     std::iota(order.begin(), order.end(), 0);
@@ -77,39 +77,39 @@ Fit fit_form(const FitContext& context, const ModelForm& form, const std::vector
     // Of either kind: the simpler fits' neighbourhood looks good from the start, another valley only once refined.
     std::vector<ModelShape> starts = scan_shapes(context.few(), form, kValleysRefined * form.gains(), context.stop);
     if (!extended.empty()) {
-        const std::vector<ModelShape> best = most_promising(context, form, extended);
+        const std::vector<ModelShape> best = best_points(context, form, extended);
         starts.insert(starts.end(), best.begin(), best.end());
     }
-    Fit fit = best_from(context, context.few(), form, starts, kCoarse);
-    fit = fit_shape(context.some(), form, fit.shape, kComparison, context.stop);
+    Fit fit = best_from(context, context.few(), form, starts, kCoarseEffort);
+    fit = fit_shape(context.some(), form, fit.shape, kComparisonEffort, context.stop);
     const bool worse = std::any_of(simpler.begin(), simpler.end(), [&](const Fit& s) {
         return same_form(s.form, form) && !extend_shape(s.shape, form.structure).empty() && fit.sse > s.sse;
     });
     if (worse && !nested.empty()) {
-        Fit again = best_from(context, context.some(), form, nested, kComparison);
+        Fit again = best_from(context, context.some(), form, nested, kComparisonEffort);
         if (again.sse < fit.sse) fit = std::move(again);
     }
     return fit;
 }
 
 /// Differences of the criterion (Kass and Raftery 1995, section 3.2).
-constexpr double kSimpler = 5, kPositive = 6, kStrong = 10, kFarBetter = 50;
+constexpr double kMinEvidenceOverSimpler = 5, kPositiveEvidence = 6, kStrongEvidence = 10, kOverwhelmingEvidence = 50;
 
 /// The slope of an integrator at rest can be distinguished from its response if the record shows y before u moves, or u
 /// moving again.
 bool shows_rest(const CleanRecord& r) {
-    constexpr int kEnoughBefore = 4;  // samples that tell a slope from their noise
+    constexpr int kMinSamplesBefore = 4;  // samples that tell a slope from their noise
     const auto before = std::count_if(r.t.begin(), r.t.end(), [&](double t) { return t <= r.v_time.front(); });
-    return r.changes() > 1 || before >= kEnoughBefore;
+    return r.changes() > 1 || before >= kMinSamplesBefore;
 }
 
 /// A level of rest far from what u did is no level of rest: the structure is wrong, and the start stands in for another
 /// lag.
 bool plausible_rest(const CleanRecord& r, const Fit& fit) {
     const double rest = level_of_rest(fit);
-    constexpr double kFarthest = 2, kFarthestIntegrating = 0.5;  // in steps of u
+    constexpr double kMaxRestInSteps = 2, kMaxRestInStepsIntegrating = 0.5;  // in steps of u
     if (r.changes() == 1)
-        return std::abs(rest) <= (is_integrating(fit.form.structure) ? kFarthestIntegrating : kFarthest);
+        return std::abs(rest) <= (is_integrating(fit.form.structure) ? kMaxRestInStepsIntegrating : kMaxRestInSteps);
     const auto [low, high] = std::minmax_element(r.v_level.begin(), r.v_level.end());
     const double span = std::max(0.0, *high) - std::min(0.0, *low);
     return rest >= std::min(0.0, *low) - span && rest <= std::max(0.0, *high) + span;
@@ -155,8 +155,10 @@ FitContext fit_context(CleanRecord record, bool relay, const RunControl& control
 
 bool leaves_a_pattern(const FitContext& context, const Fit& fit) {
     const auto n = static_cast<double>(fit.residual.size());
-    constexpr double kMoreThanNoise = 2, kPattern = 3;  // times the noise's variance; samples of correlation time
-    return fit.sse > kMoreThanNoise * n * context.noise * context.noise && correlation_time(fit.residual) > kPattern;
+    constexpr double kMinNoiseVariances = 2,
+                     kMinCorrelationTime = 3;  // times the noise's variance; samples of correlation time
+    return fit.sse > kMinNoiseVariances * n * context.noise * context.noise &&
+           correlation_time(fit.residual) > kMinCorrelationTime;
 }
 
 const Fit* best_fit(const std::vector<Fit>& fits) {
@@ -176,8 +178,8 @@ double known_noise(const FitContext& context, const Fit* best) {
 }
 
 bool at_shortest_lag(const Fit& fit) {
-    constexpr double kNear = 0.2;  // of ln T: the search ends at the bound, or a step of its scan before
-    return fit.form.structure == Structure::unstable && fit.shape.p[1] <= kMinUnstable + kNear;
+    constexpr double kMaxLogBoundDistance = 0.2;  // of ln T: the search ends at the bound, or a step of its scan before
+    return fit.form.structure == Structure::unstable && fit.shape.p[1] <= kMinUnstable + kMaxLogBoundDistance;
 }
 
 double unexplained_share(const FitContext& context, const Fit& fit) {
@@ -206,7 +208,9 @@ Fit fit_structure(const FitContext& context, Structure structure, const Disturba
     Fit best = fit_form(context, form, simpler);
     if (known_start) return best;
     // What moves before u does is a start or a drift: beside a drift a start must be needed for itself.
-    const double lead = disturbances.slope ? kStrong : context.start == RecordStart::moving ? 0 : kPositive;
+    const double lead = disturbances.slope                     ? kStrongEvidence
+                        : context.start == RecordStart::moving ? 0
+                                                               : kPositiveEvidence;
     for (const ModelForm& start : other_starts(context, best)) {
         Fit fit = fit_form(context, start, simpler);
         if (!fit.determined || !plausible_rest(record, fit)) continue;
@@ -233,7 +237,7 @@ int depth(Structure structure) {
 std::vector<Fit> fit_structures(const FitContext& context, const std::vector<Structure>& structures,
                                 const Disturbances& disturbances, const std::vector<Fit>& simpler) {
     std::vector<Fit> fits(structures.size());
-    run_each(context.spread, static_cast<int>(structures.size()), [&](int i) {
+    parallel_for(context.spread, static_cast<int>(structures.size()), [&](int i) {
         const auto at = static_cast<std::size_t>(i);
         fits[at] = fit_structure(context, structures[at], disturbances, simpler);
     });
@@ -241,15 +245,15 @@ std::vector<Fit> fit_structures(const FitContext& context, const std::vector<Str
 }
 
 void polish(const FitContext& context, Fit& fit) {
-    Fit again = fit_shape(context.all(), fit.form, fit.shape, kFinal, context.stop);
+    Fit again = fit_shape(context.all(), fit.form, fit.shape, kFinalEffort, context.stop);
     if (again.determined && again.sse <= fit.sse) fit = std::move(again);
 }
 
 void finish_fits(const FitContext& context, std::vector<Fit>& fits) {
     if (context.record.samples() == context.medium.samples()) return;
     const auto each = [&](const std::function<void(Fit&)>& work) {
-        run_each(context.spread, static_cast<int>(fits.size()),
-                 [&](int i) { work(fits[static_cast<std::size_t>(i)]); });
+        parallel_for(context.spread, static_cast<int>(fits.size()),
+                     [&](int i) { work(fits[static_cast<std::size_t>(i)]); });
     };
     each([&](Fit& fit) {
         const bool determined = fit.determined;
@@ -266,7 +270,7 @@ void finish_fits(const FitContext& context, std::vector<Fit>& fits) {
     const double reach = kSeveralTimes * noise * n / context.medium.samples();
     each([&](Fit& fit) {
         if (fit.determined && fit.sse < best * kNearBest + reach)
-            fit = fit_shape(context.all(), fit.form, fit.shape, kOneStep, context.stop);
+            fit = fit_shape(context.all(), fit.form, fit.shape, kOneStepEffort, context.stop);
     });
 }
 
@@ -277,9 +281,8 @@ double level_of_rest(const Fit& fit) {
     return 0;
 }
 
-double information_criterion(const Fit& fit, double independent_samples, double least_variance) {
-    const double variance =
-        std::max(fit.sse / static_cast<double>(fit.residual.size()), least_variance) + kVarianceFloor;
+double information_criterion(const Fit& fit, double independent_samples, double min_variance) {
+    const double variance = std::max(fit.sse / static_cast<double>(fit.residual.size()), min_variance) + kVarianceFloor;
     return independent_samples * std::log(variance) + fit.form.parameters() * std::log(independent_samples);
 }
 
@@ -301,8 +304,8 @@ bool looks_integrating(const Fit& fit) {
 /// What so many more parameters take up of the noise in `independent` samples, as a factor of the deviation that they
 /// leave: 95 % of an F distribution is about 4.
 double by_noise(int more, double independent, int parameters) {
-    constexpr double kF = 4;
-    return std::sqrt(1 + kF * more / std::max(1.0, independent - parameters));
+    constexpr double kFRatio = 4;
+    return std::sqrt(1 + kFRatio * more / std::max(1.0, independent - parameters));
 }
 
 /// Whether `simple` explains the record as well as `best` does, but for noise.
@@ -310,29 +313,31 @@ bool as_good(const Fit& simple, const Fit& best, double lead, double points, dou
     const bool unusual = best.form.structure == Structure::sopdt_zero || best.form.structure == Structure::unstable ||
                          (best.form.other_level && !simple.form.other_level);
     const int more = best.form.parameters() - simple.form.parameters();
-    constexpr double kPoint = 1, kMaxByNoise = 3;  // per cent of y's deviation
+    constexpr double kMinPercentGain = 1, kMaxByNoise = 3;  // per cent of y's deviation
     const double taken_up = left * (by_noise(more, independent, best.form.parameters()) - 1);
-    return more > 0 && lead < (unusual ? kStrong : kSimpler) && points < kPoint + std::min(kMaxByNoise, taken_up);
+    return more > 0 && lead < (unusual ? kStrongEvidence : kMinEvidenceOverSimpler) &&
+           points < kMinPercentGain + std::min(kMaxByNoise, taken_up);
 }
 
 bool shows_load(const CleanRecord& r) { return r.changes() > 1; }
 
 bool shows_drift(const CleanRecord& r) {
-    constexpr int kEnoughBefore = 15;
+    constexpr int kMinSamplesBeforeStep = 15;
     const auto before = std::lower_bound(r.t.begin(), r.t.end(), r.v_time.front()) - r.t.begin();
-    return r.changes() > 1 || before >= kEnoughBefore;
+    return r.changes() > 1 || before >= kMinSamplesBeforeStep;
 }
 
 bool plausible_load(const CleanRecord& r, const Fit& fit) {
-    constexpr double kLargest = 3, kSame = 0.4;  // ranges of u; of a move, that the load may differ from it
+    constexpr double kMaxLoadInRanges = 3,
+                     kMaxLoadDifference = 0.4;  // ranges of u; of a move, that the load may differ from it
     if (!fit.form.load) return true;
     const double load = fit.linear[fit.form.load_index()] / fit.linear[0];
-    if (!(std::abs(load) <= kLargest)) return false;
+    if (!(std::abs(load) <= kMaxLoadInRanges)) return false;
     const double time = fit.shape.load_time(), row = usual_spacing(r);
     for (int j = 0; j < r.changes(); ++j) {
         const double move = r.v_level[j] - (j > 0 ? r.v_level[j - 1] : 0);
         const bool before_answer = time > r.v_time[j] - row && time < r.v_time[j] + fit.shape.L() + row;
-        if (before_answer && std::abs(load + move) < kSame * std::abs(move)) return false;
+        if (before_answer && std::abs(load + move) < kMaxLoadDifference * std::abs(move)) return false;
     }
     return true;
 }
@@ -368,7 +373,7 @@ StructureChoice choose(const std::vector<Fit>& fits, const std::vector<double>& 
         if (!looks_integrating(fits[i]) && (best < 0 || criteria[i] < criteria[best])) best = i;
     }
     // What looks like an integrator is left to the integrators' structures, unless none of them explains the record.
-    if (best < 0 || criteria[slowest] + kFarBetter < criteria[best]) best = slowest;
+    if (best < 0 || criteria[slowest] + kOverwhelmingEvidence < criteria[best]) best = slowest;
     if (best < 0) return {-1, ""};
     int chosen = best;
     for (int i = 0; i < static_cast<int>(fits.size()); ++i) {

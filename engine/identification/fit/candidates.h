@@ -22,7 +22,7 @@ struct FitContext {
     RecordStart start = RecordStart::at_rest;
     std::vector<FrequencyConstraint> anchors;  ///< that every model is held to
     std::stop_token stop;
-    Spread spread = {};  ///< of fits that do not need one another
+    ParallelFor spread = {};  ///< of fits that do not need one another
 
     FitData all() const { return {&record, anchors}; }
     FitData some() const { return {&medium, anchors}; }
@@ -79,8 +79,8 @@ double unexplained_share(const FitContext& context, const Fit& fit);
 
 /// n ln(sse/n) + p ln n (Schwarz 1978) with n the number of independent samples that the residuals are worth, in place
 /// of their count: what a drift or a coarse grid leaves behind is not evidence for another time constant. Nor is what
-/// lies below `least_variance`, where that is known of the noise.
-double information_criterion(const Fit& fit, double independent_samples, double least_variance = 0);
+/// lies below `min_variance`, where that is known of the noise.
+double information_criterion(const Fit& fit, double independent_samples, double min_variance = 0);
 
 /// True if a late load, or a drift, can be distinguished from the response: if u moves again; a drift also by what y
 /// does before u moves.

@@ -19,7 +19,7 @@ double root_mean_square(const std::vector<double>& x) {
            std::sqrt(static_cast<double>(x.size()));
 }
 
-constexpr double kTinyDivisor = 1e-300;  ///< keeps a division by what may be 0 finite
+constexpr double kMinDivisor = 1e-300;   ///< keeps a division by what may be 0 finite
 constexpr double kSettledWithin = 0.05;  ///< of the largest distance from rest, as in settling times of 5 %
 
 bool self_regulating(const Fit& fit) {
@@ -39,7 +39,7 @@ double remaining_movement(const CleanRecord& r, const Fit& fit) {
     double final_value = fit.linear[0] * r.v_level.back() + offset;
     for (int k = 0; k < fit.form.further; ++k)
         final_value += fit.linear[fit.form.further_index() + k] * r.d[static_cast<std::size_t>(k)].level.back();
-    return std::abs(final_value - fit.model.back()) / std::max(moved, kTinyDivisor);
+    return std::abs(final_value - fit.model.back()) / std::max(moved, kMinDivisor);
 }
 
 void warn_unsettled(const CleanRecord& r, const Fit& fit, double remaining, std::vector<Warning>& warnings) {
@@ -54,10 +54,11 @@ void warn_unsettled(const CleanRecord& r, const Fit& fit, double remaining, std:
 bool warn_residuals(const CleanRecord& r, const Fit& fit, const DataQuality& quality, std::vector<Warning>& warnings) {
     const double rms = root_mean_square(fit.residual), unit = r.scale.y_scale;
     const double noise = std::max(quality.noise_std, quality.quantisation / std::sqrt(12.0)) / unit;
-    constexpr double kVisible = 0.007;                    // of y's range: what an eye sees in the plot
-    constexpr double kMoreThanNoise = 1.5, kPattern = 3;  // times the noise; samples of correlation time
-    constexpr double kFarOff = 8;                         // root mean squares
-    const bool pattern = rms > kVisible && rms > kMoreThanNoise * noise && correlation_time(fit.residual) > kPattern;
+    constexpr double kMinVisibleRms = 0.007;                         // of y's range: what an eye sees in the plot
+    constexpr double kMinNoiseRatio = 1.5, kMinCorrelationTime = 3;  // times the noise; samples of correlation time
+    constexpr double kMaxResidualInRms = 8;                          // root mean squares
+    const bool pattern =
+        rms > kMinVisibleRms && rms > kMinNoiseRatio * noise && correlation_time(fit.residual) > kMinCorrelationTime;
     if (pattern) {
         warnings.push_back(
             {"structured-residuals", "The model misses y by " + text(rms * unit, 3) +
@@ -68,7 +69,7 @@ bool warn_residuals(const CleanRecord& r, const Fit& fit, const DataQuality& qua
     }
     double worst = 0;
     for (double e : fit.residual) worst = std::max(worst, std::abs(e));
-    if (worst > kFarOff * rms) {
+    if (worst > kMaxResidualInRms * rms) {
         warnings.push_back({"outliers", "At least one sample lies " + text(worst * unit, 3) + " from the model where " +
                                             text(rms * unit, 3) +
                                             " is typical; remove false readings from the record."});
@@ -78,15 +79,16 @@ bool warn_residuals(const CleanRecord& r, const Fit& fit, const DataQuality& qua
 
 void warn_uncertain(const std::map<std::string, double>& values, const std::map<std::string, double>& errors,
                     std::vector<Warning>& warnings) {
-    constexpr double kUncertain = 0.2, kUnknown = 0.5;  // standard error over the parameter, or over half of all lags
+    constexpr double kMaxCertainError = 0.2,
+                     kMinUnknownError = 0.5;  // standard error over the parameter, or over half of all lags
     double lag_sum = values.at("L");
     for (const char* lag : {"T", "T1", "T2", "a1"}) lag_sum += values.contains(lag) ? std::abs(values.at(lag)) : 0;
     for (const auto& [name, error] : errors) {
         const bool is_time = name == "L" || name == "T2" || name == "b" || name == "T";
         const double yardstick =
             is_time ? std::max(std::abs(values.at(name)), 0.5 * lag_sum) : std::abs(values.at(name));
-        if (error <= kUncertain * yardstick) continue;
-        const bool unknown_gain = name == "K" && error > kUnknown * yardstick;
+        if (error <= kMaxCertainError * yardstick) continue;
+        const bool unknown_gain = name == "K" && error > kMinUnknownError * yardstick;
         warnings.push_back({"uncertain-parameters",
                             name + " = " + text(values.at(name)) + " has a standard error of " + text(error, 2) +
                                 ": the record hardly determines it. A larger or longer test, or a simpler model, gives "
@@ -97,14 +99,14 @@ void warn_uncertain(const std::map<std::string, double>& values, const std::map<
 
 /// A straight line through the samples before the first change of u.
 void warn_not_at_rest(const CleanRecord& r, std::vector<Warning>& warnings) {
-    constexpr int kMin = 5;                       // samples that tell a slope from its error
-    constexpr double kMoved = 0.03, kErrors = 5;  // of y's range; standard errors of the slope
+    constexpr int kMinSamples = 5;                                // samples that tell a slope from its error
+    constexpr double kMinDrift = 0.03, kSlopeStandardErrors = 5;  // of y's range; standard errors of the slope
     const int n = static_cast<int>(std::lower_bound(r.t.begin(), r.t.end(), r.v_time.front()) - r.t.begin());
-    if (n < kMin || r.t[n - 1] <= r.t[0]) return;
+    if (n < kMinSamples || r.t[n - 1] <= r.t[0]) return;
     const auto rest = static_cast<std::size_t>(n);
     const Line line = straight_line(std::span(r.t).first(rest), std::span(r.y).first(rest));
     const double slope = line.slope, moved = std::abs(slope) * (r.t[n - 1] - r.t[0]);
-    if (moved < kMoved || std::abs(slope) < kErrors * line.slope_std) return;
+    if (moved < kMinDrift || std::abs(slope) < kSlopeStandardErrors * line.slope_std) return;
     warnings.push_back(
         {"not-at-rest",
          "y already moves by " + text(moved * r.scale.y_scale, 3) + " before u changes, " + text(100 * moved, 2) +
@@ -145,9 +147,10 @@ void warn_sampling(const CleanRecord& r, const Fit& fit, const DataQuality& qual
 bool responds(const CleanRecord& r, const Fit& fit) {
     const double floor = kVarianceFloor * r.samples();
     const double ratio = (squares_about_mean(r.y) + floor) / (fit.sse + floor);
-    constexpr double kPlainly = 10, kBeyondPrice = 30;  // times the variance; beyond the price of the parameters
+    constexpr double kMinVarianceRatio = 10,
+                     kMinEvidence = 30;  // times the variance; beyond the price of the parameters
     const double n = effective_samples(fit.residual);
-    return ratio > kPlainly || n * std::log(ratio) > (fit.form.parameters() - 1) * std::log(n) + kBeyondPrice;
+    return ratio > kMinVarianceRatio || n * std::log(ratio) > (fit.form.parameters() - 1) * std::log(n) + kMinEvidence;
 }
 
 Diagnosis diagnose(const CleanRecord& record, const Fit& fit, const std::map<std::string, double>& values,

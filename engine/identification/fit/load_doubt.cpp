@@ -8,7 +8,7 @@
 namespace tunewright {
 namespace {
 
-constexpr int kSteps = 16;  ///< of the walk: a load that matters is slow
+constexpr int kWalkSteps = 16;  ///< of the walk: a load that matters is slow
 
 /// What steps of the load do to y, spread evenly over the record; together they make a walk that ends a standard
 /// deviation of 1 from where it began.
@@ -16,11 +16,11 @@ Eigen::MatrixXd responses(const Fit& fit, const Eigen::VectorXd& t) {
     ModelShape plant = fit.shape;
     plant.p[0] = 0;
     const bool zero = fit.form.gains() == 2;
-    const double spacing = (t[t.size() - 1] - t[0]) / kSteps;
-    Eigen::MatrixXd G(t.size(), kSteps);
+    const double spacing = (t[t.size() - 1] - t[0]) / kWalkSteps;
+    Eigen::MatrixXd G(t.size(), kWalkSteps);
     UnitResponse response;
-    for (int k = 0; k < kSteps; ++k) {
-        const double time[] = {std::max(0.0, t[0] + (k + 0.5) * spacing)}, level[] = {std::sqrt(1.0 / kSteps)};
+    for (int k = 0; k < kWalkSteps; ++k) {
+        const double time[] = {std::max(0.0, t[0] + (k + 0.5) * spacing)}, level[] = {std::sqrt(1.0 / kWalkSteps)};
         unit_response({t.data(), static_cast<std::size_t>(t.size())}, {time, level}, plant, zero ? 1 : 0, response);
         G.col(k) = fit.linear[0] * Eigen::Map<const Eigen::VectorXd>(response.x.data(), t.size());
         if (zero) G.col(k) += fit.linear[1] * Eigen::Map<const Eigen::VectorXd>(response.x1.data(), t.size());
@@ -61,9 +61,9 @@ Strengths likeliest(const Eigen::VectorXd& z, const Eigen::VectorXd& s, double r
 
 Strengths likeliest(const FittedRows& rows, const Eigen::MatrixXd& G, double a) {
     const Eigen::Index samples = rows.J.rows(), k = rows.nuisance.cols(), n = samples + k, m = rows.J.cols() + k;
-    Eigen::MatrixXd J = Eigen::MatrixXd::Zero(n, m), both = Eigen::MatrixXd::Zero(n, kSteps + 1);
+    Eigen::MatrixXd J = Eigen::MatrixXd::Zero(n, m), both = Eigen::MatrixXd::Zero(n, kWalkSteps + 1);
     J.topLeftCorner(samples, rows.J.cols()) = whitened(rows.J, a);
-    both.topLeftCorner(samples, kSteps) = whitened(G, a);
+    both.topLeftCorner(samples, kWalkSteps) = whitened(G, a);
     both.topRightCorner(samples, 1) = whitened(rows.residual, a);
     if (k > 0) {
         J.topRightCorner(samples, k) = whitened(rows.nuisance, a);
@@ -72,23 +72,24 @@ Strengths likeliest(const FittedRows& rows, const Eigen::MatrixXd& G, double a) 
         both.bottomRightCorner(k, 1) = rows.known_rest;
     }
     const Reflected turned = reflected(J, both);
-    const Eigen::MatrixXd seen = turned.B.bottomLeftCorner(n - m, kSteps);
-    const Eigen::VectorXd e = turned.B.col(kSteps).tail(n - m);
+    const Eigen::MatrixXd seen = turned.B.bottomLeftCorner(n - m, kWalkSteps);
+    const Eigen::VectorXd e = turned.B.col(kWalkSteps).tail(n - m);
     const PrincipalAxes axes = principal_axes(gram(seen, seen));
     // Ascending: the last `used` are not rounding.
-    constexpr double kRounding = 1e-10;  // of the greatest eigenvalue
-    const double enough = kRounding * axes.values[kSteps - 1];
+    constexpr double kMinRelativeEigenvalue = 1e-10;  // of the greatest eigenvalue
+    const double enough = kMinRelativeEigenvalue * axes.values[kWalkSteps - 1];
     const auto used = (axes.values.array() > std::max(enough, 0.0)).count();
     if (used == 0) return {};
     const Eigen::VectorXd s = axes.values.tail(used);
     const Eigen::VectorXd z =
         transpose_times(axes.vectors.rightCols(used), transpose_times(seen, e)).array() / s.array().sqrt();
-    constexpr double kTiny = 1e-150;  // keeps the logarithm of what may be 0 finite
-    constexpr double kLeast = 1e-12;  // of the squares: their difference is rounding below it
-    const double rest = std::max(e.squaredNorm() - z.squaredNorm(), kLeast * e.squaredNorm());
+    constexpr double kMinLogArgument = 1e-150;  // keeps the logarithm of what may be 0 finite
+    constexpr double kMinRelativeRest = 1e-12;  // of the squares: their difference is rounding below it
+    const double rest = std::max(e.squaredNorm() - z.squaredNorm(), kMinRelativeRest * e.squaredNorm());
     Strengths best = likeliest(z, s, rest, static_cast<double>(n - m - used));
     best.a = a;
-    best.unlikeliness -= std::log(1 - a * a) - 2 * turned.diagonal.head(m).array().abs().max(kTiny).log().sum();
+    best.unlikeliness -=
+        std::log(1 - a * a) - 2 * turned.diagonal.head(m).array().abs().max(kMinLogArgument).log().sum();
     return best;
 }
 
@@ -105,23 +106,23 @@ Eigen::MatrixXd weighed(const Eigen::MatrixXd& J, const Eigen::MatrixXd& pulls, 
 }  // namespace
 
 std::vector<Eigen::MatrixXd> weighed_with_load(const Fit& fit, const FittedRows& rows) {
-    constexpr double kAsLikely = 2;  // of minus twice the logarithm of the likelihood
+    constexpr double kMaxUnlikeliness = 2;  // of minus twice the logarithm of the likelihood
     const Eigen::Index n = rows.residual.size(), m = rows.J.cols();
     constexpr int kFreedom = 8;  // rows beyond the unknowns, for the strengths
-    if (n < m + kSteps + kFreedom || !(rows.residual.squaredNorm() > 0)) return {};
+    if (n < m + kWalkSteps + kFreedom || !(rows.residual.squaredNorm() > 0)) return {};
     const Eigen::MatrixXd G = rows.weight.asDiagonal() * responses(fit, rows.time);
     // The likelihood has one peak over a: beyond what is far less likely there is nothing to find.
     std::vector<Strengths> found;
-    double least = INFINITY;
+    double min = INFINITY;
     for (const double a : {0.0, 0.3, 0.55, 0.75, 0.88, 0.95}) {
         found.push_back(likeliest(rows, G, a));
-        if (found.back().unlikeliness > least + kAsLikely) break;
-        least = std::min(least, found.back().unlikeliness);
+        if (found.back().unlikeliness > min + kMaxUnlikeliness) break;
+        min = std::min(min, found.back().unlikeliness);
     }
     const Eigen::MatrixXd pulls = gram(rows.J, G);
     std::vector<Eigen::MatrixXd> all;
     for (const Strengths& one : found) {
-        if (std::isfinite(one.unlikeliness) && one.unlikeliness <= least + kAsLikely)
+        if (std::isfinite(one.unlikeliness) && one.unlikeliness <= min + kMaxUnlikeliness)
             all.push_back(weighed(rows.J, pulls, one));
     }
     return all;

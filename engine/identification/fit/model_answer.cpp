@@ -47,8 +47,8 @@ void add_record_warnings(const CleanRecord& record, IdentifiedModel& model) {
 
 void note_start(const CleanRecord& record, const Fit& fit, DataQuality& quality) {
     if (!fit.form.other_level && !(fit.form.slope && is_integrating(fit.form.structure))) return;
-    constexpr double kRounding = 1e-12;  // of u's steps
-    const double rest = level_of_rest(fit), moved = std::abs(rest) > kRounding ? rest : 0;
+    constexpr double kStepRounding = 1e-12;  // of u's steps
+    const double rest = level_of_rest(fit), moved = std::abs(rest) > kStepRounding ? rest : 0;
     const double level = moved * record.scale.u_scale + record.scale.u_rest;
     quality.notes.push_back("The record does not start at rest: y rests at u = " + text(level) +
                             ", as estimated from the record (the first u is " + text(record.scale.u_rest) +
@@ -56,11 +56,11 @@ void note_start(const CleanRecord& record, const Fit& fit, DataQuality& quality)
 }
 
 /// Relative to the record's length: from there on a lag may be an integrator, or a drift.
-constexpr double kSlow = 0.5;
+constexpr double kMinSlowLag = 0.5;
 
 /// Beside a quick part a slow one of many record lengths and a drift look the same.
 void warn_slow_part(const CleanRecord& r, const Fit& fit, std::vector<Warning>& warnings) {
-    if (fit.form.structure != Structure::sopdt_zero || fit.shape.slowest_lag() < kSlow) return;
+    if (fit.form.structure != Structure::sopdt_zero || fit.shape.slowest_lag() < kMinSlowLag) return;
     warnings.push_back(
         {"slow-part", "A part of the response has a lag of " + text(fit.shape.slowest_lag() * r.scale.t_scale, 3) +
                           ", more than half of the record: it may be the plant's or a drift, and the static gain K is "
@@ -70,18 +70,18 @@ void warn_slow_part(const CleanRecord& r, const Fit& fit, std::vector<Warning>& 
 /// What the beginning of a slow response cannot be distinguished from: after a test that ends before it has settled, an
 /// integrator's.
 void warn_slow_or_integrating(const ModelSearch& search, std::vector<Warning>& warnings) {
-    constexpr double kStrong = 10, kPoint = 1;
+    constexpr double kStrongEvidence = 10, kMinPercentGain = 1;
     const auto chosen = static_cast<std::size_t>(search.choice.index);
     const bool integrating = is_integrating(search.chosen().form.structure);
     if (search.chosen().form.structure == Structure::unstable) return;
     const double scale = search.context.record.scale.t_scale;
-    if (!integrating && search.chosen().shape.slowest_lag() < kSlow) return;
+    if (!integrating && search.chosen().shape.slowest_lag() < kMinSlowLag) return;
     for (std::size_t i = 0; i < search.fits.size(); ++i) {
         const Fit& fit = search.fits[i];
         if (!fit.determined || fit.form.structure == Structure::unstable || looks_integrating(fit)) continue;
         if (is_integrating(fit.form.structure) == integrating) continue;
-        if (search.criteria[i] - search.criteria[chosen] > kStrong &&
-            search.percents[chosen] - search.percents[i] > kPoint)
+        if (search.criteria[i] - search.criteria[chosen] > kStrongEvidence &&
+            search.percents[chosen] - search.percents[i] > kMinPercentGain)
             continue;
         const Fit& slow = integrating ? fit : search.chosen();
         warnings.push_back({"slow-or-integrating",
@@ -128,7 +128,7 @@ struct OpenChoice {
 /// The structures of the same kind as the chosen one, itself left out, that Akaike's criterion does not tell from it:
 /// less than 4 above it (Burnham and Anderson 2002, section 2.6).
 std::vector<OpenChoice> open_choices(const ModelSearch& search) {
-    constexpr double kOpen = 4;
+    constexpr double kMaxOpenCriterion = 4;
     const auto chosen = static_cast<std::size_t>(search.choice.index);
     const double log_n = std::log(search.independent);
     const auto akaike = [&](std::size_t i) {
@@ -142,7 +142,7 @@ std::vector<OpenChoice> open_choices(const ModelSearch& search) {
             is_integrating(fit.form.structure) != is_integrating(search.chosen().form.structure))
             continue;
         const double above = akaike(i) - akaike(chosen);
-        if (above <= kOpen) open.push_back({i, std::exp(-0.5 * std::max(above, -2 * kOpen))});
+        if (above <= kMaxOpenCriterion) open.push_back({i, std::exp(-0.5 * std::max(above, -2 * kMaxOpenCriterion))});
     }
     return open;
 }
@@ -206,7 +206,7 @@ IdentifiedModel searched_model(ModelSearch search, const CleanRecord& recorded) 
         return i == chosen || std::ranges::find(open, i, &OpenChoice::index) != open.end();
     };
     std::vector<FittedPlant> plants(search.fits.size());
-    run_each(search.context.spread, static_cast<int>(plants.size()), [&](int index) {
+    parallel_for(search.context.spread, static_cast<int>(plants.size()), [&](int index) {
         const auto i = static_cast<std::size_t>(index);
         Fit& fit = search.fits[i];
         if (!fit.determined) return;

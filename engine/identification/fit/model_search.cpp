@@ -74,16 +74,16 @@ ModelSearch ranked(FitContext context, std::vector<Fit> fits, const Plan& plan, 
     finish_fits(search.context, search.fits);
     const Fit* best = best_fit(search.fits);
     if (best != nullptr) search.independent = effective_samples(best->residual);
-    const double noise = known_noise(search.context, best), least = k.min_noise_share * noise * noise;
+    const double noise = known_noise(search.context, best), min = k.min_noise_share * noise * noise;
     for (const Fit& fit : search.fits) {
-        search.criteria.push_back(information_criterion(fit, search.independent, least));
+        search.criteria.push_back(information_criterion(fit, search.independent, min));
         search.percents.push_back(fit_percent(search.context.record, fit));
     }
     search.choice = choose(search.fits, search.criteria, search.percents, search.independent);
     if (search.choice.index < 0) return search;
     const auto chosen = static_cast<std::size_t>(search.choice.index);
     polish(search.context, search.fits[chosen]);
-    search.criteria[chosen] = information_criterion(search.fits[chosen], search.independent, least);
+    search.criteria[chosen] = information_criterion(search.fits[chosen], search.independent, min);
     search.percents[chosen] = fit_percent(search.context.record, search.fits[chosen]);
     return search;
 }

@@ -26,14 +26,14 @@ struct OpenMove {
 };
 
 std::vector<OpenMove> open_moves(const CleanRecord& r) {
-    constexpr double kGap = 5.5;        // usual spacings: rows are missing, too many for one minimum
-    constexpr double kRounding = 1e-9;  // of the record's length
-    const double longest = kGap * usual_spacing(r);
+    constexpr double kMaxSpacings = 5.5;     // usual spacings: rows are missing, too many for one minimum
+    constexpr double kTimeTolerance = 1e-9;  // of the record's length
+    const double longest = kMaxSpacings * usual_spacing(r);
     std::vector<OpenMove> moves;
     for (int j = 0; j < r.changes(); ++j) {
-        const auto row = std::ranges::lower_bound(r.t, r.v_time[j] - kRounding);
+        const auto row = std::ranges::lower_bound(r.t, r.v_time[j] - kTimeTolerance);
         if (row == r.t.begin() || row == r.t.end()) continue;
-        const bool at_row = *row - r.v_time[j] < kRounding;
+        const bool at_row = *row - r.v_time[j] < kTimeTolerance;
         if (!at_row && !r.moved_between_rows) continue;
         const double before = row_before(r, *row);
         if (before < *row && (*row - before <= longest || r.moved_between_rows)) moves.push_back({j, before, *row});
@@ -80,7 +80,7 @@ public:
     JointFit(const CleanRecord& record, std::vector<OpenMove> moves, const Fit& start, double noise,
              const std::stop_token& stop)
         : record_(record), moves_(std::move(moves)), noise_(noise), stop_(stop) {
-        fit_ = fit_shape({&record_, {}}, start.form, start.shape, kRough, stop_);
+        fit_ = fit_shape({&record_, {}}, start.form, start.shape, kRoughEffort, stop_);
         on_rows_ = innovation_variance(fit_.residual);
     }
 
@@ -130,12 +130,12 @@ public:
     }
 
 private:
-    static constexpr Effort kRough{20, 1e-6};
+    static constexpr Effort kRoughEffort{20, 1e-6};
 
     void take_if_better(const std::vector<double>& times, const ModelShape& shape) {
         CleanRecord record = record_;
         record.v_time = times;
-        Fit there = fit_shape({&record, {}}, fit_.form, shape, kRough, stop_);
+        Fit there = fit_shape({&record, {}}, fit_.form, shape, kRoughEffort, stop_);
         if (there.determined && there.sse < fit_.sse) record_ = std::move(record), fit_ = std::move(there);
     }
     const OpenMove& at(Eigen::Index k) const { return moves_[static_cast<std::size_t>(k)]; }
@@ -177,10 +177,10 @@ private:
     }
 
     void descend() {
-        constexpr int kMostIterations = 40, kMostTries = 6;
-        constexpr double kEnough = 1e-6;  // of the cost
+        constexpr int kMaxIterations = 40, kMaxTries = 6;
+        constexpr double kMinCostShare = 1e-6;  // of the cost
         double lambda = 1e-3;
-        for (int i = 0; i < kMostIterations && !stop_.stop_requested(); ++i) {
+        for (int i = 0; i < kMaxIterations && !stop_.stop_requested(); ++i) {
             jacobian({&record_, {}}, fit_);
             const Eigen::MatrixXd J = of_samples(fit_), N = slopes_of_moves(record_, fit_, moves_);
             Eigen::MatrixXd both(J.rows(), J.cols() + N.cols());
@@ -195,11 +195,11 @@ private:
             }
             const double before = cost(record_, fit_);
             bool better = false;
-            for (int k = 0; k < kMostTries && !better; ++k) {
+            for (int k = 0; k < kMaxTries && !better; ++k) {
                 better = step(normal, pull, lambda, before);
                 lambda = better ? std::max(1e-9, lambda / 8) : lambda * 8;
             }
-            if (!better || before - cost(record_, fit_) < kEnough * before) break;
+            if (!better || before - cost(record_, fit_) < kMinCostShare * before) break;
         }
         jacobian({&record_, {}}, fit_);
     }
@@ -226,14 +226,14 @@ private:
             hold_at_bound(record_.v_time[at(k - first).place], at(k - first).earliest(), at(k - first).high, k, normal,
                           pull);
         normal.diagonal() *= 1 + lambda;
-        const double least = 1e-12 * normal.diagonal().maxCoeff();
-        normal.diagonal().array() += least;
+        const double min = 1e-12 * normal.diagonal().maxCoeff();
+        normal.diagonal().array() += min;
         const Eigen::VectorXd moved = solve_symmetric(normal, pull);
-        constexpr double kLongest = 1.5;  // of a logarithm: beyond it the linearisation means nothing
+        constexpr double kMaxLogStep = 1.5;  // of a logarithm: beyond it the linearisation means nothing
         double longest = 0;
         for (std::size_t i = 1; i < places.size(); ++i)
             longest = std::max(longest, std::abs(moved[static_cast<Eigen::Index>(i)]));
-        const double share = longest > kLongest ? kLongest / longest : 1;
+        const double share = longest > kMaxLogStep ? kMaxLogStep / longest : 1;
         ModelShape shape = fit_.shape;
         for (std::size_t i = 0; i < places.size(); ++i) {
             const auto place = static_cast<std::size_t>(places[i]);
@@ -262,10 +262,10 @@ private:
 
 /// As many samples as the sums over all pairs of columns are quick for; 0: there are too many moves.
 int affordable_samples(std::size_t moves) {
-    constexpr double kMostWork = 6e7;  // products: some tenths of a second in all
-    constexpr int kLeastForEach = 4;   // samples for each move
-    const double columns = static_cast<double>(moves) + 8, most = kMostWork / (columns * columns);
-    return most < kLeastForEach * columns ? 0 : static_cast<int>(std::min(most, 1e6));
+    constexpr double kMaxWork = 6e7;       // products: some tenths of a second in all
+    constexpr int kMinSamplesPerMove = 4;  // samples for each move
+    const double columns = static_cast<double>(moves) + 8, max = kMaxWork / (columns * columns);
+    return max < kMinSamplesPerMove * columns ? 0 : static_cast<int>(std::min(max, 1e6));
 }
 
 /// Dead time that acts: an integrator's lags, else half of the lags but the slowest (Skogestad 2003, half rule).
@@ -280,34 +280,34 @@ double acting_dead_time(const ModelShape& shape) {
 
 /// True if each move may lie anywhere between two rows.
 bool seen_at_rows(const CleanRecord& r, double row) {
-    constexpr int kMost = 5;                     // moves: more are a program's
-    constexpr double kGap = 1.5, kApart = 2.99;  // rows
-    if (r.row.empty() || r.changes() > kMost || r.moves_unseen > 0 || r.moves_placed > 0 || r.moved_between_rows ||
+    constexpr int kMaxMoves = 5;                                  // moves: more are a program's
+    constexpr double kMaxLateRows = 1.5, kMinRowsBetween = 2.99;  // rows
+    if (r.row.empty() || r.changes() > kMaxMoves || r.moves_unseen > 0 || r.moves_placed > 0 || r.moved_between_rows ||
         !r.v_open.empty())
         return false;
     if (unevenly_spaced(r)) return false;
     for (int j = 0; j < r.changes(); ++j) {
         const double late = r.v_time[j] - row_before(r, r.v_time[j]);
-        if (!(late > 0) || late > kGap * row) return false;
-        if (j > 0 && r.v_time[j] - r.v_time[j - 1] < kApart * row) return false;
+        if (!(late > 0) || late > kMaxLateRows * row) return false;
+        if (j > 0 && r.v_time[j] - r.v_time[j - 1] < kMinRowsBetween * row) return false;
     }
     return true;
 }
 
 /// True if y would show any one of the moves that lay off its row by half of it.
 bool shown_on_rows(const CleanRecord& record, const Fit& fit, double row, const std::stop_token& stop) {
-    constexpr double kPlainly = 4;    // two standard errors
-    constexpr double kLeast = 1e-14;  // of y's range squared: rounding
-    constexpr Effort kRough{20, 1e-6};
+    constexpr double kMinLogLikelihoodGain = 4;  // two standard errors
+    constexpr double kMinSse = 1e-14;            // of y's range squared: rounding
+    constexpr Effort kRoughEffort{20, 1e-6};
     const double samples = effective_samples(fit.residual);
     const auto misfit = [&](const CleanRecord& moved) {
-        return std::max(fit_shape({&moved, {}}, fit.form, fit.shape, kRough, stop).sse, kLeast);
+        return std::max(fit_shape({&moved, {}}, fit.form, fit.shape, kRoughEffort, stop).sse, kMinSse);
     };
     const double on_rows = misfit(record);
     for (std::size_t j = 0; j < record.v_time.size(); ++j) {
         CleanRecord moved = record;
         moved.v_time[j] -= 0.5 * row;
-        if (samples * std::log(misfit(moved) / on_rows) < kPlainly) return false;
+        if (samples * std::log(misfit(moved) / on_rows) < kMinLogLikelihoodGain) return false;
     }
     return true;
 }
@@ -316,15 +316,15 @@ bool shown_on_rows(const CleanRecord& record, const Fit& fit, double row, const 
 
 std::optional<CleanRecord> with_move_times(const CleanRecord& record, const std::vector<double>& times,
                                            const Fit& start, double noise, bool pattern, const std::stop_token& stop) {
-    constexpr double kPlainly = 5;  // logarithm of the likelihoods' ratio (Kass and Raftery 1995, section 3.2)
-    constexpr std::size_t kFewest = 2;
+    constexpr double kMinEvidence = 5;  // logarithm of the likelihoods' ratio (Kass and Raftery 1995, section 3.2)
+    constexpr std::size_t kMinMoves = 2;
     const std::vector<OpenMove> moves = open_moves(record);
-    const int most = affordable_samples(moves.size());
-    if (moves.size() < kFewest || most == 0) return std::nullopt;
-    JointFit joint(every_few(record, most), moves, start, noise, stop);
+    const int max = affordable_samples(moves.size());
+    if (moves.size() < kMinMoves || max == 0) return std::nullopt;
+    JointFit joint(every_few(record, max), moves, start, noise, stop);
     if (!(joint.linear_evidence() > 0) && !pattern) return std::nullopt;
     joint.run(times, start.shape);
-    if (stop.stop_requested() || !(joint.evidence() > kPlainly)) return std::nullopt;
+    if (stop.stop_requested() || !(joint.evidence() > kMinEvidence)) return std::nullopt;
     CleanRecord placed = record;
     placed.v_time = joint.record().v_time;
     placed.v_open.assign(placed.v_time.size(), 0.0);
@@ -390,9 +390,9 @@ CleanRecord changed_between_rows(CleanRecord record) {
 }
 
 double shown_within(const CleanRecord& record, const Fit& fit, const std::stop_token& stop) {
-    constexpr double kSmall = 0.5;  // of the dead time that is seen
+    constexpr double kMaxSmallShare = 0.5;  // of the dead time that is seen
     const double row = usual_spacing(record);
-    if (!(row > kSmall * acting_dead_time(fit.shape)) || !seen_at_rows(record, row)) return 0;
+    if (!(row > kMaxSmallShare * acting_dead_time(fit.shape)) || !seen_at_rows(record, row)) return 0;
     if (record.changes() > 1 && shown_on_rows(record, fit, row, stop)) return 0;
     return 2 * row;  // a row at most before the one that stands there
 }

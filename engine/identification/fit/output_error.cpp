@@ -14,7 +14,7 @@ namespace {
 /// The square root of 10: a given y0 is assumed to be an average of many readings, and counts as ten samples.
 constexpr double kRestWeight = 3.1622776601683795;
 /// Of a logarithm, for central differences: truncation (1e-8) and rounding (1e-12) both stay small.
-constexpr double kStep = 1e-4;
+constexpr double kLogDifferenceStep = 1e-4;
 
 int anchor_rows(std::span<const FrequencyConstraint> anchors) {
     int rows = 0;
@@ -96,8 +96,8 @@ public:
             if (places[static_cast<std::size_t>(k)] == kLoadTime) continue;
             for (const double sign : {1.0, -1.0}) {
                 ModelShape moved = shape;
-                moved.p[places[static_cast<std::size_t>(k)]] += sign * kStep;
-                add_model(k, moved, linear, sign / (2 * kStep));
+                moved.p[places[static_cast<std::size_t>(k)]] += sign * kLogDifferenceStep;
+                add_model(k, moved, linear, sign / (2 * kLogDifferenceStep));
             }
         }
         return D_;
@@ -143,9 +143,9 @@ private:
         D_.col(place).head(n_) -= gain * column(further_.x1);
         for (const double sign : {1.0, -1.0}) {
             ModelShape moved = shape;
-            moved.p[further_lag(k)] += sign * kStep;
+            moved.p[further_lag(k)] += sign * kLogDifferenceStep;
             respond_to_further(k, moved, 0);
-            D_.col(place + 1).head(n_) += sign * gain / (2 * kStep) * column(further_.x);
+            D_.col(place + 1).head(n_) += sign * gain / (2 * kLogDifferenceStep) * column(further_.x);
         }
     }
 
@@ -300,7 +300,7 @@ std::vector<double> sums_of_squares(const FitData& data, const ModelForm& form, 
 
 namespace {
 
-constexpr double kSmallestStep = 1e-9;  // digits beyond those that any noise leaves
+constexpr double kMinStep = 1e-9;  // digits beyond those that any noise leaves
 
 /// The search over the shape, as `levenberg_marquardt` wants it.
 class ShapeFit {
@@ -317,7 +317,7 @@ public:
     }
 
     Fit run() {
-        const int iterations = optimise::levenberg_marquardt(*this, effort_.most_iterations);
+        const int iterations = optimise::levenberg_marquardt(*this, effort_.max_iterations);
         Fit fit = problem_.finish(shape_, here_);
         fit.iterations = iterations;
         return fit;
@@ -338,7 +338,7 @@ public:
         const ModelShape next = moved_by(shape_, places_, step, bounds_);
         const double moved = distance(next, shape_);
         problem_.project(next, there_);
-        bool converged = !(moved > kSmallestStep);
+        bool converged = !(moved > kMinStep);
         const bool better = there_.sse < here_.sse;
         if (better) {
             converged |= here_.sse - there_.sse < effort_.tolerance * here_.sse;

@@ -100,10 +100,10 @@ std::vector<double> sums_of_squares(const FitData& data, const ModelForm& form, 
 /// Levenberg-Marquardt on the shape alone, the linear coefficients eliminated (Kaufman 1975's approximation of the
 /// projected Jacobian), from `start`. Sensitivities to L and the load's time are exact, those to the logarithms are
 /// central differences at fixed L, where the response is smooth. Stops when a step changes no shape parameter by more
-/// than 1e-9 or lowers the sum of squares by less than `tolerance` of itself, after `most_iterations`, or when asked
+/// than 1e-9 or lowers the sum of squares by less than `tolerance` of itself, after `max_iterations`, or when asked
 /// to.
 struct Effort {
-    int most_iterations = 60;
+    int max_iterations = 60;
     double tolerance = 1e-11;
 };
 Fit fit_shape(const FitData& data, const ModelForm& form, const ModelShape& start, const Effort& effort,

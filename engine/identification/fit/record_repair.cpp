@@ -13,7 +13,7 @@ namespace tunewright {
 namespace {
 
 constexpr std::size_t kMaxRun = 3;
-constexpr double kOfRange = 0.05;
+constexpr double kMinShareOfRange = 0.05;
 
 /// The size of a usual value of the series: its median magnitude, as a standard deviation.
 double usual_size(const std::vector<double>& values) {
@@ -24,14 +24,14 @@ double usual_size(const std::vector<double>& values) {
 }
 
 std::vector<bool> lone_misses(const Fit& fit) {
-    constexpr double kTimesUsual = 10, kNeighbours = 0.4;
+    constexpr double kMinUsualSizes = 10, kNeighbours = 0.4;
     const std::vector<double>& e = fit.residual;
-    const double least = std::max(kOfRange, kTimesUsual * usual_size(e));
+    const double min = std::max(kMinShareOfRange, kMinUsualSizes * usual_size(e));
     std::vector<bool> lone(e.size(), false);
     for (std::size_t i = 0; i < e.size(); ++i) {
-        if (std::abs(e[i]) < least) continue;
+        if (std::abs(e[i]) < min) continue;
         std::size_t end = i + 1;
-        while (end < e.size() && std::abs(e[end]) >= least) ++end;
+        while (end < e.size() && std::abs(e[end]) >= min) ++end;
         const double limit = kNeighbours * std::abs(e[i]);
         const bool alone = (i == 0 || std::abs(e[i - 1]) < limit) && (end == e.size() || std::abs(e[end]) < limit);
         if (alone && end - i <= 2)
@@ -44,14 +44,14 @@ std::vector<bool> lone_misses(const Fit& fit) {
 
 /// Marks runs that y jumps to and back from, by far more than it moves from sample to sample otherwise.
 void mark_jumps(const std::vector<double>& y, std::vector<bool>& marked) {
-    constexpr double kOfRangeAtOnce = 0.25, kTimesUsual = 10;
+    constexpr double kMinShareOfRangeAtOnce = 0.25, kMinUsualSizes = 10;
     std::vector<double> moves;
     for (std::size_t i = 1; i < y.size(); ++i) moves.push_back(y[i] - y[i - 1]);
-    const double least = std::max(kOfRangeAtOnce, kTimesUsual * usual_size(moves));
+    const double min = std::max(kMinShareOfRangeAtOnce, kMinUsualSizes * usual_size(moves));
     for (std::size_t i = 0; i < moves.size(); ++i) {
-        if (std::abs(moves[i]) < least) continue;
+        if (std::abs(moves[i]) < min) continue;
         for (std::size_t k = i + 1; k < moves.size() && k <= i + kMaxRun; ++k) {
-            if (moves[k] * moves[i] >= 0 || std::abs(moves[k]) < least) continue;
+            if (moves[k] * moves[i] >= 0 || std::abs(moves[k]) < min) continue;
             std::fill(marked.begin() + static_cast<std::ptrdiff_t>(i) + 1,
                       marked.begin() + static_cast<std::ptrdiff_t>(k) + 1, true);
             break;
@@ -60,7 +60,7 @@ void mark_jumps(const std::vector<double>& y, std::vector<bool>& marked) {
 }
 
 /// How far the model lies from the samples that it was not fitted to, at least; their places are in the whole record.
-double least_miss(const CleanRecord& whole, const std::vector<std::size_t>& left_out, const ModelSearch& found) {
+double min_miss(const CleanRecord& whole, const std::vector<std::size_t>& left_out, const ModelSearch& found) {
     const Fit there = project(found.context.all(), found.chosen().form, found.chosen().shape);
     UnitResponse response, level;
     static constexpr double kAtOnce[] = {0}, kUnit[] = {1};
@@ -74,7 +74,7 @@ double least_miss(const CleanRecord& whole, const std::vector<std::size_t>& left
     CleanRecord unseen{found.context.record, times, {}, {}, {}, {}, {}, found.context.record.d};
     std::vector<std::vector<double>> further;
     for (int j = 0; j < form.further; ++j) further.push_back(further_part(unseen, there, j));
-    double least = HUGE_VAL;
+    double min = HUGE_VAL;
     for (std::size_t k = 0; k < times.size(); ++k) {
         double y = there.linear[static_cast<std::size_t>(form.offset_index())];
         const auto add = [&](int index, const UnitResponse& x) {
@@ -85,22 +85,23 @@ double least_miss(const CleanRecord& whole, const std::vector<std::size_t>& left
         if (form.other_level) add(form.level_index(), level);
         if (form.slope) y += there.linear[static_cast<std::size_t>(form.slope_index())] * times[k];
         for (const std::vector<double>& part : further) y += part[k];
-        least = std::min(least, std::abs(whole.y[left_out[k]] - y));
+        min = std::min(min, std::abs(whole.y[left_out[k]] - y));
     }
-    return least;
+    return min;
 }
 
 /// Whether the rows up to the one at `time` came at the usual spacing, as those of a recorder that writes whether
 /// anything happens or not: one that waits for a change writes few while all is at rest.
 bool written_steadily(const CleanRecord& r, double time, double usual) {
-    constexpr std::ptrdiff_t kRows = 8, kMost = 2;  // looked at; of them late
-    constexpr double kLate = 1.5;                   // usual spacings
+    constexpr std::ptrdiff_t kLastRows = 8, kMaxLateRows = 2;  // looked at; of them late
+    constexpr double kMinLateSpacings = 1.5;                   // usual spacings
     const auto last = std::lower_bound(r.t.begin(), r.t.end(), time) - r.t.begin();
-    if (last < kRows) return false;
+    if (last < kLastRows) return false;
     std::ptrdiff_t late = 0;
-    for (auto i = last - kRows + 1; i <= last; ++i)
-        late += r.t[static_cast<std::size_t>(i)] - r.t[static_cast<std::size_t>(i) - 1] > kLate * usual ? 1 : 0;
-    return late <= kMost;
+    for (auto i = last - kLastRows + 1; i <= last; ++i)
+        late +=
+            r.t[static_cast<std::size_t>(i)] - r.t[static_cast<std::size_t>(i) - 1] > kMinLateSpacings * usual ? 1 : 0;
+    return late <= kMaxLateRows;
 }
 
 /// Moves each of the changes `moves` of `placed` to where structure and shape of `fit` explain y best, one after the
@@ -110,7 +111,7 @@ template <class Offer>
 void place(CleanRecord& placed, const Fit& fit, const std::vector<int>& moves, const std::stop_token& stop,
            const Offer& offer) {
     constexpr int kRounds = 3;
-    double least = project({&placed, {}}, fit.form, fit.shape).sse;
+    double min = project({&placed, {}}, fit.form, fit.shape).sse;
     for (int round = 0; round < kRounds; ++round) {
         bool moved = false;
         for (const int j : moves) {
@@ -119,8 +120,8 @@ void place(CleanRecord& placed, const Fit& fit, const std::vector<int>& moves, c
             offer(j, [&](double time) {
                 placed.v_time[j] = time;
                 const double now = project({&placed, {}}, fit.form, fit.shape).sse;
-                if (!(now < least)) return false;
-                least = now;
+                if (!(now < min)) return false;
+                min = now;
                 best = time;
                 return moved = true;
             });
@@ -133,8 +134,8 @@ void place(CleanRecord& placed, const Fit& fit, const std::vector<int>& moves, c
 }  // namespace
 
 double row_before(const CleanRecord& r, double time) {
-    constexpr double kRounding = 1e-12;  // of the record's length
-    const auto row = std::lower_bound(r.t.begin(), r.t.end(), time - kRounding);
+    constexpr double kTimeTolerance = 1e-12;  // of the record's length
+    const auto row = std::lower_bound(r.t.begin(), r.t.end(), time - kTimeTolerance);
     return row == r.t.begin() ? time : *std::prev(row);
 }
 
@@ -145,8 +146,8 @@ std::vector<std::size_t> doubtful_samples(const CleanRecord& record, const Fit& 
     for (std::size_t i = 0; i < marked.size(); ++i) {
         if (marked[i]) found.push_back(i);
     }
-    const std::size_t most = std::max<std::size_t>(4, marked.size() / 100);
-    return found.size() <= most ? found : std::vector<std::size_t>{};
+    const std::size_t max = std::max<std::size_t>(4, marked.size() / 100);
+    return found.size() <= max ? found : std::vector<std::size_t>{};
 }
 
 ModelSearch without_false_readings(ModelSearch search, CleanRecord& record, ModelChoice model,
@@ -160,23 +161,23 @@ ModelSearch without_false_readings(ModelSearch search, CleanRecord& record, Mode
     if (again.choice.index < 0 || control.stop.stop_requested()) return search;
     const Fit& fit = again.chosen();
     const double rms = std::sqrt(fit.sse / static_cast<double>(fit.residual.size()));
-    if (least_miss(record, doubtful, again) < std::max(kOfRange, kTimesOthers * rms)) return search;
+    if (min_miss(record, doubtful, again) < std::max(kMinShareOfRange, kTimesOthers * rms)) return search;
     record = std::move(rest);
     return again;
 }
 
 std::vector<int> gap_moves(const CleanRecord& record) {
-    constexpr double kLong = 1.5;  // usual spacings: a row is missing
+    constexpr double kMinLongSpacings = 1.5;  // usual spacings: a row is missing
     const double usual = usual_spacing(record);
     std::vector<int> moves;
     for (int j = 0; j < record.changes(); ++j) {
-        if (record.v_time[j] - row_before(record, record.v_time[j]) > kLong * usual) moves.push_back(j);
+        if (record.v_time[j] - row_before(record, record.v_time[j]) > kMinLongSpacings * usual) moves.push_back(j);
     }
     return moves;
 }
 
 std::optional<CleanRecord> with_unseen_moves(const CleanRecord& record) {
-    constexpr double kLeast = 2;  // usual spacings
+    constexpr double kMinUnseenSpacings = 2;  // usual spacings
     if (static_cast<int>(gap_moves(record).size()) < record.changes() || unevenly_spaced(record)) return std::nullopt;
     const double usual = usual_spacing(record);
     const auto written = [&](double time) { return written_steadily(record, row_before(record, time), usual); };
@@ -188,13 +189,13 @@ std::optional<CleanRecord> with_unseen_moves(const CleanRecord& record) {
         middle.moves_unseen = std::min(middle.moves_unseen, hidden);
         time -= 0.5 * hidden;
     }
-    if (middle.moves_unseen < kLeast * usual) return std::nullopt;
+    if (middle.moves_unseen < kMinUnseenSpacings * usual) return std::nullopt;
     return middle;
 }
 
 CleanRecord with_gap_moves_placed(const CleanRecord& record, const Fit& fit, const std::vector<int>& moves,
                                   const std::stop_token& stop) {
-    constexpr int kFarthest = 8;  // rows back
+    constexpr int kMaxRowsBack = 8;  // rows back
     const double usual = usual_spacing(record);
     CleanRecord placed = record;
     placed.moves_placed = static_cast<int>(moves.size());
@@ -202,7 +203,7 @@ CleanRecord with_gap_moves_placed(const CleanRecord& record, const Fit& fit, con
     place(placed, fit, moves, stop, [&](int j, const auto& take) {
         const double seen = record.v_time[j];
         const double first = std::max(row_before(record, seen), j > 0 ? placed.v_time[j - 1] : 0.0);
-        for (int back = 0; back <= kFarthest && seen - back * usual > first + 0.5 * usual; ++back)
+        for (int back = 0; back <= kMaxRowsBack && seen - back * usual > first + 0.5 * usual; ++back)
             take(seen - back * usual);
     });
     return placed;

@@ -13,11 +13,11 @@ constexpr std::size_t kBlocks = 80;  ///< enough means for a first-order model, 
 
 constexpr std::size_t kMeansForEach = 4;  ///< parameter: what it takes of slow noise can then be put back
 
-constexpr double kLeastVariance = 1e-150;  ///< keeps the logarithm of what may be 0 finite
-constexpr std::size_t kLongest = 20;       ///< times the series: so far an answer near the unit circle is followed
-constexpr std::size_t kLeastAnswer = 8;    ///< steps of an impulse response before it may count as faded
-constexpr double kFaded = 1e-6;            ///< of the impulse: two values in a row below it end the answer
-constexpr double kNoMore = 1e-12;          ///< of the sum so far: rows that add less are left out
+constexpr double kMinVariance = 1e-150;        ///< keeps the logarithm of what may be 0 finite
+constexpr std::size_t kMaxSeriesLengths = 20;  ///< times the series: so far an answer near the unit circle is followed
+constexpr std::size_t kMinAnswerSteps = 8;     ///< steps of an impulse response before it may count as faded
+constexpr double kMaxFadedShare = 1e-6;        ///< of the impulse: two values in a row below it end the answer
+constexpr double kMinAddedShare = 1e-12;       ///< of the sum so far: rows that add less are left out
 
 /// Burg's estimates of the orders 0 to `highest`, or fewer where the series is short.
 std::vector<Autoregression> burg(std::span<const double> e, std::size_t highest) {
@@ -54,7 +54,7 @@ Autoregression autoregression(std::span<const double> e, std::size_t highest) {
     const auto n = static_cast<double>(e.size());
     const std::vector<Autoregression> orders = burg(e, highest);
     const auto criterion = [&](const Autoregression& model) {
-        return 2 * n * std::log(std::max(model.innovation, kLeastVariance)) + 2 * static_cast<double>(model.a.size());
+        return 2 * n * std::log(std::max(model.innovation, kMinVariance)) + 2 * static_cast<double>(model.a.size());
     };
     return *std::ranges::min_element(orders, {}, criterion);
 }
@@ -62,8 +62,8 @@ Autoregression autoregression(std::span<const double> e, std::size_t highest) {
 /// Puts back what the fit has taken of slow noise: the coefficient of a first order rises, the innovations stay.
 void correct(std::vector<double>& a, double n, int parameters) {
     if (a.empty() || a[0] <= 0) return;
-    const double most = 1 - 3 / n, m = parameters;
-    a[0] = std::max(a[0], std::min(most, a[0] + (m + (m + 2) * a[0]) / n));
+    const double max = 1 - 3 / n, m = parameters;
+    a[0] = std::max(a[0], std::min(max, a[0] + (m + (m + 2) * a[0]) / n));
 }
 
 /// Means over blocks of rows; the last block may be shorter.
@@ -94,12 +94,12 @@ Autoregression::Gains Autoregression::gains(std::size_t n) const {
     Gains result;
     if (a.empty()) return result;
     std::vector<double> h = {1};
-    for (std::size_t k = 1; k < kLongest * n; ++k) {
+    for (std::size_t k = 1; k < kMaxSeriesLengths * n; ++k) {
         double value = 0;
         for (std::size_t i = 0; i < a.size() && i < k; ++i) value += a[i] * h[k - 1 - i];
         h.push_back(value);
         result.variance += value * value;
-        if (k > kLeastAnswer && std::abs(value) < kFaded && std::abs(h[k - 1]) < kFaded) break;
+        if (k > kMinAnswerSteps && std::abs(value) < kMaxFadedShare && std::abs(h[k - 1]) < kMaxFadedShare) break;
     }
     const double rest = 1 - std::accumulate(a.begin(), a.end(), 0.0);
     result.time = std::max(1.0, 1 / (rest * rest * result.variance));
@@ -122,9 +122,10 @@ Eigen::MatrixXd Autoregression::weighed(const Eigen::MatrixXd& X) const {
     }
     Eigen::MatrixXd product = gram(Z, Z), next = Z.topRows(std::min(order, n));
     const Eigen::Map<const Eigen::RowVectorXd> filter(a.data(), next.rows());
-    const double enough = kNoMore * product.diagonal().maxCoeff();
+    const double enough = kMinAddedShare * product.diagonal().maxCoeff();
     Eigen::RowVectorXd row(X.cols());
-    for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(kLongest) * n && next.row(0).squaredNorm() > enough; ++i) {
+    for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(kMaxSeriesLengths) * n && next.row(0).squaredNorm() > enough;
+         ++i) {
         row.noalias() = filter * next;
         for (Eigen::Index k = next.rows() - 1; k > 0; --k) next.row(k) = next.row(k - 1).eval();
         next.row(0) = row;
@@ -138,7 +139,7 @@ double innovation_variance(std::span<const double> series) {
     return deviation * deviation;
 }
 
-ResidualNoise::ResidualNoise(std::span<const double> residual, int parameters, double least) {
+ResidualNoise::ResidualNoise(std::span<const double> residual, int parameters, double min) {
     const std::size_t n = residual.size();
     const std::size_t blocks = std::max(kBlocks, kMeansForEach * static_cast<std::size_t>(parameters));
     block_ = static_cast<Eigen::Index>(std::max<std::size_t>(1, n / blocks));
@@ -152,9 +153,9 @@ ResidualNoise::ResidualNoise(std::span<const double> residual, int parameters, d
     slow_.innovation *=
         std::sqrt(std::min(4.0, means.rows() / std::max(1.0, static_cast<double>(means.rows()) - parameters)));
     const auto gains = slow_.gains(static_cast<std::size_t>(means.rows()));
-    slow_.innovation = std::max(slow_.innovation, std::sqrt(least / block / gains.variance));
+    slow_.innovation = std::max(slow_.innovation, std::sqrt(min / block / gains.variance));
     long_run_ = block * slow_.innovation * slow_.innovation * gains.variance * gains.time;
-    const double marginal = std::max(e.squaredNorm() / count, least);
+    const double marginal = std::max(e.squaredNorm() / count, min);
     freedom_ = std::max(1.0, count / std::max(1.0, long_run_ / marginal) - parameters);
 }
 

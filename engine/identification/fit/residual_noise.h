@@ -31,9 +31,9 @@ public:
     /// Each layer by Burg's estimate (Burg 1975; Kay 1988, section 7.4), of an order that Akaike's criterion chooses:
     /// up to 1 for the means, up to 3 inside. Fitting m = `parameters` slow regressors takes slow noise away from the
     /// residual: the first order's coefficient is put back by (m + (m + 2) a)/n, which is exact to first order for
-    /// polynomials (Kendall 1954 for m = 1). There are at least four means for each parameter. `least`: a variance
+    /// polynomials (Kendall 1954 for m = 1). There are at least four means for each parameter. `min`: a variance
     /// below which y is not known.
-    ResidualNoise(std::span<const double> residual, int parameters, double least);
+    ResidualNoise(std::span<const double> residual, int parameters, double min);
 
     /// X' R X for the covariance matrix R of the noise, X of one row a sample.
     Eigen::MatrixXd weighed(const Eigen::MatrixXd& X) const;

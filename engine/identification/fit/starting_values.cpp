@@ -109,7 +109,7 @@ Grid scan_grid(const CleanRecord& r, const ModelForm& form) {
 
 }  // namespace
 
-std::vector<ModelShape> scan_shapes(const FitData& data, const ModelForm& form, int most, const std::stop_token& stop) {
+std::vector<ModelShape> scan_shapes(const FitData& data, const ModelForm& form, int max, const std::stop_token& stop) {
     // With a load's time the scan has a dimension more: wider structures start from what the narrow ones found. The
     // widest always do.
     if (form.load && shape_size(form.structure) > 2) return {};
@@ -123,7 +123,7 @@ std::vector<ModelShape> scan_shapes(const FitData& data, const ModelForm& form, 
     std::stable_sort(minima.begin(), minima.end(), [&](int a, int b) { return sums[a] < sums[b]; });
     std::vector<ModelShape> best;
     for (int i : minima) {
-        if (static_cast<int>(best.size()) < most) best.push_back(grid.shapes[i]);
+        if (static_cast<int>(best.size()) < max) best.push_back(grid.shapes[i]);
     }
     return best;
 }

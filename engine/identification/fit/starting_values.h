@@ -8,7 +8,7 @@
 
 namespace tunewright {
 
-/// Shapes of `form` worth refining, best first, at most `most`; dimensionless. A coarse scan over the dead time (where
+/// Shapes of `form` worth refining, best first, at most `max`; dimensionless. A coarse scan over the dead time (where
 /// local minima live), the time constants and the time of a load, gain and offset eliminated at every point; the local
 /// minima of the scan are kept. The record should be thinned out (thin_out(), a few hundred samples).
 ///
@@ -17,7 +17,7 @@ namespace tunewright {
 ///
 /// Cost: one projection of gain and offset for each point, from a dozen points (ipdt) to some thousand (a lag, a dead
 /// time and the time of a load).
-std::vector<ModelShape> scan_shapes(const FitData& data, const ModelForm& form, int most, const std::stop_token& stop);
+std::vector<ModelShape> scan_shapes(const FitData& data, const ModelForm& form, int max, const std::stop_token& stop);
 
 /// Shapes of `structure` that equal or nearly equal the fitted simpler one, the nearest first: a nested model is never
 /// fitted worse than the one that it contains. Empty where `structure` does not contain the simpler one:

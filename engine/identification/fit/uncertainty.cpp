@@ -61,8 +61,8 @@ Parameters parameters_of(const RecordScale& s, const ModelForm& form, const Mode
 
 /// Whether the quadratic factor is two real lags; equal lags, which a search meets within rounding, count as two.
 bool has_two_lags(const ModelShape& shape) {
-    constexpr double kRounding = 1e-9;
-    return 4 * std::exp(shape.p[2]) <= 1 + kRounding;
+    constexpr double kDampingRounding = 1e-9;
+    return 4 * std::exp(shape.p[2]) <= 1 + kDampingRounding;
 }
 
 Plant plant_of(const ModelForm& form, const Parameters& p, bool lags) {
@@ -85,13 +85,13 @@ Plant plant_of(const ModelForm& form, const Parameters& p, bool lags) {
 
 /// Stretches of samples that the model puts into one step of y's grid: [first, last).
 std::vector<std::pair<int, int>> plateaus(const Fit& fit, double grid) {
-    constexpr int kMin = 8;
+    constexpr int kMinRun = 8;
     std::vector<std::pair<int, int>> runs;
     const int n = static_cast<int>(fit.model.size());
     int first = 0;
     for (int i = 1; i <= n; ++i) {
         if (i < n && std::abs(fit.model[i] - fit.model[first]) < 0.5 * grid) continue;
-        if (i - first >= kMin) runs.emplace_back(first, i);
+        if (i - first >= kMinRun) runs.emplace_back(first, i);
         first = i;
     }
     return runs;
@@ -127,8 +127,8 @@ std::vector<Eigen::VectorXd> drift_doubts(const Fit& fit, std::span<const double
         const double slope = alone.dot(residual) / size, z2 = slope * slope * size / variance;
         before = alone;
         // James and Stein's shrinkage of one normal figure, positive part.
-        constexpr double kByChance = 2;
-        if (z2 > kByChance) changes.emplace_back(-slope * (1 - kByChance / z2) * moved);
+        constexpr double kChanceVariance = 2;
+        if (z2 > kChanceVariance) changes.emplace_back(-slope * (1 - kChanceVariance / z2) * moved);
     }
     return changes;
 }
@@ -153,13 +153,13 @@ std::vector<double> block_sums(const std::vector<double>& values, std::size_t n,
 
 /// No gain is known better than this, relative: so far actuator, plant and sensor together are linear, and a model of a
 /// few lags is the plant.
-constexpr double kLinearity = 0.0005;
+constexpr double kGainNonlinearity = 0.0005;
 
 /// A long record's fit with a few thousand rows in place of all: means over a few rows, weighed by the root of their
 /// number, say as much of parameters and noise. `t` follows.
 Fit condensed(const Fit& fit, std::vector<double>& t) {
-    constexpr std::size_t kEnough = 2000;
-    const std::size_t n = fit.residual.size(), block = n / kEnough;
+    constexpr std::size_t kMaxRows = 2000;
+    const std::size_t n = fit.residual.size(), block = n / kMaxRows;
     if (block < 2) return fit;
     Fit less;
     less.form = fit.form;
@@ -171,9 +171,9 @@ Fit condensed(const Fit& fit, std::vector<double>& t) {
 
 /// About a hundred rows: a load that walks is slow. J's columns are divided by `length`.
 FittedRows few_rows(const Fit& fit, std::span<const double> times, const Eigen::VectorXd& length) {
-    constexpr std::size_t kFew = 64, kForEach = 2;  // rows; more for each column beside the parameters'
+    constexpr std::size_t kMinBlocks = 64, kBlocksPerColumn = 2;  // rows; more for each column beside the parameters'
     const std::size_t n = fit.residual.size(),
-                      block = std::max<std::size_t>(1, n / (kFew + kForEach * fit.nuisance.size()));
+                      block = std::max<std::size_t>(1, n / (kMinBlocks + kBlocksPerColumn * fit.nuisance.size()));
     const auto rows = static_cast<Eigen::Index>((n + block - 1) / block);
     const auto sums = [&](std::span<const double> values) {
         const std::vector<double> blocks = block_sums(values.first(n), block);
@@ -217,8 +217,8 @@ struct ScaledProblem {
 
 /// `variance`: the noise's over a long run.
 ScaledProblem scaled_problem(const Fit& fit, double variance) {
-    constexpr double kNoLength = 1e-12;  // a column of zeros keeps a length to divide by
-    constexpr double kSingular = 1e-13;  // eigenvalue of J'J, whose diagonal is 1, that is rounding
+    constexpr double kNoLength = 1e-12;       // a column of zeros keeps a length to divide by
+    constexpr double kMinEigenvalue = 1e-13;  // eigenvalue of J'J, whose diagonal is 1, that is rounding
     const int m = fit.form.parameters(), data = static_cast<int>(fit.J[0].size());
     ScaledProblem p;
     p.shape = static_cast<int>(fit.form.searched().size());
@@ -234,7 +234,7 @@ ScaledProblem scaled_problem(const Fit& fit, double variance) {
     }
     const PrincipalAxes axes = principal_axes(gram(p.J, p.J));
     const Eigen::MatrixXd scaled =
-        axes.vectors * axes.values.cwiseMax(kSingular).cwiseSqrt().cwiseInverse().asDiagonal();
+        axes.vectors * axes.values.cwiseMax(kMinEigenvalue).cwiseSqrt().cwiseInverse().asDiagonal();
     p.inverse = scaled * scaled.transpose();
     return p;
 }
@@ -320,10 +320,10 @@ void widen_to(const FittedPlant& other, FittedPlant& plant) {
     std::vector<double> factor(size, 1);
     for (std::size_t i = 0; i < size; ++i) {
         double& error = plant.standard_errors.at(plant.covariance.names[i]);
-        const double least = other.standard_errors.at(plant.covariance.names[i]);
-        if (!(least > error)) continue;
-        if (error > 0) factor[i] = least / error;
-        error = least;
+        const double min = other.standard_errors.at(plant.covariance.names[i]);
+        if (!(min > error)) continue;
+        if (error > 0) factor[i] = min / error;
+        error = min;
     }
     for (std::size_t i = 0; i < size; ++i) {
         for (std::size_t j = 0; j < size; ++j) plant.covariance.matrix[i][j] *= factor[i] * factor[j];
@@ -334,7 +334,7 @@ void widen_to(const FittedPlant& other, FittedPlant& plant) {
 }  // namespace
 
 FittedPlant fitted_plant(const CleanRecord& record, const Fit& fit, double quantisation, double noise, LoadDoubt load) {
-    constexpr double kLargest = 1e150;  // its square, the variance, is still finite
+    constexpr double kMaxStandardError = 1e150;  // its square, the variance, is still finite
     const bool lags = has_two_lags(fit.shape);
     const Parameters best = parameters_of(record.scale, fit.form, fit.shape, fit.linear, lags);
     const std::vector<double> further = further_parameters(record, fit.form, fit.shape, fit.linear);
@@ -373,17 +373,17 @@ FittedPlant fitted_plant(const CleanRecord& record, const Fit& fit, double quant
         }
         for (std::size_t i = 0; i < further.size(); ++i) {
             const double half = 0.5 * (further_side[0][i] - further_side[1][i]) / part;
-            further_variances[i] += std::pow(std::clamp(half, -kLargest, kLargest), 2);
+            further_variances[i] += std::pow(std::clamp(half, -kMaxStandardError, kMaxStandardError), 2);
         }
         std::vector<double> half;
         for (const auto& [name, value] : side[0])
-            half.push_back(std::clamp(0.5 * (value - side[1].at(name)) / part, -kLargest, kLargest));
+            half.push_back(std::clamp(0.5 * (value - side[1].at(name)) / part, -kMaxStandardError, kMaxStandardError));
         for (std::size_t i = 0; i < half.size(); ++i) {
             for (std::size_t j = 0; j < half.size(); ++j) covariance.matrix[i][j] += half[i] * half[j];
         }
     }
     const auto gain = static_cast<std::size_t>(std::ranges::find(covariance.names, "K") - covariance.names.begin());
-    covariance.matrix[gain][gain] += std::pow(kLinearity * best.at("K"), 2);
+    covariance.matrix[gain][gain] += std::pow(kGainNonlinearity * best.at("K"), 2);
     for (std::size_t i = 0; i < best.size(); ++i)
         result.standard_errors[covariance.names[i]] = std::sqrt(covariance.matrix[i][i]);
     result.disturbances = disturbances_of(record, fit, further, further_variances);
@@ -482,17 +482,17 @@ public:
         normal.diagonal().array() += kRidge * normal.diagonal().maxCoeff();
         inverse_ = inverse_of(normal);
         model_ = run({fit.shape, fit.linear[0], fit.form.gains() == 2 ? fit.linear[1] : 0});
-        least_ = left(Eigen::VectorXd::Zero(rows));
+        min_ = left(Eigen::VectorXd::Zero(rows));
     }
 
     /// Beyond the model's own, at least 0; infinite for a plant that the structure cannot be.
     double growth(const std::optional<PlantShape>& plant) const {
         if (!plant) return INFINITY;
-        return std::max(0.0, left(run(*plant) - model_) - least_);
+        return std::max(0.0, left(run(*plant) - model_) - min_);
     }
 
 private:
-    static constexpr int kRows = 600;
+    static constexpr int kMaxRows = 600;
 
     Eigen::VectorXd run(const PlantShape& plant) const {
         UnitResponse response;
@@ -516,26 +516,27 @@ private:
     InputSteps input_;
     Eigen::MatrixXd others_, inverse_;
     Eigen::VectorXd model_;
-    double least_ = 0;
+    double min_ = 0;
 };
 
 /// True if the standard errors are so small that the sum of squares is a quadratic over the whole region.
 bool is_linear(const FittedPlant& plant) {
-    constexpr double kSmall = 0.05;
+    constexpr double kMaxSmallError = 0.05;
     double lags = plant.values.at("L");
     for (const auto& [name, value] : plant.values)
         if (name == "T" || name == "T1" || name == "T2" || name == "a1") lags += std::abs(value);
     return std::ranges::all_of(plant.standard_errors, [&](const auto& error) {
         const auto& [name, size] = error;
         if (name == "K") return true;
-        return size <= kSmall * (name == "L" ? lags : std::abs(plant.values.at(name)));
+        return size <= kMaxSmallError * (name == "L" ? lags : std::abs(plant.values.at(name)));
     });
 }
 
 }  // namespace
 
 std::vector<double> region_reach(const CleanRecord& record, const Fit& fit, const FittedPlant& plant) {
-    constexpr double kPlainly = 1.5, kNear = 0.02;  // times the curvature's; of the axis, where it is measured
+    constexpr double kMinCurvatureGrowth = 1.5,
+                     kCurvatureProbe = 0.02;  // times the curvature's; of the axis, where it is measured
     constexpr int kHalvings = 7;
     if (is_linear(plant) || !fit.deviations.empty()) return {};
     const auto region = PlantRegion::of_covariance(plant.plant, plant.covariance.names, plant.covariance.matrix);
@@ -548,9 +549,10 @@ std::vector<double> region_reach(const CleanRecord& record, const Fit& fit, cons
     std::vector<double> reach;
     bool cut = false;
     for (const PlantRegion::Point& end : region->ends()) {
-        const double curvature = 0.5 * (growth(end, kNear) + growth(end, -kNear)) / (kNear * kNear);
-        const auto linear = [&](double share) { return !(growth(end, share) > kPlainly * curvature); };
-        reach.push_back(linear(1) ? 1 : bisect({kNear, 1}, linear, kHalvings).inside);
+        const double curvature =
+            0.5 * (growth(end, kCurvatureProbe) + growth(end, -kCurvatureProbe)) / (kCurvatureProbe * kCurvatureProbe);
+        const auto linear = [&](double share) { return !(growth(end, share) > kMinCurvatureGrowth * curvature); };
+        reach.push_back(linear(1) ? 1 : bisect({kCurvatureProbe, 1}, linear, kHalvings).inside);
         cut |= reach.back() < 1;
     }
     return cut ? reach : std::vector<double>{};

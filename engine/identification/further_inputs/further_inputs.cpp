@@ -13,13 +13,14 @@ namespace {
 std::vector<ModelShape> scanned(const ModelShape& shape, int k) {
     constexpr double kDeadTimes[] = {0, 0.005, 0.01, 0.02, 0.04, 0.08, 0.15, 0.3};
     constexpr double kShortest = 0.001, kLongest = 3;
-    constexpr int kLags = 12;
+    constexpr int kLagCount = 12;
     std::vector<ModelShape> all;
     for (const double dead_time : kDeadTimes) {
-        for (int i = 0; i < kLags; ++i) {
+        for (int i = 0; i < kLagCount; ++i) {
             ModelShape next = shape;
             next.p[further_dead_time(k)] = dead_time;
-            next.p[further_lag(k)] = std::log(kShortest) + i * (std::log(kLongest) - std::log(kShortest)) / (kLags - 1);
+            next.p[further_lag(k)] =
+                std::log(kShortest) + i * (std::log(kLongest) - std::log(kShortest)) / (kLagCount - 1);
             all.push_back(next);
         }
     }
@@ -88,10 +89,10 @@ Fit without_disturbances(Fit fit) {
 /// From the plant alone, and from plants of any lag: beside inputs that move y more than u does, the plant alone is no
 /// start.
 Fit first_joint(const ModelSearch& plain) {
-    constexpr double kLags[] = {0.01, 0.03, 0.1, 0.3};  // of the record
+    constexpr double kLagShares[] = {0.01, 0.03, 0.1, 0.3};  // of the record
     std::vector<Fit> starts;
     if (plain.choice.index >= 0) starts.push_back(without_disturbances(plain.chosen()));
-    for (const double lag : kLags) {
+    for (const double lag : kLagShares) {
         for (const Structure structure : {Structure::fopdt, Structure::ipdt_lag}) {
             Fit start;
             start.form.structure = start.shape.structure = structure;
@@ -100,7 +101,7 @@ Fit first_joint(const ModelSearch& plain) {
         }
     }
     std::vector<Fit> fits(starts.size());
-    run_each(plain.context.spread, static_cast<int>(starts.size()), [&](int i) {
+    parallel_for(plain.context.spread, static_cast<int>(starts.size()), [&](int i) {
         const auto at = static_cast<std::size_t>(i);
         fits[at] = with_further(plain.context, starts[at]);
     });
@@ -110,7 +111,7 @@ Fit first_joint(const ModelSearch& plain) {
 /// All structures of `search` with the further inputs of `joint`, chosen among anew on the samples of `context`.
 ModelSearch all_structures(const ModelSearch& search, const FitContext& context, const Fit& joint, ModelChoice model) {
     std::vector<Fit> fits(search.fits.size());
-    run_each(context.spread, static_cast<int>(fits.size()), [&](int i) {
+    parallel_for(context.spread, static_cast<int>(fits.size()), [&](int i) {
         const auto at = static_cast<std::size_t>(i);
         const Fit start = joined(search.fits[at], joint);
         fits[at] = start.determined ? fit_shape(context.some(), start.form, start.shape, {}, context.stop) : start;
@@ -120,7 +121,7 @@ ModelSearch all_structures(const ModelSearch& search, const FitContext& context,
 
 /// The same without drift and load, where those explain no more than chance beside the inputs; else `search`.
 ModelSearch with_needed_disturbances(ModelSearch search, const FitContext& context, ModelChoice model) {
-    constexpr double kNeeded = 10;  // of the criterion (Kass and Raftery 1995)
+    constexpr double kMinEvidence = 10;  // of the criterion (Kass and Raftery 1995)
     if (!(search.disturbances.slope || search.disturbances.load) || search.choice.index < 0) return search;
     ModelSearch bare = search;
     bare.disturbances = {};
@@ -129,15 +130,16 @@ ModelSearch with_needed_disturbances(ModelSearch search, const FitContext& conte
     if (bare.choice.index < 0) return search;
     const double n = search.independent;
     const double lead = information_criterion(bare.chosen(), n) - information_criterion(search.chosen(), n);
-    return lead < kNeeded ? bare : search;
+    return lead < kMinEvidence ? bare : search;
 }
 
 /// The input that matters least, if it does not matter.
-std::optional<int> least_needed(const ModelSearch& search) {
-    constexpr double kNeeded = 10, kShare = 0.001;  // of the criterion (Kass and Raftery 1995); of y's variance
+std::optional<int> min_needed(const ModelSearch& search) {
+    constexpr double kMinEvidence = 10,
+                     kMinVarianceShare = 0.001;  // of the criterion (Kass and Raftery 1995); of y's variance
     const Fit& with = search.chosen();
-    std::optional<int> least;
-    double smallest = kNeeded;
+    std::optional<int> min;
+    double smallest = kMinEvidence;
     for (int k = 0; k < with.form.further; ++k) {
         FitContext context = search.context;
         Fit without = with;
@@ -148,10 +150,10 @@ std::optional<int> least_needed(const ModelSearch& search) {
             information_criterion(without, search.independent) - information_criterion(with, search.independent);
         const double part = deviation(further_part(search.context.record, with, k));
         const double all = deviation(search.context.record.y);
-        const double needed = part * part < kShare * all * all ? 0 : lead;
-        if (without.determined && needed < smallest) smallest = needed, least = k;
+        const double needed = part * part < kMinVarianceShare * all * all ? 0 : lead;
+        if (without.determined && needed < smallest) smallest = needed, min = k;
     }
-    return least;
+    return min;
 }
 
 }  // namespace
@@ -232,11 +234,11 @@ ModelSearch search_with_further(const CleanRecord& record, ModelChoice model, bo
     FitContext context = fit_context(std::move(shown), relay, control);
     search = with_needed_disturbances(all_structures(search, context, joint, model), context, model);
     while (search.choice.index >= 0 && search.chosen().form.further > 0) {
-        const std::optional<int> least = least_needed(search);
-        if (!least) return search;
+        const std::optional<int> min = min_needed(search);
+        if (!min) return search;
         Fit rest = search.chosen();
-        leave_out(rest, *least);
-        leave_out(context, *least);
+        leave_out(rest, *min);
+        leave_out(context, *min);
         if (rest.form.further > 0) {
             search = all_structures(search, context, rest, model);
             continue;

@@ -249,19 +249,19 @@ bool unevenly_spaced(const CleanRecord& record) {
     return 5 * off > record.t.size() - 1;
 }
 
-CleanRecord thin_out(const CleanRecord& record, int most) {
+CleanRecord thin_out(const CleanRecord& record, int max) {
     constexpr int kMaxBlocks = 400;
     const int n = record.samples();
     // Where u keeps moving, all of the record is transient.
-    if (n <= most || record.changes() > 4) {
-        CleanRecord thin = every_few(record, most);
+    if (n <= max || record.changes() > 4) {
+        CleanRecord thin = every_few(record, max);
         if (record.changes() > kMaxBlocks) average_input(record, kMaxBlocks, thin);
         return thin;
     }
     CleanRecord thin = without_all_samples(record);
     std::vector<int> chosen = {0, n - 1};
-    for (int i = 0; i < most / 2; ++i) chosen.push_back(static_cast<int>(static_cast<long long>(i) * n / (most / 2)));
-    add_transients(record, most / 2 / std::clamp(record.changes(), 1, 4), chosen);
+    for (int i = 0; i < max / 2; ++i) chosen.push_back(static_cast<int>(static_cast<long long>(i) * n / (max / 2)));
+    add_transients(record, max / 2 / std::clamp(record.changes(), 1, 4), chosen);
     std::sort(chosen.begin(), chosen.end());
     chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
     for (int i : chosen) {
@@ -271,8 +271,8 @@ CleanRecord thin_out(const CleanRecord& record, int most) {
     return thin;
 }
 
-CleanRecord every_few(const CleanRecord& record, int most) {
-    const int n = record.samples(), stride = (n + most - 1) / most;
+CleanRecord every_few(const CleanRecord& record, int max) {
+    const int n = record.samples(), stride = (n + max - 1) / max;
     if (stride <= 1) return record;
     CleanRecord few = without_all_samples(record);
     // One stride throughout: evenly spaced samples stay evenly spaced.
@@ -299,8 +299,8 @@ CleanRecord first_part(const CleanRecord& record, double fraction) {
     return part;
 }
 
-CleanRecord block_means(const CleanRecord& record, int most) {
-    const int n = record.samples(), block = (n + most - 1) / most;
+CleanRecord block_means(const CleanRecord& record, int max) {
+    const int n = record.samples(), block = (n + max - 1) / max;
     if (block <= 1) return record;
     CleanRecord means = without_all_samples(record);
     for (int i = 0; i < n; i += block) {
@@ -311,9 +311,9 @@ CleanRecord block_means(const CleanRecord& record, int most) {
     return means;
 }
 
-CleanRecord condensed(const CleanRecord& record, int most) {
-    CleanRecord means = block_means(record, most);
-    if (record.samples() > most && record.changes() > most) average_input(record, most, means);
+CleanRecord condensed(const CleanRecord& record, int max) {
+    CleanRecord means = block_means(record, max);
+    if (record.samples() > max && record.changes() > max) average_input(record, max, means);
     return means;
 }
 

@@ -109,25 +109,25 @@ inline constexpr double kOffSpacing = 0.1;
 /// Whether more than a fifth of the times from one sample to the next, equal times included, differ from the usual one.
 bool unevenly_spaced(const CleanRecord& record);
 
-/// A record of at most about `most` samples with the same input, denser after the large changes of u: for coarse
+/// A record of at most about `max` samples with the same input, denser after the large changes of u: for coarse
 /// searches. An input of very many changes is averaged over blocks.
-CleanRecord thin_out(const CleanRecord& record, int most);
+CleanRecord thin_out(const CleanRecord& record, int max);
 
 /// Without the samples of these indices, which are noted as false readings. Of a whole record.
 CleanRecord without_samples(CleanRecord record, const std::vector<std::size_t>& indices);
 
-/// Every second, third, ... sample, so that at most `most` are left, with the input as it is.
-CleanRecord every_few(const CleanRecord& record, int most);
+/// Every second, third, ... sample, so that at most `max` are left, with the input as it is.
+CleanRecord every_few(const CleanRecord& record, int max);
 
 /// The record's beginning, `fraction` of its length, again of length 1.
 CleanRecord first_part(const CleanRecord& record, double fraction);
 
-/// At most `most` samples, each the mean of as many neighbours: of a record so dense that a block is nothing beside the
+/// At most `max` samples, each the mean of as many neighbours: of a record so dense that a block is nothing beside the
 /// response, it says the same, noise averaged. The input stays as it is.
-CleanRecord block_means(const CleanRecord& record, int most);
+CleanRecord block_means(const CleanRecord& record, int max);
 
 /// The same, with the means of the input over as many equal stretches where it changes more often than that: a plant
 /// that is slow beside a block answers the mean as it does the moves.
-CleanRecord condensed(const CleanRecord& record, int most);
+CleanRecord condensed(const CleanRecord& record, int max);
 
 }  // namespace tunewright

@@ -20,21 +20,21 @@ std::string counted(int count, const std::string& one) {
 
 void describe_sampling(const CleanRecord& r, DataQuality& quality) {
     std::vector<double> spacings = tunewright::spacings(r);
-    constexpr double kFewOdd = 0.01;  // of the spacings: a row that a logger missed now and then
+    constexpr double kMaxOddShare = 0.01;  // of the spacings: a row that a logger missed now and then
     const double typical = median(spacings);
     const auto odd = std::count_if(spacings.begin(), spacings.end(),
                                    [&](double d) { return std::abs(d - typical) > kOffSpacing * typical; });
     quality.sample_time = typical * r.scale.t_scale;
-    quality.irregular = static_cast<double>(odd) > kFewOdd * static_cast<double>(spacings.size());
+    quality.irregular = static_cast<double>(odd) > kMaxOddShare * static_cast<double>(spacings.size());
     if (quality.irregular)
         quality.notes.emplace_back("The samples are not evenly spaced; each is used at its own time.");
 
     // Loggers that write on change have long spacings all the time: only what is rare is a gap.
-    constexpr double kTimesUsual = 5, kUsual = 0.95;
+    constexpr double kMinUsualSpacings = 5, kUsualQuantile = 0.95;
     const auto usual =
-        spacings.begin() + static_cast<std::ptrdiff_t>(kUsual * static_cast<double>(spacings.size() - 1));
+        spacings.begin() + static_cast<std::ptrdiff_t>(kUsualQuantile * static_cast<double>(spacings.size() - 1));
     std::nth_element(spacings.begin(), usual, spacings.end());
-    const double limit = kTimesUsual * std::max(typical, *usual);
+    const double limit = kMinUsualSpacings * std::max(typical, *usual);
     MissingPart gaps;
     for (std::size_t i = 1; i < r.t.size(); ++i) {
         const double d = r.t[i] - r.t[i - 1];
@@ -92,11 +92,11 @@ void describe_times(const Cleaning& done, DataQuality& quality) {
 
 /// "line 102 (t = 2.02), line 103 (t = 2.04), ...".
 std::string places_of_spikes(const Cleaning& done) {
-    constexpr std::size_t kInSentence = 5;
+    constexpr std::size_t kMaxRowsInSentence = 5;
     std::string places;
-    for (std::size_t k = 0; k < std::min(kInSentence, done.spikes.size()); ++k)
+    for (std::size_t k = 0; k < std::min(kMaxRowsInSentence, done.spikes.size()); ++k)
         places += (k > 0 ? ", " : "") + row_text(done, done.spikes[k]) + " (t = " + text(done.spike_times[k], 10) + ")";
-    return places + (done.spikes.size() > kInSentence ? ", ..." : "");
+    return places + (done.spikes.size() > kMaxRowsInSentence ? ", ..." : "");
 }
 
 void describe_missing(const CleanRecord& r, DataQuality& quality) {
@@ -108,21 +108,21 @@ void describe_missing(const CleanRecord& r, DataQuality& quality) {
                                 text(done.hole_from) + "; u of these rows was used, and y was not interpolated.");
     }
     if (done.spikes.empty()) return;
-    constexpr std::size_t kShown = 20, kInSentence = 5;
+    constexpr std::size_t kMaxListedRows = 20, kMaxRowsInSentence = 5;
     std::string rows;
-    for (std::size_t k = 0; k < std::min(kInSentence, done.spikes.size()); ++k)
+    for (std::size_t k = 0; k < std::min(kMaxRowsInSentence, done.spikes.size()); ++k)
         rows += (k > 0 ? ", " : "") + std::to_string(done.spikes[k]);
     FalseReadings outliers{static_cast<int>(done.spikes.size()), done.spikes};
-    outliers.rows.resize(std::min(kShown, outliers.rows.size()));
+    outliers.rows.resize(std::min(kMaxListedRows, outliers.rows.size()));
     quality.outliers = std::move(outliers);
     quality.notes.push_back(counted(static_cast<int>(done.spikes.size()), "plainly false reading") +
                             " of y left out (" + (done.from_file ? "line " : "row ") + rows +
-                            (done.spikes.size() > kInSentence ? ", ..." : "") + ").");
+                            (done.spikes.size() > kMaxRowsInSentence ? ", ..." : "") + ").");
 }
 
 bool on_a_level(const TwoLevels& u, double v) {
-    constexpr double kSame = 0.1;
-    const double same = kSame * (u.high - u.low);
+    constexpr double kLevelTolerance = 0.1;
+    const double same = kLevelTolerance * (u.high - u.low);
     return std::abs(v - u.low) < same || std::abs(v - u.high) < same;
 }
 
@@ -144,9 +144,9 @@ void describe_pretest(const CleanRecord& r, DataQuality& quality) {
     const double duration = t.back() - t.front();
     // Two samples determine a line without telling its error.
     const double slope = line.slope, error = n > 2 ? line.slope_std : std::abs(slope);
-    constexpr double kMoved = 0.03, kErrors = 5;  // of y's range; standard errors of the slope
+    constexpr double kMaxDrift = 0.03, kSlopeStandardErrors = 5;  // of y's range; standard errors of the slope
     PreTest pretest{n, duration * r.scale.t_scale, slope * r.scale.y_scale / r.scale.t_scale, true};
-    pretest.at_rest = std::abs(slope) * duration < kMoved || std::abs(slope) < kErrors * error;
+    pretest.at_rest = std::abs(slope) * duration < kMaxDrift || std::abs(slope) < kSlopeStandardErrors * error;
     quality.pretest = pretest;
     quality.notes.push_back(
         std::to_string(n) + " samples before the first change of u give the operating point: u = " + text(quality.u0) +
@@ -177,8 +177,8 @@ void describe_output(const CleanRecord& r, DataQuality& quality) {
     const double noise = noise_std(r.y), grid = quantisation_step(r.y);
     quality.noise_std = noise * r.scale.y_scale;
     quality.quantisation = grid * r.scale.y_scale;
-    constexpr double kBesideNoise = 0.5, kVisible = 1e-3;  // of the noise; of y's range
-    if (grid > kBesideNoise * noise && grid > kVisible) {
+    constexpr double kMinGridOverNoise = 0.5, kMinVisibleGrid = 1e-3;  // of the noise; of y's range
+    if (grid > kMinGridOverNoise * noise && grid > kMinVisibleGrid) {
         quality.notes.push_back("y is quantised in steps of " + text(quality.quantisation) + " (its range is " +
                                 text(r.scale.y_scale) + ").");
     }
@@ -193,8 +193,9 @@ void describe_output(const CleanRecord& r, DataQuality& quality) {
 bool look_swapped(const CleanRecord& r) {
     int y_moves = 0;
     for (int i = 1; i < r.samples(); ++i) y_moves += r.y[i] != r.y[i - 1] ? 1 : 0;
-    constexpr int kFew = 30;  // moves of y
-    return y_moves > 0 && y_moves <= std::max(3, r.samples() / 100) && y_moves <= kFew && 2 * r.changes() > r.samples();
+    constexpr int kMaxMoves = 30;  // moves of y
+    return y_moves > 0 && y_moves <= std::max(3, r.samples() / 100) && y_moves <= kMaxMoves &&
+           2 * r.changes() > r.samples();
 }
 
 constexpr int kMinRun = 5;          ///< samples
@@ -207,9 +208,9 @@ double speed(const CleanRecord& r, int i, int samples) {
 }
 
 double fastest(const CleanRecord& r, int samples) {
-    double most = 0;
-    for (int i = samples; i < r.samples(); ++i) most = std::max(most, speed(r, i, samples));
-    return most;
+    double max = 0;
+    for (int i = samples; i < r.samples(); ++i) max = std::max(max, speed(r, i, samples));
+    return max;
 }
 
 /// Whether y goes up and down from sample to sample, as noise does and no response.
@@ -223,22 +224,22 @@ bool alternates(const CleanRecord& r) {
         turns += d * before < 0 ? 1 : 0;
         before = d;
     }
-    constexpr double kTurning = 0.3;  // of the moves: white noise turns in two thirds
-    return turns > kTurning * moves;
+    constexpr double kMinTurningShare = 0.3;  // of the moves: white noise turns in two thirds
+    return turns > kMinTurningShare * moves;
 }
 
 /// Whether y moved fast for some time before sample i: a jump of a sample or two is a fast process.
-bool arrives_fast(const CleanRecord& r, int i, int window, double least_speed) {
-    return i > 2 * window && speed(r, i, window) > least_speed && speed(r, i - window, window) > least_speed;
+bool arrives_fast(const CleanRecord& r, int i, int window, double min_speed) {
+    return i > 2 * window && speed(r, i, window) > min_speed && speed(r, i - window, window) > min_speed;
 }
 
 /// Samples in runs at `level` that were entered at speed; every run counts where `noisy`.
-int samples_at(const CleanRecord& r, double level, double same, bool noisy, double least_speed, int window) {
+int samples_at(const CleanRecord& r, double level, double same, bool noisy, double min_speed, int window) {
     int count = 0;
     for (int i = 0; i < r.samples();) {
         int end = i;
         while (end < r.samples() && std::abs(r.y[end] - level) <= same) ++end;
-        if (end - i >= kMinRun && i > 0 && (noisy || arrives_fast(r, i, window, least_speed))) count += end - i;
+        if (end - i >= kMinRun && i > 0 && (noisy || arrives_fast(r, i, window, min_speed))) count += end - i;
         i = std::max(end, i + 1);
     }
     return count;
@@ -297,8 +298,8 @@ std::vector<Warning> record_warnings(const CleanRecord& r, const DataQuality& qu
                                     row_text(done, done.backward > 0 ? done.first_backward : done.first_early) +
                                     ") and were left out."});
     }
-    constexpr int kFew = 30;
-    if (r.samples() < kFew)
+    constexpr int kMinSamples = 30;
+    if (r.samples() < kMinSamples)
         warnings.push_back(
             {"few-samples", "The record has only " + std::to_string(r.samples()) +
                                 " samples: a model from so few follows every error of theirs. Record faster."});
@@ -310,17 +311,17 @@ std::vector<Warning> record_warnings(const CleanRecord& r, const DataQuality& qu
 }
 
 std::vector<Saturation> flat_tops(const CleanRecord& r, double noise, double grid) {
-    constexpr double kSame = 1e-9;                  // of y's range: rounding in binary
-    constexpr double kCoarse = 1.0 / 30;            // of y's range: on so few steps every y stands still
-    constexpr double kNoisy = 2, kMinNoise = 1e-3;  // steps of the grid; of y's range
-    constexpr double kPart = 1.0 / 6;               // of y's fastest movement
-    if (grid > kCoarse) return {};
+    constexpr double kValueTolerance = 1e-9;                  // of y's range: rounding in binary
+    constexpr double kMaxGrid = 1.0 / 30;                     // of y's range: on so few steps every y stands still
+    constexpr double kMinNoiseInGrids = 2, kMinNoise = 1e-3;  // steps of the grid; of y's range
+    constexpr double kMinSpeedShare = 1.0 / 6;                // of y's fastest movement
+    if (grid > kMaxGrid) return {};
     const int window = std::clamp(r.samples() / 200, 3, 50);
-    const double least_speed = kPart * fastest(r, window);
-    const bool noisy = noise > kNoisy * grid && noise > kMinNoise && alternates(r);
+    const double min_speed = kMinSpeedShare * fastest(r, window);
+    const bool noisy = noise > kMinNoiseInGrids * grid && noise > kMinNoise && alternates(r);
     std::vector<Saturation> found;
     for (const double level : {0.0, 1.0}) {
-        const int count = samples_at(r, level, kSame, noisy, least_speed, window);
+        const int count = samples_at(r, level, kValueTolerance, noisy, min_speed, window);
         if (count < kMinShare * r.samples() || count < kMinRun) continue;
         found.push_back({r.scale.y_origin + r.scale.y_scale * level, static_cast<double>(count) / r.samples()});
     }
@@ -332,13 +333,13 @@ namespace {
 /// True if the limits hide more than a quarter of the moves from one level on which u stands still to the next: a test
 /// stepped it there.
 bool hides_steps(const Record& record, const InputLimits& limits) {
-    constexpr std::size_t kStands = 3;  // rows
+    constexpr std::size_t kMinStandingRows = 3;  // rows
     int moves = 0, hidden = 0;
     std::optional<double> before;
     for (std::size_t i = 0, end = 0; i < record.u.size(); i = end) {
         end = i + 1;
         while (end < record.u.size() && record.u[end] == record.u[i]) ++end;
-        if (end - i < kStands) continue;
+        if (end - i < kMinStandingRows) continue;
         if (before && *before != record.u[i]) {
             ++moves;
             hidden +=
@@ -352,14 +353,14 @@ bool hides_steps(const Record& record, const InputLimits& limits) {
 }  // namespace
 
 std::vector<InputLimits> plain_limits(const Record& record) {
-    static constexpr InputLimits kUsual[] = {{0, 1},   {-1, 1},     {0, 100},  {-100, 100},
-                                             {0, 255}, {-255, 255}, {0, 1023}, {0, 4095}};
-    constexpr double kBeyond = 0.05, kMinOutside = 0.02, kMinInside = 0.1;
+    static constexpr InputLimits kUsualLimits[] = {{0, 1},   {-1, 1},     {0, 100},  {-100, 100},
+                                                   {0, 255}, {-255, 255}, {0, 1023}, {0, 4095}};
+    constexpr double kLimitMargin = 0.05, kMinOutside = 0.02, kMinInside = 0.1;
     std::vector<InputLimits> found;
-    for (const InputLimits& limits : kUsual) {
+    for (const InputLimits& limits : kUsualLimits) {
         const auto [low, high] = limits;
         if (record.u_full_scale && high < *record.u_full_scale) continue;
-        const double margin = kBeyond * (high - low);
+        const double margin = kLimitMargin * (high - low);
         int inside = 0, outside = 0, all = 0;
         for (const double u : record.u) {
             if (!std::isfinite(u)) continue;

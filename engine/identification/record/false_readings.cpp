@@ -22,7 +22,7 @@ double median_of_five(std::span<const double> y, std::size_t middle) {
 
 /// The value that stands apart; NaN if none does.
 double number_apart(std::span<const double> y) {
-    constexpr double kApart = 5;
+    constexpr double kMinRelativeGap = 5;
     double low = y[0], high = y[0];
     for (const double value : y) low = std::min(low, value), high = std::max(high, value);
     double next_low = high, next_high = low;
@@ -34,8 +34,8 @@ double number_apart(std::span<const double> y) {
         highs += value == high ? 1 : 0;
     }
     const double others_low = high - next_low, others_high = next_high - low;
-    if (others_low > 0 && next_low - low > kApart * others_low && 2 * lows < y.size()) return low;
-    if (others_high > 0 && high - next_high > kApart * others_high && 2 * highs < y.size()) return high;
+    if (others_low > 0 && next_low - low > kMinRelativeGap * others_low && 2 * lows < y.size()) return low;
+    if (others_high > 0 && high - next_high > kMinRelativeGap * others_high && 2 * highs < y.size()) return high;
     return std::numeric_limits<double>::quiet_NaN();
 }
 
@@ -50,11 +50,11 @@ std::vector<std::size_t> spikes(std::span<const double> y) {
         high = std::max(high, smooth);
         away[i] = std::abs(y[i] - smooth);
     }
-    constexpr double kUsual = 0.9, kTimesUsual = 10, kOfRange = 0.25, kAgree = 0.3;
+    constexpr double kUsualQuantile = 0.9, kMinUsualMoves = 10, kMinShareOfRange = 0.25, kMaxReturnShare = 0.3;
     std::vector<double> sorted = away;
-    const auto usual = sorted.begin() + static_cast<std::ptrdiff_t>(kUsual * static_cast<double>(n - 1));
+    const auto usual = sorted.begin() + static_cast<std::ptrdiff_t>(kUsualQuantile * static_cast<double>(n - 1));
     std::nth_element(sorted.begin(), usual, sorted.end());
-    const double limit = std::max(kTimesUsual * *usual, kOfRange * (high - low));
+    const double limit = std::max(kMinUsualMoves * *usual, kMinShareOfRange * (high - low));
     if (high <= low) return {};
     std::vector<std::size_t> found;
     for (std::size_t i = 2; i + 2 < n; ++i) {
@@ -64,20 +64,20 @@ std::vector<std::size_t> spikes(std::span<const double> y) {
             while (i + 1 < n && away[i + 1] > limit) ++i;
             continue;
         }
-        if (std::abs(y[i - 1] - y[last + 1]) < kAgree * away[i]) {
+        if (std::abs(y[i - 1] - y[last + 1]) < kMaxReturnShare * away[i]) {
             for (std::size_t k = i; k <= last; ++k) found.push_back(k);
         }
         i = last;
     }
-    const std::size_t most = std::max<std::size_t>(3, n / 100);
-    return found.size() <= most ? found : std::vector<std::size_t>{};
+    const std::size_t max = std::max<std::size_t>(3, n / 100);
+    return found.size() <= max ? found : std::vector<std::size_t>{};
 }
 
 /// Indices of the numbers that stand apart, one value after the other.
 std::vector<bool> apart(std::span<const double> y) {
-    constexpr int kMostValues = 3;
+    constexpr int kMaxValues = 3;
     std::vector<bool> found(y.size(), false);
-    for (int pass = 0; pass < kMostValues; ++pass) {
+    for (int pass = 0; pass < kMaxValues; ++pass) {
         std::vector<double> rest;
         for (std::size_t i = 0; i < y.size(); ++i)
             if (!found[i]) rest.push_back(y[i]);
@@ -109,14 +109,15 @@ public:
             last = y_[i];
         }
         if (moves.empty()) return;
-        constexpr double kUsual = 0.75;  // of the moves: rounding makes many of none
-        const auto usual = moves.begin() + static_cast<std::ptrdiff_t>(kUsual * static_cast<double>(moves.size() - 1));
+        constexpr double kUsualQuantile = 0.75;  // of the moves: rounding makes many of none
+        const auto usual =
+            moves.begin() + static_cast<std::ptrdiff_t>(kUsualQuantile * static_cast<double>(moves.size() - 1));
         std::nth_element(moves.begin(), usual, moves.end());
         usual_move_ = *usual;
     }
 
     std::vector<HeldRun> find() const {
-        constexpr std::size_t kShare = 4;  // of the samples: a quarter
+        constexpr std::size_t kMinSamplesPerFault = 4;  // of the samples: a quarter
         std::vector<HeldRun> jumping;
         for (std::size_t i = 1; i < y_.size();) {
             const HeldRun run = run_at(i);
@@ -131,7 +132,7 @@ public:
             faults.push_back(run);
             count += run.end - run.first;
         }
-        return kShare * count > y_.size() ? std::vector<HeldRun>{} : faults;
+        return kMinSamplesPerFault * count > y_.size() ? std::vector<HeldRun>{} : faults;
     }
 
 private:
@@ -142,22 +143,22 @@ private:
     }
 
     bool jumps(const HeldRun& run) const {
-        constexpr double kTimesUsual = 10;
-        const double limit = kTimesUsual * usual_move_;
+        constexpr double kMinUsualMoves = 10;
+        const double limit = kMinUsualMoves * usual_move_;
         const double entry = std::abs(run.value - y_[run.first - 1]);
         if (entry == 0 || entry <= limit || known_[run.first - 1]) return false;
         if (run.end == y_.size()) return !u_moves_before(run.first);
         const double leaving = std::abs(run.value - y_[run.end]);
-        constexpr double kAgree = 0.3;
-        if (leaving <= limit || std::abs(y_[run.end] - y_[run.first - 1]) > kAgree * entry) return false;
+        constexpr double kMaxReturnShare = 0.3;
+        if (leaving <= limit || std::abs(y_[run.end] - y_[run.first - 1]) > kMaxReturnShare * entry) return false;
         return !(u_moves_before(run.first) && u_moves_before(run.end));
     }
 
     /// True if the row may answer a move of u: a process faster than its rows jumps so.
     bool u_moves_before(std::size_t row) const {
-        constexpr std::size_t kRows = 3, kRestless = 5;
-        if (kRestless * rows_.change_time.size() > y_.size()) return false;
-        const double from = rows_.t[row > kRows ? row - kRows : 0];
+        constexpr std::size_t kRowsAround = 3, kMinRestlessRows = 5;
+        if (kMinRestlessRows * rows_.change_time.size() > y_.size()) return false;
+        const double from = rows_.t[row > kRowsAround ? row - kRowsAround : 0];
         const auto move = std::lower_bound(rows_.change_time.begin(), rows_.change_time.end(), from);
         return move != rows_.change_time.end() && *move <= rows_.t[row];
     }
@@ -177,16 +178,16 @@ private:
 
     /// `low` and `high`: the range of the readings that do not jump.
     bool is_fault(const HeldRun& run, double low, double high) const {
-        constexpr double kOfRange = 0.1, kBeyond = 1, kLongest = 0.1;
+        constexpr double kMinShareOfRange = 0.1, kMinRangesBeyond = 1, kLongest = 0.1;
         const double range = high - low, entry = std::abs(run.value - y_[run.first - 1]);
         if (!(range > 0)) return false;
         const bool listed = std::ranges::find(kSensorFaults, run.value) != std::end(kSensorFaults);
-        const bool outside = run.value < low - kOfRange * range || run.value > high + kOfRange * range;
+        const bool outside = run.value < low - kMinShareOfRange * range || run.value > high + kMinShareOfRange * range;
         if (run.end == y_.size() && !outside) return false;
-        if (listed && entry > kOfRange * range && (outside || run.value != 0)) return true;
+        if (listed && entry > kMinShareOfRange * range && (outside || run.value != 0)) return true;
         const auto length = static_cast<double>(run.end - run.first);
-        return (run.value < low - kBeyond * range || run.value > high + kBeyond * range) && run.end < y_.size() &&
-               length <= kLongest * static_cast<double>(y_.size());
+        return (run.value < low - kMinRangesBeyond * range || run.value > high + kMinRangesBeyond * range) &&
+               run.end < y_.size() && length <= kLongest * static_cast<double>(y_.size());
     }
 
     const RecordRows& rows_;
@@ -249,9 +250,9 @@ std::vector<std::size_t> false_readings(const RecordRows& rows) {
 }
 
 void drop_false_readings(RecordRows& rows, bool u0_given, Cleaning& cleaning) {
-    constexpr std::size_t kFirst = 4;  // rows that the start may be made of
+    constexpr std::size_t kMaxStartRows = 4;  // rows that the start may be made of
     std::vector<bool> found = marked(rows);
-    take_out(rows, found, kFirst, cleaning);
+    take_out(rows, found, kMaxStartRows, cleaning);
     const std::size_t before = rows.y.size();
     if (!u0_given) drop_unread_rows(rows, cleaning);
     drop_silent_rows(rows, cleaning);

@@ -21,8 +21,8 @@ double spread(const std::vector<double>& x) {
 
 /// y just before `time`: what a relay has seen when it switched.
 double y_before(const CleanRecord& r, double time) {
-    constexpr double kRounding = 1e-12;  // of the record's length
-    const auto at = std::upper_bound(r.t.begin(), r.t.end(), time + kRounding);
+    constexpr double kTimeTolerance = 1e-12;  // of the record's length
+    const auto at = std::upper_bound(r.t.begin(), r.t.end(), time + kTimeTolerance);
     return r.y[static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, at - r.t.begin() - 1))];
 }
 
@@ -68,30 +68,31 @@ bool switched_by_y(const CleanRecord& r, const TwoLevels& u) {
 
 /// Whether y rests when u switches: in most half periods (of two, in one) its last fifth moves little beside the whole.
 bool rests_before_switches(const CleanRecord& r, const TwoLevels& u) {
-    constexpr std::ptrdiff_t kMin = 5;  // samples: a tenth of a half period needs some
-    constexpr double kAtRest = 0.03;    // of what y moves in the half period
+    constexpr std::ptrdiff_t kMinHalfPeriod = 5;  // samples: a tenth of a half period needs some
+    constexpr double kAtRest = 0.03;              // of what y moves in the half period
     int resting = 0, halves = 0;
     for (std::size_t k = 1; k < u.switch_time.size(); ++k) {
         const double from = u.switch_time[k - 1], to = u.switch_time[k], tenth = (to - from) / 10;
         const double late = std::abs(y_mean(r, to - tenth, to) - y_mean(r, to - 2 * tenth, to - tenth));
         const auto first = std::lower_bound(r.t.begin(), r.t.end(), from),
                    last = std::upper_bound(first, r.t.end(), to);
-        if (last - first < kMin) continue;
+        if (last - first < kMinHalfPeriod) continue;
         ++halves;
         if (late < kAtRest * spread({r.y.begin() + (first - r.t.begin()), r.y.begin() + (last - r.t.begin())}))
             ++resting;
     }
-    constexpr int kFew = 2;  // half periods: one that rests is no relay's
-    return halves <= kFew ? resting > 0 : 2 * resting > halves;
+    constexpr int kMaxFewHalves = 2;  // half periods: one that rests is no relay's
+    return halves <= kMaxFewHalves ? resting > 0 : 2 * resting > halves;
 }
 
 bool is_relay(const CleanRecord& r, const TwoLevels& u) {
     if (static_cast<int>(u.switch_time.size()) < kMinSwitches) return false;
     const HalfPeriods halves = half_periods(u);
-    constexpr std::size_t kTwoPeriods = 5;            // switches
-    constexpr double kRegular = 0.1, kRoughly = 0.5;  // deviation of the half periods over their mean
-    const bool repeats = u.switch_time.size() >= kTwoPeriods && regular(halves, kRegular);
-    const bool follows_y = regular(halves, kRoughly) && switched_by_y(r, u);
+    constexpr std::size_t kTwoPeriods = 5;  // switches
+    constexpr double kMaxRegularDeviation = 0.1,
+                     kMaxRoughDeviation = 0.5;  // deviation of the half periods over their mean
+    const bool repeats = u.switch_time.size() >= kTwoPeriods && regular(halves, kMaxRegularDeviation);
+    const bool follows_y = regular(halves, kMaxRoughDeviation) && switched_by_y(r, u);
     return (repeats || follows_y) && !rests_before_switches(r, u);
 }
 
@@ -110,7 +111,7 @@ double widest_gap(std::vector<double> levels, double& gap) {
 
 /// The levels [first, last) as two groups; false where they are not two.
 bool alternate(const InputLevels& levels, std::size_t first, std::size_t last, TwoLevels& out) {
-    constexpr double kDistinct = 10;  // gap between the groups over the spread inside them
+    constexpr double kMinGapOverSpread = 10;  // gap between the groups over the spread inside them
     const std::vector<double> used(levels.level.begin() + static_cast<std::ptrdiff_t>(first),
                                    levels.level.begin() + static_cast<std::ptrdiff_t>(last));
     double gap = 0;
@@ -118,7 +119,7 @@ bool alternate(const InputLevels& levels, std::size_t first, std::size_t last, T
     std::vector<double> group[2];
     for (const double level : used) group[level > border].push_back(level);
     if (group[0].empty() || group[1].empty()) return false;
-    if (gap < kDistinct * std::max(spread(group[0]), spread(group[1]))) return false;
+    if (gap < kMinGapOverSpread * std::max(spread(group[0]), spread(group[1]))) return false;
     out = {mean(group[0]), mean(group[1]), {}, used.front() < border};
     for (std::size_t i = first + 1; i < last; ++i) {
         if ((levels.level[i] > border) != (levels.level[i - 1] > border)) out.switch_time.push_back(levels.time[i]);
@@ -134,10 +135,10 @@ bool comes_back(const CleanRecord& r) {
 }  // namespace
 
 InputLevels input_levels(const CleanRecord& r) {
-    constexpr double kJitter = 0.02, kSlew = 0.01;
+    constexpr double kMaxJitter = 0.02, kMaxSlew = 0.01;
     const auto [low, high] = std::minmax_element(r.v_level.begin(), r.v_level.end());
-    const double jitter = kJitter * (std::max(*high, 0.0) - std::min(*low, 0.0));
-    const double slew = std::max(kSlew, 2.5 / r.samples());
+    const double jitter = kMaxJitter * (std::max(*high, 0.0) - std::min(*low, 0.0));
+    const double slew = std::max(kMaxSlew, 2.5 / r.samples());
     InputLevels out{{0}, {0}};
     double last_move = 0;
     for (int j = 0; j < r.changes(); ++j) {
@@ -188,16 +189,17 @@ const char* name_of(RecordKind kind) {
 }
 
 bool moves_at_first(std::span<const double> t, std::span<const double> values) {
-    constexpr double kErrors = 5;        // standard errors of the slope
-    constexpr double kVisible = 0.03;    // of the range, over these rows
-    constexpr double kTimesScatter = 4;  // what scatters about the line
-    constexpr double kInTheEnd = 0.05;   // of the range, over the whole record
+    constexpr double kSlopeStandardErrors = 5;  // standard errors of the slope
+    constexpr double kMinVisibleShare = 0.03;   // of the range, over these rows
+    constexpr double kMinScatterRatio = 4;      // what scatters about the line
+    constexpr double kMinShareInTheEnd = 0.05;  // of the range, over the whole record
     const Line line = straight_line(t, values);
     const double slope = std::abs(line.slope), moved = slope * (t.back() - t.front());
-    if (slope <= kErrors * line.slope_std) return false;
+    if (slope <= kSlopeStandardErrors * line.slope_std) return false;
     const std::vector<double> left = residuals(line, t, values);
-    if (moved > kVisible && moved > kTimesScatter * deviation(left)) return true;
-    return slope > kErrors * line.slope_std * std::sqrt(correlation_time(left)) && slope > kInTheEnd;
+    if (moved > kMinVisibleShare && moved > kMinScatterRatio * deviation(left)) return true;
+    return slope > kSlopeStandardErrors * line.slope_std * std::sqrt(correlation_time(left)) &&
+           slope > kMinShareInTheEnd;
 }
 
 RecordStart start_of(const CleanRecord& r, bool relay, double noise) {
@@ -208,9 +210,10 @@ RecordStart start_of(const CleanRecord& r, bool relay, double noise) {
         return input_levels(r).moves() == 1 ? RecordStart::at_rest : RecordStart::unseen;
     const std::span t(r.t.data(), n), y(r.y.data(), n);
     if (relay && comes_back(r)) {
-        constexpr double kStill = 0.01, kTimesNoise = 6;  // of y's range; the span of some hundred readings
+        constexpr double kMaxStillRange = 0.01, kTimesNoise = 6;  // of y's range; the span of some hundred readings
         const auto [low, high] = std::minmax_element(y.begin(), y.end());
-        return *high - *low <= std::max(kStill, kTimesNoise * noise) ? RecordStart::at_rest : RecordStart::unseen;
+        return *high - *low <= std::max(kMaxStillRange, kTimesNoise * noise) ? RecordStart::at_rest
+                                                                             : RecordStart::unseen;
     }
     return moves_at_first(t, y) ? RecordStart::moving : RecordStart::at_rest;
 }

@@ -31,8 +31,8 @@ public:
     TimeOrder(const Record& record, Cleaning& cleaning) : record_(record), size_(record.t.size()) {
         const TimeMoves moves(record);
         reversed_ = cleaning.reversed = moves.fall();
-        constexpr std::size_t kCoarse = 3;
-        if (kCoarse * moves.same > size_ && moves.up + moves.down > 2) spread(cleaning);
+        constexpr std::size_t kMinRowsPerRepeat = 3;
+        if (kMinRowsPerRepeat * moves.same > size_ && moves.up + moves.down > 2) spread(cleaning);
     }
 
     std::size_t row(std::size_t k) const { return reversed_ ? size_ - 1 - k : k; }
@@ -177,15 +177,18 @@ void drop_first(RecordRows& rows, std::ptrdiff_t count) {
 }  // namespace
 
 void drop_unread_rows(RecordRows& rows, Cleaning& cleaning) {
-    constexpr std::size_t kMost = 3, kMin = 12;  // rows: left out; of a record that shows how far it moves
-    if (rows.t.size() < kMin || rows.change_time.size() < 2) return;
+    constexpr std::size_t kMaxLeadingRows = 3,
+                          kMinRows = 12;  // rows: left out; of a record that shows how far it moves
+    if (rows.t.size() < kMinRows || rows.change_time.size() < 2) return;
     const auto range = [](auto from, auto to) {
         const auto [low, high] = std::minmax_element(from, to);
         return *high - *low;
     };
     const auto jump = rows.change_time.front();
     const auto first = std::lower_bound(rows.t.begin(), rows.t.end(), jump) - rows.t.begin();
-    if (first < 1 || static_cast<std::size_t>(first) > kMost || rows.t[static_cast<std::size_t>(first)] != jump) return;
+    if (first < 1 || static_cast<std::size_t>(first) > kMaxLeadingRows ||
+        rows.t[static_cast<std::size_t>(first)] != jump)
+        return;
     const double y_jump =
         std::abs(rows.y[static_cast<std::size_t>(first)] - rows.y[static_cast<std::size_t>(first) - 1]);
     const double u_jump = std::abs(rows.change_level.front() - rows.u_rest);
@@ -200,7 +203,7 @@ void drop_unread_rows(RecordRows& rows, Cleaning& cleaning) {
 }
 
 void drop_silent_rows(RecordRows& rows, Cleaning& cleaning) {
-    constexpr double kFarther = 10;  // than y moves between any rows that follow
+    constexpr double kMinMoveRatio = 10;  // than y moves between any rows that follow
     const auto held = std::adjacent_find(rows.y.begin(), rows.y.end(), std::not_equal_to<>());
     if (held == rows.y.end()) return;
     const auto first = held + 1 - rows.y.begin();
@@ -209,7 +212,7 @@ void drop_silent_rows(RecordRows& rows, Cleaning& cleaning) {
     double farthest = 0;
     for (auto y = rows.y.begin() + first; y + 1 != rows.y.end(); ++y)
         farthest = std::max(farthest, std::abs(y[1] - *y));
-    if (std::abs(held[1] - *held) <= kFarther * farthest || farthest == 0) return;
+    if (std::abs(held[1] - *held) <= kMinMoveRatio * farthest || farthest == 0) return;
     drop_first(rows, first);
     cleaning.silent = static_cast<int>(first);
 }

@@ -49,9 +49,10 @@ double quantisation_step(std::span<const double> y) {
     std::vector<double> values(y.begin(), y.end());
     boost::sort::spreadsort::float_sort(values.begin(), values.end());
     const double range = values.back() - values.front();
-    constexpr double kSame = 1e-9;    // values this close, relative to the largest, differ by rounding in binary
-    constexpr double kOffGrid = 0.1;  // of a step: printed digits and converters lie nearer to their grid
-    const double same = kSame * std::max(range, std::max(std::abs(values.front()), std::abs(values.back())));
+    constexpr double kEqualTolerance =
+        1e-9;                            // values this close, relative to the largest, differ by rounding in binary
+    constexpr double kMaxOffGrid = 0.1;  // of a step: printed digits and converters lie nearer to their grid
+    const double same = kEqualTolerance * std::max(range, std::max(std::abs(values.front()), std::abs(values.back())));
     values.erase(std::unique(values.begin(), values.end(), [&](double a, double b) { return b - a <= same; }),
                  values.end());
     if (values.size() == 2) return range;
@@ -63,7 +64,7 @@ double quantisation_step(std::span<const double> y) {
     const double step = range / count;
     for (double value : values) {
         const double places = (value - values.front()) / step;
-        if (std::abs(places - std::round(places)) > kOffGrid) return 0;
+        if (std::abs(places - std::round(places)) > kMaxOffGrid) return 0;
     }
     return step;
 }

@@ -11,21 +11,21 @@
 namespace tunewright {
 namespace {
 
-constexpr double kSameLevel = 0.05;  ///< of u's range
+constexpr double kLevelTolerance = 0.05;  ///< of u's range
 
 std::string u_text(const CleanRecord& r, double v) { return text(r.scale.u_rest + r.scale.u_scale * v, 4); }
 std::string y_text(const CleanRecord& r, double y) { return text(r.scale.y_origin + r.scale.y_scale * y, 4); }
 std::string t_text(const CleanRecord& r, double t) { return text(r.scale.t_origin + r.scale.t_scale * t, 4); }
 
 std::optional<Warning> contradiction(const CleanRecord& r, const std::vector<SettledLevel>& levels, double same) {
-    constexpr double kApart = 0.25;  // of y's range
-    double most = kApart;
+    constexpr double kMinLevelDistance = 0.25;  // of y's range
+    double max = kMinLevelDistance;
     std::optional<Warning> widest;
     for (std::size_t i = 0; i < levels.size(); ++i) {
         for (std::size_t j = i + 1; j < levels.size(); ++j) {
             const SettledLevel &a = levels[i], &b = levels[j];
-            if (std::abs(a.u - b.u) > same || std::abs(a.y - b.y) < most) continue;
-            most = std::abs(a.y - b.y);
+            if (std::abs(a.u - b.u) > same || std::abs(a.y - b.y) < max) continue;
+            max = std::abs(a.y - b.y);
             widest = Warning{"contradictory-levels",
                              "At u = " + u_text(r, a.u) + " y settles at " + y_text(r, a.y) +
                                  " (until t = " + t_text(r, a.until) + "), and at u = " + u_text(r, b.u) + " at " +
@@ -40,21 +40,21 @@ std::optional<Warning> contradiction(const CleanRecord& r, const std::vector<Set
 }
 
 std::optional<Warning> varying_gain(const CleanRecord& r, std::vector<SettledLevel> levels, double same) {
-    constexpr double kOther = 1.5;  // times the smallest gain
+    constexpr double kMaxGainRatio = 1.5;  // times the smallest gain
     std::ranges::sort(levels, {}, &SettledLevel::u);
     std::string gains;
-    double least = 0, most = 0;
+    double min = 0, max = 0;
     int count = 0;
     for (std::size_t i = 1; i < levels.size(); ++i) {
         const SettledLevel &a = levels[i - 1], &b = levels[i];
         if (b.u - a.u <= same) continue;
         const double gain = (b.y - a.y) / (b.u - a.u);
-        least = count == 0 ? gain : std::min(least, gain), most = count == 0 ? gain : std::max(most, gain);
+        min = count == 0 ? gain : std::min(min, gain), max = count == 0 ? gain : std::max(max, gain);
         gains += (count++ == 0 ? "" : ", ") + text(gain * r.scale.y_scale / r.scale.u_scale, 3) +
                  " from u = " + u_text(r, a.u) + " to " + u_text(r, b.u);
     }
-    const bool varies = count > 1 && (least * most < 0 || std::max(std::abs(least), std::abs(most)) >
-                                                              kOther * std::min(std::abs(least), std::abs(most)));
+    const bool varies = count > 1 && (min * max < 0 || std::max(std::abs(min), std::abs(max)) >
+                                                           kMaxGainRatio * std::min(std::abs(min), std::abs(max)));
     if (!varies) return std::nullopt;
     return Warning{"gain-varies",
                    "The levels at which y settles give other gains over u's range: " + gains +
@@ -66,7 +66,7 @@ std::optional<Warning> varying_gain(const CleanRecord& r, std::vector<SettledLev
 
 std::vector<SettledLevel> settled_levels(const CleanRecord& r) {
     constexpr std::size_t kMinSamples = 10;
-    constexpr double kQuarter = 0.25, kTenth = 0.1, kOfStretch = 0.03, kOfRange = 0.02;
+    constexpr double kQuarter = 0.25, kTenth = 0.1, kMaxStretchShare = 0.03, kMaxRangeShare = 0.02;
     const InputLevels levels = input_levels(r);
     const std::span<const double> all(r.y);
     std::vector<SettledLevel> settled;
@@ -83,7 +83,7 @@ std::vector<SettledLevel> settled_levels(const CleanRecord& r) {
                    quarter = static_cast<std::size_t>(std::ceil(kQuarter * n));
         const double end = mean(y.last(tenth)), late = mean(y.last(quarter).first(tenth));
         const auto [low, high] = std::ranges::minmax(y);
-        if (std::abs(end - late) > std::max(kOfStretch * (high - low), kOfRange)) continue;
+        if (std::abs(end - late) > std::max(kMaxStretchShare * (high - low), kMaxRangeShare)) continue;
         settled.push_back({levels.level[j], end, r.t[to - 1]});
     }
     return settled;
@@ -93,7 +93,7 @@ std::optional<Warning> level_warning(const CleanRecord& r) {
     const std::vector<SettledLevel> levels = settled_levels(r);
     if (levels.size() < 2) return std::nullopt;
     const auto [low, high] = std::ranges::minmax(r.v_level);
-    const double same = kSameLevel * (std::max(high, 0.0) - std::min(low, 0.0));
+    const double same = kLevelTolerance * (std::max(high, 0.0) - std::min(low, 0.0));
     if (auto warning = contradiction(r, levels, same)) return warning;
     return varying_gain(r, levels, same);
 }

@@ -31,13 +31,15 @@ std::vector<RelayModel> relay_models(const RecordedCycle& cycle, std::complex<do
     if (asked == ModelChoice::ipdt_lag) add(unbiased_models(cycle, shifted, sigma, Structure::ipdt_lag));
     // The request asks for the paper's first-order lag, unless the integrator repeats the oscillation twice as well, or
     // as well where both repeat it: a lag without end is an integrator.
-    constexpr double kRepeats = 0.01;              // of half a swing: no more than sampling and noise leave
-    constexpr double kAsWell = 0.95, kTie = 1e-5;  // so that of equal misfits the integrator's is the smaller
-    constexpr double kFarBetter = 2;
+    constexpr double kMaxRepeatError = 0.01;  // of half a swing: no more than sampling and noise leave
+    constexpr double kFitRatioOfExact = 0.95,
+                     kTieBreak = 1e-5;  // so that of equal misfits the integrator's is the smaller
+    constexpr double kMinFitRatio = 2;
     auto cost = [&](const RelayModel& model) {
         const bool integrator = any && model.shape.structure == Structure::ipdt;
         if (!integrator) return model.fit_rms;
-        return model.fit_rms < kRepeats * cycle.y_half ? kAsWell * model.fit_rms - kTie : kFarBetter * model.fit_rms;
+        return model.fit_rms < kMaxRepeatError * cycle.y_half ? kFitRatioOfExact * model.fit_rms - kTieBreak
+                                                              : kMinFitRatio * model.fit_rms;
     };
     std::stable_sort(models.begin(), models.end(), [&](const auto& a, const auto& b) { return cost(a) < cost(b); });
     return models;
@@ -63,8 +65,8 @@ void warn_formula(const CleanRecord& r, const RecordedCycle& cycle, const RelayM
     // Periods that differ blur the harmonics of their mean.
     const double scatter = noise / std::sqrt(static_cast<double>(std::max(1, r.samples()))) +
                            2 * cycle.period_scatter / cycle.period * cycle.y_half;
-    constexpr double kPlainly = 0.03, kErrors = 4;  // of half a swing, and of what scatter explains
-    if (chosen.fit_rms > kPlainly * cycle.y_half + kErrors * scatter) {
+    constexpr double kMinMisfitShare = 0.03, kScatterErrors = 4;  // of half a swing, and of what scatter explains
+    if (chosen.fit_rms > kMinMisfitShare * cycle.y_half + kScatterErrors * scatter) {
         warnings.push_back(
             {"structure-mismatch", "The model repeats the steady oscillation only within " +
                                        text(chosen.fit_rms * r.scale.y_scale, 3) + " (r.m.s., of a half swing of " +

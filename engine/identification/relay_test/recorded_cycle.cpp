@@ -33,11 +33,12 @@ public:
     /// The integral of (y - y0 - slope (t - from)) e^(-st) over [from, to] by trapezoids.
     Complex of_y(double from, double to, Complex s, double y0, double slope) const {
         // e^(-s(t - from)) from sample to sample; evenly spaced ones share their factor.
-        constexpr double kSameStep = 1e-15;  // of the record: rounding of evenly spaced times
+        constexpr double kStepTolerance = 1e-15;  // of the record: rounding of evenly spaced times
         Complex turned = 1, factor = 1;
         double factor_of = 0, last = from;
         auto value = [&](double t, double y) {
-            if (std::abs(t - last - factor_of) > kSameStep) factor_of = t - last, factor = std::exp(-s * factor_of);
+            if (std::abs(t - last - factor_of) > kStepTolerance)
+                factor_of = t - last, factor = std::exp(-s * factor_of);
             turned *= factor;
             return (y - y0 - slope * (t - from)) * turned;
         };
@@ -57,11 +58,11 @@ public:
 
     /// The integral of (v - v0) e^(-st) over [from, to], exactly.
     Complex of_v(double from, double to, Complex s, double v0) const {
-        constexpr double kFlat = 1e-8;  // below it (1 - e^(-sh))/s loses more digits than h is off
+        constexpr double kMinPhase = 1e-8;  // below it (1 - e^(-sh))/s loses more digits than h is off
         Complex sum = 0;
         auto piece = [&](double a, double b, double v) {
             const double h = b - a;
-            const Complex whole = std::abs(s) * h < kFlat ? Complex(h) : (1.0 - std::exp(-s * h)) / s;
+            const Complex whole = std::abs(s) * h < kMinPhase ? Complex(h) : (1.0 - std::exp(-s * h)) / s;
             sum += (v - v0) * std::exp(-s * (a - from)) * whole;
         };
         auto j = std::upper_bound(r_.v_time.begin(), r_.v_time.end(), from) - r_.v_time.begin();
@@ -125,13 +126,13 @@ std::size_t first_steady(const std::vector<Period>& periods, double spacing, dou
         if (k > 0) steps.push_back(periods[k].mean - periods[k - 1].mean);
     }
     const double length = mean(lengths), half = mean(halves), step = mean(steps);
-    constexpr double kSpacings = 1.5;                   // both ends of a period are seen at the next sample
-    constexpr double kErrors = 4;                       // standard deviations
+    constexpr double kMaxSpacings = 1.5;                // both ends of a period are seen at the next sample
+    constexpr double kNoiseDeviations = 4;              // standard deviations
     constexpr double kOfLength = 2e-3, kOfHalf = 0.01;  // what a steady oscillation is known to at best
-    const double length_tolerance = kSpacings * spacing + kErrors * deviation(lengths) + kOfLength * length;
-    const double half_tolerance = kOfHalf * half + 2 * noise + kErrors * deviation(halves);
-    const double step_tolerance = kOfHalf * half + kErrors * noise / std::sqrt(std::max(1, samples_a_period)) +
-                                  kErrors * deviation(steps) + std::abs(step) + spacing / length * half;
+    const double length_tolerance = kMaxSpacings * spacing + kNoiseDeviations * deviation(lengths) + kOfLength * length;
+    const double half_tolerance = kOfHalf * half + 2 * noise + kNoiseDeviations * deviation(halves);
+    const double step_tolerance = kOfHalf * half + kNoiseDeviations * noise / std::sqrt(std::max(1, samples_a_period)) +
+                                  kNoiseDeviations * deviation(steps) + std::abs(step) + spacing / length * half;
     std::size_t first = n - 1;
     for (std::size_t k = n; k-- > 0;) {
         const Period& p = periods[k];
@@ -156,7 +157,7 @@ Line creep(const std::vector<Period>& periods, std::size_t first) {
 }
 
 /// What y may differ by without having moved: standard deviations of its noise, and a share of its swing.
-constexpr double kErrors = 4, kOfSwing = 0.002;
+constexpr double kNoiseDeviations = 4, kOfSwing = 0.002;
 
 /// The mean of y before the plant has answered: up to the relay's start; or, where the record starts with it, of the
 /// earlier half of the first samples until one leaves their mean (an answer shows in noise only some time after it
@@ -169,7 +170,7 @@ double y_before_answer(const CleanRecord& r, double relay_start, double noise, d
     for (int i = 0; i < r.samples(); ++i) {
         const double y = r.y[static_cast<std::size_t>(i)], t = r.t[static_cast<std::size_t>(i)];
         const bool answered =
-            before ? t > relay_start : n > 0 && std::abs(y - sum / n) > kErrors * noise + kOfSwing * swing;
+            before ? t > relay_start : n > 0 && std::abs(y - sum / n) > kNoiseDeviations * noise + kOfSwing * swing;
         if (answered && n > 0) break;
         sum += y;
         sums.push_back(sum);
@@ -189,15 +190,16 @@ RestPoint rest_point(const CleanRecord& r, const TwoLevels& u, double relay_star
     const double zero = -r.scale.u_rest / r.scale.u_scale, y_zero = -r.scale.y_origin / r.scale.y_scale;
     const bool deviations = zero > u.low && zero < u.high;
     rest.v = deviations ? zero : 0.5 * (u.low + u.high);
-    if (deviations && !r.y_rest && std::abs(rest.y - y_zero) < kErrors * noise / std::sqrt(n) + kOfSwing * swing)
+    if (deviations && !r.y_rest &&
+        std::abs(rest.y - y_zero) < kNoiseDeviations * noise / std::sqrt(n) + kOfSwing * swing)
         rest.y = y_zero;
     return rest;
 }
 
 /// Standard deviation of the mean of y over the rows at rest, n of them before the relay's start.
 double rest_std(const CleanRecord& r, double relay_start, double noise) {
-    constexpr double kGivenRows = 10;  // that a given level of rest is taken to be the mean of
-    constexpr double kDithered = 0.3;  // of a step of y's grid: less noise leaves all rows with one error
+    constexpr double kGivenRows = 10;          // that a given level of rest is taken to be the mean of
+    constexpr double kMinDitherInGrids = 0.3;  // of a step of y's grid: less noise leaves all rows with one error
     if (r.y_rest) return noise / std::sqrt(kGivenRows);
     const auto after = std::upper_bound(r.t.begin(), r.t.end(), relay_start);
     const std::span rest(r.y.data(), static_cast<std::size_t>(after - r.t.begin()));
@@ -205,7 +207,7 @@ double rest_std(const CleanRecord& r, double relay_start, double noise) {
     if (relay_start <= 0 || rest.size() < 2) return std::hypot(noise, rounding);
     const double scatter = deviation(rest);
     const auto n = static_cast<double>(rest.size());
-    if (scatter < kDithered * rounding * std::sqrt(12.0)) return std::max(rounding, scatter);
+    if (scatter < kMinDitherInGrids * rounding * std::sqrt(12.0)) return std::max(rounding, scatter);
     return std::max(noise / std::sqrt(n), scatter * std::sqrt(std::min(1.0, correlation_time(rest) / n)));
 }
 
@@ -272,9 +274,9 @@ void take_periods(const Signals& signals, const std::vector<Period>& periods, st
     cycle.period_scatter = deviation(lengths);
     cycle.y_half = mean(halves);
     constexpr int kMinPeriods = 4;
-    constexpr double kSlopeErrors = 6, kVisible = 0.01;  // standard errors; of half a swing over all periods
+    constexpr double kSlopeErrors = 6, kMinVisibleDrift = 0.01;  // standard errors; of half a swing over all periods
     const bool creeps = cycle.periods >= kMinPeriods && std::abs(line.slope) > kSlopeErrors * line.slope_std &&
-                        std::abs(line.slope) * length > kVisible * cycle.y_half;
+                        std::abs(line.slope) * length > kMinVisibleDrift * cycle.y_half;
     cycle.drift = creeps ? line.slope : 0;
     cycle.v_mean = signals.of_v(cycle.start, cycle.start + length, 0, 0).real() / length;
     cycle.y_mean = signals.of_y(cycle.start, cycle.start + length, 0, 0, 0).real() / length;
@@ -284,8 +286,8 @@ void take_periods(const Signals& signals, const std::vector<Period>& periods, st
 /// noise, one that is not steady yet adds scatter.
 void take_best_periods(const Signals& signals, const std::vector<Period>& periods, std::size_t steady, double noise,
                        RecordedCycle& cycle) {
-    constexpr double kClearlyMore = 0.7;
-    double least = std::numeric_limits<double>::max();
+    constexpr double kMaxShareOfOther = 0.7;
+    double min = std::numeric_limits<double>::max();
     RecordedCycle best;
     for (std::size_t first = steady; first + 2 <= periods.size(); ++first) {
         RecordedCycle now = cycle;
@@ -294,7 +296,7 @@ void take_best_periods(const Signals& signals, const std::vector<Period>& period
         const double n = now.periods, by_noise = noise / std::sqrt(2.0 * std::max(1, samples));
         const double uncertainty = std::max(pool(signals, now, 1).scatter, by_noise) * (1 + 1 / (n - 1));
         // Only what is clearly more certain is worth fewer periods: the scatter of a few is itself uncertain.
-        if (uncertainty < kClearlyMore * least) least = uncertainty, best = now;
+        if (uncertainty < kMaxShareOfOther * min) min = uncertainty, best = now;
     }
     if (best.periods > 0)
         cycle = best;
@@ -305,8 +307,8 @@ void take_best_periods(const Signals& signals, const std::vector<Period>& period
 }  // namespace
 
 bool RecordedCycle::biased() const {
-    constexpr double kBiased = 0.05;  // of half a swing: a level of rest is seldom known better
-    return std::abs(v_middle - rest.v) > kBiased * v_half;
+    constexpr double kMinBias = 0.05;  // of half a swing: a level of rest is seldom known better
+    return std::abs(v_middle - rest.v) > kMinBias * v_half;
 }
 
 double RecordedCycle::static_gain_std() const { return mean_std / std::abs(v_mean - rest.v); }
@@ -335,9 +337,9 @@ Expected<RecordedCycle> find_cycle(const CleanRecord& r, double noise) {
     }
     RecordedCycle cycle;
     const double relay_level = u.first_is_up ? u.low : u.high;
-    constexpr double kSameLevel = 0.02;  // of the distance between the levels
+    constexpr double kLevelTolerance = 0.02;  // of the distance between the levels
     const bool pre_test =
-        std::abs(levels.level.front() - relay_level) > kSameLevel * (u.high - u.low) && levels.moves() > 0;
+        std::abs(levels.level.front() - relay_level) > kLevelTolerance * (u.high - u.low) && levels.moves() > 0;
     cycle.relay_start = pre_test ? levels.time[1] : 0;
     cycle.recorded_periods = static_cast<int>(periods.size());
     const double spacing = r.t.back() / std::max(1, r.samples() - 1);

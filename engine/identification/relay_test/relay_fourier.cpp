@@ -95,8 +95,8 @@ std::vector<RelayModel> unbiased_models(const RecordedCycle& cycle, Complex shif
     auto f = [&](double log_T) { return excess(point, omega, structure, std::exp(log_T), sigma, magnitude); };
     constexpr int kIntervals = 400;                     // two roots of one structure lie farther apart
     constexpr double kShortest = 1e-4, kLongest = 1e4;  // T omega: beyond, the lag is none, or an integrator
-    constexpr double kRounding = 1e-9;                  // a dead time of 0, of the record's length
-    constexpr double kSameRoot = 1e-14;                 // of ln T
+    constexpr double kDeadTimeTolerance = 1e-9;         // a dead time of 0, of the record's length
+    constexpr double kLogRootTolerance = 1e-14;         // of ln T
     const double low = std::log(kShortest / omega), high = std::log(kLongest / omega);
     std::vector<RelayModel> models;
     double before = f(low);
@@ -105,8 +105,8 @@ std::vector<RelayModel> unbiased_models(const RecordedCycle& cycle, Complex shif
         const double after = f(b);
         if ((before > 0) != (after > 0)) {
             RelayModel model =
-                model_at(cycle, point, structure, std::exp(root_between(f, a, b, before, after, kSameRoot)));
-            if (model.shape.L() >= -kRounding) {
+                model_at(cycle, point, structure, std::exp(root_between(f, a, b, before, after, kLogRootTolerance)));
+            if (model.shape.L() >= -kDeadTimeTolerance) {
                 model.shape.p[0] = std::max(0.0, model.shape.p[0]);
                 models.push_back(model);
             }

@@ -14,17 +14,17 @@ namespace {
 using Index = std::size_t;
 using Complex = std::complex<double>;
 
-constexpr double kOneMultiple = 1e-9;  // of a sample: a dead time that near to a multiple is one
-constexpr int kMostCounted = 1'000'000'000;
+constexpr double kMultipleTolerance = 1e-9;  // of a sample: a dead time that near to a multiple is one
+constexpr int kMaxCounted = 1'000'000'000;
 
 }  // namespace
 
 std::optional<Error> refuse_sampling(const LinearPlant& plant, double sample_time, double computation_delay) {
     const double delay = plant.dead_time() + computation_delay;
-    if (delay <= kMostDelaySamples * sample_time) return std::nullopt;
+    if (delay <= kMaxDelaySamples * sample_time) return std::nullopt;
     return Error{ErrorKind::invalid_argument, "implement/sample_time",
                  "Dead time and computation delay together are " + text(delay) + ", more than " +
-                     std::to_string(kMostDelaySamples) + " sample times of " + text(sample_time) +
+                     std::to_string(kMaxDelaySamples) + " sample times of " + text(sample_time) +
                      ". Give a longer sample_time; a twentieth of the dead time is short."};
 }
 
@@ -37,8 +37,8 @@ UnitCircle::UnitCircle(double angle) {
 
 SampledDelay in_samples(double delay, double sample_time) {
     const double count = delay / sample_time, nearest = std::round(count);
-    if (!(count < kMostCounted)) return {kMostCounted, 0};
-    if (std::abs(count - nearest) <= kOneMultiple * std::max(1.0, nearest)) return {static_cast<int>(nearest), 0};
+    if (!(count < kMaxCounted)) return {kMaxCounted, 0};
+    if (std::abs(count - nearest) <= kMultipleTolerance * std::max(1.0, nearest)) return {static_cast<int>(nearest), 0};
     const double whole = std::floor(count);
     return {static_cast<int>(whole), delay - whole * sample_time};
 }

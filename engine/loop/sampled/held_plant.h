@@ -27,7 +27,7 @@ struct UnitCircle {
 };
 
 /// Sample times that a dead time may last: more are no loop that anybody runs, and cost without end.
-inline constexpr int kMostDelaySamples = 100'000;
+inline constexpr int kMaxDelaySamples = 100'000;
 
 /// An error at implement/sample_time where dead time and computation delay together last longer than that.
 std::optional<Error> refuse_sampling(const LinearPlant& plant, double sample_time, double computation_delay);

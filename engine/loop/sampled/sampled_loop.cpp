@@ -15,20 +15,21 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr int kGridDensity = 24;    // points a decade to start with
-constexpr int kSparseDensity = 8;   // where |S| alone is asked for: its own steps refine the grid
-constexpr double kGridStep = 0.15;  // of S between neighbours
-constexpr double kLowRise = 0.3;    // of |S| - 1: below it so flat a maximum needs a finer grid
+constexpr int kGridDensity = 24;     // points a decade to start with
+constexpr int kSparseDensity = 8;    // where |S| alone is asked for: its own steps refine the grid
+constexpr double kGridStep = 0.15;   // of S between neighbours
+constexpr double kMaxLowRise = 0.3;  // of |S| - 1: below it so flat a maximum needs a finer grid
 constexpr double kFinestStep = 5e-3;
-constexpr double kFarBelow = 1e-3;     // of 1/Ts: where the integral's phase is read
-constexpr double kLightDamping = 0.3;  // of a plant's pole: below it a resonance shows, also folded below pi/Ts
-constexpr double kLeastWidth = 1e-6;   // of a folded resonance, relative
+constexpr double kMinFrequencyShare = 1e-3;  // of 1/Ts: where the integral's phase is read
+constexpr double kLightDamping = 0.3;        // of a plant's pole: below it a resonance shows, also folded below pi/Ts
+constexpr double kMinWidth = 1e-6;           // of a folded resonance, relative
 
-constexpr double kFollowedTurn = 2;       // rad of z and of the dead time: below it no whole turn is missed
-constexpr double kBelowOne = 0.99;        // of |L| at both ends: 1 + L stays in the right half-plane
-constexpr double kBoundary = 1e-9;        // |1 + L| relative to 1 + |L|: closer to 0 counts as on the circle
-constexpr double kAtAPole = 1e10;         // of 1 + |L|: there is nothing but rounding left of the distance to the pole
-constexpr double kBeyondNumbers = 1e100;  // of a plant's pole: no law that is written in numbers holds it
+constexpr double kFollowedTurn = 2;           // rad of z and of the dead time: below it no whole turn is missed
+constexpr double kMaxModulusBelowOne = 0.99;  // of |L| at both ends: 1 + L stays in the right half-plane
+constexpr double kMaxAxisDistance = 1e-9;     // |1 + L| relative to 1 + |L|: closer to 0 counts as on the circle
+constexpr double kMinModulusAtPole =
+    1e10;                           // of 1 + |L|: there is nothing but rounding left of the distance to the pole
+constexpr double kMaxPole = 1e100;  // of a plant's pole: no law that is written in numbers holds it
 constexpr int kMaxHalvings = 60;
 
 Complex integral_part(const SampledPid& law, Complex difference, Complex back) {
@@ -123,12 +124,12 @@ LoopGrid SampledLoop::grid_from(const Refinement& refinement, int density) const
     for (const Complex pole : plant_.plant().poles()) {
         if (pole.imag() <= highest || std::abs(pole.real()) > kLightDamping * std::abs(pole)) continue;
         const double folded = std::abs(std::remainder(pole.imag(), 2 * highest));
-        const double width = std::max(std::abs(pole.real()), kLeastWidth * folded);
+        const double width = std::max(std::abs(pole.real()), kMinWidth * folded);
         for (const double offset : {-3.0, -1.0, -0.3, 0.0, 0.3, 1.0, 3.0}) base.push_back(folded + offset * width);
     }
     std::erase_if(base, [&](double omega) { return !(omega > 0 && omega < highest); });
     base.push_back(highest);
-    if (base.size() < 2) base.push_back(kFarBelow * highest);
+    if (base.size() < 2) base.push_back(kMinFrequencyShare * highest);
     std::sort(base.begin(), base.end());
     base.erase(std::unique(base.begin(), base.end()), base.end());
     return refined_grid([&](double omega) { return at(omega); }, base, highest, refinement);
@@ -141,9 +142,9 @@ LoopGrid SampledLoop::grid_of(int density, double enough_below) const {
     double largest = 0;
     for (const LoopPoint& point : grid.point) largest = std::max(largest, magnitude(point.S));
     const double rise = largest - 1;
-    if (rise >= kLowRise) return grid;
+    if (rise >= kMaxLowRise) return grid;
     return refined_grid([&](double omega) { return at(omega); }, grid,
-                        {std::clamp(kLowRise * rise, kFinestStep, kGridStep), enough_below});
+                        {std::clamp(kMaxLowRise * rise, kFinestStep, kGridStep), enough_below});
 }
 
 LoopPoint SampledLoop::at_zero() const {
@@ -216,7 +217,7 @@ public:
             open = product(open, pole == 1.0 ? z.one_minus_back : 1.0 - product(pole, z.back));
         const Complex returned = 1.0 + L;
         const double size = 1 + magnitude(L);
-        return {omega, open, returned, product(open, returned), size, magnitude(returned) <= kBoundary * size};
+        return {omega, open, returned, product(open, returned), size, magnitude(returned) <= kMaxAxisDistance * size};
     }
 
     /// Of z and of the dead time from one to the other, rad.
@@ -240,7 +241,7 @@ bool follow(const Characteristic& q, Winding& winding, const Characteristic::Val
     }
     // Each factor's turn by itself may be unmistakable. Where |L| < 1 from end to end, 1 + L stays in the right
     // half-plane however often the dead time turns it.
-    const bool below_one = left.size < 1 + kBelowOne && right.size < 1 + kBelowOne;
+    const bool below_one = left.size < 1 + kMaxModulusBelowOne && right.size < 1 + kMaxModulusBelowOne;
     if ((below_one || (followed && Winding::is_short(left.returned, right.returned))) &&
         Winding::is_short(left.open, right.open)) {
         const Complex open = quotient(right.open, left.open), returned = quotient(right.returned, left.returned);
@@ -265,16 +266,16 @@ StabilityCount SampledLoop::count_unstable_poles(const LoopGrid& along) const {
     const double start = std::arg(left.q), beyond = start - std::numbers::pi * std::round(start / std::numbers::pi);
     Winding winding(left.q);
     StabilityCount count;
-    for (const Complex pole : plant_.poles()) count.unstable_poles += !(magnitude(pole) < kBeyondNumbers);
+    for (const Complex pole : plant_.poles()) count.unstable_poles += !(magnitude(pole) < kMaxPole);
     if (count.unstable_poles > 0) return count;
     if (finite_at_zero()) {
         const Complex L = open_loop(0);
-        count.on_the_boundary = magnitude(1.0 + L) <= kBoundary * (1 + magnitude(L));
+        count.on_the_boundary = magnitude(1.0 + L) <= kMaxAxisDistance * (1 + magnitude(L));
     }
     for (std::size_t i = 1; i < along.omega.size() && !count.on_the_boundary; ++i) {
         const auto right = q.at(along.omega[i], along.point[i].L);
         // At a pole of the plant on the circle q = 0 times infinity: its neighbours tell what it does.
-        if (!(right.size < kAtAPole)) continue;
+        if (!(right.size < kMinModulusAtPole)) continue;
         count.on_the_boundary = !follow(q, winding, left, right);
         left = right;
     }

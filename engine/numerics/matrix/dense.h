@@ -19,9 +19,9 @@ Eigen::VectorXd transpose_times(const Eigen::Ref<const Eigen::MatrixXd>& A, cons
 Eigen::VectorXd solve_symmetric(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 
 /// The same of at most this size, without any allocation.
-inline constexpr int kFew = 8;
-using FewByFew = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kFew, kFew>;
-using Few = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kFew, 1>;
+inline constexpr int kMaxSmallSize = 8;
+using FewByFew = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxSmallSize, kMaxSmallSize>;
+using Few = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxSmallSize, 1>;
 Few solve_symmetric(const FewByFew& A, const Few& b);
 
 /// A x = b for any square A (LU with full pivoting): where A is singular, one of the x that leave the least.

@@ -39,7 +39,8 @@ std::vector<double> matrix_product(std::span<const double> A, std::span<const do
 
 namespace {
 
-constexpr double kNoSquaring = 5;  // of a matrix: up to this norm its exponential is a fraction, nothing is squared
+constexpr double kMaxUnscaledNorm =
+    5;  // of a matrix: up to this norm its exponential is a fraction, nothing is squared
 constexpr int kMaxSweeps = 20;
 
 double power_of_two(double x) { return std::exp2(std::round(std::log2(x))); }
@@ -75,7 +76,7 @@ Eigen::VectorXd alike(Matrix& A) {
 std::vector<double> matrix_exponential(std::span<const double> matrix, int n) {
     if (n == 1) return {std::exp(matrix[0])};
     Matrix A = as_matrix(matrix, n);
-    if (!(A.cwiseAbs().colwise().sum().maxCoeff() > kNoSquaring)) {
+    if (!(A.cwiseAbs().colwise().sum().maxCoeff() > kMaxUnscaledNorm)) {
         const Matrix result = A.exp();
         return {result.data(), result.data() + result.size()};
     }
@@ -110,14 +111,14 @@ namespace {
 
 using Index = std::size_t;
 
-constexpr double kNever = 1e9;  // the cost of a zero
+constexpr double kCostOfZero = 1e9;  // the cost of a zero
 
 /// Rows join one by one along the shortest alternating path. Column n stands for "none yet".
 class Assignment {
 public:
     Assignment(std::span<const double> matrix, Index n)
         : n_(n), rows_(n, 0.0), columns_(n + 1, 0.0), row_of_(n + 1, n) {
-        for (const double entry : matrix) cost_.push_back(entry == 0 ? kNever : -std::log2(std::abs(entry)));
+        for (const double entry : matrix) cost_.push_back(entry == 0 ? kCostOfZero : -std::log2(std::abs(entry)));
     }
 
     bool solve() {
@@ -146,7 +147,7 @@ private:
             used_[at] = true;
             const Index next = nearest(at);
             const double step = distance_[next];
-            if (step > kNever / 2) return false;
+            if (step > kCostOfZero / 2) return false;
             raise(step);
             at = next;
         }

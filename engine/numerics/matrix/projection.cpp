@@ -11,11 +11,11 @@ namespace tunewright {
 namespace {
 
 /// A column whose part outside the others' span is relatively below this is no independent one.
-constexpr double kDependent = 1e-9;
+constexpr double kMinIndependentShare = 1e-9;
 /// With that share of its length left a column has lost one digit at most.
-constexpr double kMuchIsLeft = 0.1;
-constexpr double kTiny = 1e-150;  // of a column: its square is still above 0
-constexpr double kRidge = 1e-12;  // dependent columns share their coefficient
+constexpr double kMinShareWithoutRepeat = 0.1;
+constexpr double kMinColumnNorm = 1e-150;  // of a column: its square is still above 0
+constexpr double kRidge = 1e-12;           // dependent columns share their coefficient
 
 std::span<double> numbers(Eigen::MatrixXd& m, Eigen::Index column) {
     return {m.col(column).data(), static_cast<std::size_t>(m.rows())};
@@ -44,7 +44,7 @@ double orthogonalise(std::span<const double> column, double length, Eigen::Index
             rest = std::sqrt(add_multiple(left, -part, numbers(basis, i), q));
             left = q;
         }
-        if (rest > kMuchIsLeft * length) break;
+        if (rest > kMinShareWithoutRepeat * length) break;
     }
     return rest;
 }
@@ -68,7 +68,7 @@ void project_on(const Eigen::MatrixXd& columns, const Eigen::VectorXd& y, double
         const std::span<double> q = numbers(result.basis, k), residual = numbers(result.residual);
         const double length = length_of(column);
         const double rest = orthogonalise(column, length, k, result.basis, R);
-        if (!(rest > kDependent * length) || rest < kTiny) {
+        if (!(rest > kMinIndependentShare * length) || rest < kMinColumnNorm) {
             if (k == m - 1) result.determined = false;
             R(k, k) = 1;
             std::ranges::fill(q, 0.0);

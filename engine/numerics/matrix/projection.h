@@ -20,7 +20,7 @@ double square_of(const Eigen::VectorXd& y);
 void project_on(const Eigen::MatrixXd& columns, const Eigen::VectorXd& y, double y_square, Projection& result);
 
 /// What is left of y_square, roughly: by normal equations, good to the square root of the precision. May be below 0 by
-/// rounding. At most kFew columns (dense.h).
+/// rounding. At most kMaxSmallSize columns (dense.h).
 double rough_rest(const Eigen::MatrixXd& columns, const Eigen::VectorXd& y, double y_square);
 
 /// Takes out of D's columns what the basis reaches.

@@ -8,15 +8,15 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// Solves (sI - A)' x = C'. Where it is known that there are at most kMost states nothing is allocated: most plants are
-/// small, and a loop asks at hundreds of frequencies.
-template <int kStates, int kMost>
+/// Solves (sI - A)' x = C'. Where it is known that there are at most kMaxStates states nothing is allocated: most
+/// plants are small, and a loop asks at hundreds of frequencies.
+template <int kStates, int kMaxStates>
 std::vector<Complex> row_of(std::span<const double> A, std::span<const double> C, int n, Complex s) {
     // A row by row is A' column by column.
-    Eigen::Matrix<Complex, kStates, kStates, Eigen::ColMajor, kMost, kMost> pencil =
+    Eigen::Matrix<Complex, kStates, kStates, Eigen::ColMajor, kMaxStates, kMaxStates> pencil =
         (-Eigen::Map<const Eigen::MatrixXd>(A.data(), n, n)).cast<Complex>();
     pencil.diagonal().array() += s;
-    const Eigen::Matrix<Complex, kStates, 1, Eigen::ColMajor, kMost, 1> row =
+    const Eigen::Matrix<Complex, kStates, 1, Eigen::ColMajor, kMaxStates, 1> row =
         pencil.partialPivLu().solve(Eigen::Map<const Eigen::VectorXd>(C.data(), n).cast<Complex>());
     return {row.data(), row.data() + n};
 }
@@ -24,10 +24,10 @@ std::vector<Complex> row_of(std::span<const double> A, std::span<const double> C
 }  // namespace
 
 std::vector<Complex> resolvent_row(std::span<const double> A, std::span<const double> C, int n, Complex s) {
-    constexpr int kAnyNumber = Eigen::Dynamic, kFew = 4;
+    constexpr int kAnyNumber = Eigen::Dynamic, kMaxStatesOnStack = 4;
     if (n == 1) return {C[0] / (s - A[0])};
     if (n == 2) return row_of<2, 2>(A, C, n, s);
-    if (n <= kFew) return row_of<kAnyNumber, kFew>(A, C, n, s);
+    if (n <= kMaxStatesOnStack) return row_of<kAnyNumber, kMaxStatesOnStack>(A, C, n, s);
     return row_of<kAnyNumber, kAnyNumber>(A, C, n, s);
 }
 

@@ -55,7 +55,7 @@ LocalMinimum find_local_minimum(LocalSearch search,
     nlopt_set_initial_step(optimiser.get(), options.step.data());
     nlopt_set_ftol_abs(optimiser.get(), options.tolerance);
     nlopt_set_xtol_rel(optimiser.get(), options.tolerance);
-    nlopt_set_maxeval(optimiser.get(), options.most_evaluations);
+    nlopt_set_maxeval(optimiser.get(), options.max_evaluations);
     LocalMinimum best{start, std::numeric_limits<double>::infinity()};
     minimise(f, optimiser, std::move(start), [&best](std::vector<double>&& point, double value) {
         if (value < best.value) best = {std::move(point), value};
@@ -64,11 +64,11 @@ LocalMinimum find_local_minimum(LocalSearch search,
 }
 
 std::vector<LocalMinimum> explore(const std::function<double(const std::vector<double>&, bool& stop)>& f,
-                                  const Box& box, int most_evaluations) {
+                                  const Box& box, int max_evaluations) {
     const Optimiser optimiser = optimiser_of(NLOPT_GN_DIRECT_L, box.low.size());
     nlopt_set_lower_bounds(optimiser.get(), box.low.data());
     nlopt_set_upper_bounds(optimiser.get(), box.high.data());
-    nlopt_set_maxeval(optimiser.get(), most_evaluations);
+    nlopt_set_maxeval(optimiser.get(), max_evaluations);
     std::vector<double> centre(box.low.size());
     for (std::size_t i = 0; i < centre.size(); ++i) centre[i] = 0.5 * (box.low[i] + box.high[i]);
     std::vector<LocalMinimum> met;

@@ -23,7 +23,7 @@ struct LocalMinimum {
 struct LocalOptions {
     std::vector<double> step;  ///< first step of each unknown
     double tolerance = 1e-7;   ///< of the value (absolute) and of the unknowns (relative)
-    int most_evaluations = 400;
+    int max_evaluations = 400;
 };
 
 /// The best point met, from `start`. `f` must be finite everywhere; it ends the search by setting `stop`.
@@ -38,6 +38,6 @@ struct Box {
 /// Every point met, in order. DIRECT with a local bias (Jones, Perttunen & Stuckman 1993; Gablonsky & Kelley 2001):
 /// deterministic. `f` must be finite everywhere; it ends the search by setting `stop`.
 std::vector<LocalMinimum> explore(const std::function<double(const std::vector<double>&, bool& stop)>& f,
-                                  const Box& box, int most_evaluations);
+                                  const Box& box, int max_evaluations);
 
 }  // namespace tunewright

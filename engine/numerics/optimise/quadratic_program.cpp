@@ -49,7 +49,7 @@ public:
         J_ = factored.matrixU().solve(Matrix::Identity(n_, n_));
         move_to_minimum();
         for (int left = k_.changes_per_size * int(n_ + program_.constraints); left > 0; --left) {
-            const Index next = most_exceeded();
+            const Index next = max_exceeded();
             if (next < 0) return minimum();
             if (!activate(next, left)) return std::nullopt;
         }
@@ -60,16 +60,16 @@ private:
     double excess(Index i) const { return program_.A.col(i).dot(x_) - program_.b[i]; }
 
     /// -1: none is exceeded.
-    Index most_exceeded() const {
-        Index most = -1;
+    Index max_exceeded() const {
+        Index max = -1;
         double largest = 0;
         for (Index i = 0; i < program_.constraints; ++i) {
             const double here = excess(i);
             if (here <= largest || here <= k_.slack * (1 + std::abs(program_.b[i])) || is_active(i)) continue;
             largest = here;
-            most = i;
+            max = i;
         }
-        return most;
+        return max;
     }
 
     bool is_active(Index i) const { return std::find(active_.data(), active_.data() + q_, i) != active_.data() + q_; }
@@ -104,9 +104,9 @@ private:
 
     Leaving first_to_leave() const {
         Leaving first;
-        const double least = q_ > 0 ? k_.rounding * r_.head(q_).cwiseAbs().maxCoeff() : 0;
+        const double min = q_ > 0 ? k_.rounding * r_.head(q_).cwiseAbs().maxCoeff() : 0;
         for (Index k = 0; k < q_; ++k)
-            if (r_[k] > least && std::max(0.0, u_[k]) / r_[k] < first.step) first = {k, std::max(0.0, u_[k]) / r_[k]};
+            if (r_[k] > min && std::max(0.0, u_[k]) / r_[k] < first.step) first = {k, std::max(0.0, u_[k]) / r_[k]};
         return first;
     }
 

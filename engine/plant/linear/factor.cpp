@@ -17,12 +17,12 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double kCancels = 1e-8;  // of a pole's size: a zero so near cancels it, both being computed eigenvalues
-constexpr double kLeastModulus =
-    1e-4;                             // of the largest entry of A: poles below it are known absolutely, not relatively
-constexpr double kNotStable = 1e-10;  // of the largest entry of A: a real part above minus this may be 0
-constexpr double kAtOrigin = 1e-13;   // of the largest entry of A: an eigenvalue below it is 0 and rounding
-constexpr double kTiny = 1e-300;      // stands for 0 in a divisor
+constexpr double kMaxCancellationDistance =
+    1e-8;                             // of a pole's size: a zero so near cancels it, both being computed eigenvalues
+constexpr double kMinModulus = 1e-4;  // of the largest entry of A: poles below it are known absolutely, not relatively
+constexpr double kStabilityTolerance = 1e-10;  // of the largest entry of A: a real part above minus this may be 0
+constexpr double kMaxOriginModulus = 1e-13;    // of the largest entry of A: an eigenvalue below it is 0 and rounding
+constexpr double kMinDivisor = 1e-300;         // stands for 0 in a divisor
 
 Error invalid(const std::string& field, const std::string& message) {
     return {ErrorKind::invalid_argument, "plant/" + field, message};
@@ -123,13 +123,13 @@ Expected<Factors> factor_of(const Zpk& p) {
 std::optional<Error> cancel_hidden_modes(Factors& factors, double scale) {
     for (auto zero = factors.zeros.begin(); zero != factors.zeros.end();) {
         const auto pole = std::find_if(factors.poles.begin(), factors.poles.end(), [&](Complex p) {
-            return std::abs(p - *zero) <= kCancels * std::max(std::abs(p), kLeastModulus * scale);
+            return std::abs(p - *zero) <= kMaxCancellationDistance * std::max(std::abs(p), kMinModulus * scale);
         });
         if (pole == factors.poles.end()) {
             ++zero;
             continue;
         }
-        if (pole->real() >= -kNotStable * scale)
+        if (pole->real() >= -kStabilityTolerance * scale)
             return Error{ErrorKind::unsupported, "plant/A",
                          "The mode at s = " + as_given(pole->real()) +
                              (pole->imag() != 0 ? " + " + as_given(pole->imag()) + "j" : "") +
@@ -155,14 +155,14 @@ Expected<Factors> factor_of(const StateSpace& p) {
         return invalid("C", "The transfer function of this state space is 0: the input cannot move the output.");
     Factors factors{.gain = 0, .integrators = 0, .zeros = *zeros, .poles = eigenvalues(A, n)};
     if (auto error = cancel_hidden_modes(factors, scale)) return *error;
-    const auto at_origin = [scale](Complex value) { return std::abs(value) <= kAtOrigin * scale; };
+    const auto at_origin = [scale](Complex value) { return std::abs(value) <= kMaxOriginModulus * scale; };
     factors.integrators = static_cast<int>(std::erase_if(factors.poles, at_origin));
     factors.integrators -= static_cast<int>(std::erase_if(factors.zeros, at_origin));
     // The gain from the response at a point away from every zero and pole.
     double radius = scale;
     for (const Complex value : factors.zeros) radius = std::max(radius, std::abs(value));
     for (const Complex value : factors.poles) radius = std::max(radius, std::abs(value));
-    const Complex s(2 * std::max(radius, kTiny), 0);
+    const Complex s(2 * std::max(radius, kMinDivisor), 0);
     Complex product = std::pow(s, -factors.integrators);
     for (const Complex zero : factors.zeros) product *= s - zero;
     for (const Complex pole : factors.poles) product /= s - pole;

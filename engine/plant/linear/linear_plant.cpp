@@ -15,8 +15,8 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double kRightOfAxis = 1e-10;  // real part over size: computed roots on the axis come out with less
-constexpr double kTiny = 1e-300;        // stands for 0 in a divisor
+constexpr double kMinRelativeRealPart = 1e-10;  // real part over size: computed roots on the axis come out with less
+constexpr double kMinDivisor = 1e-300;          // stands for 0 in a divisor
 
 /// (b2 s^2 + b1 s + b0)/(s^2 + a1 s + a0) of order 2, or (b1 s + b0)/(s + a0) of order 1.
 struct Section {
@@ -127,7 +127,8 @@ SectionStates states_of(const Section& section) {
         states.h = {(section.b0 - section.b1 * section.a0) / scale, 0};
         states.k = section.b1;
     } else {
-        const double omega = section.a0 != 0 ? std::sqrt(std::abs(section.a0)) : std::max(std::abs(section.a1), kTiny);
+        const double omega =
+            section.a0 != 0 ? std::sqrt(std::abs(section.a0)) : std::max(std::abs(section.a1), kMinDivisor);
         states.F = {0, omega, -section.a0 / omega, -section.a1};
         states.g = {0, omega};
         states.h = {(section.b0 - section.b2 * section.a0) / (omega * omega),
@@ -238,13 +239,13 @@ double LinearPlant::direct_term() const { return pole_excess() == 0 ? gain_ : 0;
 
 int LinearPlant::unstable_poles() const {
     int count = 0;
-    for (const auto pole : poles_) count += pole.real() > kRightOfAxis * std::abs(pole);
+    for (const auto pole : poles_) count += pole.real() > kMinRelativeRealPart * std::abs(pole);
     return count;
 }
 
 bool LinearPlant::has_right_half_plane_zero() const {
     for (const auto zero : zeros_)
-        if (zero.real() > kRightOfAxis * std::abs(zero)) return true;
+        if (zero.real() > kMinRelativeRealPart * std::abs(zero)) return true;
     return false;
 }
 

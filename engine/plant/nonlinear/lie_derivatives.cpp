@@ -89,8 +89,8 @@ std::optional<Error> not_affine(const NonlinearSystem& system) {
 }
 
 // Values are compared with the sum of the terms' sizes that make them up, and with their values around.
-constexpr double kRounding = 1e-10;      // of the terms' sizes: no more than a derivative of order 20 loses
-constexpr double kVanishesThere = 1e-8;  // of the largest value around: 0 at the operating point
+constexpr double kRelativeTermRounding = 1e-10;  // of the terms' sizes: no more than a derivative of order 20 loses
+constexpr double kMaxVanishingShare = 1e-8;      // of the largest value around: 0 at the operating point
 constexpr double kNeighbourhood = 0.02;  // of the states: far enough to see a zero as one, near enough to be valid
 constexpr int kNeighbours = 12;
 
@@ -140,12 +140,12 @@ InputEffect input_effect(const NonlinearSystem& system, int r, const std::vector
     for (std::size_t i = 0; i < points.size(); ++i) {
         if (sizes[i].empty() || !lie_derivatives(system, r, points[i], lie)) continue;
         const double value = std::abs(lie.of_g);
-        if (value <= kRounding * sizes[i][static_cast<std::size_t>(r) - 1]) continue;
+        if (value <= kRelativeTermRounding * sizes[i][static_cast<std::size_t>(r) - 1]) continue;
         effect.anywhere = true;
         largest = std::max(largest, value);
         if (i == 0) here = value;
     }
-    effect.at_the_operating_point = effect.anywhere && here > kVanishesThere * largest;
+    effect.at_the_operating_point = effect.anywhere && here > kMaxVanishingShare * largest;
     return effect;
 }
 
@@ -215,7 +215,7 @@ ZeroDynamics zero_dynamics(const NonlinearSystem& system) {
     result.zeros = transmission_zeros(A, linear.B, linear.C, 0, static_cast<int>(n)).value_or(result.zeros);
     double scale = 0;
     for (const double a : A) scale = std::max(scale, std::abs(a));
-    for (const auto& zero : result.zeros) result.stable = result.stable && zero.real() < -kRounding * scale;
+    for (const auto& zero : result.zeros) result.stable = result.stable && zero.real() < -kRelativeTermRounding * scale;
     return result;
 }
 

@@ -25,13 +25,13 @@ constexpr Name kNames[] = {
     {"zeros", "zeros"},  {"zero", "zeros"}, {"poles", "poles"},    {"pole", "poles"}};
 constexpr const char* kKnown = "K, T, T1, T2, tau, L, theta, zeta, w0, zeros, poles, gain and delay";
 
-enum class Kind { by_names, fopdt, sopdt, ipdt };
+enum class ParameterForm { by_names, fopdt, sopdt, ipdt };
 
-std::optional<Kind> kind_of(const Word& word) {
+std::optional<ParameterForm> kind_of(const Word& word) {
     const std::string name = lower(word.text);
-    if (name == "fopdt" || name == "foptd" || name == "foldt") return Kind::fopdt;
-    if (name == "sopdt" || name == "soptd") return Kind::sopdt;
-    if (name == "ipdt" || name == "iptd" || name == "integrating" || name == "integrator") return Kind::ipdt;
+    if (name == "fopdt" || name == "foptd" || name == "foldt") return ParameterForm::fopdt;
+    if (name == "sopdt" || name == "soptd") return ParameterForm::sopdt;
+    if (name == "ipdt" || name == "iptd" || name == "integrating" || name == "integrator") return ParameterForm::ipdt;
     return std::nullopt;
 }
 
@@ -127,8 +127,10 @@ private:
 
     // fopdt(2, 10, 3), FOPDT 2 10 3
     void read_in_order() {
-        static const std::map<Kind, std::vector<std::string>> orders = {
-            {Kind::fopdt, {"K", "T", "L"}}, {Kind::sopdt, {"K", "T1", "T2", "L"}}, {Kind::ipdt, {"K", "L", "T"}}};
+        static const std::map<ParameterForm, std::vector<std::string>> orders = {
+            {ParameterForm::fopdt, {"K", "T", "L"}},
+            {ParameterForm::sopdt, {"K", "T1", "T2", "L"}},
+            {ParameterForm::ipdt, {"K", "L", "T"}}};
         const Word opened = cursor_.now();
         const bool bracket = opens(opened);
         if (bracket) cursor_.open(opened), cursor_.advance();
@@ -192,7 +194,7 @@ private:
         }
     }
 
-    bool integrating() const { return kind_ == Kind::ipdt; }
+    bool integrating() const { return kind_ == ParameterForm::ipdt; }
 
     bool given(const char* name) const { return values_.contains(name); }
     double number(const char* name) const { return given(name) ? values_.at(name).number : 0; }
@@ -233,7 +235,7 @@ private:
 
     Cursor& cursor_;
     double own_time_;
-    Kind kind_ = Kind::by_names;
+    ParameterForm kind_ = ParameterForm::by_names;
     std::map<std::string, Value> values_;
     std::optional<Roots> zeros_, poles_;
 };

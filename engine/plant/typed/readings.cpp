@@ -137,8 +137,8 @@ double read_number(Cursor& cursor, Commas commas) {
         return 0;
     }
     const std::string joined = word.text + "." + fraction.text;
-    constexpr std::size_t kGroup = 3;  // digits of a thousand
-    if (fraction.text.size() == kGroup && word.text.size() <= kGroup && word.text.front() != '0') {
+    constexpr std::size_t kThousandsDigits = 3;  // digits of a thousand
+    if (fraction.text.size() == kThousandsDigits && word.text.size() <= kThousandsDigits && word.text.front() != '0') {
         cursor.fail(word.position, word.text + "," + fraction.text + " may be " + joined + " or " + word.text +
                                        fraction.text + "; write it with a point, or without a sign.");
         return 0;

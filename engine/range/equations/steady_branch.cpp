@@ -11,10 +11,10 @@ namespace tunewright::range {
 
 namespace {
 
-constexpr int kMostSteps = 2000;
-constexpr double kFirstLength = 0.02, kLeastLength = 1e-7, kMostLength = 0.2;  // of the unknowns' sizes
-constexpr double kMostTurn = 0.25;                                             // rad of the tangent in one step
-constexpr double kMostPlaceStep = 0.04;                                        // of the range, in one step
+constexpr int kMaxSteps = 2000;
+constexpr double kFirstLength = 0.02, kMinLength = 1e-7, kMaxLength = 0.2;  // of the unknowns' sizes
+constexpr double kMaxTurn = 0.25;                                           // rad of the tangent in one step
+constexpr double kMaxRangeStep = 0.04;                                      // of the range, in one step
 constexpr int kQuickNewton = 4;       // iterations: after them the next step is longer
 constexpr double kFoldExact = 1e-10;  // of the unknowns' sizes: how closely a fold is bracketed
 constexpr int kFoldBisections = 40;
@@ -51,7 +51,7 @@ public:
         }
         tangent_ = *first;
         double length = kFirstLength;
-        for (int step = 0; step < kMostSteps; ++step) {
+        for (int step = 0; step < kMaxSteps; ++step) {
             const double place = curve_.place(z_);
             if (up ? place >= end : place <= end) return result;
             if (!advance(length, result)) {
@@ -61,7 +61,7 @@ public:
         }
         result.ended =
             Error{ErrorKind::invalid_argument, "range",
-                  "The steady states were followed for " + std::to_string(kMostSteps) + " steps without reaching " +
+                  "The steady states were followed for " + std::to_string(kMaxSteps) + " steps without reaching " +
                       text(end) + "; they end at " + described(result.states.back()) + ". Give a shorter range."};
         return result;
     }
@@ -109,21 +109,21 @@ private:
 
     bool advance(double& length, BranchWalk::Result& result) {
         const double span = range_.to - range_.from;
-        for (; length >= kLeastLength; length *= 0.5) {
+        for (; length >= kMinLength; length *= 0.5) {
             std::vector<double> z, t;
             int iterations = 0;
             if (!step_to(length, z, t, iterations)) continue;
             double cosine = 0;
             for (std::size_t i = 0; i < t.size(); ++i) cosine += t[i] * tangent_[i];
-            if (cosine < std::cos(kMostTurn)) continue;
-            if (std::abs(curve_.place(z) - curve_.place(z_)) > kMostPlaceStep * span) continue;
+            if (cosine < std::cos(kMaxTurn)) continue;
+            if (std::abs(curve_.place(z) - curve_.place(z_)) > kMaxRangeStep * span) continue;
             if (place_slope(z, t) * place_slope(z_, tangent_) < 0)
                 result.folds.push_back(fold(length, [&](auto at, auto along) { return place_slope(at, along); }));
             if (input_slope(t) * input_slope(tangent_) < 0)
                 result.input_folds.push_back(fold(length, [&](auto, auto along) { return input_slope(along); }));
             take(z, t);
             result.states.push_back(curve_.state(z_));
-            if (iterations <= kQuickNewton) length = std::min(1.5 * length, kMostLength);
+            if (iterations <= kQuickNewton) length = std::min(1.5 * length, kMaxLength);
             return true;
         }
         return false;

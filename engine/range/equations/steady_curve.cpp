@@ -8,9 +8,9 @@
 namespace tunewright::range {
 namespace {
 
-constexpr int kMostNewton = 12;
+constexpr int kMaxNewton = 12;
 constexpr double kConverged = 1e-11;  // of the unknowns' sizes: Newton's last step
-constexpr double kLeastSize = 1e-3;   // of the largest size that an unknown has had
+constexpr double kMinSize = 1e-3;     // of the largest size that an unknown has had
 
 }  // namespace
 
@@ -117,7 +117,7 @@ std::optional<std::vector<double>> SteadyCurve::tangent(std::span<const double> 
 std::optional<int> SteadyCurve::correct_across(std::vector<double>& z, std::span<const double> sizes,
                                                std::span<const double> row, std::span<const double> target) const {
     const std::size_t m = unknowns();
-    for (int k = 1; k <= kMostNewton; ++k) {
+    for (int k = 1; k <= kMaxNewton; ++k) {
         std::vector<double> F, J;
         if (!equations(z, F, J) || !scale(J, F, sizes)) return std::nullopt;
         J.insert(J.end(), row.begin(), row.end());
@@ -137,7 +137,7 @@ std::optional<int> SteadyCurve::correct_across(std::vector<double>& z, std::span
 
 bool SteadyCurve::correct_to_place(std::vector<double>& z, std::span<const double> sizes, double at) const {
     const std::size_t m = unknowns();
-    for (int k = 0; k < kMostNewton; ++k) {
+    for (int k = 0; k < kMaxNewton; ++k) {
         std::vector<double> F, J;
         const auto row = place_gradient(z);
         if (row.empty() || !equations(z, F, J)) return false;
@@ -160,7 +160,7 @@ std::vector<double> SteadyCurve::sizes(std::span<const double> z, std::vector<do
     std::vector<double> result;
     for (std::size_t i = 0; i < unknowns(); ++i) {
         largest[i] = std::max(largest[i], std::abs(z[i]));
-        result.push_back(std::max(std::abs(z[i]), kLeastSize * largest[i]));
+        result.push_back(std::max(std::abs(z[i]), kMinSize * largest[i]));
     }
     for (double& size : result)
         if (!(size > 0)) size = 1;

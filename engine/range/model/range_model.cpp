@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kResponsePoints = 160;
 constexpr double kBelowCorners = 1e-2;  // times the slowest corner: where the static gain shows
-constexpr double kMostTurns = 4;        // of a dead time, in turns: what lies above forbids no gain any more
+constexpr double kMaxDelayTurns = 4;    // of a dead time, in turns: what lies above forbids no gain any more
 
 struct Neighbours {
     std::size_t left = 0;
@@ -73,11 +73,11 @@ protected:
         return std::nullopt;
     }
 
-    Expected<PlaceModel> model_at_point(std::size_t k) const {
+    Expected<PointModel> model_at_point(std::size_t k) const {
         const PlantFamily& family = given_[k].family;
         auto nominal = LinearPlant::make(family.nominal());
         if (!nominal) return nominal.error();
-        PlaceModel model{.at = given_[k].at, .nominal = std::move(*nominal), .members = {}, .measured = {}};
+        PointModel model{.at = given_[k].at, .nominal = std::move(*nominal), .members = {}, .measured = {}};
         for (const Plant& member : members_beside_nominal(family)) {
             auto linear = LinearPlant::make(member);
             if (!linear) return linear.error();
@@ -88,7 +88,7 @@ protected:
     }
 
     std::vector<RangePoint> given_;
-    std::vector<PlaceModel> models_;
+    std::vector<PointModel> models_;
 };
 
 using LogRatios = std::vector<double>;
@@ -136,12 +136,12 @@ bool uncertain_in(const std::vector<LogRatios>& members, std::size_t number) {
 std::vector<std::pair<LogRatios, LogRatios>> paired(const std::vector<LogRatios>& left,
                                                     const std::vector<LogRatios>& right, std::size_t size) {
     std::vector<std::pair<LogRatios, LogRatios>> pairs;
-    const auto most_alike = [&](const std::vector<LogRatios>& others, const LogRatios& member) {
+    const auto best_match = [&](const std::vector<LogRatios>& others, const LogRatios& member) {
         if (others.empty()) return LogRatios(size, 0.0);
         return *std::ranges::max_element(others, {}, [&](const LogRatios& other) { return alike(other, member); });
     };
-    for (const LogRatios& member : left) pairs.emplace_back(member, most_alike(right, member));
-    for (const LogRatios& member : right) pairs.emplace_back(most_alike(left, member), member);
+    for (const LogRatios& member : left) pairs.emplace_back(member, best_match(right, member));
+    for (const LogRatios& member : right) pairs.emplace_back(best_match(left, member), member);
     bool unlike = false;
     for (std::size_t i = 0; i < size; ++i) unlike = unlike || uncertain_in(left, i) != uncertain_in(right, i);
     if (unlike)
@@ -168,7 +168,7 @@ public:
         return std::nullopt;
     }
 
-    Expected<PlaceModel> at(double place) const override {
+    Expected<PointModel> at(double place) const override {
         const auto [left, share] = neighbours(points_, place);
         if (share == 0) return models_[left];
         if (share == 1) return models_[left + 1];
@@ -176,7 +176,7 @@ public:
         const Plant plant = plant_between(one.nominal(), other.nominal(), share);
         auto nominal = LinearPlant::make(plant);
         if (!nominal) return nominal.error();
-        PlaceModel model{.at = place, .nominal = std::move(*nominal), .members = {}, .measured = {}};
+        PointModel model{.at = place, .nominal = std::move(*nominal), .members = {}, .measured = {}};
         for (const auto& [a, b] : pairs_[left]) {
             LogRatios between(a.size());
             for (std::size_t i = 0; i < a.size(); ++i) between[i] = a[i] + share * (b[i] - a[i]);
@@ -244,14 +244,14 @@ public:
         }
         has_responses_ = false;
         choose_frequencies();
-        for (const PlaceModel& model : models_) curves_.push_back(curve(*model.nominal));
+        for (const PointModel& model : models_) curves_.push_back(curve(*model.nominal));
         stated_ =
             "Between the points the logarithm of |P| and the unwrapped phase are linear in the scheduling variable; "
             "such a plant has no response over time, so over the range Ti/Kp stands for the IAE.";
         return std::nullopt;
     }
 
-    Expected<PlaceModel> at(double place) const override {
+    Expected<PointModel> at(double place) const override {
         const auto [left, share] = neighbours(points_, place);
         if (share == 0) return models_[left];
         if (share == 1) return models_[left + 1];
@@ -270,7 +270,7 @@ public:
         }
         auto measured = MeasuredPlant::make(response);
         if (!measured) return measured.error();
-        return PlaceModel{.at = place, .nominal = {}, .members = {}, .measured = std::move(*measured)};
+        return PointModel{.at = place, .nominal = {}, .members = {}, .measured = std::move(*measured)};
     }
 
 private:
@@ -281,7 +281,7 @@ private:
             slowest = std::min(slowest, corner);
             fastest = std::max(fastest, corner);
         };
-        for (const PlaceModel& model : models_) {
+        for (const PointModel& model : models_) {
             for (const auto pole : model.nominal->poles()) note(std::abs(pole));
             for (const auto zero : model.nominal->zeros()) note(std::abs(zero));
             const double L = model.nominal->dead_time();
@@ -291,7 +291,7 @@ private:
         if (!(fastest > 0)) slowest = fastest = 1;
         const double low = kBelowCorners * slowest;
         double high = 100 * fastest;
-        if (longest > 0) high = std::max(10 * slowest, std::min(high, kMostTurns * 2 * std::numbers::pi / longest));
+        if (longest > 0) high = std::max(10 * slowest, std::min(high, kMaxDelayTurns * 2 * std::numbers::pi / longest));
         for (int i = 0; i < kResponsePoints; ++i)
             omega_.push_back(low * std::pow(high / low, double(i) / (kResponsePoints - 1)));
     }
@@ -329,7 +329,7 @@ Expected<std::shared_ptr<const RangeModel>> made(const std::vector<RangePoint>& 
 }  // namespace
 
 std::vector<Error> place_faults(const std::vector<double>& places) {
-    if (places.size() < std::size_t(kFewestPoints) || places.size() > std::size_t(kMostPoints))
+    if (places.size() < std::size_t(kFewestPoints) || places.size() > std::size_t(kMaxPoints))
         return {{ErrorKind::invalid_argument, "points",
                  "There are " + std::to_string(places.size()) + " points; give 2 to 20."}};
     std::vector<Error> faults;
@@ -371,7 +371,7 @@ public:
                      "): on one side of it the plant has a pole in the right half-plane and only the loop holds it."});
     }
 
-    Expected<PlaceModel> at(double place) const override {
+    Expected<PointModel> at(double place) const override {
         const auto state = branch_->at(place);
         if (!state) return state.error();
         auto linear = LinearPlant::make(branch_->linearised(*state));
@@ -379,7 +379,7 @@ public:
             return Error{linear.error().kind, "plant/equations",
                          "The linearisation at " + branch_->scheduling_name() + " = " + text(place, 6) +
                              " cannot be worked with. " + linear.error().message};
-        PlaceModel model{.at = place, .nominal = std::move(*linear), .members = {}, .measured = {}};
+        PointModel model{.at = place, .nominal = std::move(*linear), .members = {}, .measured = {}};
         model.u = state->u;
         model.y = state->y;
         return model;

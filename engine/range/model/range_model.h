@@ -17,7 +17,7 @@ namespace tunewright::range {
 class SteadyBranch;
 
 /// The plant at one place: a linear one with the members of its family, or points of its frequency response.
-struct PlaceModel {
+struct PointModel {
     double at = 0;
     std::optional<LinearPlant> nominal;  ///< empty: `measured` stands in its place
     std::vector<LinearPlant> members;    ///< further plants on which the limits hold
@@ -41,7 +41,7 @@ public:
     bool has_responses() const { return has_responses_; }
 
     /// `place` in [low, high].
-    virtual Expected<PlaceModel> at(double place) const = 0;
+    virtual Expected<PointModel> at(double place) const = 0;
 
 protected:
     double low_ = 0, high_ = 0;

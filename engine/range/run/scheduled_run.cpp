@@ -20,12 +20,12 @@
 namespace tunewright::range {
 namespace {
 
-constexpr double kEndless = std::numeric_limits<double>::infinity();
-constexpr double kLeastShare = 1e-3;    // of what a state moves by over the range: the least size that errors refer to
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kMinShare = 1e-3;      // of what a state moves by over the range: the least size that errors refer to
 constexpr int kEchoes = 4;              // passages of a jump through the dead time that steps end at
 constexpr double kSettledShare = 0.01;  // of the profile's size
-constexpr double kMuchCoupling = 0.3;   // of the gain from y to u, added by the settings' motion
-constexpr double kEps = 1e-12;          // of the time: two times that are one
+constexpr double kMinReportedCoupling = 0.3;  // of the gain from y to u, added by the settings' motion
+constexpr double kTimeTolerance = 1e-12;      // of the time: two times that are one
 
 /// Sizes of the plant's states, u and y over the range.
 struct Sizes {
@@ -67,11 +67,11 @@ public:
           echoes_(kEchoes),
           x_(std::size_t(system_.order())) {
         const Sizes sizes = sizes_over(branch);
-        for (std::size_t i = 0; i < n_; ++i) integrator_.set_least_size(int(i), kLeastShare * sizes.x[i]);
-        integrator_.set_least_size(int(n_), kLeastShare * std::max(sizes.u, 1e-6 * std::abs(start.u)));
+        for (std::size_t i = 0; i < n_; ++i) integrator_.set_least_size(int(i), kMinShare * sizes.x[i]);
+        integrator_.set_least_size(int(n_), kMinShare * std::max(sizes.u, 1e-6 * std::abs(start.u)));
         const double y = std::max({sizes.y, reader_.size(), 1e-6 * std::abs(start.y)});
-        for (int i = 1; i < ScheduledLaw::kStates; ++i) integrator_.set_least_size(int(n_) + i, kLeastShare * y);
-        integrator_.set_least_size(int(n_) + ScheduledLaw::kStates, kEndless);
+        for (int i = 1; i < ScheduledLaw::kStates; ++i) integrator_.set_least_size(int(n_) + i, kMinShare * y);
+        integrator_.set_least_size(int(n_) + ScheduledLaw::kStates, kInfinity);
     }
 
     ScheduledRun run() {
@@ -96,7 +96,7 @@ public:
     }
 
 private:
-    static double slack(double t) { return kEps * std::max(std::abs(t), 1e-300); }
+    static double slack(double t) { return kTimeTolerance * std::max(std::abs(t), 1e-300); }
 
     double set_point(double t, bool before) const { return along_parameter_ ? start_.y : reader_.at(t, before); }
     double set_point_slope(double t, bool before) const { return along_parameter_ ? 0 : reader_.slope(t, before); }
@@ -176,7 +176,7 @@ private:
             add_echo(now, *passages + 1);
             again = true;
         }
-        step_end_ = kEndless;
+        step_end_ = kInfinity;
         if (again && !integrator_.start(now, z)) return fail(OdeStep::left_domain);
         return true;
     }
@@ -278,7 +278,7 @@ private:
 
     void finish_figures() {
         result_.IAE = integrator_.x()[n_ + ScheduledLaw::kStates];
-        if (coupling_ > kMuchCoupling)
+        if (coupling_ > kMinReportedCoupling)
             result_.warnings.push_back(
                 {"schedule-coupling",
                  "The schedule follows a variable of the loop itself. At rest the loop is as designed, but on the way "
@@ -309,7 +309,7 @@ private:
     SignalHistory history_;  // of u - u(0)
     Echoes echoes_;
     std::vector<double> x_, rates_;
-    double step_end_ = kEndless, coupling_ = 0, coupled_at_ = 0;
+    double step_end_ = kInfinity, coupling_ = 0, coupled_at_ = 0;
     ScheduledRun result_;
 };
 

@@ -14,24 +14,25 @@
 #include "engine/number_text.h"
 #include "engine/range/limit_remarks.h"
 #include "engine/range/schedule/knots.h"
-#include "engine/range/schedule/look.h"
+#include "engine/range/schedule/point_evaluation.h"
 #include "engine/range/schedule/steps_schedule.h"
 #include "engine/tuning/limits.h"
 
 namespace tunewright::range {
 namespace {
 
-constexpr int kInsidePart = 3;           // places of a part that a search knows from the beginning
-constexpr double kInside = 3e-5;         // of ln of a limit: aimed at, so that places between hold it as well
-constexpr double kPriceRoom = 1e-3;      // of ln of the price: kept free for what lies between the search's places
-constexpr int kRounds = 8;               // of adding places that exceed
-constexpr double kHopelessLayout = 0.6;  // of ln of the price allowed, of the layout's error: fewer rows are not tried
-constexpr double kHopelessStep = 0.15;   // of what is left to the price allowed
-constexpr double kNearby = 0.3;          // of the distance of a search's places inside a part
+constexpr int kPointsInsidePart = 3;      // places of a part that a search knows from the beginning
+constexpr double kAimedLogMargin = 3e-5;  // of ln of a limit: aimed at, so that places between hold it as well
+constexpr double kLogCostReserve = 1e-3;  // of ln of the cost: kept free for what lies between the search's places
+constexpr int kRounds = 8;                // of adding places that exceed
+constexpr double kMaxLayoutErrorShare =
+    0.6;                                 // of ln of the cost allowed, of the layout's error: fewer rows are not tried
+constexpr double kMinStepShare = 0.15;   // of what is left to the cost allowed
+constexpr double kMaxNearbyShare = 0.3;  // of the distance of a search's places inside a part
 constexpr int kIterations = 14;
-constexpr int kNearestRows[] = {kMostRows, 10, 5, 2};  // where no number of rows stays within the allowance
+constexpr int kNearestRows[] = {kMaxRows, 10, 5, 2};  // where no number of rows stays within the allowance
 
-/// The limits first, then the price.
+/// The limits first, then the cost.
 bool nearer(const ScheduleDesign& one, const std::optional<ScheduleDesign>& other) {
     if (!other || one.holds_limits != other->holds_limits) return !other || one.holds_limits;
     return one.worst_relative_IAE < other->worst_relative_IAE;
@@ -39,22 +40,22 @@ bool nearer(const ScheduleDesign& one, const std::optional<ScheduleDesign>& othe
 
 class LinearDesign {
 public:
-    LinearDesign(Places& places, OwnOptima& own, const RangeOptions& options, const std::optional<IdealPid>& one)
+    LinearDesign(PointDesigns& places, OwnOptima& own, const RangeOptions& options, const std::optional<IdealPid>& one)
         : places_(places), own_(own), options_(options), one_(one), allowed_(std::log1p(options.allowance)) {}
 
-    /// With so many rows, from the own optima. Empty: the search ended without holding the limits, or above the price
-    /// wanted. For the least price the search begins again from the one setting where that was in vain: it keeps the
+    /// With so many rows, from the own optima. Empty: the search ended without holding the limits, or above the cost
+    /// wanted. For the least cost the search begins again from the one setting where that was in vain: it keeps the
     /// limits at the points at least, which settings interpolated between few optima need not.
-    Expected<std::optional<ScheduleDesign>> with(int rows, bool least_price) {
+    Expected<std::optional<ScheduleDesign>> with(int rows, bool min_cost) {
         auto at = own_.layout(rows, options_.interpolation).at;
-        if (least_price) fill_up(at, rows, places_.model().high());
+        if (min_cost) fill_up(at, rows, places_.model().high());
         Knots knots(places_, options_.interpolation, at);
         const auto known = places_of(at);
         if (!known) return known.error();
-        for (Place* place : *known)
+        for (PointDesign* place : *known)
             if (place->optimum_is_PI()) knots.leave_out_derivative(place->at());
-        auto design = searched(knots, *known, knots.start(own_), least_price);
-        if (!design || !least_price || !one_ || (*design && (*design)->holds_limits)) return design;
+        auto design = searched(knots, *known, knots.start(own_), min_cost);
+        if (!design || !min_cost || !one_ || (*design && (*design)->holds_limits)) return design;
         if (!(one_->Td > 0))
             for (const double row : at) knots.leave_out_derivative(row);
         auto again = searched(knots, *known, knots.constant(point_of(*one_)), true);
@@ -62,24 +63,25 @@ public:
     }
 
 private:
-    Expected<std::optional<ScheduleDesign>> searched(const Knots& knots, const std::vector<Place*>& known,
-                                                     Eigen::VectorXd v, bool least_price) {
+    Expected<std::optional<ScheduleDesign>> searched(const Knots& knots, const std::vector<PointDesign*>& known,
+                                                     Eigen::VectorXd v, bool min_cost) {
         JointProblem joint = knots.problem();
         joint.places.assign(known.begin(), known.end());
         JointOptions search;
-        search.most_iterations = kIterations;
-        search.hopeless = least_price ? 0 : kHopelessStep;
-        search.margin = kInside;
-        search.enough = least_price ? -1 : allowed_ - kPriceRoom;
+        search.max_iterations = kIterations;
+        search.hopeless = min_cost ? 0 : kMinStepShare;
+        search.margin = kAimedLogMargin;
+        search.enough = min_cost ? -1 : allowed_ - kLogCostReserve;
         search.stop = places_.control().stop;
         std::optional<ScheduleDesign> best;
         for (int round = 0; round < kRounds; ++round) {
             const auto end = search_jointly(joint, v, search, {});
             v = end.v;
-            if (!end.holds() || !std::isfinite(end.log_price)) break;
-            if (!least_price && end.log_price > allowed_) break;
+            if (!end.holds() || !std::isfinite(end.log_cost_ratio)) break;
+            if (!min_cost && end.log_cost_ratio > allowed_) break;
             const Schedule schedule = knots.schedule(v, places_.rules(), options_.b);
-            const auto verified = verify(places_, own_, schedule, least_price ? end.log_price + kPriceRoom : allowed_);
+            const auto verified =
+                verify(places_, own_, schedule, min_cost ? end.log_cost_ratio + kLogCostReserve : allowed_);
             if (!verified) return verified.error();
             keep_better(best, schedule, *verified, end.stopped);
             const bool held = verified->excess <= limits::kMaxRelativeExcessVerified;
@@ -98,19 +100,19 @@ private:
         return best;
     }
 
-    /// The rows' places, where the price is largest, and some inside every part, where the limits are nearest; inside,
+    /// The rows' places, where the cost is largest, and some inside every part, where the limits are nearest; inside,
     /// what is known nearby serves.
-    Expected<std::vector<Place*>> places_of(const std::vector<double>& rows) {
-        std::vector<Place*> result;
+    Expected<std::vector<PointDesign*>> places_of(const std::vector<double>& rows) {
+        std::vector<PointDesign*> result;
         for (std::size_t k = 0; k < rows.size(); ++k) {
             const auto row = places_.at(rows[k]);
             if (!row) return row.error();
             result.push_back(*row);
             if (k + 1 == rows.size()) break;
-            const double width = (rows[k + 1] - rows[k]) / (kInsidePart + 1);
-            for (int i = 1; i <= kInsidePart; ++i) {
+            const double width = (rows[k + 1] - rows[k]) / (kPointsInsidePart + 1);
+            for (int i = 1; i <= kPointsInsidePart; ++i) {
                 const double at = rows[k] + width * i;
-                const auto inside = places_.at(near(at, kNearby * width).value_or(at));
+                const auto inside = places_.at(near(at, kMaxNearbyShare * width).value_or(at));
                 if (!inside) return inside.error();
                 result.push_back(*inside);
             }
@@ -121,9 +123,9 @@ private:
 
     /// At every place with a region of uncertainty: did plants inside it join on which the schedule exceeds a limit?
     /// The place then joins the search.
-    bool add_worst_inside(const Schedule& schedule, std::vector<const Place*>& searched) {
+    bool add_worst_inside(const Schedule& schedule, std::vector<const PointDesign*>& searched) {
         bool added = false;
-        for (Place* place : places_.known()) {
+        for (PointDesign* place : places_.known()) {
             if (!place->model().family) continue;
             const auto x = point_of(settings_at(schedule, place->at()));
             if (!place->add_worst_inside(x, places_.control().stop)) continue;
@@ -143,14 +145,14 @@ private:
                      bool stopped) const {
         ScheduleDesign design{.schedule = schedule,
                               .holds_limits = verified.excess <= limits::kMaxRelativeExcessVerified,
-                              .within_allowance = verified.log_price <= allowed_,
-                              .worst_relative_IAE = std::exp(verified.log_price),
+                              .within_allowance = verified.log_cost_ratio <= allowed_,
+                              .worst_relative_IAE = std::exp(verified.log_cost_ratio),
                               .partial = stopped,
                               .warnings = {}};
         if (nearer(design, best)) best = design;
     }
 
-    Places& places_;
+    PointDesigns& places_;
     OwnOptima& own_;
     const RangeOptions& options_;
     const std::optional<IdealPid>& one_;
@@ -161,7 +163,7 @@ bool satisfies(const std::optional<ScheduleDesign>& design) {
     return design && design->holds_limits && design->within_allowance;
 }
 
-void tell(const Places& places, int rows) {
+void tell(const PointDesigns& places, int rows) {
     const RunControl& control = places.control();
     if (!control.progress) return;
     control.progress(Progress{.fraction = std::min(0.9, 0.4 + 0.05 * rows),
@@ -170,18 +172,18 @@ void tell(const Places& places, int rows) {
                               .best = {}});
 }
 
-Error no_schedule(const Places& places) {
+Error no_schedule(const PointDesigns& places) {
     return {places.control().stop.stop_requested() ? ErrorKind::cancelled : ErrorKind::numerical_failure, "",
             "No schedule was found whose limits hold between its rows. Narrow the range, or part it where its plants "
             "change most."};
 }
 
 /// The fewest rows within the allowance. Empty: no number of rows that is worth trying has led there.
-Expected<std::optional<ScheduleDesign>> fewest_rows(LinearDesign& linear, const Places& places, const OwnOptima& own,
-                                                    const RangeOptions& options) {
-    const double hopeless = kHopelessLayout * std::log1p(options.allowance);
+Expected<std::optional<ScheduleDesign>> fewest_rows(LinearDesign& linear, const PointDesigns& places,
+                                                    const OwnOptima& own, const RangeOptions& options) {
+    const double hopeless = kMaxLayoutErrorShare * std::log1p(options.allowance);
     std::optional<ScheduleDesign> best;
-    for (int rows = 2; rows <= kMostRows && !places.control().stop.stop_requested(); ++rows) {
+    for (int rows = 2; rows <= kMaxRows && !places.control().stop.stop_requested(); ++rows) {
         if (own.layout(rows, options.interpolation).error > hopeless) continue;
         tell(places, rows);
         auto design = linear.with(rows, false);
@@ -192,7 +194,7 @@ Expected<std::optional<ScheduleDesign>> fewest_rows(LinearDesign& linear, const 
 }
 
 /// What comes nearest to the allowance: the most rows, fewer only where those lead nowhere.
-Expected<std::optional<ScheduleDesign>> nearest(LinearDesign& linear, const Places& places,
+Expected<std::optional<ScheduleDesign>> nearest(LinearDesign& linear, const PointDesigns& places,
                                                 std::optional<ScheduleDesign> best) {
     for (const int rows : kNearestRows) {
         if (places.control().stop.stop_requested()) break;
@@ -205,7 +207,7 @@ Expected<std::optional<ScheduleDesign>> nearest(LinearDesign& linear, const Plac
     return best;
 }
 
-Expected<ScheduleDesign> linear_schedule(Places& places, OwnOptima& own, const RangeOptions& options,
+Expected<ScheduleDesign> linear_schedule(PointDesigns& places, OwnOptima& own, const RangeOptions& options,
                                          const std::optional<IdealPid>& one) {
     LinearDesign linear(places, own, options, one);
     if (options.rows) tell(places, *options.rows);
@@ -218,7 +220,7 @@ Expected<ScheduleDesign> linear_schedule(Places& places, OwnOptima& own, const R
 }
 
 /// The one setting in as many rows as are asked for, else in one.
-Expected<ScheduleDesign> same_everywhere(const Places& places, const OwnOptima& own, const RangeOptions& options,
+Expected<ScheduleDesign> same_everywhere(const PointDesigns& places, const OwnOptima& own, const RangeOptions& options,
                                          const IdealPid& one) {
     const double low = places.model().low(), width = places.model().high() - low;
     const int rows = options.rows.value_or(1);
@@ -237,8 +239,8 @@ Expected<ScheduleDesign> same_everywhere(const Places& places, const OwnOptima& 
     const auto verified = verify(places, own, design.schedule, allowed);
     if (!verified) return verified.error();
     design.holds_limits = verified->excess <= limits::kMaxRelativeExcessJudged;
-    design.within_allowance = verified->log_price <= allowed;
-    design.worst_relative_IAE = std::exp(verified->log_price);
+    design.within_allowance = verified->log_cost_ratio <= allowed;
+    design.worst_relative_IAE = std::exp(verified->log_cost_ratio);
     return design;
 }
 
@@ -254,7 +256,7 @@ void fill_up(std::vector<double>& at, int rows, double high) {
     }
 }
 
-Expected<ScheduleDesign> design_schedule(Places& places, OwnOptima& own, const RangeOptions& options,
+Expected<ScheduleDesign> design_schedule(PointDesigns& places, OwnOptima& own, const RangeOptions& options,
                                          const std::optional<IdealPid>& one) {
     const bool one_row = options.rows && *options.rows == 1;
     const bool steps = options.interpolation == Interpolation::steps || one_row;
@@ -264,7 +266,7 @@ Expected<ScheduleDesign> design_schedule(Places& places, OwnOptima& own, const R
     return same && same->holds_limits && (!design || nearer(*same, *design)) ? same : design;
 }
 
-void remark_price(ScheduleDesign& design, double allowance) {
+void remark_cost(ScheduleDesign& design, double allowance) {
     if (design.within_allowance) return;
     const double more = 100 * (design.worst_relative_IAE - 1), allowed = 100 * allowance;
     int digits = 3;
@@ -293,16 +295,16 @@ Expected<std::optional<double>> longest_sample_time(const RangeModel& model, con
     std::vector<double> places = model.points();
     for (const ScheduleRow& row : schedule.rows)
         if (row.at > model.low() && row.at < model.high()) places.push_back(row.at);
-    std::optional<double> least;
+    std::optional<double> min;
     for (const double at : places) {
         const auto place = model.at(at);
         if (!place) return place.error();
         if (!place->nominal) continue;
         for (const IdealPid& pid : in_use(schedule, at))
             if (const auto longest = longest_of(*place->nominal, pid, stop))
-                least = std::min(least.value_or(*longest), *longest);
+                min = std::min(min.value_or(*longest), *longest);
     }
-    return least;
+    return min;
 }
 
 }  // namespace tunewright::range

@@ -24,7 +24,7 @@ struct ScheduleDesign {
 };
 
 /// The rows' places are those of OwnOptima::layout. Their settings are designed together: all are unknowns of one
-/// search (search_jointly) for the least of the worst price over the range, the limits held at the rows and at three
+/// search (search_jointly) for the least of the worst cost over the range, the limits held at the rows and at three
 /// places of every part, and verified between (verify()); the worst of the places met join the search, or the limits
 /// are tightened by what is exceeded, until nothing exceeds a limit by more than 2e-5, or the allowance. Of `steps`
 /// each part is one setting that serves its places and half the hysteresis beyond (steps_schedule).
@@ -35,8 +35,8 @@ struct ScheduleDesign {
 /// `one`: the one setting for the range, where there is one. A search that leads nowhere from the own optima begins
 /// again from it, and where it keeps the limits everywhere and nothing better is found, it is the schedule: in
 /// `options.rows` equal rows, else in one.
-/// Errors: those of Places::at; cancelled where nothing was found before the stop.
-Expected<ScheduleDesign> design_schedule(Places& places, OwnOptima& own, const RangeOptions& options,
+/// Errors: those of PointDesigns::at; cancelled where nothing was found before the stop.
+Expected<ScheduleDesign> design_schedule(PointDesigns& places, OwnOptima& own, const RangeOptions& options,
                                          const std::optional<IdealPid>& one);
 
 /// The longest sample time of a program with backward rules that keeps Ms within 5 % of the continuous loop's, at the
@@ -49,6 +49,6 @@ Expected<std::optional<double>> longest_sample_time(const RangeModel& model, con
 void fill_up(std::vector<double>& at, int rows, double high);
 
 /// The warning where the schedule costs more than is allowed.
-void remark_price(ScheduleDesign& design, double allowance);
+void remark_cost(ScheduleDesign& design, double allowance);
 
 }  // namespace tunewright::range

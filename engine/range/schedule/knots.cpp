@@ -12,19 +12,19 @@ namespace {
 
 constexpr double kFirstStep = 0.25;  // of a logarithm
 constexpr double kUnbounded = 700;   // of a logarithm: what a double can hold
-constexpr double kJustAboveLeastTd = 1.01;
+constexpr double kPiTdFactor = 1.01;
 
 }  // namespace
 
 using Eigen::Index;
 
-Knots::Knots(const Places& places, Interpolation interpolation, std::vector<double> at)
+Knots::Knots(const PointDesigns& places, Interpolation interpolation, std::vector<double> at)
     : interpolation_(interpolation),
       at_(std::move(at)),
       PI_(at_.size(), false),
       slowest_(std::numeric_limits<double>::infinity()),
       dimension_(places.rules().pid ? 3 : 2) {
-    for (const Place* place : places.known()) {
+    for (const PointDesign* place : places.known()) {
         fastest_ = std::max(fastest_, place->sweep().reference());
         slowest_ = std::min(slowest_, place->sweep().reference());
     }
@@ -36,11 +36,11 @@ void Knots::leave_out_derivative(double at) {
 }
 
 Eigen::VectorXd Knots::constant(const robust::DesignPoint& x) const {
-    const double least = std::log(kJustAboveLeastTd * robust::kMinTd / fastest_);
+    const double min = std::log(kPiTdFactor * robust::kMinTd / fastest_);
     Eigen::VectorXd v(unknowns());
     for (Index row = 0; row < rows(); ++row)
         for (Index i = 0; i < dimension_; ++i)
-            v[dimension_ * row + i] = i == 2 ? std::max(x[2], least) : x[std::size_t(i)];
+            v[dimension_ * row + i] = i == 2 ? std::max(x[2], min) : x[std::size_t(i)];
     return v;
 }
 

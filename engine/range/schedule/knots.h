@@ -11,10 +11,10 @@
 namespace tunewright::range {
 
 /// Unknowns: ln Kp, ln Ti (and ln Td) of each row in turn, for the kinds that are linear between rows. The rows' places
-/// stay where they are: moved, they would pass the search's own places, where prices have kinks.
+/// stay where they are: moved, they would pass the search's own places, where costs have kinks.
 class Knots {
 public:
-    Knots(const Places& places, Interpolation interpolation, std::vector<double> at);
+    Knots(const PointDesigns& places, Interpolation interpolation, std::vector<double> at);
 
     /// The row there is a PI, if there is one: Td is 0 at it, whatever its unknown.
     void leave_out_derivative(double at);

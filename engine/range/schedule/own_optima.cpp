@@ -8,13 +8,13 @@
 namespace tunewright::range {
 namespace {
 
-constexpr std::size_t kFewestPlaces = 7;
-constexpr double kCoarse = 0.3;          // of ln Kp, ln Ti, ln IAE between neighbours
-constexpr int kGridPoints = 161;         // of a layout
-constexpr int kHalvings = 14;            // of its error
-constexpr double kShortest = 1.0 / 512;  // of the range: nothing is looked at between nearer neighbours
+constexpr std::size_t kMinRangePoints = 7;
+constexpr double kMaxLogStep = 0.3;                // of ln Kp, ln Ti, ln IAE between neighbours
+constexpr int kGridPoints = 161;                   // of a layout
+constexpr int kHalvings = 14;                      // of its error
+constexpr double kMinRelativeSpacing = 1.0 / 512;  // of the range: nothing is looked at between nearer neighbours
 
-double difference(const Place& a, const Place& b) {
+double difference(const PointDesign& a, const PointDesign& b) {
     return std::max({std::abs(a.optimum()[0] - b.optimum()[0]), std::abs(a.optimum()[1] - b.optimum()[1]),
                      std::abs(a.optimum_log_cost() - b.optimum_log_cost())});
 }
@@ -29,25 +29,26 @@ double parabola_slope(const std::vector<double>& x, const std::vector<double>& f
 
 }  // namespace
 
-Expected<OwnOptima> OwnOptima::over(Places& places, std::size_t most_places) {
+Expected<OwnOptima> OwnOptima::over(PointDesigns& places, std::size_t max_places) {
     const RangeModel& model = places.model();
     for (const double at : model.points())
         if (const auto place = places.at(at); !place) return place.error();
-    const double least = kShortest * (model.high() - model.low());
-    for (std::size_t count = places.known().size(); count < most_places; ++count) {
+    const double min = kMinRelativeSpacing * (model.high() - model.low());
+    for (std::size_t count = places.known().size(); count < max_places; ++count) {
         // Between the neighbours that differ most; the widest gap while there are few.
         const auto known = places.known();
-        double most = 0, middle = 0;
+        double max = 0, middle = 0;
         for (std::size_t i = 1; i < known.size(); ++i) {
             const double width = known[i]->at() - known[i - 1]->at();
-            if (width < least) continue;
+            if (width < min) continue;
             const double share = width / (model.high() - model.low());
-            const double worth = std::max(difference(*known[i - 1], *known[i]), count < kFewestPlaces ? share + 1 : 0);
-            if (worth <= most) continue;
-            most = worth;
+            const double worth =
+                std::max(difference(*known[i - 1], *known[i]), count < kMinRangePoints ? share + 1 : 0);
+            if (worth <= max) continue;
+            max = worth;
             middle = 0.5 * (known[i]->at() + known[i - 1]->at());
         }
-        if (most <= kCoarse) break;
+        if (max <= kMaxLogStep) break;
         if (const auto place = places.at(middle); !place) return place.error();
     }
     OwnOptima table;
@@ -55,9 +56,9 @@ Expected<OwnOptima> OwnOptima::over(Places& places, std::size_t most_places) {
     return table;
 }
 
-void OwnOptima::renew(const Places& places) {
+void OwnOptima::renew(const PointDesigns& places) {
     *this = {};
-    for (const Place* place : places.known()) {
+    for (const PointDesign* place : places.known()) {
         at_.push_back(place->at());
         rows_.push_back(place->optimum());
         for (std::size_t k = 0; k < 3; ++k) x_[k].push_back(place->optimum()[k]);
@@ -132,11 +133,11 @@ public:
         return good;
     }
 
-    /// The ends of as few parts as this error allows; more than `most` parts: empty.
-    std::vector<std::size_t> cover(double error, std::size_t most) const {
+    /// The ends of as few parts as this error allows; more than `max` parts: empty.
+    std::vector<std::size_t> cover(double error, std::size_t max) const {
         std::vector<std::size_t> ends = {0};
         while (ends.back() + 1 < at_.size()) {
-            if (ends.size() > most) return {};
+            if (ends.size() > max) return {};
             ends.push_back(reach(ends.back(), error));
         }
         return ends;
@@ -154,11 +155,11 @@ OwnOptima::Layout OwnOptima::layout(int rows, Interpolation interpolation) const
     const Grid grid = fine_grid();
     const Parts parts(grid.at, grid.x, interpolation);
     const bool steps = interpolation == Interpolation::steps;
-    const auto most = std::size_t(std::max(1, steps ? rows : rows - 1));
-    const auto covers = [&](double spread) { return !parts.cover(spread, most).empty(); };
+    const auto max = std::size_t(std::max(1, steps ? rows : rows - 1));
+    const auto covers = [&](double spread) { return !parts.cover(spread, max).empty(); };
     const double high = bisect({parts.spread(0, grid.at.size() - 1), 0}, covers, kHalvings).inside;
     Layout layout{.at = {}, .error = high};
-    auto ends = parts.cover(high, most);
+    auto ends = parts.cover(high, max);
     // The spread need not grow with a part: then the halving of a part's length misses that the whole range serves.
     if (ends.empty()) ends = {0, grid.at.size() - 1};
     for (const std::size_t end : ends) layout.at.push_back(grid.at[end]);

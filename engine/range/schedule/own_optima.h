@@ -1,5 +1,5 @@
 // Every place's own optimum over the range, as a table between whose rows it is interpolated: what a schedule would
-// follow, and what its price is measured against.
+// follow, and what its cost is measured against.
 #pragma once
 
 #include <optional>
@@ -7,21 +7,21 @@
 
 #include "engine/error.h"
 #include "engine/range/problem.h"
-#include "engine/range/search/places.h"
+#include "engine/range/search/point_designs.h"
 
 namespace tunewright::range {
 
 class OwnOptima {
 public:
-    static constexpr std::size_t kMostPlaces = 48;
+    static constexpr std::size_t kMaxRangePoints = 48;
 
     /// Looks at the points of the model, and between them until neighbours differ by no more than 30 % or so in Kp,
-    /// Ti and IAE, at most `most` places (3 or more; points beyond it are looked at all the same). Errors: those of
-    /// Places::at.
-    static Expected<OwnOptima> over(Places& places, std::size_t most = kMostPlaces);
+    /// Ti and IAE, at most `max` places (3 or more; points beyond it are looked at all the same). Errors: those of
+    /// PointDesigns::at.
+    static Expected<OwnOptima> over(PointDesigns& places, std::size_t max = kMaxRangePoints);
 
     /// The table from all places that are known by now.
-    void renew(const Places& places);
+    void renew(const PointDesigns& places);
 
     const std::vector<double>& at() const { return at_; }
     const std::vector<robust::DesignPoint>& x() const { return rows_; }

@@ -6,19 +6,19 @@
 #include <optional>
 
 #include "engine/range/one_setting_problem.h"
-#include "engine/range/schedule/look.h"
+#include "engine/range/schedule/point_evaluation.h"
 #include "engine/tuning/limits.h"
 
 namespace tunewright::range {
 namespace {
 
-constexpr double kStepsInside = 3e-5;  // of ln of a limit: aimed at, so that places between hold it as well
-constexpr int kStepsRounds = 4;        // of tightening
-constexpr int kPlacesOfPart = 3;       // that each part's search knows at least, ends included
+constexpr double kStepsLogMargin = 3e-5;  // of ln of a limit: aimed at, so that places between hold it as well
+constexpr int kMaxStepsRounds = 4;        // of tightening
+constexpr int kMinPointsOfPart = 3;       // that each part's search knows at least, ends included
 
 class StepsDesign {
 public:
-    StepsDesign(Places& places, OwnOptima& own, const RangeOptions& options, const std::optional<IdealPid>& one)
+    StepsDesign(PointDesigns& places, OwnOptima& own, const RangeOptions& options, const std::optional<IdealPid>& one)
         : places_(places),
           own_(own),
           options_(options),
@@ -31,7 +31,7 @@ public:
         auto layout = own_.layout(rows, Interpolation::steps).at;
         if (options_.rows) fill_up(layout, rows, high_);
         std::optional<ScheduleDesign> best;
-        for (int round = 0; round < kStepsRounds; ++round) {
+        for (int round = 0; round < kMaxStepsRounds; ++round) {
             ScheduleDesign design{
                 .schedule = {.interpolation = Interpolation::steps, .hysteresis = hysteresis_, .rows = {}},
                 .warnings = {}};
@@ -45,7 +45,7 @@ public:
             const auto verified = verify(places_, own_, design.schedule, std::log1p(options_.allowance));
             if (!verified) return verified.error();
             design.holds_limits = verified->excess <= limits::kMaxRelativeExcessVerified;
-            design.worst_relative_IAE = std::exp(verified->log_price);
+            design.worst_relative_IAE = std::exp(verified->log_cost_ratio);
             design.within_allowance = design.worst_relative_IAE <= 1 + options_.allowance;
             design.partial = places_.control().stop.stop_requested();
             if (!best || design.holds_limits || !best->holds_limits) best = design;
@@ -59,14 +59,14 @@ public:
 
 private:
     /// The places of a part with the hysteresis beyond its ends.
-    Expected<std::vector<Place*>> places_of(double from, double to) {
+    Expected<std::vector<PointDesign*>> places_of(double from, double to) {
         const double begin = std::max(low_, from - 0.5 * hysteresis_), end = std::min(high_, to + 0.5 * hysteresis_);
-        for (int i = 0; i < kPlacesOfPart; ++i) {
-            const double at = i + 1 == kPlacesOfPart ? end : begin + (end - begin) * i / (kPlacesOfPart - 1);
+        for (int i = 0; i < kMinPointsOfPart; ++i) {
+            const double at = i + 1 == kMinPointsOfPart ? end : begin + (end - begin) * i / (kMinPointsOfPart - 1);
             if (const auto place = places_.at(at); !place) return place.error();
         }
-        std::vector<Place*> inside;
-        for (Place* place : places_.known())
+        std::vector<PointDesign*> inside;
+        for (PointDesign* place : places_.known())
             if (place->at() >= begin && place->at() <= end) inside.push_back(place);
         return inside;
     }
@@ -74,7 +74,7 @@ private:
     /// Did plants that the searches left out come back, on which a setting in use at their place exceeds a limit?
     bool take_back_exceeded(const Schedule& schedule) {
         bool added = false;
-        for (Place* place : places_.known())
+        for (PointDesign* place : places_.known())
             for (const IdealPid& pid : in_use(schedule, place->at()))
                 added = place->take_back_exceeded(point_of(pid)) || added;
         return added;
@@ -85,31 +85,31 @@ private:
         const auto inside = places_of(from, to);
         if (!inside) return inside.error();
         std::optional<IdealPid> best;
-        double least = std::numeric_limits<double>::infinity();
+        double min = std::numeric_limits<double>::infinity();
         const auto consider = [&](const robust::DesignPoint& start, bool PI) {
             const JointProblem joint = one_setting_problem(*inside, options_, PI);
             JointOptions search;
             search.margin = margin_;
             search.stop = places_.control().stop;
             const auto end = search_jointly(joint, unknowns_of(joint, start), search, {});
-            if (!end.holds() || !(end.log_price < least)) return;
-            least = end.log_price;
+            if (!end.holds() || !(end.log_cost_ratio < min)) return;
+            min = end.log_cost_ratio;
             best = setting_at(places_.rules(), joint.settings(end.v, from, nullptr), options_.b);
         };
-        for (const Place* start : {inside->front(), inside->back()}) consider(start->optimum(), false);
-        if (std::ranges::any_of(*inside, &Place::optimum_is_PI))
-            for (const Place* start : {inside->front(), inside->back()}) consider(start->optimum(), true);
+        for (const PointDesign* start : {inside->front(), inside->back()}) consider(start->optimum(), false);
+        if (std::ranges::any_of(*inside, &PointDesign::optimum_is_PI))
+            for (const PointDesign* start : {inside->front(), inside->back()}) consider(start->optimum(), true);
         if (!best && one_) consider(point_of(*one_), !(one_->Td > 0));
         if (!best) return std::optional<ScheduleRow>();
         return std::optional(ScheduleRow{
             .at = from, .Kp = best->Kp, .Ti = best->Ti, .Td = best->Td, .Tf = best->filter.Tf, .b = options_.b});
     }
 
-    Places& places_;
+    PointDesigns& places_;
     OwnOptima& own_;
     const RangeOptions& options_;
     const std::optional<IdealPid>& one_;
-    double low_, high_, hysteresis_, margin_ = kStepsInside;
+    double low_, high_, hysteresis_, margin_ = kStepsLogMargin;
 };
 
 bool suffices(const std::optional<ScheduleDesign>& design) {
@@ -118,7 +118,7 @@ bool suffices(const std::optional<ScheduleDesign>& design) {
 
 }  // namespace
 
-Expected<ScheduleDesign> steps_schedule(Places& places, OwnOptima& own, const RangeOptions& options,
+Expected<ScheduleDesign> steps_schedule(PointDesigns& places, OwnOptima& own, const RangeOptions& options,
                                         const std::optional<IdealPid>& one) {
     std::optional<ScheduleDesign> best;
     const auto attempt = [&](int rows) -> std::optional<Error> {
@@ -133,7 +133,7 @@ Expected<ScheduleDesign> steps_schedule(Places& places, OwnOptima& own, const Ra
         if (auto error = attempt(*options.rows)) return *error;
     } else {
         // The most rows first: where even they do not do, none fewer will.
-        int enough = kMostRows, few = 0;
+        int enough = kMaxRows, few = 0;
         if (auto error = attempt(enough)) return *error;
         while (suffices(best) && enough - few > 1) {
             const int middle = (enough + few) / 2;

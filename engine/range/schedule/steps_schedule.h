@@ -7,10 +7,10 @@
 
 namespace tunewright::range {
 
-/// Parts by OwnOptima::layout; each part's row is the one setting with the least worst price over the part and half the
+/// Parts by OwnOptima::layout; each part's row is the one setting with the least worst cost over the part and half the
 /// hysteresis beyond it. The fewest rows that stay within the allowance, or `options.rows`; where 20 do not, those 20.
 /// Errors: as design_schedule.
-Expected<ScheduleDesign> steps_schedule(Places& places, OwnOptima& own, const RangeOptions& options,
+Expected<ScheduleDesign> steps_schedule(PointDesigns& places, OwnOptima& own, const RangeOptions& options,
                                         const std::optional<IdealPid>& one);
 
 }  // namespace tunewright::range

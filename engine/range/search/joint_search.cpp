@@ -23,11 +23,11 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Those of the iteration are `optimise::SqpConstants`. They were set while the search was made, on ranges of
 /// first-order plants, the conical tank and the reactor; tests/engine/range holds what they reach.
 struct JointSqpConstants {
-    double penalty = 40;             ///< of ln of the price for one of ln of a limit: above most multipliers
+    double penalty = 40;             ///< of ln of the cost for one of ln of a limit: above most multipliers
     double max_penalty = 4e4;        ///< next to the least limits that any design keeps they grow without bound
     double harder = 10;              ///< times the penalty, where the limits were not held
     double near = -0.25;             ///< limits below it cannot become active within a step
-    double near_price = 0.5;         ///< prices so far below the largest cannot become it within a step
+    double near_price = 0.5;         ///< costs so far below the largest cannot become it within a step
     double aim_below = 1e-6;         ///< feasibility is aimed this far inside
     std::size_t max_peaks = 6;       ///< of a place, the largest ones, as constraints of a step
     double slack_curvature = 1e-6;   ///< of the two unknowns that enter linearly: H must be positive definite
@@ -39,28 +39,28 @@ struct JointSqpConstants {
 };
 constexpr JointSqpConstants k_;
 
-/// The unknowns of a step: p, then t (the price) and s (the excess).
+/// The unknowns of a step: p, then t (the cost) and s (the excess).
 struct Layout {
     Index n = 0;
-    Index price() const { return n; }
+    Index cost() const { return n; }
     Index excess() const { return n + 1; }
     Index size() const { return n + 2; }
 };
 
-struct PlaceState {
+struct PointState {
     DesignPoint x{};
-    double price = kInfinity;
-    std::optional<robust::PricedDesign> priced;  // the runs behind the price
+    double cost = kInfinity;
+    std::optional<robust::EvaluatedDesign> evaluated;  // the runs behind the cost
     std::vector<ActivePeak> peaks;
     SettingsSlope slope;
-    Eigen::Vector3d price_gradient = Eigen::Vector3d::Zero();
+    Eigen::Vector3d cost_gradient = Eigen::Vector3d::Zero();
     bool has_gradient = false;
 };
 
 struct State {
     VectorXd v;
-    std::vector<PlaceState> places;
-    double price = kInfinity, excess = kInfinity;
+    std::vector<PointState> places;
+    double cost = kInfinity, excess = kInfinity;
 };
 
 Eigen::Vector3d as_vector(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
@@ -87,11 +87,11 @@ public:
 
     JointResult run(const VectorXd& start) {
         State now = with_limits(start);
-        ask_price(now);
+        ask_cost(now);
         if (!std::isfinite(merit(now)) || done(now)) return answer(now);
         differentiate(now);
         optimise::minimise(*this, now, {.radius = 1, .min_radius = k_.min_radius, .max_radius = k_.max_radius},
-                           options_.most_iterations, options_.cost_tolerance);
+                           options_.max_iterations, options_.cost_tolerance);
         return answer(now);
     }
 
@@ -112,39 +112,39 @@ public:
 
     std::optional<State> candidate(const State& now, const Step& step, double radius) const {
         State next = corrected(now, step.p, radius);
-        if (std::isfinite(next.excess) && penalty_ * next.excess < merit(now)) ask_price(next);
+        if (std::isfinite(next.excess) && penalty_ * next.excess < merit(now)) ask_cost(next);
         return next;
     }
 
     bool accepted(const State& now, double won) {
         if (report_) report_(answer(now));
-        const bool slow = now.excess <= 0 && won < options_.hopeless * (now.price - options_.enough);
+        const bool slow = now.excess <= 0 && won < options_.hopeless * (now.cost - options_.enough);
         slow_steps_ = slow ? slow_steps_ + 1 : 0;
         return slow_steps_ < k_.slow_steps_to_end && !done(now);
     }
 
-    double merit(const State& state) const { return state.price + penalty_ * std::max(0.0, state.excess); }
+    double merit(const State& state) const { return state.cost + penalty_ * std::max(0.0, state.excess); }
 
     void differentiate(State& state) const {
-        for (PlaceState& one : state.places) {
-            if (problem_.aim == Aim::worst && one.price < state.price - k_.near_price) continue;
-            one.price_gradient = as_vector(one.priced->with_gradient().gradient);
-            one.has_gradient = one.price_gradient.allFinite();
+        for (PointState& one : state.places) {
+            if (problem_.aim == Aim::worst && one.cost < state.cost - k_.near_price) continue;
+            one.cost_gradient = as_vector(one.evaluated->with_gradient().gradient);
+            one.has_gradient = one.cost_gradient.allFinite();
         }
     }
 
     void learn(const State& now, const State& next, const Step& step) {
         const VectorXd p = next.v - now.v;
         VectorXd y = VectorXd::Zero(layout_.n);
-        // The rows of `step_program`: prices, the excess >= 0, limits.
-        Index price = 0, limit = 1;
-        if (problem_.aim == Aim::worst) limit += std::ranges::count(now.places, true, &PlaceState::has_gradient);
+        // The rows of `step_program`: costs, the excess >= 0, limits.
+        Index cost = 0, limit = 1;
+        if (problem_.aim == Aim::worst) limit += std::ranges::count(now.places, true, &PointState::has_gradient);
         for (std::size_t k = 0; k < now.places.size(); ++k) {
-            const PlaceState &old = now.places[k], &fresh = next.places[k];
+            const PointState &old = now.places[k], &fresh = next.places[k];
             if (old.has_gradient) {
-                const double weight = problem_.aim == Aim::worst ? step.multipliers[price++] : share(now, old);
+                const double weight = problem_.aim == Aim::worst ? step.multipliers[cost++] : share(now, old);
                 if (fresh.has_gradient)
-                    y += weight * (gradient_of(fresh, fresh.price_gradient) - gradient_of(old, old.price_gradient));
+                    y += weight * (gradient_of(fresh, fresh.cost_gradient) - gradient_of(old, old.cost_gradient));
             }
             for (std::size_t i = 0; i < std::min(old.peaks.size(), k_.max_peaks); ++i) {
                 const double weight = step.multipliers[limit++];
@@ -158,13 +158,13 @@ public:
     }
 
 private:
-    bool done(const State& now) const { return now.price <= options_.enough && now.excess <= 0; }
+    bool done(const State& now) const { return now.cost <= options_.enough && now.excess <= 0; }
 
-    /// Settings and peaks at every place; the price is not known yet.
+    /// Settings and peaks at every place; the cost is not known yet.
     State with_limits(const VectorXd& v) const {
-        State state{.v = v, .places = {}, .price = kInfinity, .excess = -kInfinity};
-        for (const Place* place : problem_.places) {
-            PlaceState one;
+        State state{.v = v, .places = {}, .cost = kInfinity, .excess = -kInfinity};
+        for (const PointDesign* place : problem_.places) {
+            PointState one;
             one.slope.resize(3, layout_.n);
             one.x = problem_.settings(v, place->at(), &one.slope);
             one.peaks = place->sweep().peaks(one.x, k_.near);
@@ -178,34 +178,34 @@ private:
     JointResult answer(const State& state) const {
         JointResult result = result_;
         result.v = state.v;
-        result.log_price = state.price;
+        result.log_cost_ratio = state.cost;
         result.excess = state.excess;
         return result;
     }
 
     /// Infinite where a loop is unstable.
-    void ask_price(State& state) const {
-        state.price = kInfinity;
+    void ask_cost(State& state) const {
+        state.cost = kInfinity;
         for (std::size_t k = 0; k < state.places.size(); ++k)
             if (!robust::is_stable(problem_.places[k]->problem(), state.places[k].x)) return;
         double worst = -kInfinity, sum = 0;
         for (std::size_t k = 0; k < state.places.size(); ++k) {
-            PlaceState& one = state.places[k];
-            one.priced = problem_.places[k]->priced(one.x, options_.simulation_tolerance);
-            one.price = problem_.places[k]->log_price(*one.priced);
-            worst = std::max(worst, one.price);
-            sum += std::exp(one.price);
+            PointState& one = state.places[k];
+            one.evaluated = problem_.places[k]->evaluated(one.x, options_.simulation_tolerance);
+            one.cost = problem_.places[k]->log_cost_ratio(*one.evaluated);
+            worst = std::max(worst, one.cost);
+            sum += std::exp(one.cost);
         }
-        state.price = problem_.aim == Aim::worst ? worst : std::log(sum / double(state.places.size()));
+        state.cost = problem_.aim == Aim::worst ? worst : std::log(sum / double(state.places.size()));
     }
 
-    VectorXd gradient_of(const PlaceState& one, const Eigen::Vector3d& local) const {
+    VectorXd gradient_of(const PointState& one, const Eigen::Vector3d& local) const {
         return one.slope.transpose() * local;
     }
 
     /// Of the mean: each place's share of the sum.
-    double share(const State& state, const PlaceState& one) const {
-        return std::exp(one.price - state.price) / double(state.places.size());
+    double share(const State& state, const PointState& one) const {
+        return std::exp(one.cost - state.cost) / double(state.places.size());
     }
 
     /// The limits' linear models at every place, with `excess` as the last unknown.
@@ -213,7 +213,7 @@ private:
         VectorXd normal = VectorXd::Zero(program.g.size());
         normal[normal.size() - 1] = -1;
         program.add(normal, 0);
-        for (const PlaceState& one : state.places)
+        for (const PointState& one : state.places)
             for (std::size_t i = 0; i < std::min(one.peaks.size(), k_.max_peaks); ++i) {
                 normal.head(layout_.n) = gradient_of(one, as_vector(one.peaks[i].gradient));
                 program.add(normal, -one.peaks[i].value - options_.margin - k_.aim_below);
@@ -236,36 +236,35 @@ private:
         return program;
     }
 
-    /// The places' prices first, whose multipliers `learn` finds there, then the limits.
+    /// The places' costs first, whose multipliers `learn` finds there, then the limits.
     LargeProgram step_program(const State& now, double radius) const {
         LargeProgram program = empty_program(layout_.size());
         const auto unit = [&](Index i) { return VectorXd::Unit(layout_.size(), i); };
-        VectorXd normal = -unit(layout_.price());
-        for (const PlaceState& one : now.places) {
+        VectorXd normal = -unit(layout_.cost());
+        for (const PointState& one : now.places) {
             if (!one.has_gradient) continue;
-            const VectorXd gradient = gradient_of(one, one.price_gradient);
+            const VectorXd gradient = gradient_of(one, one.cost_gradient);
             if (problem_.aim == Aim::mean) program.g.head(layout_.n) += share(now, one) * gradient;
             if (problem_.aim == Aim::mean) continue;
             normal.head(layout_.n) = gradient;
-            program.add(normal, now.price - one.price);
+            program.add(normal, now.cost - one.cost);
         }
         add_limits(now, program);
         program.add(unit(layout_.excess()), k_.slack_size);
-        program.add(-unit(layout_.price()), k_.slack_size);
+        program.add(-unit(layout_.cost()), k_.slack_size);
         add_box(now.v, radius, program);
-        program.g[layout_.price()] = problem_.aim == Aim::worst ? 1 : 0;
+        program.g[layout_.cost()] = problem_.aim == Aim::worst ? 1 : 0;
         program.g[layout_.excess()] = penalty_;
         program.H.topLeftCorner(layout_.n, layout_.n) = H_;
-        program.H(layout_.price(), layout_.price()) = program.H(layout_.excess(), layout_.excess()) =
-            k_.slack_curvature;
+        program.H(layout_.cost(), layout_.cost()) = program.H(layout_.excess(), layout_.excess()) = k_.slack_curvature;
         return program;
     }
 
     /// What the model says the merit will be.
     double model_merit(const State& now, const VectorXd& z, const VectorXd& g) const {
         const VectorXd p = z.head(layout_.n);
-        const double linear = problem_.aim == Aim::worst ? z[layout_.price()] : double(g.head(layout_.n).dot(p));
-        return now.price + linear + 0.5 * p.dot(H_ * p) + penalty_ * std::max(0.0, z[layout_.excess()]);
+        const double linear = problem_.aim == Aim::worst ? z[layout_.cost()] : double(g.head(layout_.n).dot(p));
+        return now.cost + linear + 0.5 * p.dot(H_ * p) + penalty_ * std::max(0.0, z[layout_.excess()]);
     }
 
     /// The step, and after it back to the curved limits along the shortest way.
@@ -309,7 +308,7 @@ private:
 JointResult search_jointly(const JointProblem& problem, const VectorXd& start, const JointOptions& options,
                            const std::function<void(const JointResult&)>& report) {
     JointResult end = JointSqp(problem, options, k_.penalty, report).run(start);
-    const auto failed = [&] { return !end.holds() && !end.stopped && std::isfinite(end.log_price); };
+    const auto failed = [&] { return !end.holds() && !end.stopped && std::isfinite(end.log_cost_ratio); };
     for (double penalty = k_.harder * k_.penalty; failed() && penalty <= k_.max_penalty; penalty *= k_.harder)
         end = JointSqp(problem, options, penalty, report).run(end.v);
     return end;

@@ -38,7 +38,7 @@ verdict::Finding finding_of(const RangeDesign& design) {
     const verdict::Level level = design.verdict == Verdict::one_setting ? verdict::Level::good
                                  : design.verdict == Verdict::optional  ? verdict::Level::note
                                                                         : verdict::Level::warning;
-    verdict::Draft draft(code, level);
+    verdict::FindingBuilder draft(code, level);
     draft.say(design.because);
     const auto figure = [&draft](const char* name, double value) {
         if (std::isfinite(value)) draft.figure(name, value);
@@ -137,7 +137,7 @@ private:
 
     std::optional<Error> look_at_places() {
         const auto& one = result_.design.one_curve.places;
-        for (const range::PlaceFigures& figures : one.empty() ? result_.design.schedule_curve.places : one) {
+        for (const range::PointFigures& figures : one.empty() ? result_.design.schedule_curve.places : one) {
             const auto model = model_->at(figures.at);
             if (!model) return model.error();
             RangePlace place{.at = figures.at, .K = {}, .T = {}, .L = {}, .u = model->u, .y = model->y};

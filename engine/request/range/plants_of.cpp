@@ -64,11 +64,11 @@ public:
     /// where no structure suits all.
     std::optional<Error> in_one_structure(std::vector<RangePointPlant>& plants, std::vector<Warning>& warnings) const {
         const Structure* best = nullptr;
-        double least = std::numeric_limits<double>::infinity();
+        double min = std::numeric_limits<double>::infinity();
         for (const Structure& structure : kStructures) {
             const double loss = loss_in(structure, plants);
-            if (loss < least) {
-                least = loss;
+            if (loss < min) {
+                min = loss;
                 best = &structure;
             }
         }
@@ -106,10 +106,10 @@ private:
                 if (!structure.holds(point.plant)) return kNone;
                 continue;
             }
-            double least = kNone;
+            double min = kNone;
             for (const Candidate& candidate : point.model->candidates)
-                if (structure.holds(candidate.plant)) least = std::min(least, candidate.criterion);
-            sum += least;
+                if (structure.holds(candidate.plant)) min = std::min(min, candidate.criterion);
+            sum += min;
         }
         return sum;
     }

@@ -26,7 +26,7 @@ std::optional<Need> of_setpoint(const LinearPlant& plant, const ActuatorLimits& 
 }
 
 /// For equations: the y at rest with u at the limit that it needs to exceed.
-std::optional<Need> of_setpoint(const Case& c, const NonlinearSystem& system, const ActuatorLimits& limits) {
+std::optional<Need> of_setpoint(const VerdictInput& c, const NonlinearSystem& system, const ActuatorLimits& limits) {
     const SetpointPerformance& p = c.performance().setpoint;
     if (!c.warned_of("actuator-limited") || c.warned_of("does-not-settle") || p.settling_time || p.IAE) return {};
     const double toward = c.context.options.setpoint_step * c.context.subject.linear()->low_frequency_gain();
@@ -38,7 +38,7 @@ std::optional<Need> of_setpoint(const Case& c, const NonlinearSystem& system, co
     return Need{std::copysign(INFINITY, toward), rest->y_steady() - system.y_steady()};
 }
 
-std::optional<ActuatorLimits> limits_of(const Case& c) {
+std::optional<ActuatorLimits> limits_of(const VerdictInput& c) {
     const NonlinearSystem* system = c.context.subject.equations();
     return system != nullptr ? limited_as(*system, c.context.options).actuator : c.context.options.actuator;
 }
@@ -53,7 +53,7 @@ struct Needs {
     bool carries_setpoint() const { return !setpoint || carries(limits, setpoint->u); }
 };
 
-std::optional<Needs> needs_of(const Case& c) {
+std::optional<Needs> needs_of(const VerdictInput& c) {
     const auto limits = limits_of(c);
     const LinearPlant* plant = c.context.subject.linear();
     if (!limits || plant == nullptr || !c.has_integral() || !c.evaluation.robustness.stable ||
@@ -68,12 +68,12 @@ std::optional<Needs> needs_of(const Case& c) {
 
 }  // namespace
 
-StepsBeyondActuator steps_beyond_actuator(const Case& c) {
+StepsBeyondActuator steps_beyond_actuator(const VerdictInput& c) {
     const auto needs = needs_of(c);
     return needs ? StepsBeyondActuator{!needs->carries_setpoint(), !needs->carries_load()} : StepsBeyondActuator{};
 }
 
-Found actuator_too_small(const Case& c) {
+OptionalFinding actuator_too_small(const VerdictInput& c) {
     const auto needs = needs_of(c);
     if (!needs) return {};
     const auto& [limits, load, setpoint] = *needs;
@@ -84,7 +84,7 @@ Found actuator_too_small(const Case& c) {
     const LinearPlant& plant = *c.context.subject.linear();
     const bool bounded = plant.integrators() <= 0 && plant.unstable_poles() == 0;
     const bool asked = (setpoint_fails && c.context.given_steps.setpoint) || (load_fails && c.context.given_steps.load);
-    Draft draft("actuator-too-small", !asked ? Level::note : bounded ? Level::warning : Level::bad);
+    FindingBuilder draft("actuator-too-small", !asked ? Level::note : bounded ? Level::warning : Level::bad);
     const bool upper = (setpoint_fails ? setpoint->u : load.u) > limits.max;
     draft.say(bounded ? "u rests at its limit of " : "y is unbounded, with u at its limit of ")
         .number("u_limit", upper ? limits.max : limits.min, printed_unit(labels.u))
@@ -102,9 +102,9 @@ Found actuator_too_small(const Case& c) {
     return draft.say(asked ? ". No controller changes that." : ". That size was assumed: give the steps that occur.");
 }
 
-Found at_its_limits(const Case& c) {
+OptionalFinding at_its_limits(const VerdictInput& c) {
     if (!c.warned_of("actuator-limited")) return {};
-    return Draft("at-limits", Level::warning)
+    return FindingBuilder("at-limits", Level::warning)
         .say(
             "The controller output reaches its limit on these steps; Ms and the margins hold only between the limits.");
 }

@@ -20,12 +20,12 @@ double filter_degrees(const Filter& filter, double omega) {
 
 }  // namespace
 
-Found PI_or_PID(const Case& c) {
+OptionalFinding PI_or_PID(const VerdictInput& c) {
     const Figure& IAE = c.evaluation.performance.load.IAE;
     if (!c.entry.best_PI_load_IAE || !IAE || !(*IAE > 0)) return {};
     const double ratio = *c.entry.best_PI_load_IAE / *IAE;
-    const bool as_good = ratio <= kAsGood;
-    Draft draft(as_good ? "PI-as-good" : "derivative-pays", Level::note);
+    const bool as_good = ratio <= kMaxCostRatioAsGood;
+    FindingBuilder draft(as_good ? "PI-as-good" : "derivative-pays", Level::note);
     draft.figure("ratio", ratio);
     if (as_good)
         return draft.say("PI does as well here: within the same limits its load IAE is ")
@@ -40,48 +40,48 @@ Found PI_or_PID(const Case& c) {
         .say(".");
 }
 
-Found excess(const Case& c) {
+OptionalFinding excess(const VerdictInput& c) {
     if (!c.entry.optimum_at_Ms || !c.entry.optimum_at_Ms->excess_percent) return {};
     const double percent = *c.entry.optimum_at_Ms->excess_percent;
     if (percent < kExcessPercent) return {};
-    return Draft("excess", Level::note)
+    return FindingBuilder("excess", Level::note)
         .say("At the same Ms the best PID has a lower load IAE: this one lies ")
         .number("excess_percent", percent, "%")
         .say(" above it.");
 }
 
-Found dead_time_rules(const Case& c) {
+OptionalFinding dead_time_rules(const VerdictInput& c) {
     const LinearPlant* plant = c.context.subject.linear();
     if (plant == nullptr || plant->integrators() != 0 || plant->unstable_poles() > 0) return {};
     const double L = plant->dead_time();
     // The sum of the lags says little of poles that swing: a resonance of no damping has none.
     const double lags = std::max(plant->lag_sum(), plant->time_scale() - L);
     const bool alone = plant->poles().empty();
-    if (!(L > 0) || (!alone && !(lags > 0 && L >= kDeadTimeRules * lags))) return {};
-    Draft draft("dead-time-rules", Level::note);
+    if (!(L > 0) || (!alone && !(lags > 0 && L >= kMinDeadTimeOverLags * lags))) return {};
+    FindingBuilder draft("dead-time-rules", Level::note);
     if (!alone) draft.say("The dead time is ").number("dead_time_over_lags", L / lags).say(" times the lags: nothing");
     draft.say(alone ? "Nothing acts sooner than " : " acts sooner than ")
         .number("dead_time", L, printed_unit(c.context.labels.time))
         .say(" after a disturbance");
     const Figure& IAE = c.performance().load.IAE;
-    const auto least = least_load_IAE(c);
-    if (least && IAE)
+    const auto min = min_load_IAE(c);
+    if (min && IAE)
         draft.say(", and no controller has a load IAE below ")
-            .number("least_load_IAE", *least)
+            .number("least_load_IAE", *min)
             .say("; this one has ")
             .number("load_IAE", *IAE);
     return draft.say(".");
 }
 
-Found filter_rules(const Case& c) {
+OptionalFinding filter_rules(const VerdictInput& c) {
     const LinearPlant* plant = c.context.subject.linear();
     const auto pid = to_ideal(c.evaluation.controller);
     const Robustness& r = c.evaluation.robustness;
     if (plant == nullptr || !pid || !r.omega_Ms || !(*r.omega_Ms > 0)) return {};
     const double taken = filter_degrees(pid->filter, *r.omega_Ms), by_plant = degrees(*r.omega_Ms * plant->dead_time());
-    if (taken < kFilterDegrees || taken <= by_plant) return {};
+    if (taken < kMinFilterPhaseDegrees || taken <= by_plant) return {};
     const Labels& labels = c.context.labels;
-    Draft draft("filter-rules", Level::note);
+    FindingBuilder draft("filter-rules", Level::note);
     draft.say("The measurement's filter (Tf ")
         .number("Tf", pid->filter.Tf, printed_unit(labels.time))
         .say(") limits this loop: at ")
@@ -93,7 +93,7 @@ Found filter_rules(const Case& c) {
         .say("°.");
     const Figure& IAE = c.evaluation.performance.load.IAE;
     const auto shorter = designed_with_filter(c, 0.5 * pid->filter.Tf);
-    if (!IAE || !shorter || !shorter->load_IAE || !(kAsGood * *shorter->load_IAE < *IAE)) return draft;
+    if (!IAE || !shorter || !shorter->load_IAE || !(kMaxCostRatioAsGood * *shorter->load_IAE < *IAE)) return draft;
     return draft.say(" With half of it (")
         .number("shorter_Tf", 0.5 * pid->filter.Tf, printed_unit(labels.time))
         .say(") the design within the same limits has a load IAE of ")
@@ -107,12 +107,12 @@ Found filter_rules(const Case& c) {
         .say(".");
 }
 
-Found sample_time(const Case& c) {
+OptionalFinding sample_time(const VerdictInput& c) {
     const auto& longest = c.entry.longest_sample_time;
     const double Ts = c.context.sample_time;
     if (!longest || !*longest || Ts <= **longest) return {};
     const std::string unit = printed_unit(c.context.labels.time);
-    return Draft("sample-time", Level::warning)
+    return FindingBuilder("sample-time", Level::warning)
         .say("A sample time of ")
         .number("sample_time", Ts, unit)
         .say(" costs margin or speed: at most ")
@@ -124,7 +124,7 @@ Found sample_time(const Case& c) {
 namespace {
 
 /// Says what the filter does to the same gains, if it leaves the loop its margins.
-void say_filtered(Draft& draft, const Case& c, const Filter& filter) {
+void say_filtered(FindingBuilder& draft, const VerdictInput& c, const Filter& filter) {
     const auto peaks = peaks_with_filter(c, filter);
     const Figure& Ms = c.evaluation.robustness.Ms;
     if (!peaks || !Ms || peaks->Ms > std::max(*Ms, kLittleMarginMs)) return;
@@ -138,8 +138,8 @@ void say_filtered(Draft& draft, const Case& c, const Filter& filter) {
         .say(".");
 }
 
-Finding no_filter(const Case& c) {
-    Draft draft("no-filter", Level::warning);
+Finding no_filter(const VerdictInput& c) {
+    FindingBuilder draft("no-filter", Level::warning);
     draft.say("The derivative has no filter: nothing bounds what noise does to the controller output.");
     const auto pid = to_ideal(c.evaluation.controller);
     if (pid) say_filtered(draft, c, {FilterType::derivative, std::abs(pid->Td) / kUsualN});
@@ -148,7 +148,7 @@ Finding no_filter(const Case& c) {
 
 }  // namespace
 
-Found noise(const Case& c) {
+OptionalFinding noise(const VerdictInput& c) {
     const Robustness& r = c.evaluation.robustness;
     const double Kp = std::abs(gains(c.evaluation.controller).Kp);
     const Labels& labels = c.context.labels;
@@ -157,13 +157,13 @@ Found noise(const Case& c) {
     const auto& actuator = c.context.options.actuator;
     if (measured && measured->u_std && *measured->u_std > 0) {
         const double range = actuator ? actuator->max - actuator->min : INFINITY;
-        return Draft("noise", *measured->u_std > kNoiseOfRange * range ? Level::warning : Level::note)
+        return FindingBuilder("noise", *measured->u_std > kMinNoiseOverRange * range ? Level::warning : Level::note)
             .say("The noise moves the controller output by ")
             .number("u_std", *measured->u_std, printed_unit(labels.u))
             .say(" (standard deviation).");
     }
-    if (!r.Mks || !(Kp > 0) || *r.Mks < kNoisy * Kp || !noise_gain_peaks_beyond(c)) return {};
-    Draft draft("noise-gain", Level::warning);
+    if (!r.Mks || !(Kp > 0) || *r.Mks < kMinNoisyMksOverKp * Kp || !noise_gain_peaks_beyond(c)) return {};
+    FindingBuilder draft("noise-gain", Level::warning);
     draft.say("Noise reaches the controller output up to ")
         .number("ratio", *r.Mks / Kp)
         .say(" times as strong as by the proportional gain (Mks ")

@@ -22,18 +22,18 @@ constexpr int kDoublings = 10, kHalvings = 6;  // of a lag that the loop that ru
 constexpr double kOwnTolerance = 0.01;         // percentage points, of a response that was simulated another way
 
 /// Overshoot in percent of the loop that runs with this weight and lag; infinite if it does not settle.
-double overshoot_with(const Case& c, const LinearPlant& plant, const SetpointCure& cure) {
+double overshoot_with(const VerdictInput& c, const LinearPlant& plant, const SetpointCure& cure) {
     const EvaluateOptions& options = c.context.options;
     const double r = options.setpoint_step;
     StepResponse response;
-    if (c.built() && c.entry.as_built->fitted.law.Ts > 0) {
-        SampledPid law = c.entry.as_built->fitted.law;
+    if (c.on_device() && c.entry.on_device->fitted.law.Ts > 0) {
+        SampledPid law = c.entry.on_device->fitted.law;
         law.gains.b = cure.b;
         law.gains.setpoint_lag = cure.lag;
         response = simulate_sampled(plant, law, {.output = options.actuator}, {r, 0}, {});
     } else {
         ParallelPid acting =
-            gains(c.built() ? built::continuous(c.entry.as_built->fitted.controller) : c.evaluation.controller);
+            gains(c.on_device() ? device::continuous(c.entry.on_device->fitted.controller) : c.evaluation.controller);
         acting.b = cure.b;
         acting.setpoint_lag = cure.lag;
         response = options.actuator
@@ -45,7 +45,7 @@ double overshoot_with(const Case& c, const LinearPlant& plant, const SetpointCur
     return 100 * ((r > 0 ? y.max : y.min) / r - 1);
 }
 
-const LinearPlant* only_linear(const Case& c) {
+const LinearPlant* only_linear(const VerdictInput& c) {
     return c.context.subject.equations() == nullptr ? c.context.subject.linear() : nullptr;
 }
 
@@ -59,11 +59,11 @@ MethodOptions with_filter_time(const MethodOptions& options, double Tf) {
 
 }  // namespace
 
-std::optional<SetpointCure> overshoot_cure(const Case& c, double percent) {
+std::optional<SetpointCure> overshoot_cure(const VerdictInput& c, double percent) {
     const LinearPlant* plant = only_linear(c);
-    const bool product = c.built() && c.entry.as_built->fitted.product != nullptr;
+    const bool product = c.on_device() && c.entry.on_device->fitted.product != nullptr;
     const auto pid =
-        c.built() ? Expected<IdealPid>(c.entry.as_built->fitted.controller) : to_ideal(c.evaluation.controller);
+        c.on_device() ? Expected<IdealPid>(c.entry.on_device->fitted.controller) : to_ideal(c.evaluation.controller);
     if (plant == nullptr || !pid || std::holds_alternative<Npid>(c.evaluation.controller)) return std::nullopt;
     // The weights of a series form are its own, and those of a product are settled by its design.
     const bool may_weigh = !product && std::holds_alternative<IdealPid>(c.evaluation.controller);
@@ -87,7 +87,7 @@ std::optional<SetpointCure> overshoot_cure(const Case& c, double percent) {
     return cure;
 }
 
-std::optional<double> least_load_IAE(const Case& c) {
+std::optional<double> min_load_IAE(const VerdictInput& c) {
     const LinearPlant* plant = only_linear(c);
     if (plant == nullptr || c.context.options.horizon || !(plant->dead_time() > 0)) return std::nullopt;
     // x' = A x + B, and the integral of h = C x + D as one more state.
@@ -108,7 +108,7 @@ std::optional<double> least_load_IAE(const Case& c) {
     return std::abs(integral * c.context.options.load_step);
 }
 
-std::optional<FilteredPeaks> peaks_with_filter(const Case& c, const Filter& filter) {
+std::optional<FilteredPeaks> peaks_with_filter(const VerdictInput& c, const Filter& filter) {
     if (c.context.control.stop.stop_requested()) return std::nullopt;
     const LinearPlant* plant = only_linear(c);
     if (plant == nullptr || std::holds_alternative<Npid>(c.evaluation.controller)) return std::nullopt;
@@ -121,7 +121,7 @@ std::optional<FilteredPeaks> peaks_with_filter(const Case& c, const Filter& filt
     return FilteredPeaks{peaks.S.value, peaks.CS.value};
 }
 
-bool noise_gain_peaks_beyond(const Case& c) {
+bool noise_gain_peaks_beyond(const VerdictInput& c) {
     const LinearPlant* plant = c.context.subject.linear();
     if (plant == nullptr) return true;
     const auto loop = Loop::make(*plant, gains(c.evaluation.controller));
@@ -130,10 +130,10 @@ bool noise_gain_peaks_beyond(const Case& c) {
     return peaks.CS.omega > peaks.S.omega;
 }
 
-std::optional<OtherDesign> designed_with_filter(const Case& c, double Tf) {
+std::optional<OtherDesign> designed_with_filter(const VerdictInput& c, double Tf) {
     const TuningProblem* problem = c.context.problem;
     const TuningEntry& entry = c.entry;
-    if (problem == nullptr || problem->family || problem->nonlinear != nullptr || entry.over_region || c.built() ||
+    if (problem == nullptr || problem->family || problem->nonlinear != nullptr || entry.over_region || c.on_device() ||
         entry.method != "robust" || entry.options.text("objective") != "load_iae")
         return std::nullopt;
     RunControl control = c.context.control;

@@ -12,12 +12,12 @@ namespace tunewright::verdict {
 /// A lower b or a lag of the set point with which a set-point step of the loop that runs overshoots by at most
 /// `percent`: its sampled law and the actuator's limits included. Empty: unknown, or there is none; always on equations
 /// and for a nonlinear integral.
-std::optional<SetpointCure> overshoot_cure(const Case& c, double percent);
+std::optional<SetpointCure> overshoot_cure(const VerdictInput& c, double percent);
 
 /// The least load IAE that any controller can have, in y times time: the load has moved y for one dead time before the
 /// first reaction to it arrives, so it is at least |d| |integral of h from 0 to L| with h the step response of the
 /// plant without its dead time. Linear plants without a horizon; else empty.
-std::optional<double> least_load_IAE(const Case& c);
+std::optional<double> min_load_IAE(const VerdictInput& c);
 
 struct FilteredPeaks {
     double Ms = 0, Mks = 0;
@@ -25,11 +25,11 @@ struct FilteredPeaks {
 
 /// The entry's gains with another filter, on the nominal linear plant. Empty where that loop is unstable, or on
 /// equations.
-std::optional<FilteredPeaks> peaks_with_filter(const Case& c, const Filter& filter);
+std::optional<FilteredPeaks> peaks_with_filter(const VerdictInput& c, const Filter& filter);
 
 /// True if |C S| peaks at a higher frequency than |S|: below it is what holds y, such as 1/K at rest, and no noise.
 /// True for a plant known by points alone.
-bool noise_gain_peaks_beyond(const Case& c);
+bool noise_gain_peaks_beyond(const VerdictInput& c);
 
 struct OtherDesign {
     Figure load_IAE;
@@ -38,6 +38,6 @@ struct OtherDesign {
 
 /// The method robust once more, with the entry's options and this filter time. Empty where the entry is not such a
 /// design for the load IAE on one linear plant and the ideal law, or where there is none.
-std::optional<OtherDesign> designed_with_filter(const Case& c, double Tf);
+std::optional<OtherDesign> designed_with_filter(const VerdictInput& c, double Tf);
 
 }  // namespace tunewright::verdict

@@ -34,25 +34,25 @@ struct GivenSteps {
 };
 
 /// A finding while its sentence is written.
-class Draft {
+class FindingBuilder {
 public:
-    Draft(std::string code, Level level) : finding_{std::move(code), level, {}, {}} {}
+    FindingBuilder(std::string code, Level level) : finding_{std::move(code), level, {}, {}} {}
 
-    Draft& say(const std::string& words) {
+    FindingBuilder& say(const std::string& words) {
         finding_.text += words;
         return *this;
     }
     /// With three digits, the unit behind it, and in full precision among the figures.
-    Draft& number(const std::string& name, double value, const std::string& unit = "") {
+    FindingBuilder& number(const std::string& name, double value, const std::string& unit = "") {
         finding_.figures[name] = value;
         return say(figure_text(value)).say(unit.empty() ? unit : " " + unit);
     }
     /// Among the figures alone.
-    Draft& figure(const std::string& name, double value) {
+    FindingBuilder& figure(const std::string& name, double value) {
         finding_.figures[name] = value;
         return *this;
     }
-    Draft& level(Level level) {
+    FindingBuilder& level(Level level) {
         finding_.level = level;
         return *this;
     }

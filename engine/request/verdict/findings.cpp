@@ -10,8 +10,8 @@ std::optional<double> above(std::optional<double> value, double floor) {
 }
 
 /// Of the loop that runs; of the ideal one where nothing else is known.
-std::optional<PlacedPeak> running(const Figure& runs, const Figure& ideal, bool built) {
-    if (runs) return PlacedPeak{*runs, built ? PeakLoop::as_built : PeakLoop::ideal};
+std::optional<PlacedPeak> running(const Figure& runs, const Figure& ideal, bool on_device) {
+    if (runs) return PlacedPeak{*runs, on_device ? PeakLoop::on_device : PeakLoop::ideal};
     if (ideal) return PlacedPeak{*ideal};
     return {};
 }
@@ -21,7 +21,7 @@ std::optional<PlacedPeak> running(const Figure& runs, const Figure& ideal, bool 
 std::string words_of(PeakLoop loop) {
     switch (loop) {
         case PeakLoop::ideal: return "";
-        case PeakLoop::as_built: return " on your controller as it is built";
+        case PeakLoop::on_device: return " on your controller as it is built";
         case PeakLoop::worst_plant: return " on the worst plant";
         case PeakLoop::ideal_on_worst_plant: return " of the ideal loop on the worst plant";
     }
@@ -29,35 +29,37 @@ std::string words_of(PeakLoop loop) {
 }
 
 const Performance& performance_of(const TuningEntry& entry) {
-    return entry.as_built ? entry.as_built->loop.performance : entry.evaluation->performance;
+    return entry.on_device ? entry.on_device->loop.performance : entry.evaluation->performance;
 }
 
-const Robustness& Case::robustness() const {
-    return entry.as_built ? entry.as_built->loop.robustness : evaluation.robustness;
+const Robustness& VerdictInput::robustness() const {
+    return entry.on_device ? entry.on_device->loop.robustness : evaluation.robustness;
 }
 
-const Performance& Case::performance() const { return performance_of(entry); }
+const Performance& VerdictInput::performance() const { return performance_of(entry); }
 
-bool Case::has_integral() const { return gains(evaluation.controller).Ki != 0; }
+bool VerdictInput::has_integral() const { return gains(evaluation.controller).Ki != 0; }
 
-bool Case::warned_of(const std::string& code) const {
+bool VerdictInput::warned_of(const std::string& code) const {
     return std::ranges::any_of(evaluation.warnings, [&](const Warning& warning) { return warning.code == code; });
 }
 
-Limits Case::limits() const {
+RequestedLimits VerdictInput::limits() const {
     return {above(entry.Ms_limit, 1), above(entry.options.number("Mt"), 1), above(entry.options.number("Mks"), 0)};
 }
 
-std::optional<PlacedPeak> Case::worst_Ms() const {
-    std::optional<PlacedPeak> largest = running(robustness().Ms, evaluation.robustness.Ms, built());
+std::optional<PlacedPeak> VerdictInput::worst_Ms() const {
+    std::optional<PlacedPeak> largest = running(robustness().Ms, evaluation.robustness.Ms, on_device());
     if (!evaluation.region) return largest;
     const Figure& worst = evaluation.region->worst_Ms;
     if (worst && (!largest || *worst > largest->value))
-        largest = {*worst, built() ? PeakLoop::ideal_on_worst_plant : PeakLoop::worst_plant};
+        largest = {*worst, on_device() ? PeakLoop::ideal_on_worst_plant : PeakLoop::worst_plant};
     return largest;
 }
 
-std::optional<PlacedPeak> Case::worst_Mt() const { return running(robustness().Mt, evaluation.robustness.Mt, built()); }
+std::optional<PlacedPeak> VerdictInput::worst_Mt() const {
+    return running(robustness().Mt, evaluation.robustness.Mt, on_device());
+}
 
 std::string printed_unit(const std::string& unit) { return unit == "degC" ? "°C" : unit == "degF" ? "°F" : unit; }
 

@@ -7,14 +7,16 @@
 namespace tunewright::verdict {
 namespace {
 
-std::string frequency_unit(const Case& c) { return "rad/" + c.context.labels.time; }
+std::string frequency_unit(const VerdictInput& c) { return "rad/" + c.context.labels.time; }
 
-void say_place(Draft& draft, const std::string& name, const std::optional<double>& omega, const Case& c) {
+void say_place(FindingBuilder& draft, const std::string& name, const std::optional<double>& omega,
+               const VerdictInput& c) {
     if (omega && *omega > 0) draft.say(" at ").number("omega_" + name, *omega, frequency_unit(c));
 }
 
 /// " Mt (1.31) is within its limit."
-void say_within(Draft& draft, const std::string& name, const Figure& value, const std::optional<double>& limit) {
+void say_within(FindingBuilder& draft, const std::string& name, const Figure& value,
+                const std::optional<double>& limit) {
     if (!value) return;
     if (!limit) {
         draft.say(" " + name + " is ").number(name, *value).say(".");
@@ -23,9 +25,9 @@ void say_within(Draft& draft, const std::string& name, const Figure& value, cons
     }
 }
 
-Finding peaks(const Case& c) {
+Finding peaks(const VerdictInput& c) {
     const Robustness& r = c.robustness();
-    Draft draft("peaks", Level::note);
+    FindingBuilder draft("peaks", Level::note);
     draft.say("Ms is ").number("Ms", *r.Ms);
     say_place(draft, "Ms", r.omega_Ms, c);
     if (r.Mt) draft.say(", Mt ").number("Mt", *r.Mt);
@@ -34,32 +36,32 @@ Finding peaks(const Case& c) {
 
 }  // namespace
 
-Found as_built(const Case& c) {
-    if (!c.built()) return {};
-    const AsBuilt& built = *c.entry.as_built;
-    const Robustness &ideal = c.evaluation.robustness, &runs = built.loop.robustness;
-    if (!runs.stable) return Draft("as-built", Level::note).say("Only the ideal loop is stable.");
+OptionalFinding on_device(const VerdictInput& c) {
+    if (!c.on_device()) return {};
+    const DeviceEntry& on_device = *c.entry.on_device;
+    const Robustness &ideal = c.evaluation.robustness, &runs = on_device.loop.robustness;
+    if (!runs.stable) return FindingBuilder("as-built", Level::note).say("Only the ideal loop is stable.");
     if (!runs.Ms || !ideal.Ms) return {};
-    const bool worse =
-        built.Ms_percent.value_or(0) > kWorsePercent_Ms || built.load_IAE_percent.value_or(0) > kWorsePercent_IAE;
-    Draft draft("as-built", worse ? Level::warning : Level::note);
+    const bool worse = on_device.Ms_percent.value_or(0) > kWorsePercent_Ms ||
+                       on_device.load_IAE_percent.value_or(0) > kWorsePercent_IAE;
+    FindingBuilder draft("as-built", worse ? Level::warning : Level::note);
     draft.say("On your controller as it is built Ms is ")
         .number("Ms", *runs.Ms)
         .say(" (")
         .number("Ms_ideal", *ideal.Ms)
         .say(" for the ideal loop)");
-    const Figure &IAE = built.loop.performance.load.IAE, &before = c.evaluation.performance.load.IAE;
+    const Figure &IAE = on_device.loop.performance.load.IAE, &before = c.evaluation.performance.load.IAE;
     if (IAE && before)
         draft.say(" and the load IAE ").number("load_IAE", *IAE).say(" (").number("load_IAE_ideal", *before).say(")");
     return draft.say(".");
 }
 
-Found active_limit(const Case& c) {
+OptionalFinding active_limit(const VerdictInput& c) {
     const Robustness& r = c.robustness();
     const auto active = active_limits(c);
-    if (active.empty()) return r.Ms ? Found(peaks(c)) : std::nullopt;
-    const Limits limits = c.limits();
-    Draft draft("active-limit", Level::note);
+    if (active.empty()) return r.Ms ? OptionalFinding(peaks(c)) : std::nullopt;
+    const RequestedLimits limits = c.limits();
+    FindingBuilder draft("active-limit", Level::note);
     draft.say(active.size() == 1   ? "The active limit is "
               : active.size() == 2 ? "Both limits are active: "
                                    : "All limits are active: ");
@@ -82,26 +84,26 @@ Found active_limit(const Case& c) {
     return draft;
 }
 
-Found all_members(const Case& c) {
+OptionalFinding all_members(const VerdictInput& c) {
     const auto& region = c.evaluation.region;
     if (!region) return {};
     const bool record = c.context.model != nullptr;
     if (region->worst_Ms && region->stable_fraction >= 1)
-        return Draft("members", Level::note)
+        return FindingBuilder("members", Level::note)
             .say(record ? "Stable over the whole identified uncertainty, with Ms "
                         : "Stable on every plant that it must serve, with Ms ")
             .number("worst_Ms", *region->worst_Ms)
             .say(" at worst.");
     // Never all for less than all.
     const double percent = std::min(99.9, std::floor(1000 * region->stable_fraction) / 10);
-    Draft draft("members", Level::note);
+    FindingBuilder draft("members", Level::note);
     draft.say("Stable on ").number("stable_percent", percent, "%");
     return draft.say(record ? " of the identified uncertainty." : " of the plants that it must serve.");
 }
 
-Found margins(const Case& c) {
+OptionalFinding margins(const VerdictInput& c) {
     const auto& [low, high, dead_time] = c.robustness().tolerates;
-    Draft draft("margins", Level::note);
+    FindingBuilder draft("margins", Level::note);
     const bool falls = low && *low > 0;
     if (!falls && !high && !dead_time) return {};
     draft.say(c.evaluation.region ? "On the nominal plant " : "");
@@ -111,9 +113,12 @@ Found margins(const Case& c) {
     if (falls || high) draft.say(subject("process gain may "));
     if (falls) draft.say("fall to ").number("gain_low", *low).say(" of itself");
     if (falls && high) draft.say(" or ");
-    if (high && *high > kAnyGain)
-        draft.say("grow more than ").number("gain_more_than", kAnyGain).say("-fold").figure("gain_high", *high);
-    if (high && *high <= kAnyGain) draft.say("grow ").number("gain_high", *high).say("-fold");
+    if (high && *high > kUnlimitedGainMargin)
+        draft.say("grow more than ")
+            .number("gain_more_than", kUnlimitedGainMargin)
+            .say("-fold")
+            .figure("gain_high", *high);
+    if (high && *high <= kUnlimitedGainMargin) draft.say("grow ").number("gain_high", *high).say("-fold");
     if (dead_time) {
         const bool grows = (falls || high) && !falls;
         draft
@@ -124,24 +129,24 @@ Found margins(const Case& c) {
     return draft.say(", before the loop oscillates.");
 }
 
-Found nonlinear_margins(const Case& c) {
+OptionalFinding nonlinear_margins(const VerdictInput& c) {
     if (std::holds_alternative<Npid>(c.evaluation.controller))
-        return Draft("linear-part", Level::note)
+        return FindingBuilder("linear-part", Level::note)
             .say(
                 "Ms and the margins belong to the controller's linear part, where errors are small against delta_r; "
                 "the "
                 "responses are those of these steps and change with their size.");
     if (c.context.subject.equations() == nullptr) return {};
     const bool far = c.warned_of("far-from-linear");
-    return Draft("linearisation", far ? Level::warning : Level::note)
+    return FindingBuilder("linearisation", far ? Level::warning : Level::note)
         .say(far ? "Ms and the margins are those of the linearisation, from which the plant is far for these steps."
                  : "Ms and the margins are those of the linearisation; the responses are the plant's own.");
 }
 
-Found large_errors(const Case& c) {
+OptionalFinding large_errors(const VerdictInput& c) {
     const auto& nonlinear = c.evaluation.nonlinear;
     if (!nonlinear || nonlinear->statement.empty()) return {};
-    return Draft("large-errors", Level::note).say(nonlinear->statement);
+    return FindingBuilder("large-errors", Level::note).say(nonlinear->statement);
 }
 
 }  // namespace tunewright::verdict

@@ -8,25 +8,25 @@
 namespace tunewright::verdict {
 namespace {
 
-struct Share {
+struct RatioPhrase {
     double low, high;
     const char* words;
 };
 
 /// Ranges of a ratio that plain words are right for.
-constexpr Share kShares[] = {{0.09, 0.11, "about a tenth of"},
-                             {0.18, 0.22, "about a fifth of"},
-                             {0.22, 0.285, "about a quarter of"},
-                             {0.3, 0.37, "about a third of"},
-                             {0.46, 0.54, "about half of"},
-                             {0.63, 0.7, "about two thirds of"},
-                             {0.72, 0.78, "about three quarters of"},
-                             {1 / kSame, kSame, "about the same as"},
-                             {1.9, 2.1, "about twice"},
-                             {2.85, 3.15, "about three times"}};
+constexpr RatioPhrase kRatioPhrases[] = {{0.09, 0.11, "about a tenth of"},
+                                         {0.18, 0.22, "about a fifth of"},
+                                         {0.22, 0.285, "about a quarter of"},
+                                         {0.3, 0.37, "about a third of"},
+                                         {0.46, 0.54, "about half of"},
+                                         {0.63, 0.7, "about two thirds of"},
+                                         {0.72, 0.78, "about three quarters of"},
+                                         {1 / kMaxNegligibleRatio, kMaxNegligibleRatio, "about the same as"},
+                                         {1.9, 2.1, "about twice"},
+                                         {2.85, 3.15, "about three times"}};
 
 /// Says what keeps the overshoot within so many percent, tried on the loop that runs.
-void say_cure(Draft& draft, const Case& c, double percent) {
+void say_cure(FindingBuilder& draft, const VerdictInput& c, double percent) {
     const auto cure = overshoot_cure(c, percent);
     if (!cure) return;
     if (cure->lag > 0)
@@ -38,14 +38,14 @@ void say_cure(Draft& draft, const Case& c, double percent) {
     draft.number("kept_percent", percent, "%").say(".");
 }
 
-const Performance* todays_performance(const Case& c) {
+const Performance* todays_performance(const VerdictInput& c) {
     if (c.today == nullptr) return nullptr;
     return &performance_of(*c.today);
 }
 
 }  // namespace
 
-std::optional<Level> overshoot_level(const Case& c) {
+std::optional<Level> overshoot_level(const VerdictInput& c) {
     const Figure& percent = c.performance().setpoint.overshoot_percent;
     if (!percent) return {};
     const auto asked = c.entry.asked_overshoot, limit = setpoint_options(c.entry.options).overshoot;
@@ -54,8 +54,8 @@ std::optional<Level> overshoot_level(const Case& c) {
     return {};
 }
 
-void say_ratio(Draft& draft, double ratio) {
-    for (const Share& share : kShares)
+void say_ratio(FindingBuilder& draft, double ratio) {
+    for (const RatioPhrase& share : kRatioPhrases)
         if (ratio >= share.low && ratio <= share.high) {
             draft.say(share.words).figure("ratio", ratio);
             return;
@@ -66,30 +66,34 @@ void say_ratio(Draft& draft, double ratio) {
         draft.number("ratio", ratio).say(" times");
 }
 
-Found load_error(const Case& c) {
+OptionalFinding load_error(const VerdictInput& c) {
     const Figure& IAE = c.performance().load.IAE;
     if (!IAE) return {};
     const Labels& labels = c.context.labels;
-    Draft draft(c.today != nullptr ? "against-today" : "load-error", Level::note);
+    FindingBuilder draft(c.today != nullptr ? "against-today" : "load-error", Level::note);
     draft.say("A load step gives an integrated absolute error of ")
         .number("load_IAE", *IAE, product_unit(labels.y, labels.time));
     const Performance* today = todays_performance(c);
     if (today == nullptr) return draft.say(".");
-    const Robustness& runs = c.today->as_built ? c.today->as_built->loop.robustness : c.today->evaluation->robustness;
+    const Robustness& runs = c.today->on_device ? c.today->on_device->loop.robustness : c.today->evaluation->robustness;
     if (!runs.stable) return draft.say("; today's settings are unstable.");
     if (!today->load.IAE || !(*today->load.IAE > 0)) return draft.say("; today's settings have none that is finite.");
     const double ratio = *IAE / *today->load.IAE;
-    draft.level(ratio > kSame ? Level::warning : ratio < 1 / kSame ? Level::good : Level::note).say(": ");
+    draft
+        .level(ratio > kMaxNegligibleRatio       ? Level::warning
+               : ratio < 1 / kMaxNegligibleRatio ? Level::good
+                                                 : Level::note)
+        .say(": ");
     say_ratio(draft, ratio);
     return draft.say(" today's ").number("load_IAE_today", *today->load.IAE).say(".");
 }
 
-Found overshoot(const Case& c) {
+OptionalFinding overshoot(const VerdictInput& c) {
     const Figure& percent = c.performance().setpoint.overshoot_percent;
     const auto level = overshoot_level(c);
     if (!level) return {};
     const auto asked = c.entry.asked_overshoot, limit = setpoint_options(c.entry.options).overshoot;
-    Draft draft("overshoot", *level);
+    FindingBuilder draft("overshoot", *level);
     draft.say("A set-point step overshoots by ").number("overshoot_percent", *percent, "%");
     if (asked)
         draft.say(", more than the ").number("asked_percent", *asked, "%").say(" asked for");
@@ -100,14 +104,14 @@ Found overshoot(const Case& c) {
     return draft;
 }
 
-Found movement(const Case& c) {
+OptionalFinding movement(const VerdictInput& c) {
     const Performance* today = todays_performance(c);
     const Figure& TV = c.performance().setpoint.TV;
     if (today == nullptr || !TV || !today->setpoint.TV || !(*today->setpoint.TV > 0)) return {};
     const double ratio = *TV / *today->setpoint.TV;
-    if (ratio < kMovesMore) return {};
+    if (ratio < kMinRatioMovesMore) return {};
     const std::string unit = printed_unit(c.context.labels.u);
-    Draft draft("movement", ratio > kMovesMuchMore ? Level::warning : Level::note);
+    FindingBuilder draft("movement", ratio > kMinRatioMovesMuchMore ? Level::warning : Level::note);
     draft.say("The controller output moves ")
         .number("ratio", ratio)
         .say(" times as much as today on a set-point step (TV ");

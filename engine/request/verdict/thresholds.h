@@ -17,7 +17,7 @@ inline constexpr double kOscillatoryMt = 2;
 /// doubt sets the speed and not the plant.
 inline constexpr double kMaxRegionCost = 5;
 /// A gain margin beyond it is as good as none.
-inline constexpr double kAnyGain = 100;
+inline constexpr double kUnlimitedGainMargin = 100;
 /// Excess of the loop as built over the ideal one that is a warning: beyond what an identified gain is known to.
 inline constexpr double kWorsePercent_Ms = 5, kWorsePercent_IAE = 20;
 
@@ -32,20 +32,20 @@ inline constexpr double kOvershootAbove = 0.05, kOvershootFarAbove = 2;
 
 // Against today's settings
 
-inline constexpr double kSame = 1.15;           ///< ratios between its inverse and itself are no difference
-inline constexpr double kAsGoodAsToday = 0.95;  ///< of today's load IAE: less is worth a change
-inline constexpr double kMovesMore = 1.5;       ///< times the movement of u today
-inline constexpr double kMovesMuchMore = 3;
+inline constexpr double kMaxNegligibleRatio = 1.15;  ///< ratios between its inverse and itself are no difference
+inline constexpr double kMaxIaeOverToday = 0.95;     ///< of today's load IAE: less is worth a change
+inline constexpr double kMinRatioMovesMore = 1.5;    ///< times the movement of u today
+inline constexpr double kMinRatioMovesMuchMore = 3;
 
 // Causes and cures
 
-inline constexpr double kAsGood = 1.05;        ///< another design may cost so much more and be as good
-inline constexpr double kExcessPercent = 10;   ///< over the optimum, worth a word
-inline constexpr double kDeadTimeRules = 2;    ///< times the lags: L/(L + T) above 2/3
-inline constexpr double kFilterDegrees = 20;   ///< of phase at the peak of |S|
-inline constexpr double kNoisy = 20;           ///< Mks over |Kp|: beyond the usual derivative gains N of 2 to 20
-inline constexpr double kUsualN = 10;          ///< Td/Tf of the filter that a derivative without one is tried with
-inline constexpr double kNoiseOfRange = 0.02;  ///< standard deviation of u over the actuator's range
+inline constexpr double kMaxCostRatioAsGood = 1.05;   ///< another design may cost so much more and be as good
+inline constexpr double kExcessPercent = 10;          ///< over the optimum, worth a word
+inline constexpr double kMinDeadTimeOverLags = 2;     ///< times the lags: L/(L + T) above 2/3
+inline constexpr double kMinFilterPhaseDegrees = 20;  ///< of phase at the peak of |S|
+inline constexpr double kMinNoisyMksOverKp = 20;      ///< Mks over |Kp|: beyond the usual derivative gains N of 2 to 20
+inline constexpr double kUsualN = 10;               ///< Td/Tf of the filter that a derivative without one is tried with
+inline constexpr double kMinNoiseOverRange = 0.02;  ///< standard deviation of u over the actuator's range
 
 // Which to take
 

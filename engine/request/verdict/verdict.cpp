@@ -19,20 +19,22 @@ const TuningEntry* todays(const std::vector<TuningEntry>& entries) {
     return nullptr;
 }
 
-/// A large one is among the heads.
-Found small_overshoot(const Case& c) { return overshoot_level(c) == Level::note ? overshoot(c) : Found{}; }
+/// A large one is among the primary_findings.
+OptionalFinding small_overshoot(const VerdictInput& c) {
+    return overshoot_level(c) == Level::note ? overshoot(c) : OptionalFinding{};
+}
 
-/// The note; for steps that were asked for the finding is among the heads.
-Found actuator_too_small_as_assumed(const Case& c) {
+/// The note; for steps that were asked for the finding is among the primary_findings.
+OptionalFinding actuator_too_small_as_assumed(const VerdictInput& c) {
     auto finding = actuator_too_small(c);
-    return finding && finding->level == Level::note ? finding : Found{};
+    return finding && finding->level == Level::note ? finding : OptionalFinding{};
 }
 
 std::vector<Finding> verdict_on(const TuningEntry& entry, const TuningEntry* today, const Context& context) {
     if (!entry.evaluation) return entry.error ? no_controller(*entry.error) : std::vector<Finding>{};
-    const Case c{entry, &entry == today ? nullptr : today, context};
-    std::vector<Finding> verdict = heads(c);
-    const auto add = [&](Found found) {
+    const VerdictInput c{entry, &entry == today ? nullptr : today, context};
+    std::vector<Finding> verdict = primary_findings(c);
+    const auto add = [&](OptionalFinding found) {
         if (found) verdict.push_back(std::move(*found));
     };
     if (!c.evaluation.robustness.stable) {
@@ -41,11 +43,11 @@ std::vector<Finding> verdict_on(const TuningEntry& entry, const TuningEntry* tod
     }
     const auto after_heads = static_cast<std::ptrdiff_t>(verdict.size());
     if (!c.robustness().stable) {
-        for (const auto& finding : {as_built, sample_time, all_members}) add(finding(c));
+        for (const auto& finding : {on_device, sample_time, all_members}) add(finding(c));
         return verdict;
     }
     for (const auto& finding : {active_limit, all_members, margins, nonlinear_margins, large_errors, load_error,
-                                as_built, at_its_limits, actuator_too_small_as_assumed, movement, noise, sample_time,
+                                on_device, at_its_limits, actuator_too_small_as_assumed, movement, noise, sample_time,
                                 small_overshoot, PI_or_PID, excess, dead_time_rules, filter_rules})
         add(finding(c));
     std::stable_sort(verdict.begin() + after_heads, verdict.end(), [](const Finding& a, const Finding& b) {
@@ -110,8 +112,8 @@ int choice(const std::vector<TuningEntry>& entries, const std::vector<int>& rank
     if (left.empty()) return -1;
     const auto first = std::ranges::min(left, {}, &Candidate::group).group();
     std::erase_if(left, [&](const Candidate& one) { return one.group() != first; });
-    const double least = std::ranges::min(left, {}, &Candidate::load_IAE).load_IAE;
-    std::erase_if(left, [&](const Candidate& one) { return one.load_IAE > kManyFold * least; });
+    const double min = std::ranges::min(left, {}, &Candidate::load_IAE).load_IAE;
+    std::erase_if(left, [&](const Candidate& one) { return one.load_IAE > kManyFold * min; });
     return std::ranges::min_element(left, {}, &Candidate::level)->index;
 }
 
@@ -123,16 +125,16 @@ Finding none_to_take(const std::vector<TuningEntry>& entries, const std::vector<
     const auto designs = std::ranges::count_if(entries, [](const TuningEntry& e) { return !is_baseline(e); });
     if (designs == 1 && !ranking.empty()) {
         const auto own = std::ranges::find_if(entries, [](const TuningEntry& e) { return !is_baseline(e); });
-        return Draft("none", Level::bad).say(own->verdict.front().text);
+        return FindingBuilder("none", Level::bad).say(own->verdict.front().text);
     }
-    return Draft("none", Level::bad).say("None of these controllers should be entered.");
+    return FindingBuilder("none", Level::bad).say("None of these controllers should be entered.");
 }
 
 /// Today's settings are kept where nothing is gained by a change and they are as safe.
 bool keeps_today(const TuningEntry& best, const TuningEntry* today) {
     if (today == nullptr || today->verdict.empty() || level_of(*today) > level_of(best)) return false;
     const Figure &IAE = performance_of(best).load.IAE, &before = performance_of(*today).load.IAE;
-    return IAE && before && *IAE > kAsGoodAsToday * *before;
+    return IAE && before && *IAE > kMaxIaeOverToday * *before;
 }
 
 }  // namespace
@@ -155,18 +157,19 @@ std::vector<Finding> of_all(const std::vector<TuningEntry>& entries, const std::
         const bool keep = keeps_today(best, today);
         const std::string words = best.verdict.front().text;
         if (keep)
-            verdict.push_back(Draft("keep-today", Level::good)
+            verdict.push_back(FindingBuilder("keep-today", Level::good)
                                   .say("No controller here is better for loads: keep today's settings.")
                                   .figure("entry", index));
         else
             verdict.push_back(Finding{"take", level_of(best), "Take " + name_of(best, index) + ". " + words,
                                       best.verdict.front().figures});
         verdict.front().figures["entry"] = index;
-        const Case c{best, today, context};
+        const VerdictInput c{best, today, context};
         if (auto error = load_error(c)) verdict.push_back(std::move(*error));
     }
     if (partial)
-        verdict.push_back(Draft("stopped-early", Level::note).say("Stopped early: this is the best found until then."));
+        verdict.push_back(
+            FindingBuilder("stopped-early", Level::note).say("Stopped early: this is the best found until then."));
     return verdict;
 }
 
@@ -181,25 +184,25 @@ std::optional<int> proposed(const std::vector<TuningEntry>& entries, const std::
 
 std::vector<Finding> no_controller(const Error& error) {
     const bool limits = error.kind == ErrorKind::no_feasible_controller;
-    return {Draft("no-controller", Level::bad)
+    return {FindingBuilder("no-controller", Level::bad)
                 .say(limits ? "No controller meets these limits." : "This method has no answer here."),
-            Draft("reason", Level::note).say(error.message)};
+            FindingBuilder("reason", Level::note).say(error.message)};
 }
 
 std::vector<Finding> without_loop(const Controller& controller, double Ku, const std::vector<Warning>& remarks) {
-    Draft unknown("robustness-unknown", Level::warning);
+    FindingBuilder unknown("robustness-unknown", Level::warning);
     unknown.say(
         "How robust this loop is cannot be known from Ku and Pu alone: Ms, margins and responses need a model of the "
         "plant or a recorded test.");
     if (const auto* pid = std::get_if<IdealPid>(&controller))
         unknown.say(" Kp is ").number("Kp_over_Ku", pid->Kp / Ku).say(" of Ku, the gain at which the loop oscillates.");
     std::vector<Finding> verdict{unknown};
-    for (const Warning& remark : remarks) verdict.push_back(Draft("reason", Level::note).say(remark.detail));
+    for (const Warning& remark : remarks) verdict.push_back(FindingBuilder("reason", Level::note).say(remark.detail));
     return verdict;
 }
 
 std::vector<Finding> of_all_without_loop() {
-    return {Draft("robustness-unknown", Level::warning)
+    return {FindingBuilder("robustness-unknown", Level::warning)
                 .say("Ku and Pu alone give settings and no figure of the loop. Record the test, or give a model of the "
                      "plant, to know which of them is robust.")};
 }

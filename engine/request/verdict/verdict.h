@@ -6,7 +6,7 @@
 #include "engine/error.h"
 #include "engine/evaluation/evaluation.h"
 #include "engine/identification/identify.h"
-#include "engine/plant/subject.h"
+#include "engine/plant/analysed_plant.h"
 #include "engine/progress.h"
 #include "engine/request/entry.h"
 #include "engine/request/verdict/finding.h"
@@ -16,7 +16,7 @@ namespace tunewright::verdict {
 
 /// What is the same for all entries of an answer.
 struct Context {
-    const Subject& subject;
+    const AnalysedPlant& subject;
     const EvaluateOptions& options;
     Labels labels;
     double sample_time = 0;                  ///< of the user's controller; 0: continuous or not known

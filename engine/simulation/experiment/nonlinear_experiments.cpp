@@ -20,14 +20,14 @@ namespace {
 constexpr double kTolerance = 1e-9;
 constexpr int kRows = 1001, kRowsAtRest = 100;  // before the step: they tell where y was
 constexpr int kMaxSteps = 60000;
-constexpr double kSettled = 1e-3;  // of y's movement, over the last quarter of the time
-constexpr double kQuarter = 0.75;
-constexpr double kAtRest = 0.02;     // times the slowest mode: what the states still move
-constexpr double kMaxTimes = 60;     // of the plant's own time, until a stable plant must have settled
-constexpr double kRampTimes = 12;    // of the dead time and the lags: an integrating plant's test
-constexpr double kGrowthTimes = 3;   // of an unstable mode's time
-constexpr double kOnTheAxis = 1e-7;  // of the fastest pole: an integrator
-constexpr double kNoMovement = 1e-12;
+constexpr double kMaxSettledMovement = 1e-3;  // of y's movement, over the last quarter of the time
+constexpr double kSettledFromShare = 0.75;
+constexpr double kAtRest = 0.02;               // times the slowest mode: what the states still move
+constexpr double kMaxTimes = 60;               // of the plant's own time, until a stable plant must have settled
+constexpr double kRampTimes = 12;              // of the dead time and the lags: an integrating plant's test
+constexpr double kGrowthTimes = 3;             // of an unstable mode's time
+constexpr double kMaxRelativeRealPart = 1e-7;  // of the fastest pole: an integrator
+constexpr double kMinMovement = 1e-12;
 
 /// What the plant's modes ask of a step test.
 struct Modes {
@@ -43,13 +43,13 @@ Modes modes_of(const NonlinearSystem& system) {
     for (const auto pole : poles) fastest = std::max(fastest, std::abs(pole));
     Modes modes{system.dead_time(), 0, 0, true};
     for (const auto pole : poles) {
-        if (pole.real() < -kOnTheAxis * fastest) {
+        if (pole.real() < -kMaxRelativeRealPart * fastest) {
             modes.lags += 1 / std::abs(pole.real());
             modes.slowest = std::max(modes.slowest, 1 / std::abs(pole.real()));
             continue;
         }
         modes.settles = false;
-        if (pole.real() > kOnTheAxis * fastest) modes.growth = std::max(modes.growth, 1 / pole.real());
+        if (pole.real() > kMaxRelativeRealPart * fastest) modes.growth = std::max(modes.growth, 1 / pole.real());
     }
     return modes;
 }
@@ -70,10 +70,10 @@ public:
 
     /// y has stayed near its last value over the last quarter.
     bool settled() const {
-        const double last = steps_.back().at(1), from = kQuarter * end();
+        const double last = steps_.back().at(1), from = kSettledFromShare * end();
         for (auto step = steps_.rbegin(); step != steps_.rend() && step->end() > from; ++step)
             for (const double s : kSixPoints)
-                if (std::abs(step->at(s) - last) > kSettled * largest_) return false;
+                if (std::abs(step->at(s) - last) > kMaxSettledMovement * largest_) return false;
         return true;
     }
 
@@ -129,7 +129,7 @@ Expected<StepTest> simulate_step_test(const NonlinearSystem& system, double du, 
         settled = modes.settles && !run.nothing_arrived() && run.t() > 4 * system.dead_time() &&
                   run.unrest() * modes.slowest < kAtRest && record.settled();
     }
-    if (!(record.largest() > kNoMovement * std::abs(system.y_steady())) || record.largest() == 0)
+    if (!(record.largest() > kMinMovement * std::abs(system.y_steady())) || record.largest() == 0)
         return Error{ErrorKind::unsupported, "plant/output",
                      "The output does not move after a step of the input of " + text(test.du) +
                          ": it does not depend on the input at this operating point."};
@@ -141,14 +141,15 @@ Expected<StepTest> simulate_step_test(const NonlinearSystem& system, double du, 
 namespace {
 
 constexpr int kMinCycles = 6, kMaxCycles = 40, kSteadyCycles = 2;
-constexpr double kSteady = 1e-6;        // relative change of period and swing from one cycle to the next
-constexpr double kNearlySteady = 1e-2;  // after the most cycles
+constexpr double kSteadyTolerance = 1e-6;        // relative change of period and swing from one cycle to the next
+constexpr double kNearlySteadyTolerance = 1e-2;  // after the most cycles
 constexpr int kRelayRows = 1600;
-constexpr int kLooks = 16;                   // for the extremes of y within a step
-constexpr double kBeyondHysteresis = 1.001;  // of the hysteresis: swings that say something about the plant
-constexpr double kPatience = 100;            // of the plant's own time without a switch
-constexpr double kSameRow = 1e-9;            // of the rows' spacing: nearer instants are one row
-constexpr double kNoise = 1e-13;  // of the output's own size: crossings of the threshold below it are rounding
+constexpr int kProbesPerStep = 16;                 // for the extremes of y within a step
+constexpr double kMinSwingOverHysteresis = 1.001;  // of the hysteresis: swings that say something about the plant
+constexpr double kMaxTimesWithoutSwitch = 100;     // of the plant's own time without a switch
+constexpr double kRowTolerance = 1e-9;             // of the rows' spacing: nearer instants are one row
+constexpr double kCrossingRounding =
+    1e-13;  // of the output's own size: crossings of the threshold below it are rounding
 
 Error unsupported(std::string message) { return {ErrorKind::unsupported, "plant", std::move(message)}; }
 
@@ -159,9 +160,9 @@ public:
         : system_(system),
           levels_(levels),
           direction_(direction),
-          patience_(kPatience * own_time(plant)),
+          patience_(kMaxTimesWithoutSwitch * own_time(plant)),
           held_(held_start(plant, levels)),
-          noise_(kNoise * (std::abs(system.y_steady()) + levels.hysteresis)),
+          noise_(kCrossingRounding * (std::abs(system.y_steady()) + levels.hysteresis)),
           run_(system, kTolerance) {}
 
     std::optional<Error> oscillate(const RunControl& control) {
@@ -172,9 +173,9 @@ public:
             if (run_.t() - inputs_.back().t > patience_) return latched();
             if (!run_.step(HUGE_VAL)) return unsupported("The relay test ends early. " + run_.why());
             if (!look()) return unsupported("The relay test ends early. " + run_.why());
-            if (cycles() >= kMinCycles && steady(kSteady)) return std::nullopt;
+            if (cycles() >= kMinCycles && steady(kSteadyTolerance)) return std::nullopt;
             if (cycles() >= kMaxCycles)
-                return steady(kNearlySteady)
+                return steady(kNearlySteadyTolerance)
                            ? std::nullopt
                            : std::optional(unsupported("After " + std::to_string(kMaxCycles) +
                                                        " cycles the relay and the plant have not found a steady "
@@ -188,7 +189,7 @@ public:
         const auto last = std::size_t(cycles() - 1);
         test.Pu = periods_[last];
         const double a = swings_[last], d = 0.5 * (levels_.u_plus - levels_.u_minus), h = levels_.hysteresis;
-        if (a < kBeyondHysteresis * h)
+        if (a < kMinSwingOverHysteresis * h)
             return unsupported("The output turns as soon as the relay switches, at y = " + text(h) +
                                ": the hysteresis alone makes the period, which shows no ultimate gain. Plants that "
                                "answer at once, without dead time, have none.");
@@ -233,8 +234,8 @@ private:
     }
 
     void note_extremes(double from, double to) {
-        for (int i = 0; i <= kLooks; ++i) {
-            const double y = run_.last().at(from + (to - from) * i / kLooks);
+        for (int i = 0; i <= kProbesPerStep; ++i) {
+            const double y = run_.last().at(from + (to - from) * i / kProbesPerStep);
             top_ = std::max(top_, y);
             bottom_ = std::min(bottom_, y);
         }
@@ -289,10 +290,10 @@ private:
         for (int i = 0; i <= kRelayRows; ++i) {
             const double t = i == kRelayRows ? end : i * spacing;
             while (next < inputs_.size() && inputs_[next].t < t) {
-                if (inputs_[next].t > out.t.back() + kSameRow * spacing) add(inputs_[next].t);
+                if (inputs_[next].t > out.t.back() + kRowTolerance * spacing) add(inputs_[next].t);
                 ++next;
             }
-            if (out.t.empty() || t > out.t.back() + kSameRow * spacing) add(t);
+            if (out.t.empty() || t > out.t.back() + kRowTolerance * spacing) add(t);
         }
     }
 

@@ -16,10 +16,10 @@ using Index = std::size_t;
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 constexpr double kStepsPerLambda = 16, kStepsPerDeadTime = 10;
-constexpr double kUsualTolerance = 1e-6;  // at which these hold
-constexpr double kStepsPerResonance = 4;  // per 1/|p| of a complex pole
-constexpr double kSameInstant = 1e-9;     // of a step: nearer instants, and parts of steps, are rounding
-constexpr int kCorrections = 6;           // of a step that is longer than a dead time and sees its own end
+constexpr double kUsualTolerance = 1e-6;    // at which these hold
+constexpr double kStepsPerResonance = 4;    // per 1/|p| of a complex pole
+constexpr double kInstantTolerance = 1e-9;  // of a step: nearer instants, and parts of steps, are rounding
+constexpr int kCorrections = 6;             // of a step that is longer than a dead time and sees its own end
 
 /// The outputs without their dead times, kept until the dead times have passed.
 struct Memory {
@@ -131,7 +131,7 @@ public:
             std::erase_if(events_, [end](double t) { return t >= end; });
             events_.push_back(end);
         }
-        slack_ = kSameInstant * step_;
+        slack_ = kInstantTolerance * step_;
     }
 
     StepResponse run() {
@@ -141,7 +141,7 @@ public:
         for (Index i = 1; i < events_.size(); ++i) {
             const double from = memory_.back().t, length = events_[i] - from;
             if (length <= slack_) continue;
-            const int parts = static_cast<int>(std::ceil(length / step_ - kSameInstant));
+            const int parts = static_cast<int>(std::ceil(length / step_ - kInstantTolerance));
             for (int k = 1; k <= parts; ++k) {
                 const double t = k == parts ? events_[i] : from + length * k / parts;
                 take_step(x, length / parts, t);
@@ -151,7 +151,7 @@ public:
         }
         while (static_cast<int>(response_.nodes.size()) < options_.max_steps) {
             const double now = memory_.back().t, left = options_.horizon.value_or(now + 2 * long_step_) - now;
-            const bool last = left <= long_step_ * (1 + kSameInstant);
+            const bool last = left <= long_step_ * (1 + kInstantTolerance);
             take_step(x, last ? left : long_step_, last ? *options_.horizon : now + long_step_);
             if (finished()) return std::move(response_);
         }

@@ -14,9 +14,10 @@ namespace {
 using Index = std::size_t;
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-constexpr double kOnTheLimit = 1e-12;  // relative distance at which the slope decides
-constexpr double kRestOnLimit = 1e-9;  // of u at rest: the linear solution's rounding; nearer to a limit it is at it
-constexpr double kOwnTime = 0.1;       // of a time without an integral time of its own: the tracking time
+constexpr double kLimitTolerance = 1e-12;  // relative distance at which the slope decides
+constexpr double kRestLimitTolerance =
+    1e-9;  // of u at rest: the linear solution's rounding; nearer to a limit it is at it
+constexpr double kTrackingTimeShare = 0.1;  // of a time without an integral time of its own: the tracking time
 
 }  // namespace
 
@@ -30,7 +31,7 @@ std::optional<double> tracking_time(const ParallelPid& controller) {
 double tracking_time(const LinearPlant& plant, const ParallelPid& controller) {
     if (const auto time = tracking_time(controller)) return *time;
     const double time = plant.time_scale();
-    return kOwnTime * (time > 0 ? time : 1 / std::abs(controller.Ki * plant.gain()));
+    return kTrackingTimeShare * (time > 0 ? time : 1 / std::abs(controller.Ki * plant.gain()));
 }
 
 LimitedLoop::LimitedLoop(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& inputs,
@@ -101,7 +102,7 @@ LoopOutput LimitedLoop::output(Region region, const std::vector<double>& x, Sign
 
 Region LimitedLoop::region(const std::vector<double>& x, Signal v) const {
     const Signal inside = output(Region::inside, x, v).command;
-    const double band = kOnTheLimit * std::abs(inside.value);
+    const double band = kLimitTolerance * std::abs(inside.value);
     const bool at_max = std::abs(inside.value - limits_.max) <= band,
                at_min = std::abs(inside.value - limits_.min) <= band;
     const bool beyond_max = at_max ? inside.slope > 0 : inside.value > limits_.max;
@@ -128,7 +129,7 @@ LimitedRest find_rest(const LinearPlant& plant, const ParallelPid& controller, c
     LimitedRest rest;
     rest.linear = steady_state(plant, controller, in);
     if (!rest.linear.exists) return rest;
-    const double u = rest.linear.u, slack = kRestOnLimit * std::abs(u);
+    const double u = rest.linear.u, slack = kRestLimitTolerance * std::abs(u);
     if (u <= limits.max + slack && u >= limits.min - slack) {
         rest.exists = rest.within = true;
         rest.y = rest.linear.y;

@@ -21,19 +21,20 @@ using Index = std::size_t;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr int kRetardedEchoes = 4;       // a jump's echoes: smoothed by the plant at each passage
-constexpr double kTimeResolution = 128;  // in units of rounding of t: shorter steps are not taken
-constexpr double kRounding = 1e-5;       // times `settled`, of the value at rest: deviations below are none
-constexpr double kAtStart = 1e-3;        // of the first step: the t that rounding is measured by near t = 0
-constexpr double kSameLength = 1e-9;     // relative: a stride no longer than the dead time but for rounding
-constexpr double kToStop = 0.75;         // of the distance to the next stop: the step goes there instead
-constexpr int kMaxLevel = 200;           // lengths stay finite
-constexpr double kNoise = 1e-11;         // of the largest command: how far beyond a limit it must go to have crossed it
-constexpr int kCorrections = 3;          // by exact steps of a crossing found on the cubic: each squares its error
-constexpr double kNearCrossing = 0.1;    // of the stride: a longer correction shows a command without a clear slope
-constexpr double kAtCrossing = 1e-14;    // of the largest command: rounding
-constexpr double kFloor = 2e-3;          // of the largest deviation: errors are relative to at least that
-constexpr double kDoubling = 1.0 / 40;   // of the tolerance: the step's doubled length would still be fine
+constexpr int kRetardedEchoes = 4;                 // a jump's echoes: smoothed by the plant at each passage
+constexpr double kTimeResolution = 128;            // in units of rounding of t: shorter steps are not taken
+constexpr double kRestRounding = 1e-5;             // times `settled`, of the value at rest: deviations below are none
+constexpr double kMinTimeShareForRounding = 1e-3;  // of the first step: the t that rounding is measured by near t = 0
+constexpr double kLengthTolerance = 1e-9;          // relative: a stride no longer than the dead time but for rounding
+constexpr double kStepShareToStop = 0.75;          // of the distance to the next stop: the step goes there instead
+constexpr int kMaxLevel = 200;                     // lengths stay finite
+constexpr double kCommandRounding =
+    1e-11;                       // of the largest command: how far beyond a limit it must go to have crossed it
+constexpr int kCorrections = 3;  // by exact steps of a crossing found on the cubic: each squares its error
+constexpr double kMaxCorrectionShare = 0.1;  // of the stride: a longer correction shows a command without a clear slope
+constexpr double kCrossingTolerance = 1e-14;         // of the largest command: rounding
+constexpr double kErrorFloor = 2e-3;                 // of the largest deviation: errors are relative to at least that
+constexpr double kMaxErrorShareToDouble = 1.0 / 40;  // of the tolerance: the step's doubled length would still be fine
 
 /// |y| of a response that grows without bound: the actuator may do all that it can.
 double beyond_bounds(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& in,
@@ -41,7 +42,7 @@ double beyond_bounds(const LinearPlant& plant, const ParallelPid& controller, co
     StepInputs all{in.r, std::abs(in.d)};
     for (const double limit : {limits.min, limits.max})
         if (std::isfinite(limit)) all.d += std::abs(limit);
-    return kEscaped * std::max(std::abs(y_rest), loop_sizes(own_gain(plant, controller), controller, all).y);
+    return kMaxResponseRatio * std::max(std::abs(y_rest), loop_sizes(own_gain(plant, controller), controller, all).y);
 }
 
 /// How far the cubic through a and c misses b halfway, in value and slope.
@@ -129,8 +130,8 @@ private:
         largest_u_ = std::max(largest_u_, du);
         largest_command_ = std::max(largest_command_, std::abs(p.out.command.value));
         // Rest reached from the first instant on (u at a limit, say) leaves rounding alone as its largest deviation.
-        const double size_y = std::max(largest_y_, kRounding * std::abs(rest_.y)),
-                     size_u = std::max(largest_u_, kRounding * std::abs(rest_.u));
+        const double size_y = std::max(largest_y_, kRestRounding * std::abs(rest_.y)),
+                     size_u = std::max(largest_u_, kRestRounding * std::abs(rest_.u));
         stopping_.note(p.t, dy, size_y, du, size_u);
     }
 
@@ -178,7 +179,7 @@ private:
         Stride stride;
         stride.h = h;
         const double L = loop_.dead_time();
-        stride.longer_than_L = loop_.delayed() && h > L * (1 + kSameLength);
+        stride.longer_than_L = loop_.delayed() && h > L * (1 + kLengthTolerance);
         stride.whole = loop_.step(region_, stride.longer_than_L ? L : h);
         if (!stride.longer_than_L) return stride;
         if (region_ == Region::inside)
@@ -225,7 +226,7 @@ private:
     double interpolation_error(double h, double missed_by_delay) const {
         const auto relative = [&](Signal a, Signal b, Signal c, double rest, double largest) {
             const double size = std::max(
-                {std::abs(a.value - rest), std::abs(b.value - rest), std::abs(c.value - rest), kFloor * largest});
+                {std::abs(a.value - rest), std::abs(b.value - rest), std::abs(c.value - rest), kErrorFloor * largest});
             return size > 0 ? miss(h, a, b, c) / size : 0;
         };
         double error = relative(now_.out.y, middle_.out.y, end_.out.y, rest_.y, largest_y_);
@@ -233,7 +234,7 @@ private:
                                          std::max(largest_u_, largest_command_)));
         if (missed_by_delay > 0) {
             const double size = std::max({std::abs(now_.out.u.value - rest_.u), std::abs(end_.out.u.value - rest_.u),
-                                          kFloor * std::max(largest_u_, std::abs(in_.d))});
+                                          kErrorFloor * std::max(largest_u_, std::abs(in_.d))});
             error = std::max(error, size > 0 ? missed_by_delay / size : kInfinity);
         }
         return error;
@@ -248,11 +249,11 @@ private:
     /// False where no finite step is possible.
     bool take_step() {
         const double distance = distance_to_next_stop();
-        const double shortest = kTimeResolution * kEpsilon * std::max(now_.t, kAtStart * h0_);
+        const double shortest = kTimeResolution * kEpsilon * std::max(now_.t, kMinTimeShareForRounding * h0_);
         Stride cut;
         while (true) {
             const double wanted = std::ldexp(h0_, level_);
-            const bool to_stop = wanted >= kToStop * distance;
+            const bool to_stop = wanted >= kStepShareToStop * distance;
             if (to_stop) cut = make_stride(0.5 * distance);
             const Stride& stride = to_stop ? cut : stride_of_level(level_ - 1);
             const Index kept = response_.nodes.size();
@@ -271,7 +272,7 @@ private:
             note(middle_);
             if (crosses(middle_, end_)) return cross(LoopInstant(middle_), end_, stride.h);
             const bool at_stop = to_stop;
-            if (!to_stop && error < kDoubling * options_.tolerance && level_ < kMaxLevel) ++level_;
+            if (!to_stop && error < kMaxErrorShareToDouble * options_.tolerance && level_ < kMaxLevel) ++level_;
             std::swap(now_, end_);
             note(now_);
             if (at_stop) pass_echo();
@@ -289,7 +290,8 @@ private:
     std::optional<Crossing> crosses(const LoopInstant& a, const LoopInstant& b) const {
         const double h = b.t - a.t;
         const auto c = hermite_taylor(h, a.out.command, b.out.command);
-        const double noise = kNoise * std::max({largest_command_, std::abs(a.out.command.value), std::abs(c[0])});
+        const double noise =
+            kCommandRounding * std::max({largest_command_, std::abs(a.out.command.value), std::abs(c[0])});
         const auto rise = [&](double limit, double sign) -> std::optional<double> {
             if (!std::isfinite(limit)) return std::nullopt;
             return first_rise({sign * (c[0] - limit), sign * c[1], sign * c[2], sign * c[3]}, h, noise);
@@ -306,14 +308,15 @@ private:
     bool cross(const LoopInstant& from, const LoopInstant& to, double h) {
         const Crossing crossing = *crosses(from, to);
         const double limit = crossing.at_max ? limits_.max : limits_.min;
-        const double shortest = std::min(0.5 * h, kTimeResolution * kEpsilon * std::max(from.t, kAtStart * h0_));
+        const double shortest =
+            std::min(0.5 * h, kTimeResolution * kEpsilon * std::max(from.t, kMinTimeShareForRounding * h0_));
         double s = std::clamp(crossing.s, shortest, h);
         LoopInstant at;
         for (int i = 0;; ++i) {
             advance(from, make_stride(s), at);
             const double gap = limit - at.out.command.value, correction = gap / at.out.command.slope;
-            if (i == kCorrections || !(std::abs(correction) < kNearCrossing * h)) break;
-            if (std::abs(gap) <= kAtCrossing * largest_command_) break;
+            if (i == kCorrections || !(std::abs(correction) < kMaxCorrectionShare * h)) break;
+            if (std::abs(gap) <= kCrossingTolerance * largest_command_) break;
             const double next = std::clamp(s + correction, shortest, h);
             if (next == s) break;
             s = next;

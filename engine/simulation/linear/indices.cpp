@@ -145,10 +145,10 @@ std::vector<SignChange> changes_of_sign(const std::vector<ResponseNode>& nodes, 
 }
 
 double change_near(const ResponseNode& a, const ResponseNode& b, double target, double part) {
-    constexpr double kFarthest = 0.01;
+    constexpr double kMaxZeroCorrection = 0.01;
     const UnitCubic e = cubic_of_error(a, b, target);
     const double step = e.at(part) / e.slope(part);
-    return std::abs(step) <= kFarthest ? std::clamp(part - step, 0.0, 1.0) : part;
+    return std::abs(step) <= kMaxZeroCorrection ? std::clamp(part - step, 0.0, 1.0) : part;
 }
 
 double error_integral_at(const ResponseNode& a, const ResponseNode& b, double target, double part) {

@@ -14,7 +14,7 @@ namespace {
 /// |y| of a response that grows without bound.
 double beyond_bounds(const LinearPlant& plant, const ParallelPid& controller, const RunSetup& setup, double delta_r) {
     const LoopSizes sizes = loop_sizes(own_gain(plant, controller), controller, setup.system.in);
-    return kEscaped * std::max({delta_r, std::abs(setup.steady.y), sizes.y});
+    return kMaxResponseRatio * std::max({delta_r, std::abs(setup.steady.y), sizes.y});
 }
 
 StepResponse run_mapped(const RunSetup& setup, const ResponseOptions& options) {

@@ -60,8 +60,8 @@ public:
     }
 
 private:
-    static constexpr int kRetardedEchoes = 4;  // jumps at 0, L, 2L, ...: smoothed by the plant at each passage
-    static constexpr double kFloor = 2e-3;     // of the largest deviation: errors are relative to at least that
+    static constexpr int kRetardedEchoes = 4;    // jumps at 0, L, 2L, ...: smoothed by the plant at each passage
+    static constexpr double kErrorFloor = 2e-3;  // of the largest deviation: errors are relative to at least that
     static constexpr std::size_t kUsualSteps = 120, kUsualJumps = 16;  // of a run
 
     double time() const { return levels_.ticks() * setup_.h0; }
@@ -127,8 +127,8 @@ private:
 
     bool near_rest() const {
         const auto& now = response_.nodes.back();
-        return std::abs(now.y - setup_.steady.y) < kFloor * largest_y_ &&
-               std::abs(now.u - setup_.steady.u) < kFloor * largest_u_;
+        return std::abs(now.y - setup_.steady.y) < kErrorFloor * largest_y_ &&
+               std::abs(now.u - setup_.steady.u) < kErrorFloor * largest_u_;
     }
 
     /// Of the cubic over the last two steps, relative to the local distance from rest.
@@ -138,14 +138,14 @@ private:
         const ResponseNode &a = nodes[nodes.size() - 3], &b = nodes[nodes.size() - 2], &c = nodes.back();
         const double h = c.t - a.t;
         const auto fit = [&](Signal start, double middle, Signal end, double rest, double largest) -> Misfit {
-            const double scale = std::max(
-                {std::abs(start.value - rest), std::abs(middle - rest), std::abs(end.value - rest), kFloor * largest});
+            const double scale = std::max({std::abs(start.value - rest), std::abs(middle - rest),
+                                           std::abs(end.value - rest), kErrorFloor * largest});
             return {std::abs(middle - hermite_midpoint(h, start, end)), scale};
         };
         const SteadyState& rest = setup_.steady;
         return smoothness_of(
             {fit({a.y, a.y_slope}, b.y, {c.y, c.y_slope}, rest.y, largest_y_),
-             fit({a.u, a.u_slope}, b.u, {c.u, c.u_slope}, rest.u, largest_u_), steps_.fit(kFloor * largest_y_)},
+             fit({a.u, a.u_slope}, b.u, {c.u, c.u_slope}, rest.u, largest_u_), steps_.fit(kErrorFloor * largest_y_)},
             options_.tolerance);
     }
 

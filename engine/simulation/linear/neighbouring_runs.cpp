@@ -13,7 +13,7 @@ namespace tunewright {
 namespace {
 
 using Index = std::size_t;
-using Lanes = double __attribute__((vector_size(8 * kMostNeighbours)));
+using Lanes = double __attribute__((vector_size(8 * kMaxNeighbours)));
 
 // Wide registers want their memory aligned to their own size, of which a compiler for common ones knows nothing.
 constexpr std::size_t kAlignment = sizeof(Lanes);
@@ -27,7 +27,7 @@ struct Aligned {
 };
 using LaneVector = std::vector<Lanes, Aligned<Lanes>>;
 
-/// One by one, kMostNeighbours for each of the vector's.
+/// One by one, kMaxNeighbours for each of the vector's.
 double* numbers(LaneVector& lanes) { return static_cast<double*>(static_cast<void*>(lanes.data())); }
 
 /// Each controller's own maps.
@@ -85,7 +85,7 @@ public:
     /// Through all nodes.
     TUNEWRIGHT_INLINED void go();
 
-    std::array<double, kMostNeighbours> iaes() const;
+    std::array<double, kMaxNeighbours> iaes() const;
 
 private:
     LaneMap side_by_side(int level) {
@@ -95,7 +95,7 @@ private:
             const StepMap& map = loops_.maps[lane].level(level);
             double* to = numbers(lanes.columns) + lane;
             for (Index k = 0; k < n_ + kStepInputs; ++k)
-                for (Index i = 0; i < n_ + 4; ++i, to += kMostNeighbours) *to = map.column(k)[i];
+                for (Index i = 0; i < n_ + 4; ++i, to += kMaxNeighbours) *to = map.column(k)[i];
         }
         return lanes;
     }
@@ -208,8 +208,8 @@ void LaneRun::go() {
 }
 
 /// As `integral_of_absolute_error`, from one change of the run's sign to the next.
-std::array<double, kMostNeighbours> LaneRun::iaes() const {
-    std::array<double, kMostNeighbours> sum{}, last{};
+std::array<double, kMaxNeighbours> LaneRun::iaes() const {
+    std::array<double, kMaxNeighbours> sum{}, last{};
     const auto node = [&](Index i, Index k) -> ResponseNode {
         const LaneNode& lanes = lanes_[i];
         return {
@@ -232,10 +232,10 @@ void go_common(LaneRun& run) { run.go(); }
 
 }  // namespace
 
-std::optional<std::array<double, kMostNeighbours>> neighbouring_iaes(const LinearPlant& plant,
-                                                                     std::span<const ParallelPid> controllers,
-                                                                     const StepInputs& inputs, const StepResponse& run,
-                                                                     Registers registers) {
+std::optional<std::array<double, kMaxNeighbours>> neighbouring_iaes(const LinearPlant& plant,
+                                                                    std::span<const ParallelPid> controllers,
+                                                                    const StepInputs& inputs, const StepResponse& run,
+                                                                    Registers registers) {
     const StepSchedule& schedule = run.schedule;
     if (schedule.to_horizon > 0 || schedule.level.empty() || controllers.empty()) return std::nullopt;
     Loops loops(plant, controllers, inputs, schedule);

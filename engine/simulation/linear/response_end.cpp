@@ -11,8 +11,8 @@ namespace {
 
 using Index = std::size_t;
 
-constexpr double kNone = 1e-10;                                           // of the absolute error's integral
-constexpr double kRounding = 8 * std::numeric_limits<double>::epsilon();  // of y: the integral of e has it times t
+constexpr double kMaxTailShare = 1e-10;                                        // of the absolute error's integral
+constexpr double kValueRounding = 8 * std::numeric_limits<double>::epsilon();  // of y: the integral of e has it times t
 
 }  // namespace
 
@@ -85,7 +85,7 @@ bool ErrorTail::little_is_left(double rest, double e, double t, double fraction)
     rest = std::abs(rest);
     e = std::abs(e);
     // e^(-t/tau) has the integral tau and the first moment tau (t + tau) from t on: tau = rest/e.
-    return rest <= kNone * absolute_error_ + kRounding * largest_ * t ||
+    return rest <= kMaxTailShare * absolute_error_ + kValueRounding * largest_ * t ||
            rest * (t * e + rest) <= fraction * first_moment_ * e;
 }
 

@@ -12,17 +12,18 @@ namespace {
 
 using Index = std::size_t;
 
-constexpr int kLeastLevelOfL = 3, kMostLevelOfL = 30;  // of steps a dead time, as a power of 2
-constexpr double kOfGrowth = 0.25;                     // of an unstable mode's time: the longest step
-constexpr double kMostMapped = 1000;                   // of the plant's own time
+constexpr int kMinLevelOfL = 3, kMaxLevelOfL = 30;  // of steps a dead time, as a power of 2
+constexpr double kMaxStepOverGrowthTime = 0.25;     // of an unstable mode's time: the longest step
+constexpr double kMaxMapped = 1000;                 // of the plant's own time
 
-constexpr double kOfFastest = 0.25;    // of the fastest mode's time: the cubic through a step's ends follows it
-constexpr double kOfDeadTime = 0.125;  // a power of 2, as the lengths of the steps double
+constexpr double kMaxStepOverFastestTime =
+    0.25;  // of the fastest mode's time: the cubic through a step's ends follows it
+constexpr double kMaxStepOverDeadTime = 0.125;  // a power of 2, as the lengths of the steps double
 
 double longest_step(const LinearPlant& plant) {
     double longest = std::numeric_limits<double>::infinity();
     for (const auto pole : plant.poles())
-        if (pole.real() > 0) longest = std::min(longest, kOfGrowth / pole.real());
+        if (pole.real() > 0) longest = std::min(longest, kMaxStepOverGrowthTime / pole.real());
     return longest;
 }
 
@@ -37,7 +38,7 @@ void choose_h0(RunSetup& setup, const LinearPlant& plant, const ParallelPid& con
         return;
     }
     const double doublings = std::log2(system.s.L / first_step(system, fastest));
-    setup.level_of_L = std::clamp(static_cast<int>(std::ceil(doublings)), kLeastLevelOfL, kMostLevelOfL);
+    setup.level_of_L = std::clamp(static_cast<int>(std::ceil(doublings)), kMinLevelOfL, kMaxLevelOfL);
     setup.h0 = std::ldexp(system.s.L, -setup.level_of_L);
 }
 
@@ -55,7 +56,7 @@ RunSetup set_up_run(const LinearPlant& plant, const ParallelPid& controller, con
         if (setup.system.delayed)
             setup.level_of_L = static_cast<int>(std::lround(std::log2(setup.system.s.L / setup.h0)));
     }
-    setup.last_mapped = static_cast<int>(std::log2(kMostMapped * own_time(plant, controller) / setup.h0));
+    setup.last_mapped = static_cast<int>(std::log2(kMaxMapped * own_time(plant, controller) / setup.h0));
     return setup;
 }
 
@@ -70,8 +71,8 @@ double fastest_rate(const ResponseSystem& system, const LinearPlant& plant, cons
 }
 
 double first_step(const ResponseSystem& system, double fastest) {
-    const double by_rate = fastest > 0 ? kOfFastest / fastest : std::numeric_limits<double>::infinity();
-    return system.delayed ? std::min(kOfDeadTime * system.s.L, by_rate) : by_rate;
+    const double by_rate = fastest > 0 ? kMaxStepOverFastestTime / fastest : std::numeric_limits<double>::infinity();
+    return system.delayed ? std::min(kMaxStepOverDeadTime * system.s.L, by_rate) : by_rate;
 }
 
 double own_time(const LinearPlant& plant) {

@@ -27,12 +27,12 @@ struct Misfit {
 
 /// What the worst of them says.
 inline Smoothness smoothness_of(const std::array<Misfit, 3>& fits, double tolerance) {
-    constexpr double kRough = 40;  // tolerances: 16 are what doubling a step costs at order 4, and a margin
+    constexpr double kRoughTolerances = 40;  // tolerances: 16 are what doubling a step costs at order 4, and a margin
     const auto all_within = [&](double limit) {
         return fits[0].within(limit) && fits[1].within(limit) && fits[2].within(limit);
     };
     if (all_within(tolerance)) return Smoothness::fine;
-    return all_within(kRough * tolerance) ? Smoothness::enough : Smoothness::rough;
+    return all_within(kRoughTolerances * tolerance) ? Smoothness::enough : Smoothness::rough;
 }
 
 class StepLevels {
@@ -55,7 +55,7 @@ public:
 
     void repeat(int level) { level_ = level; }  ///< of an earlier run
     void lower() { --level_; }                  ///< the step was too long
-    void go_no_higher() { most_ = level_; }     ///< steps longer than the present level's amplify their own errors
+    void go_no_higher() { max_ = level_; }      ///< steps longer than the present level's amplify their own errors
     void choose(Smoothness smoothness);         ///< the next step's
 
     /// A step of the present level has been taken. True: it ended a segment whose successor may start with a jump.
@@ -74,7 +74,7 @@ private:
 
     Setting set_;
     int segment_ = 0;
-    int level_ = 0, most_ = 60, last_level_ = -1, equal_steps_ = 0;
+    int level_ = 0, max_ = 60, last_level_ = -1, equal_steps_ = 0;
     bool segment_started_ = true, climb_blocked_ = false;
     int restart_level_ = 0, top_level_ = 0;
     long offset_ = 0;  // from the segment's start, in units of h0
@@ -109,7 +109,7 @@ inline void StepLevels::restart() {
 }
 
 inline bool StepLevels::may_double() const {
-    if (level_ >= most_) return false;
+    if (level_ >= max_) return false;
     if (!set_.delayed) return true;
     if (set_.h0 * ticks_of(level_ + 1) > set_.longest) return false;
     return level_ + 1 <= set_.level_of_L || (echoes_are_over() && equal_steps_ >= kStepsBeforeLongOnes);

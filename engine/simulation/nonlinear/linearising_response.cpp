@@ -13,10 +13,10 @@ namespace tunewright {
 namespace {
 
 constexpr int kMaxSteps = 200000;
-constexpr double kSide = 1e-10;       // of the input's scale: how far beyond a limit the law is before that counts
-constexpr double kFirstLook = 1e-15;  // of the horizon: how far ahead a fault is looked for first
-constexpr int kLooks = 50;            // each twice as far: the last beyond half the horizon
-constexpr double kStrongest = 1e12;   // of the input's effect at the start
+constexpr double kLimitTolerance = 1e-10;  // of the input's scale: how far beyond a limit the law is before that counts
+constexpr double kFirstProbeShare = 1e-15;  // of the horizon: how far ahead a fault is looked for first
+constexpr int kMaxProbes = 50;              // each twice as far: the last beyond half the horizon
+constexpr double kMaxInputEffect = 1e12;    // of the input's effect at the start
 
 // u = (v - sum of beta_k L_f^k h) / (beta_r L_g L_f^(r-1) h).
 class LinearisingLaw {
@@ -114,13 +114,13 @@ private:
     }
 
     bool escaped() {
-        return scale_u_ > 0 && std::abs(input(integrator_.x()) - system_.u_nominal()) > kEscaped * scale_u_;
+        return scale_u_ > 0 && std::abs(input(integrator_.x()) - system_.u_nominal()) > kMaxResponseRatio * scale_u_;
     }
 
     // L_g L_f^(r-1) h has grown so much that the u that y needs is lost in its rounding.
     bool too_strong() {
         law_(integrator_.x());
-        return std::abs(law_.input_effect()) > kStrongest * first_effect_;
+        return std::abs(law_.input_effect()) > kMaxInputEffect * first_effect_;
     }
 
     std::optional<double> end_of_side() {
@@ -150,7 +150,7 @@ private:
         const double beyond = limit_ == Limit::high  ? system_.u_max() - u
                               : limit_ == Limit::low ? u - system_.u_min()
                                                      : std::max(u - system_.u_max(), system_.u_min() - u);
-        return beyond - kSide * scale_u_;
+        return beyond - kLimitTolerance * scale_u_;
     }
 
     bool change_side() {
@@ -192,8 +192,8 @@ private:
         }
         if (outcome == OdeStep::stalled) return at + " the steps needed are too short to go on: u grows beyond bounds.";
         std::vector<double> ahead(x.size());
-        double h = kFirstLook * options_.horizon;
-        for (int doubling = 0; doubling < kLooks; ++doubling, h *= 2) {
+        double h = kFirstProbeShare * options_.horizon;
+        for (int doubling = 0; doubling < kMaxProbes; ++doubling, h *= 2) {
             for (std::size_t i = 0; i < ahead.size(); ++i) ahead[i] = x[i] + h * dx[i];
             const std::string fault = system_.domain_fault(ahead, u);
             if (!fault.empty()) return (at + " the states leave the model's domain. ").append(fault);

@@ -19,8 +19,10 @@ constexpr int kMaxSecants = 30;
 constexpr double kSecantDone = 1e-14;
 
 constexpr int kMaxIterations = 40, kMaxHalvings = 20;
-constexpr double kRestOnLimit = 1e-9;  // of u at rest: what Newton's method leaves; nearer to a limit it is at it
-constexpr double kDone = 1e-12, kRounding = 1e-9;  // of a Newton step, relative to the values and to their sizes
+constexpr double kRestLimitTolerance =
+    1e-9;  // of u at rest: what Newton's method leaves; nearer to a limit it is at it
+constexpr double kNewtonTolerance = 1e-12,
+                 kNewtonRounding = 1e-9;  // of a Newton step, relative to the values and to their sizes
 
 /// The equations of rest in (x, u): f = 0 and what closes the loop.
 struct Rest {
@@ -74,7 +76,8 @@ struct Rest {
             bool done = length == 1;
             for (Index i = 0; i <= n; ++i) {
                 if (!std::isfinite(next[i])) return false;
-                done = done && std::abs((*step)[i]) <= std::max(kRounding * sizes[i], kDone * std::abs(next[i]));
+                done = done && std::abs((*step)[i]) <=
+                                   std::max(kNewtonRounding * sizes[i], kNewtonTolerance * std::abs(next[i]));
             }
             v.swap(next);
             if (done) return true;
@@ -239,7 +242,7 @@ std::optional<NonlinearRest> find_rest(const NonlinearLoop& loop, const StepInpu
     const ActuatorLimits& limits = loop.limits();
     double limit = u >= limits.max ? limits.max : limits.min;
     if (Rest(loop, inputs, std::nullopt).solve_from(v, sizes)) {
-        const double slack = kRestOnLimit * std::abs(v.back());
+        const double slack = kRestLimitTolerance * std::abs(v.back());
         if (v.back() <= limits.max + slack && v.back() >= limits.min - slack) return answer(true);
         limit = v.back() > limits.max ? limits.max : limits.min;
     } else if (u < limits.max && u > limits.min) {

@@ -20,15 +20,16 @@ using Index = std::size_t;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-constexpr double kNoise = 1e-11;  // of the largest command: how far beyond a limit it must go to have crossed it
-constexpr double kLongStep = 4;   // in dead times: shorter steps are not worth repeating
+constexpr double kCommandRounding =
+    1e-11;                          // of the largest command: how far beyond a limit it must go to have crossed it
+constexpr double kMinLongStep = 4;  // in dead times: shorter steps are not worth repeating
 constexpr int kMaxPasses = 12;
-constexpr double kAgreed = 0.1;     // of the tolerance: two passes of a long step agree
-constexpr double kPause = 50;       // dead times until long steps are tried again
-constexpr int kMaxCrossings = 100;  // without a whole step between two
-constexpr double kStill = 100;      // y and u have not moved since this fraction of the time: they will not
-constexpr int kRestInterval = 32;   // steps between two looks for where the loop comes to rest
-constexpr double kNearRest = 0.05;  // of the largest deviation: the end is near enough to rest to name it
+constexpr double kPassTolerance = 0.1;     // of the tolerance: two passes of a long step agree
+constexpr double kLongStepPause = 50;      // dead times until long steps are tried again
+constexpr int kMaxCrossings = 100;         // without a whole step between two
+constexpr double kMaxStillRatio = 100;     // y and u have not moved since this fraction of the time: they will not
+constexpr int kRestInterval = 32;          // steps between two looks for where the loop comes to rest
+constexpr double kMaxRestDistance = 0.05;  // of the largest deviation: the end is near enough to rest to name it
 
 /// One run: steps from border to border, where a border is a crossing of a limit, a jump's echo, the horizon.
 class NonlinearRun {
@@ -111,7 +112,7 @@ private:
 
     /// Worth it to go beyond the dead time at once, although the step then depends on itself?
     bool long_step() const {
-        return loop_.delayed() && !history_.empty() && integrator_.next_length() > kLongStep * L_ &&
+        return loop_.delayed() && !history_.empty() && integrator_.next_length() > kMinLongStep * L_ &&
                integrator_.t() >= no_long_steps_before_ && !loop_.law().pure_derivative();
     }
 
@@ -145,11 +146,11 @@ private:
             for (const double s : kSixPoints)
                 gap = std::max(gap, std::abs(w.at(s) - history_.at(w.t + s * w.h, s > 0)));
             history_.suppose(w);
-            if (gap <= kAgreed * options_.tolerance * std::max(largest_u_, std::abs(in_.d))) return true;
+            if (gap <= kPassTolerance * options_.tolerance * std::max(largest_u_, std::abs(in_.d))) return true;
             const OdeStep again = integrator_.shorten(integrator_.t());
             if (again != OdeStep::made || !read_signals()) break;
         }
-        no_long_steps_before_ = integrator_.t_before() + kPause * L_;
+        no_long_steps_before_ = integrator_.t_before() + kLongStepPause * L_;
         const OdeStep cut = integrator_.shorten(integrator_.t_before() + L_);
         return (cut == OdeStep::made && read_signals()) || fail(cut);
     }
@@ -212,7 +213,7 @@ private:
 
     std::optional<double> find_crossing() const {
         const ActuatorLimits& limits = loop_.limits();
-        const double noise = kNoise * largest_command_;
+        const double noise = kCommandRounding * largest_command_;
         const auto rise = [&](double limit, double sign) -> std::optional<double> {
             if (!std::isfinite(limit)) return std::nullopt;
             return first_crossing([&](double s) { return sign * (command_.at(s) - limit) - noise; }, 0, 1);
@@ -286,13 +287,13 @@ private:
             settled_ = true;
             return true;
         }
-        if (t > 0 && std::abs(y_.at(1)) > kEscaped * scale_y_) {
+        if (t > 0 && std::abs(y_.at(1)) > kMaxResponseRatio * scale_y_) {
             response_.escaped = true;
             response_.ended = "At t = " + text(t) +
                               " the output has left every bound: it is more than a million times the step's size.";
             return true;
         }
-        if (!options_.horizon && t > kStill * (still_since_ + L_) && steps_ > kRestInterval) {
+        if (!options_.horizon && t > kMaxStillRatio * (still_since_ + L_) && steps_ > kRestInterval) {
             response_.ended = "At t = " + text(t) + " y has stayed at " + text(y_.at(1)) +
                               " for 99 % of the time, and the control law would still move it.";
             return true;
@@ -352,8 +353,8 @@ private:
         response_.loop.u_final = u_.at(1);
         if (!options_.nodes || !response_.ended.empty() || t <= 0) return std::move(response_);
         look_for_rest();
-        if (rest_ && std::abs(rest_->y - y_.at(1)) <= kNearRest * largest_y_ &&
-            std::abs(rest_->u - u_.at(1)) <= kNearRest * largest_u_) {
+        if (rest_ && std::abs(rest_->y - y_.at(1)) <= kMaxRestDistance * largest_y_ &&
+            std::abs(rest_->u - u_.at(1)) <= kMaxRestDistance * largest_u_) {
             response_.loop.y_final = rest_->within && loop_.law().integrates() ? in_.r : rest_->y;
             response_.loop.u_final = rest_->u;
             if (const auto remaining = remaining_error_integral())

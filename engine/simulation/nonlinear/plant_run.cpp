@@ -86,14 +86,14 @@ double PlantRun::unrest() const {
 
 std::string fault_ahead(const NonlinearSystem& system, std::span<const double> x, std::span<const double> dx, double u,
                         double t) {
-    constexpr double kFirst = std::numeric_limits<double>::epsilon(), kFar = 1e3, kGrowth = 4;
-    constexpr double kAtStart = 1e-9;  // the t that rounding is measured by near t = 0
+    constexpr double kFirstLength = std::numeric_limits<double>::epsilon(), kMaxLength = 1e3, kLengthGrowth = 4;
+    constexpr double kMinTimeForRounding = 1e-9;  // the t that rounding is measured by near t = 0
     std::vector<double> ahead(x.size());
     double length = 0;
-    while (length < kFar) {
+    while (length < kMaxLength) {
         for (std::size_t i = 0; i < x.size(); ++i) ahead[i] = x[i] + length * dx[i];
         if (std::string sentence = system.domain_fault(ahead, u); !sentence.empty()) return sentence;
-        length = std::max(kGrowth * length, kFirst * std::max(t, kAtStart));
+        length = std::max(kLengthGrowth * length, kFirstLength * std::max(t, kMinTimeForRounding));
     }
     return "Their rates of change do not exist there.";
 }

@@ -12,13 +12,14 @@ namespace tunewright {
 namespace {
 
 constexpr double kRowsPerPeriod = 200;
-constexpr double kSameRow = 1e-9;  // of the rows' spacing: nearer instants are one row
-constexpr double kWhole = 1e-6;  // relative: a ratio of times given as decimals that is a whole number but for rounding
-constexpr int kMaxEnlargements = 20;  // of the levels, until y swings far enough
-constexpr double kLeastRaise = 1.1;   // of the levels each time: the swing falls short by rounding at last
-constexpr double kBlindRaise = 2;     // where the relay does not oscillate with these levels
-constexpr double kNoiseBand = 3;      // hysteresis per noise_std
-constexpr double kSwing = 3;          // amplitude of y per hysteresis
+constexpr double kRowTolerance = 1e-9;  // of the rows' spacing: nearer instants are one row
+constexpr double kWholeRatioTolerance =
+    1e-6;  // relative: a ratio of times given as decimals that is a whole number but for rounding
+constexpr int kMaxEnlargements = 20;       // of the levels, until y swings far enough
+constexpr double kMinRaise = 1.1;          // of the levels each time: the swing falls short by rounding at last
+constexpr double kBlindRaise = 2;          // where the relay does not oscillate with these levels
+constexpr double kHysteresisPerNoise = 3;  // hysteresis per noise_std
+constexpr double kSwingPerHysteresis = 3;  // amplitude of y per hysteresis
 constexpr int kQuietCycles = 3, kNoisyCycles = 10;
 
 Error refuse(const char* field, const std::string& message) {
@@ -57,8 +58,8 @@ LimitCycle describe(const LinearPlant& plant, const RelaySettings& settings, con
 // The spacing of rows where none is given: as fine as is useful, coarser where the record would not hold it.
 double interval(const RelaySettings& settings, const SteadyRelayCycle& steady) {
     if (settings.record_interval) return *settings.record_interval;
-    const double most = 0.9 * static_cast<double>(kMaxRelayRows) - 2.0 * settings.cycles;
-    const double fitting = settings.cycles * steady.Pu() / most, Ts = settings.relay_sample_time;
+    const double max = 0.9 * static_cast<double>(kMaxRelayRows) - 2.0 * settings.cycles;
+    const double fitting = settings.cycles * steady.Pu() / max, Ts = settings.relay_sample_time;
     return Ts > 0 ? Ts * std::max(1.0, std::ceil(fitting / Ts)) : std::max(steady.Pu() / kRowsPerPeriod, fitting);
 }
 
@@ -95,9 +96,9 @@ std::optional<Error> record_events(const LinearPlant& plant, const RelaySettings
     while (const auto piece = run.next()) {
         if ((run.steps() & 1023) == 0 && control.stop.stop_requested()) return stopped();
         // A row next to a switch, nearer than rounding of t, is the switch's own.
-        const double last = piece->switched ? piece->t_end - kSameRow * spacing : piece->t_end;
+        const double last = piece->switched ? piece->t_end - kRowTolerance * spacing : piece->t_end;
         for (double t = static_cast<double>(row) * spacing; t < last; t = static_cast<double>(++row) * spacing) {
-            if (!record.t.empty() && t <= record.t.back() + kSameRow * spacing) continue;
+            if (!record.t.empty() && t <= record.t.back() + kRowTolerance * spacing) continue;
             if (record.t.size() >= kMaxRelayRows) return full_record(settings, switches / 2);
             add_row(record, t, piece->u, steady.direction * piece->y.at(std::max(0.0, t - piece->t)));
         }
@@ -176,10 +177,10 @@ std::optional<SteadyRelayCycle> enlarged(const LinearPlant& plant, const RelayLe
         const RelayLevels scaled{levels.u_plus, levels.u_minus, levels.hysteresis / factor};
         auto cycle = steady_relay_cycle(plant, scaled, control);
         if (cycle) {
-            const double short_of = kSwing * scaled.hysteresis / amplitude(*cycle);
+            const double short_of = kSwingPerHysteresis * scaled.hysteresis / amplitude(*cycle);
             best = *cycle;
             if (short_of <= 1) break;
-            factor *= std::max(short_of, kLeastRaise);
+            factor *= std::max(short_of, kMinRaise);
         } else if (cycle.error().kind == ErrorKind::cancelled) {
             return std::nullopt;
         } else {
@@ -217,7 +218,7 @@ RelayPlan plan_relay(const LinearPlant& plant, const RelaySettings& settings, co
                      const RunControl& control) {
     const bool noisy = settings.noise_std > 0;
     RelayLevels levels{settings.u_plus, settings.u_minus,
-                       noisy ? kNoiseBand * settings.noise_std : settings.hysteresis};
+                       noisy ? kHysteresisPerNoise * settings.noise_std : settings.hysteresis};
     SteadyRelayCycle cycle = steady;
     double factor = 1;
     if (noisy) {
@@ -263,7 +264,7 @@ std::optional<Error> refuse_settings(const RelaySettings& settings) {
     if (!s.record_interval) return std::nullopt;
     if (!(*s.record_interval > 0)) return refuse("record_interval", "record_interval must be > 0.");
     const double ratio = s.relay_sample_time > 0 ? *s.record_interval / s.relay_sample_time : 1;
-    if (ratio < 0.5 || std::abs(ratio - std::round(ratio)) > kWhole * ratio)
+    if (ratio < 0.5 || std::abs(ratio - std::round(ratio)) > kWholeRatioTolerance * ratio)
         return refuse("record_interval", "record_interval is " + text(*s.record_interval) +
                                              "; it must be a whole multiple of relay_sample_time, " +
                                              text(s.relay_sample_time) + ". Leave it out to record every sample.");

@@ -12,19 +12,20 @@ namespace {
 using Index = std::size_t;
 
 constexpr int kMaxCycles = 400;
-constexpr double kNear = 0.02;       // of the period: a run that has come so close is on its way to the cycle
-constexpr double kSteady = 1e-3;     // of the period
-constexpr double kLeastPart = 0.2;   // of a duration that a Newton step leaves; longer steps are halved
-constexpr double kLeastStep = 1e-6;  // of a Newton step: shorter ones lead nowhere
+constexpr double kMaxNearDistance = 0.02;  // of the period: a run that has come so close is on its way to the cycle
+constexpr double kSteadyTolerance = 1e-3;  // of the period
+constexpr double kMinPart = 0.2;           // of a duration that a Newton step leaves; longer steps are halved
+constexpr double kMinStep = 1e-6;          // of a Newton step: shorter ones lead nowhere
 constexpr int kMaxNewton = 40;
-constexpr double kRounding = 1e-15;     // relative change of the period: nothing is left to improve
-constexpr double kStalled = 1e-11;      // from here on a change that is not halved is rounding
-constexpr double kConverged = 1e-10;    // what a cycle must reach
-constexpr double kSameSwitch = 1e-8;    // of the period: the run switches where the solution says
-constexpr double kOnCycle = 1e-6;       // of the period: nearer than this it need not come nearer from cycle to cycle
-constexpr double kFarOff = 0.2;         // of the period: the last run has gone elsewhere
-constexpr double kSameInstant = 1e-12;  // of the period
-constexpr double kMaxTurns = 10'000;    // periods in the dead time; a run holds as many before its relay is too fast
+constexpr double kMinRelativeChange = 1e-15;   // relative change of the period: nothing is left to improve
+constexpr double kStalledTolerance = 1e-11;    // from here on a change that is not halved is rounding
+constexpr double kConvergedTolerance = 1e-10;  // what a cycle must reach
+constexpr double kSwitchTolerance = 1e-8;      // of the period: the run switches where the solution says
+constexpr double kOnCycleTolerance =
+    1e-6;                             // of the period: nearer than this it need not come nearer from cycle to cycle
+constexpr double kMaxDistance = 0.2;  // of the period: the last run has gone elsewhere
+constexpr double kInstantTolerance = 1e-12;  // of the period
+constexpr double kMaxTurns = 10'000;  // periods in the dead time; a run holds as many before its relay is too fast
 
 struct Durations {
     double t_plus = 0, t_minus = 0;
@@ -101,9 +102,9 @@ public:
         if (!change) return false;
         double scale = 1;
         const double dp = (*change)[Index(n_)], dm = (*change)[Index(n_ + 1)];
-        while (t_plus + scale * dp < kLeastPart * t_plus || t_minus + scale * dm < kLeastPart * t_minus) {
+        while (t_plus + scale * dp < kMinPart * t_plus || t_minus + scale * dm < kMinPart * t_minus) {
             scale /= 2;
-            if (scale < kLeastStep) return false;
+            if (scale < kMinStep) return false;
         }
         for (int i = 0; i < n_; ++i) point.x[Index(i)] += scale * (*change)[Index(i)];
         point.durations.t_plus += scale * dp;
@@ -173,12 +174,12 @@ private:
 
 std::optional<ShootingProblem::Point> fixed_point(const ShootingProblem& problem, ShootingProblem::Point point) {
     double change = 1;
-    for (int i = 0; i < kMaxNewton && change > kRounding; ++i) {
+    for (int i = 0; i < kMaxNewton && change > kMinRelativeChange; ++i) {
         const double before = change;
         if (!problem.improve(point, change)) return std::nullopt;
-        if (change < kStalled && change >= before / 2) break;
+        if (change < kStalledTolerance && change >= before / 2) break;
     }
-    if (change > kConverged) return std::nullopt;
+    if (change > kConvergedTolerance) return std::nullopt;
     return point;
 }
 
@@ -186,7 +187,7 @@ std::optional<ShootingProblem::Point> fixed_point(const ShootingProblem& problem
 bool verify(RelayMotion& motion, double L, const RelayLevels& levels, const RunControl& control,
             SteadyRelayCycle& cycle) {
     RelayRun run(motion, L, levels, state_at_switch(motion, L, levels, cycle));
-    const double tolerance = kSameSwitch * cycle.Pu();
+    const double tolerance = kSwitchTolerance * cycle.Pu();
     double top = run.y(), bottom = top;
     int switches = 0;
     while (const auto piece = run.next()) {
@@ -233,10 +234,10 @@ public:
             auto steady = attempt(*cycle);
             if (!steady) continue;
             const double now = distance(cycle->durations, {steady->t_plus, steady->t_minus});
-            const bool arrived = now <= kNear && (now <= previous || now < kOnCycle);
+            const bool arrived = now <= kMaxNearDistance && (now <= previous || now < kOnCycleTolerance);
             previous = now;
             if (!arrived && count + count / 4 < kMaxCycles) continue;
-            if (!arrived && now > kFarOff) break;
+            if (!arrived && now > kMaxDistance) break;
             steady->settling_cycles = count_settling(*steady);
             return *steady;
         }
@@ -266,13 +267,13 @@ private:
 
     int count_settling(const SteadyRelayCycle& steady) {
         const Durations target{steady.t_plus, steady.t_minus};
-        while (static_cast<int>(history_.size()) < kMaxCycles && distance(history_.back(), target) > kSteady) {
+        while (static_cast<int>(history_.size()) < kMaxCycles && distance(history_.back(), target) > kSteadyTolerance) {
             const auto cycle = next_cycle(run_, control_);
             if (!cycle) break;
             history_.push_back(cycle->durations);
         }
         int count = static_cast<int>(history_.size());
-        while (count > 0 && distance(history_[Index(count - 1)], target) <= kSteady) --count;
+        while (count > 0 && distance(history_[Index(count - 1)], target) <= kSteadyTolerance) --count;
         return count;
     }
 
@@ -299,7 +300,7 @@ RelayState state_at_switch(RelayMotion& motion, double dead_time, const RelayLev
     state.x = cycle.x;
     state.u = levels.u_plus;
     // The delayed input is L behind: it stands s after the arrival of u_plus. What arrives just now is still pending.
-    const double now = kSameInstant * P;
+    const double now = kInstantTolerance * P;
     double s = std::ceil(L / P) * P - L;
     if (s <= now) s += P;
     motion.advance(motion.step(std::min(s, cycle.t_plus)), levels.u_plus, state.x);

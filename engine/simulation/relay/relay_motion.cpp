@@ -13,8 +13,8 @@ namespace {
 using Index = std::size_t;
 
 constexpr double kStepsPerRadian = 10;
-constexpr double kDecay = 25;         // e^-25 = 1e-11
-constexpr double kOnTheAxis = 1e-10;  // of |p|: the real part of a pole that neither decays nor grows
+constexpr double kDecay = 25;                   // e^-25 = 1e-11
+constexpr double kMaxRelativeRealPart = 1e-10;  // of |p|: the real part of a pole that neither decays nor grows
 constexpr int kLevels = 60;
 constexpr double kExtremumTolerance = 1e-15;  // of the step
 
@@ -65,10 +65,10 @@ RelayMotion::RelayMotion(const LinearPlant& plant, double direction)
     for (const auto pole : plant.poles()) {
         const double size = std::abs(pole);
         fastest = std::max(fastest, size);
-        const bool decays = pole.real() < -kOnTheAxis * size;
+        const bool decays = pole.real() < -kMaxRelativeRealPart * size;
         const double ends = decays ? (kDecay + 3.0 * n_) / -pole.real() : std::numeric_limits<double>::infinity();
         if (decays) decay_time_ = std::max(decay_time_, ends);
-        if (pole.real() > kOnTheAxis * size) growth_rate_ = std::max(growth_rate_, pole.real());
+        if (pole.real() > kMaxRelativeRealPart * size) growth_rate_ = std::max(growth_rate_, pole.real());
         modes_.push_back({size, ends});
     }
     if (fastest > 0)

@@ -10,16 +10,16 @@ namespace {
 
 constexpr std::int64_t kMaxSteps = 4'000'000;
 constexpr std::size_t kMaxPending = 20'000;
-constexpr int kMaxCrowded = 50;
-constexpr double kAtOnce = 1e-14;     // of t: no time between two switches
-constexpr int kPolish = 6;            // Newton steps; each squares the error of the quintic
-constexpr double kPolished = 1e-15;   // of the step: rounding
-constexpr double kWholeLevel = 1e-9;  // of a level: a length that is a power of 2 but for rounding
+constexpr int kMaxCrowdedSwitches = 50;
+constexpr double kSimultaneousTolerance = 1e-14;  // of t: no time between two switches
+constexpr int kPolishSteps = 6;                   // Newton steps; each squares the error of the quintic
+constexpr double kPolishTolerance = 1e-15;        // of the step: rounding
+constexpr double kLevelTolerance = 1e-9;          // of a level: a length that is a power of 2 but for rounding
 constexpr int kMaxLevel = 59;
-constexpr double kGrowth = 45;  // e^45 beyond the last swing: never to come back
+constexpr double kMaxLogGrowth = 45;  // e^45 beyond the last swing: never to come back
 constexpr int kFirstSwitches = 4;
-constexpr double kEscape = 1e9;     // times the swing before these switches
-constexpr double kPatience = 1e12;  // times the shortest step, for ramps
+constexpr double kMaxSwingRatio = 1e9;    // times the swing before these switches
+constexpr double kMaxWaitInSteps = 1e12;  // times the shortest step, for ramps
 
 }  // namespace
 
@@ -64,8 +64,8 @@ RelayPiece RelayRun::switch_over(RelayPiece piece) {
     piece.switched = true;
     piece.t_end = t_;
     ++switches_;
-    crowded_ = t_ - switched_at_ <= kAtOnce * t_ ? crowded_ + 1 : 0;
-    if (crowded_ > kMaxCrowded) end_ = RelayEnd::too_fast;
+    crowded_ = t_ - switched_at_ <= kSimultaneousTolerance * t_ ? crowded_ + 1 : 0;
+    if (crowded_ > kMaxCrowdedSwitches) end_ = RelayEnd::too_fast;
     switched_at_ = t_;
     u_ = u_ == levels_.u_plus ? levels_.u_minus : levels_.u_plus;
     pending_.push_back({t_ + L_, u_});
@@ -77,10 +77,10 @@ bool RelayRun::settle_or_escape(bool quiet, double elapsed, double slope) {
     if (!pending_.empty()) return false;
     const double outward = u_ == levels_.u_plus ? slope : -slope;
     const int integrators = motion_->integrators();
-    if (motion_->growth_rate() * elapsed > kGrowth) {
+    if (motion_->growth_rate() * elapsed > kMaxLogGrowth) {
         end_ = RelayEnd::escaped;
     } else if ((quiet && (integrators <= 0 || (integrators == 1 && outward <= 0))) ||
-               elapsed > kPatience * motion_->shortest()) {
+               elapsed > kMaxWaitInSteps * motion_->shortest()) {
         end_ = RelayEnd::latched;
     }
     return end_ != RelayEnd::running;
@@ -110,7 +110,7 @@ std::optional<double> RelayRun::crossing(const Quintic& y, double first) const {
 // Newton steps on the exact motion.
 double RelayRun::polish(double tau, double low, double high) const {
     const double outward = u_ == levels_.u_plus ? 1 : -1;
-    for (int i = 0; i < kPolish; ++i) {
+    for (int i = 0; i < kPolishSteps; ++i) {
         std::vector<double> x = x_;
         motion_->advance(motion_->step(tau), v_, x);
         const OutputMotion there = motion_->output(x, v_);
@@ -120,7 +120,7 @@ double RelayRun::polish(double tau, double low, double high) const {
         if (!(next >= low && next <= high)) break;
         const double change = std::abs(next - tau);
         tau = next;
-        if (change <= kPolished * high) break;
+        if (change <= kPolishTolerance * high) break;
     }
     return tau;
 }
@@ -145,7 +145,8 @@ std::optional<RelayPiece> RelayRun::next() {
     if (motion_->states() == 0) quiet = true;
     if (settle_or_escape(quiet, elapsed, now.slope)) return std::nullopt;
 
-    const int k = std::clamp(static_cast<int>(std::log2(allowed / motion_->shortest()) + kWholeLevel), 0, kMaxLevel);
+    const int k =
+        std::clamp(static_cast<int>(std::log2(allowed / motion_->shortest()) + kLevelTolerance), 0, kMaxLevel);
     double h = std::ldexp(motion_->shortest(), k);
     const bool to_pending = !pending_.empty() && (motion_->states() == 0 || t_ + h >= pending_.front().t);
     if (to_pending) h = pending_.front().t - t_;
@@ -158,7 +159,7 @@ std::optional<RelayPiece> RelayRun::next() {
     const OutputMotion then = motion_->output(x, v_);
     piece.y = Quintic(h, now, then);
     if (switches_ < kFirstSwitches) swing_ = std::max(swing_, std::abs(then.y));
-    if (!std::isfinite(then.y) || (switches_ >= kFirstSwitches && std::abs(then.y) > kEscape * swing_)) {
+    if (!std::isfinite(then.y) || (switches_ >= kFirstSwitches && std::abs(then.y) > kMaxSwingRatio * swing_)) {
         end_ = RelayEnd::escaped;
         return std::nullopt;
     }

@@ -11,14 +11,14 @@ namespace tunewright {
 namespace {
 
 constexpr std::int64_t kMaxSamples = 4'000'000;
-constexpr std::size_t kMaxCycles = 400, kAveraged = 200, kMaxPatternLength = 32, kRepeats = 4;
-constexpr double kSameTime = 1e-9;                     // relative: whole samples, which rounding alone makes differ
-constexpr double kSameOutput = 1e-7;                   // of the swing
-constexpr double kWholeSample = 1e-9;                  // of a sample: a dead time of whole samples but for rounding
+constexpr std::size_t kMaxCycles = 400, kAveragedCycles = 200, kMaxPatternLength = 32, kMinPatternRepeats = 4;
+constexpr double kTimeTolerance = 1e-9;                // relative: whole samples, which rounding alone makes differ
+constexpr double kOutputTolerance = 1e-7;              // of the swing
+constexpr double kSampleTolerance = 1e-9;              // of a sample: a dead time of whole samples but for rounding
 constexpr std::size_t kMinCycles = 8, kMinGrowth = 4;  // cycles that show a pattern; that show growth
-constexpr double kGrown = 1.5;                         // times the swing halfway: it grows
-constexpr double kGrowth = 45;                         // e^45 without a switch: never to come back
-constexpr double kSteady = 1e-3;
+constexpr double kMinGrowthRatio = 1.5;                // times the swing halfway: it grows
+constexpr double kMaxLogGrowth = 45;                   // e^45 without a switch: never to come back
+constexpr double kSteadyTolerance = 1e-3;
 
 struct SampledCycle {
     double t_plus = 0, t_minus = 0;
@@ -29,15 +29,15 @@ struct SampledCycle {
 // The smallest number of cycles after which everything repeats.
 std::optional<std::size_t> pattern(const std::vector<SampledCycle>& cycles) {
     for (std::size_t k = 1; k <= kMaxPatternLength; ++k) {
-        const std::size_t needed = std::max<std::size_t>(kRepeats * k, kMinCycles) + k;
+        const std::size_t needed = std::max<std::size_t>(kMinPatternRepeats * k, kMinCycles) + k;
         if (cycles.size() < needed) return std::nullopt;
         bool repeats = true;
         for (std::size_t i = cycles.size() - needed + k; i < cycles.size() && repeats; ++i) {
             const SampledCycle &a = cycles[i], &b = cycles[i - k];
             const double swing = a.top - a.bottom;
-            repeats = std::abs(a.t_plus - b.t_plus) <= kSameTime * a.t_plus &&
-                      std::abs(a.t_minus - b.t_minus) <= kSameTime * a.t_minus &&
-                      std::abs(a.y_start - b.y_start) <= kSameOutput * swing;
+            repeats = std::abs(a.t_plus - b.t_plus) <= kTimeTolerance * a.t_plus &&
+                      std::abs(a.t_minus - b.t_minus) <= kTimeTolerance * a.t_minus &&
+                      std::abs(a.y_start - b.y_start) <= kOutputTolerance * swing;
         }
         if (repeats) return k;
     }
@@ -83,7 +83,7 @@ public:
             if (const auto length = pattern(cycles_)) return mean_over(*length);
             if (cycles_.size() < kMaxCycles) continue;
             if (grows()) return no_steady_cycle(plant_, static_cast<int>(kMaxCycles));
-            return mean_over(kAveraged);
+            return mean_over(kAveragedCycles);
         }
         if (cycles_.size() >= kMinGrowth && grows()) return no_steady_cycle(plant_, static_cast<int>(cycles_.size()));
         return Error{ErrorKind::invalid_argument, "relay/relay_sample_time",
@@ -99,7 +99,7 @@ private:
         if (!std::isfinite(y)) return RelayEnd::escaped;
         if (silent <= plant_.dead_time() + 2 * Ts_) return std::nullopt;
         const double alone = silent - plant_.dead_time();
-        if (motion_.growth_rate() * alone > kGrowth) return RelayEnd::escaped;
+        if (motion_.growth_rate() * alone > kMaxLogGrowth) return RelayEnd::escaped;
         if (motion_.growth_rate() > 0 || alone <= motion_.decay_time()) return std::nullopt;
         const OutputMotion& output = relay_.output();
         const double outward = sample.u == levels_.u_plus ? output.slope : -output.slope;
@@ -110,7 +110,7 @@ private:
     bool grows() const {
         if (motion_.bounded()) return false;
         const auto swing = [](const SampledCycle& cycle) { return cycle.top - cycle.bottom; };
-        return swing(cycles_.back()) > kGrown * swing(cycles_[cycles_.size() / 2]);
+        return swing(cycles_.back()) > kMinGrowthRatio * swing(cycles_[cycles_.size() / 2]);
     }
 
     SteadyRelayCycle mean_over(std::size_t count) const {
@@ -130,7 +130,7 @@ private:
         const auto stray = [&](const SampledCycle& cycle) {
             return std::max(std::abs(cycle.t_plus - out.t_plus), std::abs(cycle.t_minus - out.t_minus));
         };
-        double near = 2 * Ts_ + kSteady * out.Pu();
+        double near = 2 * Ts_ + kSteadyTolerance * out.Pu();
         for (std::size_t i = cycles_.size() - count; i < cycles_.size(); ++i) near = std::max(near, stray(cycles_[i]));
         while (settling > 0 && stray(cycles_[settling - 1]) <= near) --settling;
         out.settling_cycles = static_cast<int>(settling);
@@ -171,11 +171,11 @@ SampledRelay::SampledRelay(const RelayMotion& motion, double dead_time, const Re
       x_(static_cast<std::size_t>(motion.states()), 0.0),
       u_(levels.u_plus) {
     double whole = std::floor(dead_time / Ts_), part = dead_time - whole * Ts_;
-    if (part > (1 - kWholeSample) * Ts_) {
+    if (part > (1 - kSampleTolerance) * Ts_) {
         whole += 1;
         part = 0;
     }
-    if (part < kWholeSample * Ts_) part = 0;
+    if (part < kSampleTolerance * Ts_) part = 0;
     whole_ = static_cast<std::size_t>(whole);
     old_ = motion.step(part);
     new_ = motion.step(Ts_ - part);

@@ -5,7 +5,7 @@
 
 namespace tunewright {
 
-InputHistory::Place InputHistory::near_node(std::size_t i, double t, double slack) const {
+InputHistory::NodePosition InputHistory::near_node(std::size_t i, double t, double slack) const {
     if (t < -slack) return {.first = 0, .last = 0, .rest_before = true, .rest_after = true};
     if (i == nodes_.size()) return {.first = i - 1, .last = i - 1};
     std::size_t last = i;
@@ -13,7 +13,7 @@ InputHistory::Place InputHistory::near_node(std::size_t i, double t, double slac
     return {.first = i, .last = last, .rest_before = t <= slack};
 }
 
-InputHistory::Limits InputHistory::at_nodes(const Place& place) const {
+InputHistory::OneSidedLimits InputHistory::at_nodes(const NodePosition& place) const {
     const auto node = [this](std::size_t k) -> Signal { return {nodes_[k].u + d_, nodes_[k].u_slope}; };
     return {place.rest_before ? Signal{} : node(place.first), place.rest_after ? Signal{} : node(place.last)};
 }

@@ -26,23 +26,23 @@ public:
 
     /// Where a time lies: strictly between two neighbouring nodes, or at nodes of equal times, of which the first is
     /// the value before a jump and the last the one after it.
-    struct Place {
+    struct NodePosition {
         std::size_t first, last;
         bool between = false;
         bool rest_before = false, rest_after = false;  ///< 0 takes the place of the node: nothing had begun
     };
     /// Nodes within `slack` of t count as being at t.
-    Place find(double t, double slack) {
+    NodePosition find(double t, double slack) {
         const std::size_t i = first_from(t, slack);
         if (is_node(i, t, slack)) return near_node(i, t, slack);
         return {.first = i - 1, .last = i, .between = true};
     }
 
-    struct Limits {
+    struct OneSidedLimits {
         Signal before, after;
     };
     /// From the left and from the right at t.
-    Limits at(double t, double slack) {
+    OneSidedLimits at(double t, double slack) {
         const std::size_t i = first_from(t, slack);
         if (is_node(i, t, slack)) return at_nodes(near_node(i, t, slack));
         const ResponseNode &a = nodes_[i - 1], &b = nodes_[i];
@@ -57,8 +57,8 @@ private:
     bool is_node(std::size_t i, double t, double slack) const {
         return i == 0 || i == nodes_.size() || nodes_[i].t <= t + slack;
     }
-    Place near_node(std::size_t i, double t, double slack) const;
-    Limits at_nodes(const Place& place) const;
+    NodePosition near_node(std::size_t i, double t, double slack) const;
+    OneSidedLimits at_nodes(const NodePosition& place) const;
 
     const std::vector<ResponseNode>& nodes_;
     double d_;
@@ -80,12 +80,12 @@ int echoes_that_count(double q, double tolerance, int smoothing);
 /// The echoes still to come, each with the number of passages since its origin.
 class Echoes {
 public:
-    /// After `most` passages a jump counts no more.
-    explicit Echoes(int most) : most_(most) {}
+    /// After `max` passages a jump counts no more.
+    explicit Echoes(int max) : max_(max) {}
 
     /// Times nearer than `slack` are one.
     void add(double t, int passages, double slack) {
-        if (passages > most_) return;
+        if (passages > max_) return;
         const auto near = points_.lower_bound(t - slack);
         if (near != points_.end() && near->first <= t + slack)
             near->second = std::min(near->second, passages);
@@ -107,7 +107,7 @@ public:
     }
 
 private:
-    int most_;
+    int max_;
     std::map<double, int> points_;
 };
 

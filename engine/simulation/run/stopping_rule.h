@@ -7,7 +7,7 @@
 namespace tunewright {
 
 /// A response beyond this many times its scale grows without bound.
-constexpr double kEscaped = 1e6;
+constexpr double kMaxResponseRatio = 1e6;
 
 /// A response has settled once y and u have stayed near their rest for a quarter of the time that they took, and for
 /// two dead times: an echo of what happened last has then been seen.
@@ -24,7 +24,7 @@ public:
     void start_again(double t) { last_unsettled_ = t; }
 
     bool has_settled(double t) const {
-        return t > 0 && t >= last_unsettled_ + std::max(2 * dead_time_, kQuiet * last_unsettled_);
+        return t > 0 && t >= last_unsettled_ + std::max(2 * dead_time_, kMinQuietShare * last_unsettled_);
     }
 
     /// A slow tail that has the integral `rest` of the error still to add must at least have the sign to add it: the
@@ -34,7 +34,7 @@ public:
     }
 
 private:
-    static constexpr double kQuiet = 0.25;  // of the time until the last unsettled value
+    static constexpr double kMinQuietShare = 0.25;  // of the time until the last unsettled value
     double fraction_, dead_time_;
     double last_unsettled_ = 0;
 };

@@ -19,12 +19,12 @@ namespace {
 
 using Index = std::size_t;
 
-constexpr int kMostHalvings = 12;      // of a piece, before a node is set whatever the cubic says
-constexpr Index kMostNodes = 1000000;  // from there on no piece is halved any more
-constexpr double kLook = 0.309;        // of a piece: where swings that the middle meets at the same place are not
-constexpr double kRestOnLimit = 1e-9;  // of u at rest: nearer to a limit it is within
-constexpr double kSameInstant = 1e-9;  // of a sample: nearer instants are one
-constexpr int kRestSamples = 10;       // beyond the dead time: the least that a response must have rested for
+constexpr int kMaxHalvings = 12;       // of a piece, before a node is set whatever the cubic says
+constexpr Index kMaxNodes = 1000000;   // from there on no piece is halved any more
+constexpr double kProbeShare = 0.309;  // of a piece: where swings that the middle meets at the same place are not
+constexpr double kRestLimitTolerance = 1e-9;  // of u at rest: nearer to a limit it is within
+constexpr double kInstantTolerance = 1e-9;    // of a sample: nearer instants are one
+constexpr int kRestSamples = 10;              // beyond the dead time: the least that a response must have rested for
 
 /// Where the linear loop rests.
 struct Rest {
@@ -48,7 +48,7 @@ Rest rest_of(const LinearPlant& plant, const ParallelPid& gains, const StepInput
 Rest rest_within(const LinearPlant& plant, const Rest& linear, const std::optional<ActuatorLimits>& limits, double d) {
     if (!limits || !linear.exists) return linear;
     const double u = std::clamp(linear.u, limits->min, limits->max);
-    if (std::abs(u - linear.u) <= kRestOnLimit * std::abs(linear.u)) return linear;
+    if (std::abs(u - linear.u) <= kRestLimitTolerance * std::abs(linear.u)) return linear;
     if (plant.integrators() > 0 || plant.unstable_poles() > 0) return {};
     return {true, plant.integrators() < 0 ? 0 : plant.low_frequency_gain() * (u + d), u, true};
 }
@@ -56,7 +56,7 @@ Rest rest_within(const LinearPlant& plant, const Rest& linear, const std::option
 /// A piece of a sample period within which the plant's input and the output's value are constant.
 struct Piece {
     double from = 0;          // time into the period
-    HeldMotion motion, look;  // the latter to kLook of it
+    HeldMotion motion, look;  // the latter to kProbeShare of it
     bool arrived;             // u_{k-d} drives the plant here; before it u_{k-d-1}
     bool given;  // u_{k-o} is the output here, o the computation delay's whole samples; before it u_{k-o-1}
 };
@@ -74,9 +74,11 @@ private:
     double past(int k) const { return k < 0 ? 0 : u_[static_cast<Index>(k)]; }
     void sample(int k);
     void run_period(int k);
-    bool ends_by(double t) const { return t >= end_ - kSameInstant * law_.Ts; }
+    bool ends_by(double t) const { return t >= end_ - kInstantTolerance * law_.Ts; }
     Piece cut(const Piece& piece, double h) const;
-    bool escaped() const { return !(largest_u_ <= kEscaped * sizes_.u && largest_y_ <= kEscaped * sizes_.y); }
+    bool escaped() const {
+        return !(largest_u_ <= kMaxResponseRatio * sizes_.u && largest_y_ <= kMaxResponseRatio * sizes_.y);
+    }
     void run_piece(Piece& piece, int level, double t, double t_end, double v, double u);
     void add_node(double t, double v, double u);
     bool swings(Piece& piece, int level, HeldState start, const ResponseNode& left, const HeldOutput& end, double v);
@@ -131,15 +133,15 @@ std::vector<Piece> SampledRun::pieces(const LinearPlant& plant) const {
     std::vector<Piece> made;
     for (Index i = 0; i + 1 < borders.size(); ++i) {
         const double h = borders[i + 1] - borders[i];
-        made.push_back({borders[i], HeldMotion(plant, h), HeldMotion(plant, kLook * h), borders[i] >= to_plant_.rest,
-                        borders[i] >= computed_.rest});
+        made.push_back({borders[i], HeldMotion(plant, h), HeldMotion(plant, kProbeShare * h),
+                        borders[i] >= to_plant_.rest, borders[i] >= computed_.rest});
     }
     return made;
 }
 
 // The beginning of a piece, of length h.
 Piece SampledRun::cut(const Piece& piece, double h) const {
-    return {piece.from, HeldMotion(plant_, h), HeldMotion(plant_, kLook * h), piece.arrived, piece.given};
+    return {piece.from, HeldMotion(plant_, h), HeldMotion(plant_, kProbeShare * h), piece.arrived, piece.given};
 }
 
 void SampledRun::add_node(double t, double v, double u) {
@@ -152,7 +154,7 @@ void SampledRun::add_node(double t, double v, double u) {
 // Whole swings between a piece's ends and its middle are seen in neither.
 bool SampledRun::swings(Piece& piece, int level, HeldState start, const ResponseNode& left, const HeldOutput& end,
                         double v) {
-    const double h = std::ldexp(piece.motion.length(), -level), s = kLook, r = 1 - s;
+    const double h = std::ldexp(piece.motion.length(), -level), s = kProbeShare, r = 1 - s;
     piece.look.advance(start, v, level);
     const double y = reader_.at(start.x, v).y;
     const double cubic =
@@ -173,7 +175,7 @@ void SampledRun::run_piece(Piece& piece, int level, double t, double t_end, doub
     const double scale = std::max(largest_y_, std::abs(y_middle));
     const bool bent = std::abs(cubic - y_middle) > options_.tolerance * scale ||
                       (h * fastest_swing_ > std::numbers::pi && swings(piece, level, start, left, end, v));
-    if (bent && level < kMostHalvings && response_.nodes.size() < kMostNodes) {
+    if (bent && level < kMaxHalvings && response_.nodes.size() < kMaxNodes) {
         state_ = start;
         const double t_middle = 0.5 * (t + t_end);
         run_piece(piece, level + 1, t, t_middle, v, u);
@@ -218,7 +220,7 @@ void SampledRun::note(double t) {
 StepResponse SampledRun::result() {
     response_.settles = false;
     // One period at least: whoever reads a response that was stopped at once finds its beginning.
-    for (int k = 0; k < options_.most_samples && (k == 0 || !options_.stop.stop_requested()); ++k) {
+    for (int k = 0; k < options_.max_samples && (k == 0 || !options_.stop.stop_requested()); ++k) {
         sample(k);
         run_period(k);
         const double t = (k + 1) * law_.Ts;
@@ -244,10 +246,10 @@ StepResponse simulate_sampled(const LinearPlant& plant, const SampledPid& law, c
 
 namespace {
 
-constexpr double kTolerance = 1e-8;  // of the integrator's steps
-constexpr double kBend = 1e-9;       // of the largest |y|: by so much a jump of its slope would move y over a step
-constexpr double kAtOnce = 1e-12;    // relative: times nearer than that are one
-constexpr int kFewSamples = 3;       // the least that a response must have rested for, beyond its dead time
+constexpr double kTolerance = 1e-8;       // of the integrator's steps
+constexpr double kBend = 1e-9;            // of the largest |y|: by so much a jump of its slope would move y over a step
+constexpr double kTimeTolerance = 1e-12;  // relative: times nearer than that are one
+constexpr int kMinRestSamples = 3;        // the least that a response must have rested for, beyond its dead time
 
 struct Given {
     double t = 0, u = 0;
@@ -264,8 +266,8 @@ public:
           program_(law, limits),
           plant_(system, kTolerance),
           recorder_(response_, recording_, inputs.r),
-          rule_(options.settled, system.dead_time() + law.computation_delay + kFewSamples * law.Ts),
-          least_size_u_(loop_sizes(size_of_effect(system, 1), law.gains, inputs).u) {}
+          rule_(options.settled, system.dead_time() + law.computation_delay + kMinRestSamples * law.Ts),
+          min_size_u_(loop_sizes(size_of_effect(system, 1), law.gains, inputs).u) {}
 
     StepResponse result();
 
@@ -290,7 +292,7 @@ private:
     double u_ = 0;                      // given out
     double y_quiet_ = 0, u_quiet_ = 0;  // near which y and u have stayed since they last moved
     double size_y_ = 0, size_u_ = 0;
-    double least_size_u_;  // of the loop, whatever the first samples are
+    double min_size_u_;  // of the loop, whatever the first samples are
 };
 
 // What arrives behind the dead time bends y at once where the plant's relative degree is one.
@@ -300,7 +302,7 @@ bool NonlinearRun::slope_jumped(const StepPolynomial& y) const {
 }
 
 bool NonlinearRun::advance(double t) {
-    const double short_of = kAtOnce * std::max(t, law_.Ts);
+    const double short_of = kTimeTolerance * std::max(t, law_.Ts);
     while (plant_.t() < t - short_of) {
         if (!plant_.step(t)) return false;
         const StepPolynomial& y = plant_.last();
@@ -340,14 +342,14 @@ StepResponse NonlinearRun::result() {
     StepResponse& loop = response_.loop;
     loop.settles = false;
     if (in_.d != 0) plant_.give(in_.d);
-    for (int k = 0; k < options_.most_samples && !options_.stop.stop_requested(); ++k) {
+    for (int k = 0; k < options_.max_samples && !options_.stop.stop_requested(); ++k) {
         double t = (k + 1) * law_.Ts;
-        if (options_.horizon && t >= *options_.horizon - kAtOnce * t) t = *options_.horizon;
+        if (options_.horizon && t >= *options_.horizon - kTimeTolerance * t) t = *options_.horizon;
         outputs_.push_back({k * law_.Ts + law_.computation_delay, program_.step(in_.r, plant_.y())});
         if (!run_to(t)) break;
         note(t);
-        if (k < kFewSamples) least_size_u_ = std::max(least_size_u_, size_u_);
-        if (!(size_u_ <= kEscaped * least_size_u_)) break;
+        if (k < kMinRestSamples) min_size_u_ = std::max(min_size_u_, size_u_);
+        if (!(size_u_ <= kMaxResponseRatio * min_size_u_)) break;
         loop.settles = options_.horizon ? t >= *options_.horizon : rule_.has_settled(t);
         if (loop.settles) break;
     }

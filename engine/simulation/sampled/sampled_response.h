@@ -21,12 +21,12 @@ struct SampledOptions {
     double tolerance = 1e-6;  ///< of the cubics between nodes, relative to the largest |y|
     double settled = 1e-8;    ///< ends when y and u stay this close to rest, relative to their largest deviation
     std::optional<double> horizon = {};  ///< ends exactly there instead
-    int most_samples = 400000;
+    int max_samples = 400000;
     std::stop_token stop = {};  ///< asked once every sample; the response then ends, unsettled
 };
 
 /// `u` of the nodes is what the program gives out, held, from the end of its computation delay on. `settles` is false
-/// where `most_samples` came first, or where y is beyond any use. `error_integral_final` is what has been integrated
+/// where `max_samples` came first, or where y is beyond any use. `error_integral_final` is what has been integrated
 /// when y is at rest; with integral action only, and not where u rests at a limit. No errors: an unstable loop grows
 /// until it ends.
 StepResponse simulate_sampled(const LinearPlant& plant, const SampledPid& law, const ProgramLimits& limits,

@@ -271,7 +271,7 @@ TuningMethod arrieta_ms_method() {
     const OptionSet<ArrietaMsOptions> options = Ms_options();
     for (const double Ms : {2.0, 1.6, 1.4})
         method.variants.push_back({"Ms " + text(Ms), options.given_for({.Ms = Ms}, {.Ms = {}})});
-    method.serve(options, tune_by_Ms);
+    method.bind(options, tune_by_Ms);
     return method;
 }
 
@@ -291,7 +291,7 @@ TuningMethod arrieta_degradation_method() {
     for (const auto& [level, constants] : arrieta_degradation_levels())
         method.variants.push_back(
             {"degradation " + text(level), options.given_for({.degradation = level}, {.degradation = kNoLevel})});
-    method.serve(options, tune_by_degradation);
+    method.bind(options, tune_by_degradation);
     return method;
 }
 

@@ -7,7 +7,7 @@ namespace tunewright {
 namespace {
 
 constexpr double kN = 10;
-constexpr double kSameLevel = 1e-9;
+constexpr double kLevelTolerance = 1e-9;
 
 constexpr ArrietaConstants kFree = {1.1410, -0.9664, 0.1468, 1.0860, 0.4896, 0.2775, 0.3726, 0.7098, -0.0409};
 
@@ -36,7 +36,7 @@ std::span<const ArrietaLevel> arrieta_degradation_levels() { return kTable2; }
 
 const ArrietaConstants* arrieta_column(std::span<const ArrietaLevel> table, double level) {
     const auto at = std::ranges::find_if(
-        table, [level](const ArrietaLevel& column) { return std::abs(column.level - level) < kSameLevel; });
+        table, [level](const ArrietaLevel& column) { return std::abs(column.level - level) < kLevelTolerance; });
     return at == table.end() ? nullptr : &at->constants;
 }
 

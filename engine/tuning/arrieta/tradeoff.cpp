@@ -221,7 +221,7 @@ IdealPid best_from(const LogSettings& start, const LinearPlant& plant, bool load
     LocalOptions options;
     options.step = {kFirstStep, kFirstStep, kFirstStep};
     options.tolerance = kOptimumAccuracy;
-    options.most_evaluations = kMaxEvaluations;
+    options.max_evaluations = kMaxEvaluations;
     const auto cost = [&](const LogSettings& x, bool&) { return log_iae(plant, x, load); };
     return controller_at(find_local_minimum(LocalSearch::nelder_mead, cost, start, options).x);
 }

@@ -13,8 +13,8 @@ namespace {
 
 constexpr const char* kOnlyPoints =
     "The plant is known by points of its frequency response alone, which have no response over time.";
-constexpr double kMissed = 0.03;  // of a degradation: what the table keeps to for L/T from 0.1 to 1.5
-constexpr int kMsPoints = 13;     // 1.4, 1.45 ... 2
+constexpr double kMaxDegradationError = 0.03;  // of a degradation: what the table keeps to for L/T from 0.1 to 1.5
+constexpr int kMsPoints = 13;                  // 1.4, 1.45 ... 2
 
 void add_point(std::vector<ProfilePoint>& points, double level, const ArrietaConstants& constants, const Fopdt& model,
                const TradeoffScale& scale) {
@@ -119,7 +119,7 @@ TradeoffReport Tradeoffs::of_rule(const Controller& controller, const ArrietaSet
 void TradeoffReport::complete(const ReportContext& context, Evaluation& evaluation) {
     if (!rule) return;
     *this = context.tradeoffs.of_rule(evaluation.controller, ArrietaSettings(*rule));
-    if (!rule->degradation || !model.Deg || std::abs(*model.Deg - *rule->degradation) <= kMissed) return;
+    if (!rule->degradation || !model.Deg || std::abs(*model.Deg - *rule->degradation) <= kMaxDegradationError) return;
     evaluation.warnings.push_back({"degradation-missed", "On the model the degradation is " + text(*model.Deg) +
                                                              ", not the " + text(*rule->degradation) +
                                                              " of Table 2's column; exact = true solves for it."});

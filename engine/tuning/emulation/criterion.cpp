@@ -10,8 +10,8 @@ namespace tunewright::emulation {
 
 namespace {
 
-constexpr double kPenalty = 100;    // of a run that ends early, in J at rest
-constexpr double kLargest = 1e100;  // of a penalised J
+constexpr double kEarlyEndPenalty = 100;  // of a run that ends early, in J at rest
+constexpr double kMaxPenalisedJ = 1e100;  // of a penalised J
 constexpr int kMaxSimulationSteps = 20000;
 
 }  // namespace
@@ -63,8 +63,8 @@ Cost Criterion::weigh(const IdealPid& pid, double tolerance, const std::stop_tok
 }
 
 double Criterion::penalised(const Cost& cost) const {
-    const double early = cost.ended.empty() ? 0 : kPenalty * at_rest_ * (2 - cost.share);
-    return std::isfinite(cost.J) ? std::min(cost.J + early, kLargest) : kLargest;
+    const double early = cost.ended.empty() ? 0 : kEarlyEndPenalty * at_rest_ * (2 - cost.share);
+    return std::isfinite(cost.J) ? std::min(cost.J + early, kMaxPenalisedJ) : kMaxPenalisedJ;
 }
 
 namespace {

@@ -15,9 +15,9 @@ namespace tunewright::emulation {
 
 namespace {
 
-constexpr double kRise = 0.05;  // of J, by which the flatness is measured
+constexpr double kFlatnessRise = 0.05;  // of J, by which the flatness is measured
 
-// How far each unknown may move before J has risen by kRise: the others follow (reoptimised), or stay (alone).
+// How far each unknown may move before J has risen by kFlatnessRise: the others follow (reoptimised), or stay (alone).
 struct Flatness {
     std::vector<double> reoptimised, alone;
 };
@@ -88,16 +88,16 @@ std::optional<Flatness> flatness(const std::function<double(const SettingsPoint&
         unit[i] = 1;
         const auto column = solve(H, unit, static_cast<int>(n));
         if (!column || !((*column)[i] > 0)) return std::nullopt;
-        flat.reoptimised.push_back(found->step[i] * std::sqrt(2 * kRise * J0 * (*column)[i]));
-        flat.alone.push_back(std::sqrt(2 * kRise * J0 / found->curvature[i]));
+        flat.reoptimised.push_back(found->step[i] * std::sqrt(2 * kFlatnessRise * J0 * (*column)[i]));
+        flat.alone.push_back(std::sqrt(2 * kFlatnessRise * J0 / found->curvature[i]));
     }
     return flat;
 }
 
-constexpr double kOnBound = 1e-6;        // of the range
-constexpr double kLeftOfU = 0.1;         // of int u_nl^2, beyond which a PID cannot emulate (Remark 7)
-constexpr double kLeftOfY = 0.05;        // of int y_nl^2, likewise
-constexpr int kReportedIntervals = 400;  // of a run in the answer
+constexpr double kMaxBoundDistance = 1e-6;  // of the range
+constexpr double kMaxUnexplainedU = 0.1;    // of int u_nl^2, beyond which a PID cannot emulate (Remark 7)
+constexpr double kMaxUnexplainedY = 0.05;   // of int y_nl^2, likewise
+constexpr int kReportedIntervals = 400;     // of a run in the answer
 
 // The answer carries every so many samples.
 std::size_t stride(const EmulationProblem& problem) {
@@ -130,12 +130,12 @@ double share_left(const std::vector<double>& wanted, const std::vector<double>& 
 std::string percent(double share) { return text(100 * share) + " %"; }
 
 void judge_fit(EmulationFit& fit) {
-    fit.adequate = fit.u_left <= kLeftOfU && fit.y_left <= kLeftOfY;
+    fit.adequate = fit.u_left <= kMaxUnexplainedU && fit.y_left <= kMaxUnexplainedY;
     const std::string figures =
         "u differs from the nonlinear controller by " + percent(fit.u_left) + " (squared), y by " + percent(fit.y_left);
     fit.sentence = fit.adequate ? "The PID follows the nonlinear controller: " + figures + "."
                                 : "No PID within the bounds can follow this nonlinear controller: " + figures +
-                                      " (up to " + percent(kLeftOfU) + " and " + percent(kLeftOfY) +
+                                      " (up to " + percent(kMaxUnexplainedU) + " and " + percent(kMaxUnexplainedY) +
                                       " count as following). Ask for a slower target, smaller steps or wider bounds, "
                                       "or implement the nonlinear controller itself.";
 }
@@ -169,7 +169,7 @@ void add_scenarios(EmulationReport& report, const Criterion& criterion, const Id
     judge_fit(report.fit);
 }
 
-void add_runs(LevelOneRow& row, const Criterion& criterion, const Remark6& remark6, const std::stop_token& stop) {
+void add_runs(LevelOneRow& row, const Criterion& criterion, const FixedErrorQp& remark6, const std::stop_token& stop) {
     const IdealPid* pid = row.controller ? std::get_if<IdealPid>(&*row.controller) : nullptr;
     if (pid == nullptr || stop.stop_requested()) return;
     const EmulationProblem& problem = criterion.problem();
@@ -189,13 +189,13 @@ void add_bounds(EmulationReport& report, const EmulationProblem& problem, const 
     for (std::size_t i = 0; i < names.size(); ++i) {
         const double low = design.bounds.low[i], high = design.bounds.high[i], value = design.point[i];
         report.bounds[names[i]] = {low, high};
-        const double near = kOnBound * (high - low);
+        const double near = kMaxBoundDistance * (high - low);
         if (value - low > near && high - value > near) continue;
         report.active_bounds.push_back({names[i], high - value <= near, high - value <= near ? high : low});
     }
 }
 
-void add_flatness(EmulationReport& report, const Criterion& criterion, const Remark6& remark6,
+void add_flatness(EmulationReport& report, const Criterion& criterion, const FixedErrorQp& remark6,
                   const EmulatedDesign& design, const std::stop_token& stop) {
     const EmulationProblem& problem = criterion.problem();
     const SettingsPoint sizes = sizes_of(design.point, design.bounds);
@@ -224,14 +224,14 @@ Warning at_bound(const ActiveBound& bound) {
 
 }  // namespace
 
-Judgement judge(const Criterion& criterion, const Remark6& remark6, const SettingsPoint& point) {
+Judgement judge(const Criterion& criterion, const FixedErrorQp& remark6, const SettingsPoint& point) {
     if (criterion.problem().remark6) return {remark6.J(point), {}};
     const Cost cost = criterion.cost(controller_at(criterion.problem(), point), kFineTolerance);
     if (!cost.ended.empty() || !std::isfinite(cost.J)) return {std::nullopt, cost.ended};
     return {cost.J, {}};
 }
 
-EmulationReport report_of(const Criterion& criterion, const Remark6& remark6, const EmulatedDesign& design,
+EmulationReport report_of(const Criterion& criterion, const FixedErrorQp& remark6, const EmulatedDesign& design,
                           std::vector<LevelOneRow> level_one, const std::stop_token& stop) {
     const EmulationProblem& problem = criterion.problem();
     EmulationReport report;

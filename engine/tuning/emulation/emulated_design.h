@@ -4,7 +4,7 @@
 
 #include "engine/tuning/emulation/criterion.h"
 #include "engine/tuning/emulation/emulation_report.h"
-#include "engine/tuning/emulation/remark6.h"
+#include "engine/tuning/emulation/fixed_error_qp.h"
 
 namespace tunewright::emulation {
 
@@ -22,10 +22,10 @@ struct Judgement {
     std::optional<double> J;
     std::string ended;
 };
-Judgement judge(const Criterion& criterion, const Remark6& remark6, const SettingsPoint& point);
+Judgement judge(const Criterion& criterion, const FixedErrorQp& remark6, const SettingsPoint& point);
 
 /// Stopped, it leaves out what is not there yet of flatness and of the first level's runs.
-EmulationReport report_of(const Criterion& criterion, const Remark6& remark6, const EmulatedDesign& design,
+EmulationReport report_of(const Criterion& criterion, const FixedErrorQp& remark6, const EmulatedDesign& design,
                           std::vector<LevelOneRow> level_one, const std::stop_token& stop);
 
 /// Bounds that hold the optimum, unstable zero dynamics, limits in the nonlinear controller's way, a run that ended,

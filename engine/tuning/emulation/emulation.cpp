@@ -23,7 +23,7 @@ Error nothing_reaches(const std::string& reason) {
                 " Give other bounds, smaller steps or a shorter horizon."};
 }
 
-Expected<EmulatedDesign> approximate(const Remark6& remark6, const Bounds& bounds, double wu) {
+Expected<EmulatedDesign> approximate(const FixedErrorQp& remark6, const Bounds& bounds, double wu) {
     const auto point = remark6.best(bounds);
     if (!point)
         return Error{ErrorKind::no_feasible_controller, "bounds",
@@ -33,7 +33,7 @@ Expected<EmulatedDesign> approximate(const Remark6& remark6, const Bounds& bound
     return EmulatedDesign{*point, bounds, J, J / wu, std::nullopt, false};
 }
 
-Expected<EmulatedDesign> full(const Criterion& criterion, const Remark6& remark6, const Bounds& bounds,
+Expected<EmulatedDesign> full(const Criterion& criterion, const FixedErrorQp& remark6, const Bounds& bounds,
                               const std::vector<LevelOneRow>& rows, const RunControl& control) {
     std::vector<SettingsPoint> starts;
     if (auto point = remark6.best(bounds)) starts.push_back(std::move(*point));
@@ -73,7 +73,7 @@ Expected<TunedController> tune(const TuningProblem& plant, const EmulationOption
     const auto bounds = search_bounds(problem, *rows);
     if (!bounds) return bounds.error();
     const Criterion criterion(problem, *trajectories);
-    const Remark6 remark6(problem, *trajectories);
+    const FixedErrorQp remark6(problem, *trajectories);
     const auto design =
         problem.remark6 ? approximate(remark6, *bounds, problem.wu) : full(criterion, remark6, *bounds, *rows, control);
     if (!design) return design.error();
@@ -106,7 +106,7 @@ TuningMethod emulation_method() {
         "operating conditions that a PID can stabilise; where much of the nonlinear controller's action is left the "
         "answer warns (Remark 7)";
     method.all_if_nonlinear = true;
-    method.serve(described_options(), tune);
+    method.bind(described_options(), tune);
     return method;
 }
 

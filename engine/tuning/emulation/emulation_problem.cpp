@@ -238,10 +238,10 @@ SettingsPoint clipped(const SettingsPoint& point, const Bounds& bounds) {
 }
 
 SettingsPoint sizes_of(const SettingsPoint& point, const Bounds& bounds) {
-    constexpr double kLeastShare = 1e-3;
+    constexpr double kMinShare = 1e-3;
     SettingsPoint sizes = point;
     for (std::size_t i = 0; i < sizes.size(); ++i)
-        sizes[i] = std::max(std::abs(sizes[i]), kLeastShare * (bounds.high[i] - bounds.low[i]));
+        sizes[i] = std::max(std::abs(sizes[i]), kMinShare * (bounds.high[i] - bounds.low[i]));
     return sizes;
 }
 

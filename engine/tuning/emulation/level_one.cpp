@@ -20,9 +20,9 @@ namespace {
 
 constexpr double kTolerance = 1e-12;
 constexpr int kMaxEvaluations = 600;
-constexpr double kLeastT = 1e-3;          // of the test's length, to start from
-constexpr double kLeastSquares = 1e-300;  // keeps the logarithm of an exact fit finite
-constexpr double kFirstSteps = 0.1;       // in ln T, and of L relative to T
+constexpr double kMinT = 1e-3;               // of the test's length, to start from
+constexpr double kMinSumOfSquares = 1e-300;  // keeps the logarithm of an exact fit finite
+constexpr double kFirstSteps = 0.1;          // in ln T, and of L relative to T
 
 // K by least squares for a shape, and the sum of squares that is left.
 struct Fit {
@@ -68,10 +68,10 @@ Expected<Fopdt> first_order_model(const StepTest& recorded) {
     const StepTest test = held_as_long_again(recorded);
     // The two instants of Smith's construction (28.3 % and 63.2 %) to start from.
     const double slow = time_at(test, 0.632), fast = time_at(test, 0.283);
-    const double T0 = std::max(1.5 * (slow - fast), kLeastT * test.t.back());
+    const double T0 = std::max(1.5 * (slow - fast), kMinT * test.t.back());
     const auto left = [&](const std::vector<double>& x, bool&) {
         const double T = T0 * std::exp(std::clamp(x[0], -7.0, 7.0)), L = T0 * std::max(0.0, x[1]);
-        return std::log(fit(test, T, L).left + kLeastSquares);
+        return std::log(fit(test, T, L).left + kMinSumOfSquares);
     };
     const auto found = find_local_minimum(LocalSearch::nelder_mead, left, {0, std::max(0.0, slow / T0 - 1)},
                                           {{kFirstSteps, kFirstSteps}, kTolerance, kMaxEvaluations});
@@ -247,8 +247,8 @@ std::vector<double> magnitudes(const std::vector<IdealPid>& settings, double Ide
 }
 
 NumberRange widened(const std::vector<double>& values, NumberRange alpha) {
-    const auto [least, most] = std::ranges::minmax(values);
-    return {alpha.low * least, alpha.high * most};
+    const auto [min, max] = std::ranges::minmax(values);
+    return {alpha.low * min, alpha.high * max};
 }
 
 Error nothing_to_start_from(const std::vector<LevelOneRow>& rows) {

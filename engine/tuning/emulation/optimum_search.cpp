@@ -35,17 +35,18 @@ std::shared_ptr<const BestSoFar> best_so_far(const LinearPlant& plant, const Ide
 constexpr double kCoarseTolerance = 1e-6;        // of simulations while looking around
 constexpr double kSearchTolerance = 1e-8;        // of those between which differences are taken
 constexpr int kExplored[] = {0, 0, 30, 60, 90};  // points of the global look, by the number of unknowns
-constexpr int kPolished = 2;                     // starts that are polished
-constexpr double kApart = 0.05;                  // of two of them, in a unit box
+constexpr int kPolishedStarts = 2;               // starts that are polished
+constexpr double kMinStartDistance = 0.05;       // of two of them, in a unit box
 constexpr int kMaxPolishSteps = 25;
-constexpr double kDifference = 1e-4;  // of a derivative, relative to the unknown
-constexpr double kFlat = 1e-10;       // expected fall of J, relative, at which a polish ends
-constexpr optimise::MarquardtDamping kDamping = {.ease = 10, .tighten = 10};  // J ends as flat as `kFlat` with few runs
-constexpr double kConfident = 10;       // damping up to which a small expected fall means that J is flat
-constexpr double kMaxPolishStep = 0.5;  // relative to the unknown
-constexpr double kSubplexStep = 0.02;   // in a unit box
-constexpr double kNotLookedAt = 700;    // ln J of a point where the search is stopped
-constexpr double kLeastJ = 1e-300;      // keeps the logarithm of an exact emulation finite
+constexpr double kDifference = 1e-4;        // of a derivative, relative to the unknown
+constexpr double kMinExpectedFall = 1e-10;  // expected fall of J, relative, at which a polish ends
+constexpr optimise::MarquardtDamping kDamping = {.ease = 10,
+                                                 .tighten = 10};  // J ends as flat as `kMinExpectedFall` with few runs
+constexpr double kMaxConfidentDamping = 10;  // damping up to which a small expected fall means that J is flat
+constexpr double kMaxPolishStep = 0.5;       // relative to the unknown
+constexpr double kSubplexStep = 0.02;        // in a unit box
+constexpr double kUnexploredLogJ = 700;      // ln J of a point where the search is stopped
+constexpr double kMinJ = 1e-300;             // keeps the logarithm of an exact emulation finite
 constexpr int kSubplexEvaluations = 150;
 constexpr double kSubplexTolerance = 1e-9;
 constexpr double kLogarithmicFrom = 3;  // high/low from which a bound's scale is logarithmic
@@ -129,7 +130,7 @@ private:
     std::vector<LocalMinimum> look_around() {
         const auto f = [this](const std::vector<double>& q, bool& stop) {
             stop = stopped();
-            return stop ? kNotLookedAt : std::log(judged(point_at(q), kCoarseTolerance) + kLeastJ);
+            return stop ? kUnexploredLogJ : std::log(judged(point_at(q), kCoarseTolerance) + kMinJ);
         };
         const std::size_t n = scales_.size();
         report(0.1, "Looking for the emulating controller within the bounds.");
@@ -141,12 +142,12 @@ private:
     std::vector<LocalMinimum> apart(const std::vector<LocalMinimum>& met) const {
         std::vector<LocalMinimum> chosen;
         for (const LocalMinimum& point : met) {
-            if (chosen.size() == kPolished) break;
+            if (chosen.size() == kPolishedStarts) break;
             const bool close = std::ranges::any_of(chosen, [&](const LocalMinimum& other) {
                 double distance = 0;
                 for (std::size_t i = 0; i < point.x.size(); ++i)
                     distance = std::max(distance, std::abs(point.x[i] - other.x[i]));
-                return distance < kApart;
+                return distance < kMinStartDistance;
             });
             if (!close) chosen.push_back(point);
         }
@@ -191,8 +192,8 @@ private:
             if (search_.stopped()) return Trial::end;
             const SettingsPoint next = stepped(damping);
             const double fall = expected_fall(next);
-            flat_ = fall < kFlat && damping < kConfident;
-            if (fall < kFlat) return Trial::end;
+            flat_ = fall < kMinExpectedFall && damping < kMaxConfidentDamping;
+            if (fall < kMinExpectedFall) return Trial::end;
             std::vector<double> residuals;
             const Cost there = cost_at(next, residuals);
             if (!there.ended.empty() || !(there.J < cost_.J)) return Trial::worse;
@@ -236,7 +237,7 @@ private:
         double expected_fall(const SettingsPoint& to) const {
             optimise::SmallProgram::Vector d(g_.size());
             for (std::size_t i = 0; i < to.size(); ++i) d[Eigen::Index(i)] = (to[i] - point_[i]) / size_[i];
-            return -(2 * g_.dot(d) + d.dot(H_ * d)) / (cost_.J + kLeastJ);
+            return -(2 * g_.dot(d) + d.dot(H_ * d)) / (cost_.J + kMinJ);
         }
 
         SettingsSearch& search_;
@@ -259,14 +260,14 @@ private:
     void subplex() {
         const auto f = [this](const std::vector<double>& q, bool& stop) {
             stop = stopped();
-            if (stop) return kNotLookedAt;
+            if (stop) return kUnexploredLogJ;
             double outside = 0;
             for (const double x : q) outside += std::max(0.0, -x) + std::max(0.0, x - 1);
             const SettingsPoint point = point_at(q);
             const Cost cost =
                 criterion_.cost(controller_at(criterion_.problem(), point), kSearchTolerance, control_.stop);
             if (outside == 0) keep(point, cost);
-            return std::log(criterion_.penalised(cost) + kLeastJ) + outside;
+            return std::log(criterion_.penalised(cost) + kMinJ) + outside;
         };
         report(0.8, "Polishing the emulating controller.");
         const std::size_t n = scales_.size();

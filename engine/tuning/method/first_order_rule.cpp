@@ -10,10 +10,10 @@ namespace {
 std::vector<Warning> range_warnings(const ReducedModel& model, const FirstOrderRule& rule) {
     if (model.integrators > 0) return {};
     const double ratio = model.L / model.T1;
-    if (ratio >= rule.least && ratio <= rule.most) return {};
-    std::string range = "outside " + text(rule.least) + " to " + text(rule.most);
-    if (rule.least == 0) range = "above " + text(rule.most);
-    if (rule.most == std::numeric_limits<double>::infinity()) range = "below " + text(rule.least);
+    if (ratio >= rule.min && ratio <= rule.max) return {};
+    std::string range = "outside " + text(rule.min) + " to " + text(rule.max);
+    if (rule.min == 0) range = "above " + text(rule.max);
+    if (rule.max == std::numeric_limits<double>::infinity()) range = "below " + text(rule.min);
     return {outside_validity("L/T is " + text(ratio) + ", " + range + ", the range in which " + rule.name +
                              " holds. Check Ms, or use robust.")};
 }

@@ -12,8 +12,8 @@ namespace tunewright {
 
 struct FirstOrderRule {
     std::string name;  ///< as sentences call it
-    double least = 0;  ///< range of L/T for which the source gives the rule
-    double most = std::numeric_limits<double>::infinity();
+    double min = 0;    ///< range of L/T for which the source gives the rule
+    double max = std::numeric_limits<double>::infinity();
     bool has_integrating_form = false;                      ///< also for K e^(-Ls)/s
     TangentTime tangent_time = TangentTime::at_63_percent;  ///< T of the tangent that plants of other forms get
 };

@@ -16,7 +16,7 @@
 #include "engine/plant/linear/linear_plant.h"
 #include "engine/plant/plant_family.h"
 #include "engine/progress.h"
-#include "engine/tuning/built/build.h"
+#include "engine/tuning/device/device_model.h"
 #include "engine/tuning/method/method_report.h"
 #include "engine/tuning/method/option_set.h"
 #include "engine/tuning/method/options.h"
@@ -43,9 +43,9 @@ struct TunedController {
 };
 
 /// A design for a controller as it is built, and the settings that are typed.
-struct BuiltDesign {
+struct DeviceDesign {
     TunedController tuned;  ///< its controller is the ideal twin of the settings
-    built::Fitted fitted;
+    device::Fitted fitted;
 };
 
 /// The controller that the method answers.
@@ -97,15 +97,15 @@ struct TuningMethod {
         tune_on_points = {};
     /// For a controller as it is built: the limits hold on the loop as it computes. Empty: the method designs the ideal
     /// law, which is then fitted.
-    std::function<Expected<BuiltDesign>(const TuningProblem&, const MethodOptions&, const built::Build&,
-                                        const RunControl&)>
-        tune_as_built = {};
+    std::function<Expected<DeviceDesign>(const TuningProblem&, const MethodOptions&, const device::DeviceModel&,
+                                         const RunControl&)>
+        tune_for_device = {};
     std::vector<OptionDescription> options_on_points = {};  ///< with other defaults; empty: the same options
 
     /// The options and the function that takes them as a struct: `solve(problem, options)`, or with the RunControl
     /// behind them.
     template <class Options, class Solve>
-    void serve(const OptionSet<Options>& set, Solve solve) {
+    void bind(const OptionSet<Options>& set, Solve solve) {
         options = set.descriptions();
         tune = [set, solve](const TuningProblem& problem, const MethodOptions& given, const RunControl& control) {
             return solved(solve, problem, set.read(given), control);
@@ -119,10 +119,10 @@ struct TuningMethod {
     }
 
     template <class Options, class Solve>
-    void serve_as_built(const OptionSet<Options>& set, Solve solve) {
-        tune_as_built = [set, solve](const TuningProblem& problem, const MethodOptions& given,
-                                     const built::Build& build, const RunControl& control) {
-            return solve(problem, set.read(given), build, control);
+    void bind_for_device(const OptionSet<Options>& set, Solve solve) {
+        tune_for_device = [set, solve](const TuningProblem& problem, const MethodOptions& given,
+                                       const device::DeviceModel& device, const RunControl& control) {
+            return solve(problem, set.read(given), device, control);
         };
     }
 

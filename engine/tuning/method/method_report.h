@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/evaluation/evaluation.h"
-#include "engine/plant/subject.h"
+#include "engine/plant/analysed_plant.h"
 
 namespace tunewright {
 
@@ -14,7 +14,7 @@ class Tradeoffs;
 
 /// What a report may be completed from, once its controller has been evaluated.
 struct ReportContext {
-    const Subject& subject;
+    const AnalysedPlant& subject;
     const EvaluateOptions& options;
     Tradeoffs& tradeoffs;  ///< on the nominal plant; kept for the whole request
 };

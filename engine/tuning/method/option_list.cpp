@@ -63,14 +63,14 @@ void OptionList::describe_number(OptionType type, std::string_view name, std::st
     OptionDescription& option = describe(type, name, sentence, how);
     if (preset && !how.required)
         option.default_value = *preset;
-    else if (how.otherwise)
-        option.default_value = *how.otherwise;
+    else if (how.fallback)
+        option.default_value = *how.fallback;
 }
 
-void OptionList::describe_list(std::string_view name, std::string_view sentence, OptionDescription element, int most) {
+void OptionList::describe_list(std::string_view name, std::string_view sentence, OptionDescription element, int max) {
     OptionDescription& option = describe(OptionType::list, name, sentence);
     option.fields = {std::move(element)};
-    option.most = most;
+    option.max = max;
 }
 
 void OptionList::describe_as(const std::vector<OptionDescription>& others) {
@@ -120,9 +120,9 @@ void OptionList::numbers_by_name(const Member<std::map<std::string, double>>& me
 }
 
 void OptionList::complex_list(const Member<std::vector<std::complex<double>>>& member, std::string_view name,
-                              std::string_view sentence, OptionDescription element, int most) {
+                              std::string_view sentence, OptionDescription element, int max) {
     element.type = OptionType::complex;
-    describe_list(name, sentence, std::move(element), most);
+    describe_list(name, sentence, std::move(element), max);
     bind_list<std::complex<double>>(member.offset, name, [](const MethodOptions& given, const std::string& path) {
         if (const auto real = given.number(path)) return std::complex<double>(*real);
         return std::complex<double>(given.number(path + "/0").value_or(0), given.number(path + "/1").value_or(0));
@@ -130,9 +130,9 @@ void OptionList::complex_list(const Member<std::vector<std::complex<double>>>& m
 }
 
 void OptionList::text_list(const Member<std::vector<std::string>>& member, std::string_view name,
-                           std::string_view sentence, OptionDescription element, int most) {
+                           std::string_view sentence, OptionDescription element, int max) {
     element.type = OptionType::text;
-    describe_list(name, sentence, std::move(element), most);
+    describe_list(name, sentence, std::move(element), max);
     bind_list<std::string>(member.offset, name, [](const MethodOptions& given, const std::string& path) {
         return given.text(path).value_or("");
     });

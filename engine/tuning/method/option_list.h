@@ -23,7 +23,7 @@ struct NumberOption {
     std::string_view unit = {};
     std::optional<double> minimum = {}, exclusive_minimum = {}, maximum = {};
     bool required = false;
-    std::optional<double> otherwise = {};  ///< what an empty member stands for, where that is one number
+    std::optional<double> fallback = {};  ///< what an empty member stands for, where that is one number
 };
 
 /// Evenly between the limits of the number; about its value where it has only a lower limit.
@@ -147,17 +147,17 @@ public:
     void numbers_by_name(const Member<std::map<std::string, double>>& member, std::string_view name,
                          std::string_view sentence);
     void complex_list(const Member<std::vector<std::complex<double>>>& member, std::string_view name,
-                      std::string_view sentence, OptionDescription element, int most);
+                      std::string_view sentence, OptionDescription element, int max);
     void text_list(const Member<std::vector<std::string>>& member, std::string_view name, std::string_view sentence,
-                   OptionDescription element, int most);
+                   OptionDescription element, int max);
 
     /// `Set`: an OptionSet<E>.
     template <class E, class Set>
     void object_list(const Member<std::vector<E>>& member, std::string_view name, std::string_view sentence,
-                     OptionDescription element, const Set& set, int most) {
+                     OptionDescription element, const Set& set, int max) {
         element.type = OptionType::object;
         element.fields = set.descriptions();
-        describe_list(name, sentence, std::move(element), most);
+        describe_list(name, sentence, std::move(element), max);
         bind_list<E>(member.offset, name, [set](const MethodOptions& given, const std::string& path) {
             return set.read(given, path + "/");
         });
@@ -192,7 +192,7 @@ private:
                                 const NumberOption& how = {});
     void describe_number(OptionType type, std::string_view name, std::string_view sentence, const NumberOption& how,
                          std::optional<double> preset);
-    void describe_list(std::string_view name, std::string_view sentence, OptionDescription element, int most);
+    void describe_list(std::string_view name, std::string_view sentence, OptionDescription element, int max);
     void describe_as(const std::vector<OptionDescription>& others);
     void add(Binding binding);
 

@@ -88,23 +88,23 @@ public:
         return *this;
     }
 
-    /// Numbers or pairs [re, im], at most `most`; `element` describes one.
+    /// Numbers or pairs [re, im], at most `max`; `element` describes one.
     OptionSet& complex_list(std::vector<std::complex<double>> T::*member, std::string_view name,
-                            std::string_view sentence, const OptionDescription& element, int most) {
-        list_.complex_list(at(member), name, sentence, element, most);
+                            std::string_view sentence, const OptionDescription& element, int max) {
+        list_.complex_list(at(member), name, sentence, element, max);
         return *this;
     }
 
     OptionSet& text_list(std::vector<std::string> T::*member, std::string_view name, std::string_view sentence,
-                         const OptionDescription& element, int most) {
-        list_.text_list(at(member), name, sentence, element, most);
+                         const OptionDescription& element, int max) {
+        list_.text_list(at(member), name, sentence, element, max);
         return *this;
     }
 
     template <class E>
     OptionSet& object_list(std::vector<E> T::*member, std::string_view name, std::string_view sentence,
-                           const OptionDescription& element, const OptionSet<E>& set, int most) {
-        list_.object_list(at(member), name, sentence, element, set, most);
+                           const OptionDescription& element, const OptionSet<E>& set, int max) {
+        list_.object_list(at(member), name, sentence, element, set, max);
         return *this;
     }
 

@@ -53,7 +53,7 @@ struct OptionDescription {
     std::vector<OptionDescription> fields = {};                                ///< of an object; of a list: one
     int at_most_fields = 0;  ///< of an object: 0, any number may be given
     bool required = false;   ///< of an object's field
-    int most = 100;          ///< of a list: elements, of numbers_by_name: names; at least one
+    int max = 100;           ///< of a list: elements, of numbers_by_name: names; at least one
     bool main = false;       ///< decides what comes out: a form shows it at once, the others on request
     bool draws = false;      ///< adds what a page draws to the report; a page asks for it by itself
     std::optional<OptionSlider> slider = {};  ///< of a number that makes sense to be moved

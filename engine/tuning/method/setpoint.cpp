@@ -16,21 +16,21 @@
 namespace tunewright {
 namespace {
 
-constexpr double kSpare = 2e-3;             // percentage points of overshoot, for the figures' own error
-constexpr double kFixedWeight = 1e-2;       // of b: a step of its setting is finer
-constexpr double kDigits = 1e4;             // b is answered to four decimals
-constexpr int kLongestFilter = 24;          // doublings of the first filter tried
-constexpr int kShortestFilter = 24;         // halvings
-constexpr double kFilterTolerance = 1e-12;  // relative
+constexpr double kOvershootReservePercent = 2e-3;  // percentage points of overshoot, for the figures' own error
+constexpr double kFixedWeight = 1e-2;              // of b: a step of its setting is finer
+constexpr double kWeightStepsPerUnit = 1e4;        // b is answered to four decimals
+constexpr int kLongestFilter = 24;                 // doublings of the first filter tried
+constexpr int kShortestFilter = 24;                // halvings
+constexpr double kFilterTolerance = 1e-12;         // relative
 constexpr int kHalvings = 40;
-constexpr int kSections = 26;           // golden ones: leave 4e-6 of the interval
+constexpr int kGoldenSections = 26;     // golden ones: leave 4e-6 of the interval
 constexpr double kStepOfPair = 0.05;    // of b: a pair's IAE moves by less than 0.3 % between two
 constexpr double kStepOfWeight = 1e-3;  // of b, over which the IAE shows whether it rises
 
-double least(const auto& f) { return golden_section(f, 0, 1, kSections); }
+double min(const auto& f) { return golden_section(f, 0, 1, kGoldenSections); }
 
-double rounded(double b) { return std::round(b * kDigits) / kDigits; }
-double down(double b) { return std::floor(b * kDigits) / kDigits; }
+double rounded(double b) { return std::round(b * kWeightStepsPerUnit) / kWeightStepsPerUnit; }
+double down(double b) { return std::floor(b * kWeightStepsPerUnit) / kWeightStepsPerUnit; }
 bool same_digits(double a, double b) { return down(a) == down(b); }
 
 /// The shortest filter that keeps the limit; empty: none that was looked at does. `near`: where the search begins.
@@ -55,7 +55,7 @@ std::optional<double> shortest_filter(const SetpointResponses::Filtered& respons
     return std::nullopt;
 }
 
-double overshoot_limit(double asked) { return std::max(asked - kSpare, kSpare); }
+double overshoot_limit(double asked) { return std::max(asked - kOvershootReservePercent, kOvershootReservePercent); }
 
 struct WeightAndFilter {
     double b = 0, T = 0;
@@ -100,15 +100,15 @@ double best_weight(const SetpointResponses& responses, double limit, double best
     }
     const double less = largest - kStepOfWeight;
     if (less < 0 || !keeps(less) || IAE(largest) <= IAE(less)) return largest;
-    const double least_at_all = rounded(least(IAE));
-    return keeps(least_at_all) ? least_at_all : largest;
+    const double min_at_all = rounded(min(IAE));
+    return keeps(min_at_all) ? min_at_all : largest;
 }
 
 std::vector<Warning> keep_overshoot(const SetpointResponses& responses, double asked, bool may_filter, IdealPid& pid) {
     const double limit = overshoot_limit(asked);
     const auto overshoot = [&](double b) { return responses.overshoot(b); };
     pid.setpoint_lag = 0;
-    const double best = overshoot(1) <= limit ? 1 : overshoot(0) <= limit ? 0 : least(overshoot);
+    const double best = overshoot(1) <= limit ? 1 : overshoot(0) <= limit ? 0 : min(overshoot);
     if (overshoot(best) <= limit) {
         pid.b = best_weight(responses, limit, best);
         return {};
@@ -148,7 +148,7 @@ std::vector<Warning> choose_setpoint(const LinearPlant& plant, const SetpointOpt
     if (!responses) return {{"setpoint-left", "The set-point weight is left as it is: " + responses.why}};
     if (options.overshoot) return keep_overshoot(*responses, *options.overshoot, options.may_filter, pid);
     pid.setpoint_lag = 0;
-    pid.b = rounded(least([&](double b) { return responses->IAE(b); }));
+    pid.b = rounded(min([&](double b) { return responses->IAE(b); }));
     return {};
 }
 
@@ -212,19 +212,19 @@ void weigh_setpoint(const LinearPlant& plant, const SetpointOptions& options, Tu
 namespace {
 
 /// The block with the weight that keeps the wish, if it has one to set and nothing else of it moves; else with its own.
-void settle_weight(built::Fitted& fitted, const built::Build& build, const LinearPlant& plant,
+void settle_weight(device::Fitted& fitted, const device::DeviceModel& device, const LinearPlant& plant,
                    const SetpointOptions& options, TunedController& tuned) {
     IdealPid wished = fitted.controller;
     TunedController twin;
-    twin.controller = built::continuous(wished);
+    twin.controller = device::continuous(wished);
     weigh_setpoint(plant, options, twin);
     wished.b = twin.controller.b;
     wished.setpoint_lag = twin.controller.setpoint_lag;
-    auto again = built::fit(build, wished);
+    auto again = device::fit(device, wished);
     if (again && std::abs(again->controller.b - wished.b) > kFixedWeight) {
         // A weight that cannot be set is the block's own, and no difference from the design to tell of.
         wished.b = again->controller.b;
-        again = built::fit(build, wished);
+        again = device::fit(device, wished);
     }
     if (!again) return;
     IdealPid loop = again->controller;
@@ -232,25 +232,25 @@ void settle_weight(built::Fitted& fitted, const built::Build& build, const Linea
     loop.setpoint_lag = fitted.controller.setpoint_lag;
     if (loop != fitted.controller) return;
     fitted = std::move(*again);
-    tuned.controller = built::continuous(fitted.controller);
+    tuned.controller = device::continuous(fitted.controller);
     tuned.warnings.insert(tuned.warnings.end(), twin.warnings.begin(), twin.warnings.end());
 }
 
 }  // namespace
 
-void weigh_setpoint(built::Fitted& fitted, const built::Build& build, const LinearPlant& plant,
+void weigh_setpoint(device::Fitted& fitted, const device::DeviceModel& device, const LinearPlant& plant,
                     const SetpointOptions& options, TunedController& tuned) {
     if (!options.given()) return;
     SetpointOptions possible = options;
-    possible.may_filter = build.product == nullptr;
-    settle_weight(fitted, build, plant, possible, tuned);
+    possible.may_filter = device.product == nullptr;
+    settle_weight(fitted, device, plant, possible, tuned);
 }
 
-std::optional<SetpointCure> cure_overshoot(const LinearPlant& plant, double most_percent, const IdealPid& pid,
+std::optional<SetpointCure> cure_overshoot(const LinearPlant& plant, double max_percent, const IdealPid& pid,
                                            bool may_weigh) {
     const auto responses = responses_of(plant, pid);
     if (!responses) return std::nullopt;
-    const double limit = overshoot_limit(most_percent);
+    const double limit = overshoot_limit(max_percent);
     if (may_weigh && pid.setpoint_lag == 0 && responses->overshoot(0) <= limit) {
         const double b = best_weight(*responses, limit, 0);
         if (b < pid.b) return SetpointCure{b, 0};

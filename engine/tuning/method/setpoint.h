@@ -51,7 +51,7 @@ void weigh_setpoint(const LinearPlant& plant, const SetpointOptions& options, Tu
 
 /// The same of a design for a controller as it is built: `fitted` is settled again with the weight, where it has one
 /// and nothing else of it moves. `tuned` is its twin. Products have no filter of the set point.
-void weigh_setpoint(built::Fitted& fitted, const built::Build& build, const LinearPlant& plant,
+void weigh_setpoint(device::Fitted& fitted, const device::DeviceModel& device, const LinearPlant& plant,
                     const SetpointOptions& options, TunedController& tuned);
 
 /// A weight or a lag that keeps the overshoot of a set-point step.
@@ -61,8 +61,8 @@ struct SetpointCure {
 };
 
 /// A lower weight, where `may_weigh`; else the shortest lag of the set point with the weight as it is. Empty: neither
-/// is known to keep `most_percent`. Linear, without limits of u.
-std::optional<SetpointCure> cure_overshoot(const LinearPlant& plant, double most_percent, const IdealPid& pid,
+/// is known to keep `max_percent`. Linear, without limits of u.
+std::optional<SetpointCure> cure_overshoot(const LinearPlant& plant, double max_percent, const IdealPid& pid,
                                            bool may_weigh);
 
 }  // namespace tunewright

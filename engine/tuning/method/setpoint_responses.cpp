@@ -7,7 +7,7 @@
 namespace tunewright {
 namespace {
 
-constexpr double kTolerance = 1e-5, kSettled = 1e-6;  // of the responses that the choice is made on
+constexpr double kTolerance = 1e-5, kSettledTolerance = 1e-6;  // of the responses that the choice is made on
 constexpr double kSameInstant = 1e-12;
 
 /// Instants nearer than the times' rounding are one.
@@ -35,7 +35,7 @@ void align(std::vector<ResponseNode>& a, std::vector<ResponseNode>& b) {
 SetpointResponses::SetpointResponses(const LinearPlant& plant, const IdealPid& pid) {
     ResponseOptions options;
     options.tolerance = kTolerance;
-    options.settled = kSettled;
+    options.settled = kSettledTolerance;
     IdealPid with = pid;
     with.setpoint_lag = 0;
     with.b = 1;

@@ -67,7 +67,7 @@ TuningMethod gain_phase_margin_method() {
     options.slider("gain_margin").slider("phase_margin_deg");
     add_reduction(options, "half_rule; tangent (first order: PI) where that does not apply.");
     add_filter(options, "of the derivative part of the ideal form, Td s/(1 + s Tf).");
-    method.serve(options, tune_gain_phase_margin);
+    method.bind(options, tune_gain_phase_margin);
     return method;
 }
 

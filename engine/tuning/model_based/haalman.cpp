@@ -39,7 +39,7 @@ TuningMethod haalman_method() {
     add_controller(options, {ControllerKind::PI, ControllerKind::PID});
     add_reduction(options, "half_rule; tangent (first order: PI) where that does not apply.");
     add_filter(options, "of the derivative part, Td s/(1 + s Tf); the source has none.");
-    method.serve(options, tune_haalman);
+    method.bind(options, tune_haalman);
     return method;
 }
 

@@ -118,9 +118,9 @@ Expected<TunedController> tune_imc(const TuningProblem& problem, const ImcOption
     if (pid.Td == 0) pid.filter = {};
 
     std::vector<Warning> warnings;
-    const double least = std::max(0.25 * model.L, 0.02 * model.n1);
-    if (f.lambda < least)
-        warnings.push_back(outside_validity("lambda = " + text(f.lambda) + " is below " + text(least) +
+    const double min = std::max(0.25 * model.L, 0.02 * model.n1);
+    if (f.lambda < min)
+        warnings.push_back(outside_validity("lambda = " + text(f.lambda) + " is below " + text(min) +
                                             ": the PID no longer follows the controller that it approximates. Give a "
                                             "larger lambda."));
     auto answer = rule_answer(problem, *reduced, pid, std::move(warnings));
@@ -158,13 +158,13 @@ TuningMethod imc_method() {
     options.main({"lambda"}).slider("lambda");
     add_reduction(options, "half_rule; tangent (first order) where that does not apply.");
     add_filter(options, "of the derivative part, Td s/(1 + s Tf).");
-    method.serve(options, tune_imc);
+    method.bind(options, tune_imc);
     return method;
 }
 
 namespace {
 
-constexpr double kRounding = 1e-12;
+constexpr double kRelativeRounding = 1e-12;
 
 }  // namespace
 
@@ -173,7 +173,7 @@ ImcTerms imc_terms(double K, double n1, double n2, const std::array<double, 4>& 
     const double m1 = (n1 - d[1] * m0) / d[0];
     double m2 = (n2 - d[1] * m1 - d[2] * m0) / d[0];
     // Its parts can cancel to the last digit, as for a plant without dead time.
-    if (std::abs(m2 * d[0]) <= kRounding * (std::abs(n2) + std::abs(d[1] * m1) + std::abs(d[2] * m0))) m2 = 0;
+    if (std::abs(m2 * d[0]) <= kRelativeRounding * (std::abs(n2) + std::abs(d[1] * m1) + std::abs(d[2] * m0))) m2 = 0;
     const double m3 = (-d[1] * m2 - d[2] * m1 - d[3] * m0) / d[0];
     return {m0 / K, m1 / K, m2 / K, m3 / K};
 }

@@ -31,13 +31,13 @@ Expected<TunedController> tune_improved_simc(const TuningProblem& problem, const
         return degenerate("plant/L", "The improvement over SIMC lies in the dead time, and that of the model is 0.",
                           "Use simc with tau_c, the closed-loop time constant that you want.");
     const bool wants_PID = options.controller == ControllerKind::PID;
-    const double least = wants_PID ? model->L / 2 : model->L;
-    const double tau_c = options.tau_c.value_or(least);
+    const double min = wants_PID ? model->L / 2 : model->L;
+    const double tau_c = options.tau_c.value_or(min);
     IdealPid answer = wants_PID ? improved_pid(*model, tau_c) : improved_pi(*model, tau_c);
     answer.filter = chosen_filter(options.filter, FilterType::derivative, answer.Td);
     std::vector<Warning> warnings;
-    if (tau_c < least)
-        warnings.push_back(outside_validity("tau_c = " + text(tau_c) + " is below " + text(least) +
+    if (tau_c < min)
+        warnings.push_back(outside_validity("tau_c = " + text(tau_c) + " is below " + text(min) +
                                             ", the tightest that the source recommends for this model."));
     return rule_answer(problem, *model, answer, std::move(warnings));
 }
@@ -66,7 +66,7 @@ TuningMethod improved_simc_method() {
     options.main({"tau_c"}).slider("tau_c");
     add_reduction(options, "half_rule, as in SIMC; tangent where that does not apply.");
     add_filter(options, "of the derivative part of the ideal form, Td s/(1 + s Tf).");
-    method.serve(options, tune_improved_simc);
+    method.bind(options, tune_improved_simc);
     return method;
 }
 

@@ -34,10 +34,10 @@ std::vector<Warning> remarks(const ReducedModel& model, double lambda, bool want
         return {outside_validity("lambda = " + text(lambda) + " is below the dead time L = " + text(model.L) +
                                  ": the loop will be oscillatory. Give a larger lambda.")};
     }
-    const double least =
+    const double min =
         wants_PID ? std::max(0.8 * model.L, 0.1 * model.T1) : std::max(0.7 * model.L, 0.2 * model.T1 - model.L);
-    if (lambda >= least) return {};
-    return {outside_validity("lambda = " + text(lambda) + " is below " + text(least) +
+    if (lambda >= min) return {};
+    return {outside_validity("lambda = " + text(lambda) + " is below " + text(min) +
                              ", the least that the source recommends for this model. Give a larger lambda.")};
 }
 
@@ -88,7 +88,7 @@ TuningMethod lambda_method() {
     options.main({"lambda"}).slider("lambda");
     add_reduction(options, "tangent, half_rule where the step response has no tangent.");
     add_filter(options, "of the derivative part, Td s/(1 + s Tf).");
-    method.serve(options, tune_lambda);
+    method.bind(options, tune_lambda);
     return method;
 }
 

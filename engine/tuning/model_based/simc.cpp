@@ -95,7 +95,7 @@ TuningMethod simc_method() {
     options.main({"tau_c"}).slider("tau_c");
     add_reduction(options, "half_rule, as in the source; tangent (first order: PI) where that does not apply.");
     add_filter(options, "of the derivative part of the ideal form, Td s/(1 + s Tf).");
-    method.serve(options, tune_simc);
+    method.bind(options, tune_simc);
     return method;
 }
 

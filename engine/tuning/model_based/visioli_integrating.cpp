@@ -46,7 +46,7 @@ TuningMethod visioli_integrating_method() {
     add_criterion(options, {istse, itse, ise});
     add_reduction(options, "the asymptote of the ramp; half_rule where that leads the step.");
     add_filter(options, "of the derivative part, Td s/(1 + s Tf); the source has none.");
-    method.serve(options, tune_visioli_integrating);
+    method.bind(options, tune_visioli_integrating);
     return method;
 }
 

@@ -16,28 +16,28 @@
 namespace tunewright {
 namespace {
 
-constexpr double kNoLoop = 50;        // ln(cost/scale) of what is no stable loop
-constexpr double kMaxNeutral = 0.98;  // of |L(infinity)|: beyond it echoes hardly fade
-constexpr int kExplored = 500;        // points of the global search
-constexpr int kStarts = 3;            // of local searches from it
-constexpr double kApart = 0.5;        // of two starts, in ln
+constexpr double kLogCostOfNoLoop = 50;       // ln(cost/scale) of what is no stable loop
+constexpr double kMaxNeutralModulus = 0.98;   // of |L(infinity)|: beyond it echoes hardly fade
+constexpr int kExploredPoints = 500;          // points of the global search
+constexpr int kStarts = 3;                    // of local searches from it
+constexpr double kMinLogStartDistance = 0.5;  // of two starts, in ln
 constexpr int kLocalEvaluations = 260;
 constexpr int kPolishes = 8;
-constexpr double kPolished = 2e-5;  // gain in ln at which they end
-constexpr int kExpected = kExplored + (kStarts + 2) * kLocalEvaluations;
+constexpr double kMinLogPolishGain = 2e-5;  // gain in ln at which they end
+constexpr int kExpected = kExploredPoints + (kStarts + 2) * kLocalEvaluations;
 constexpr int kReportEvery = 50;
 // The box, in Ku, Pu and the sum of the lags: wider than any optimum that was found by searches without one.
-constexpr double kLeastGain = 0.02, kMostGain = 10;
-constexpr double kLeastTi = 0.05, kMostTi = 20;
-constexpr double kLeastTd = 2e-3;
+constexpr double kMinGain = 0.02, kMaxGain = 10;
+constexpr double kMinTi = 0.05, kMaxTi = 20;
+constexpr double kMinTd = 2e-3;
 constexpr double kWideStep = 0.15, kWideTolerance = 1e-5;      // of the local searches, in ln
 constexpr double kNarrowStep = 0.03, kNarrowTolerance = 1e-7;  // of the polish
-constexpr double kRounding = 1e-9;                             // in ln, of a point on the box's edge
+constexpr double kLogBoundTolerance = 1e-9;                    // in ln, of a point on the box's edge
 // Of the responses: the coarser ones tell valleys apart, the finer ones show what a polish wins.
 constexpr double kRoughTolerance = 1e-4, kFineTolerance = 1e-6;
 constexpr double kSettledOfTolerance = 0.01;
-constexpr double kNearBound = 1e-3;  // in ln
-constexpr int kMaxSteps = 4000;      // of a response; what has not settled then is no candidate
+constexpr double kMaxLogBoundDistance = 1e-3;  // in ln
+constexpr int kMaxSteps = 4000;                // of a response; what has not settled then is no candidate
 
 class NpidSearch {
 public:
@@ -47,10 +47,10 @@ public:
         double lags = 0;
         for (const auto pole : problem.plant.poles()) lags += 1 / std::abs(pole);
         with_derivative_ = problem.plant.pole_excess() > 0 || problem.Tf_over_Td > 0 || problem.Tf;
-        box_.low = {std::log(kLeastGain * Ku), std::log(kLeastTi * Pu)};
-        box_.high = {std::log(kMostGain * Ku), std::log(kMostTi * (Pu + lags))};
+        box_.low = {std::log(kMinGain * Ku), std::log(kMinTi * Pu)};
+        box_.high = {std::log(kMaxGain * Ku), std::log(kMaxTi * (Pu + lags))};
         if (with_derivative_) {
-            box_.low.push_back(std::log(kLeastTd * Pu));
+            box_.low.push_back(std::log(kMinTd * Pu));
             box_.high.push_back(std::log(Pu + lags));
         }
         time_ = Pu;
@@ -58,12 +58,12 @@ public:
 
     Expected<NpidOptimum> run() {
         const auto f = [this](const std::vector<double>& x, bool& stop) { return log_cost(x, stop); };
-        std::vector<LocalMinimum> starts = apart(explore(f, box_, kExplored));
+        std::vector<LocalMinimum> starts = apart(explore(f, box_, kExploredPoints));
         if (problem_.start) starts.push_back({logs(*problem_.start), 0});
         const LocalOptions wide{std::vector<double>(box_.low.size(), kWideStep), kWideTolerance, kLocalEvaluations};
         for (const auto& start : starts)
             if (!stopped_) find_local_minimum(LocalSearch::subplex, f, start.x, wide);
-        if (!(best_.value < kNoLoop)) return nothing_found();
+        if (!(best_.value < kLogCostOfNoLoop)) return nothing_found();
         fine_ = true;
         polish(f);
         return answer();
@@ -75,12 +75,12 @@ private:
     void polish(const std::function<double(const std::vector<double>&, bool&)>& f) {
         const LocalOptions narrow{std::vector<double>(box_.low.size(), kNarrowStep), kNarrowTolerance,
                                   kLocalEvaluations};
-        best_.value = kNoLoop;  // of the coarser responses
+        best_.value = kLogCostOfNoLoop;  // of the coarser responses
         for (int i = 0; i < kPolishes && !stopped_; ++i) {
             const double before = best_.value;
             find_local_minimum(i % 2 == 0 ? LocalSearch::subplex : LocalSearch::nelder_mead, f,
                                std::vector<double>(best_.x), narrow);
-            if (i > 0 && before - best_.value < kPolished) break;
+            if (i > 0 && before - best_.value < kMinLogPolishGain) break;
         }
     }
 
@@ -103,39 +103,39 @@ private:
         ++evaluations_;
         if (control_.stop.stop_requested()) {
             stop = stopped_ = true;
-            return kNoLoop;
+            return kLogCostOfNoLoop;
         }
         if (control_.progress && evaluations_ % kReportEvery == 0)
             control_.progress({std::min(1.0, double(evaluations_) / kExpected), "tune",
                                "Searching the nonlinear PID's optimum.", nullptr});
-        const double value = within(x) ? cost(controller(x)) : kNoLoop;
+        const double value = within(x) ? cost(controller(x)) : kLogCostOfNoLoop;
         if (value < best_.value) best_ = {x, value};
         return value;
     }
 
     bool within(const std::vector<double>& x) const {
         for (std::size_t i = 0; i < x.size(); ++i)
-            if (!(x[i] >= box_.low[i] - kRounding && x[i] <= box_.high[i] + kRounding)) return false;
+            if (!(x[i] >= box_.low[i] - kLogBoundTolerance && x[i] <= box_.high[i] + kLogBoundTolerance)) return false;
         return true;
     }
 
-    /// ln of the criterion, time in periods; kNoLoop where the response does not settle.
+    /// ln of the criterion, time in periods; kLogCostOfNoLoop where the response does not settle.
     double cost(const IdealPid& pid) const {
         const auto loop = Loop::make(problem_.plant, to_parallel(pid));
-        if (!loop) return kNoLoop;
-        if (problem_.plant.dead_time() > 0 && loop->high_frequency_gain() > kMaxNeutral) return kNoLoop;
+        if (!loop) return kLogCostOfNoLoop;
+        if (problem_.plant.dead_time() > 0 && loop->high_frequency_gain() > kMaxNeutralModulus) return kLogCostOfNoLoop;
         ResponseOptions options;
         options.tolerance = fine_ ? kFineTolerance : kRoughTolerance;
         options.settled = kSettledOfTolerance * options.tolerance;
         options.max_steps = kMaxSteps;
         const StepResponse response = simulate_npid(problem_.plant, loop->gains(), 1, {1, 0}, options);
-        if (!response.settles) return kNoLoop;
+        if (!response.settles) return kLogCostOfNoLoop;
         const auto e = error_integrals(response.nodes, 1, response.error_integral_final);
         const double value = problem_.criterion == ErrorCriterion::ISE   ? e.ISE / time_
                              : problem_.criterion == ErrorCriterion::IAE ? e.IAE / time_
                                                                          : e.ITAE / (time_ * time_);
         const double log_value = std::log(value);
-        return std::isfinite(log_value) ? std::min(log_value, kNoLoop) : kNoLoop;
+        return std::isfinite(log_value) ? std::min(log_value, kLogCostOfNoLoop) : kLogCostOfNoLoop;
     }
 
     /// The best points that are not close to better ones.
@@ -143,12 +143,12 @@ private:
         std::ranges::stable_sort(met, {}, &LocalMinimum::value);
         std::vector<LocalMinimum> chosen;
         for (const auto& point : met) {
-            if (point.value >= kNoLoop || chosen.size() == kStarts) break;
+            if (point.value >= kLogCostOfNoLoop || chosen.size() == kStarts) break;
             const auto close = [&](const LocalMinimum& other) {
                 double distance = 0;
                 for (std::size_t i = 0; i < point.x.size(); ++i)
                     distance = std::max(distance, std::abs(point.x[i] - other.x[i]));
-                return distance < kApart;
+                return distance < kMinLogStartDistance;
             };
             if (std::ranges::none_of(chosen, close)) chosen.push_back(point);
         }
@@ -169,7 +169,8 @@ private:
         optimum.stopped = stopped_;
         // The lower bound of Td is a PI, as good as any.
         for (std::size_t i = 0; i < best_.x.size(); ++i)
-            if ((i < 2 && best_.x[i] < box_.low[i] + kNearBound) || best_.x[i] > box_.high[i] - kNearBound)
+            if ((i < 2 && best_.x[i] < box_.low[i] + kMaxLogBoundDistance) ||
+                best_.x[i] > box_.high[i] - kMaxLogBoundDistance)
                 optimum.at_bound = true;
         const auto loop = Loop::make(problem_.plant, to_parallel(optimum.controller));
         if (!loop || !count_unstable_poles(*loop).stable()) return nothing_found();
@@ -181,7 +182,7 @@ private:
     double sign_ = 1, time_ = 1;
     bool with_derivative_ = true, fine_ = false, stopped_ = false;
     Box box_;
-    LocalMinimum best_{{}, kNoLoop};
+    LocalMinimum best_{{}, kLogCostOfNoLoop};
     int evaluations_ = 0;
 };
 

@@ -130,7 +130,7 @@ TuningMethod described(const Rule& rule, Solve* solve) {
                      " after a set-point step on this very plant instead of taking the rule's: any linear plant.");
     add_reduction(options, "min_iae, as the source's fit of the step response; half_rule where that does not apply.");
     add_filter(options, "of the derivative, Td s/(1 + s Tf); none by default, as in the source.");
-    method.serve(options, solve);
+    method.bind(options, solve);
     return method;
 }
 

@@ -66,7 +66,7 @@ TuningMethod amigo_method() {
     add_controller(options, {ControllerKind::PI, ControllerKind::PID});
     add_reduction(options, "tangent, as in the source; half_rule where the step response has no tangent.");
     add_filter(options, "second order on the measurement, as in the source.");
-    method.serve(options, tune_amigo);
+    method.bind(options, tune_amigo);
     return method;
 }
 

@@ -23,8 +23,8 @@ Expected<TunedController> tune_chien_hrones_reswick(const TuningProblem& problem
     const bool overshoots = options.overshoot == DesignOvershoot::twenty_percent;
     return tune_first_order(problem, options.model,
                             {.name = std::string("Chien-Hrones-Reswick") + (for_load ? "" : " for set points"),
-                             .least = 0.1,
-                             .most = 1,
+                             .min = 0.1,
+                             .max = 1,
                              .has_integrating_form = for_load || controller == ControllerKind::P,
                              .tangent_time = TangentTime::by_slope},
                             [&](const ReducedModel& model) {
@@ -68,7 +68,7 @@ TuningMethod chien_hrones_reswick_method() {
         {"PID, servo, 0 %", options.given_for({.mode = Mode::servo})},
         {"PID, servo, 20 %", options.given_for({.mode = Mode::servo, .overshoot = twenty_percent})},
     };
-    method.serve(options, tune_chien_hrones_reswick);
+    method.bind(options, tune_chien_hrones_reswick);
     return method;
 }
 

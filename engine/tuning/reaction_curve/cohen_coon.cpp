@@ -12,7 +12,7 @@ IdealPid settings(ControllerKind controller, const ReducedModel& model) {
 
 Expected<TunedController> tune_cohen_coon(const TuningProblem& problem, const CohenCoonOptions& options) {
     return tune_first_order(problem, options.model,
-                            {.name = "Cohen-Coon", .least = 0.1, .most = 1, .tangent_time = TangentTime::by_slope},
+                            {.name = "Cohen-Coon", .min = 0.1, .max = 1, .tangent_time = TangentTime::by_slope},
                             [&](const ReducedModel& model) { return settings(options.controller, model); });
 }
 
@@ -31,7 +31,7 @@ TuningMethod cohen_coon_method() {
     OptionSet<CohenCoonOptions> options;
     add_controller(options, {ControllerKind::P, ControllerKind::PI, ControllerKind::PID});
     options.embed(&CohenCoonOptions::model, first_order_options());
-    method.serve(options, tune_cohen_coon);
+    method.bind(options, tune_cohen_coon);
     return method;
 }
 

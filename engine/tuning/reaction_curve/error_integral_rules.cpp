@@ -48,7 +48,7 @@ const std::map<ControllerKind, std::map<FittedCriterion, ErrorIntegralRow>> kLop
 Expected<TunedController> tune_lopez(const TuningProblem& problem, const LopezOptions& options) {
     const auto& row = kLopez.at(options.controller).at(options.criterion);
     return tune_first_order(
-        problem, options.model, {.name = "Lopez", .least = 0.1, .most = 1},
+        problem, options.model, {.name = "Lopez", .min = 0.1, .max = 1},
         [&](const ReducedModel& model) { return error_integral_settings(row, IntegralLaw::power, model); });
 }
 
@@ -70,7 +70,7 @@ TuningMethod lopez_method() {
     add_controller(options, {P, PI, PID});
     add_criterion(options, {iae, ise, itae});
     options.embed(&LopezOptions::model, first_order_options());
-    method.serve(options, tune_lopez);
+    method.bind(options, tune_lopez);
     return method;
 }
 
@@ -84,7 +84,7 @@ const std::map<ControllerKind, std::map<FittedCriterion, ErrorIntegralRow>> kRov
 Expected<TunedController> tune_rovira(const TuningProblem& problem, const RoviraOptions& options) {
     const auto& row = kRovira.at(options.controller).at(options.criterion);
     return tune_first_order(
-        problem, options.model, {.name = "Rovira", .least = 0.1, .most = 1},
+        problem, options.model, {.name = "Rovira", .min = 0.1, .max = 1},
         [&](const ReducedModel& model) { return error_integral_settings(row, IntegralLaw::line, model); });
 }
 
@@ -105,7 +105,7 @@ TuningMethod rovira_method() {
     add_controller(options, {PI, PID});
     add_criterion(options, {itae, iae});
     options.embed(&RoviraOptions::model, first_order_options());
-    method.serve(options, tune_rovira);
+    method.bind(options, tune_rovira);
     return method;
 }
 
@@ -117,7 +117,7 @@ IdealPid wang_settings(const ReducedModel& model) {
 }
 
 Expected<TunedController> tune_wang(const TuningProblem& problem, const FirstOrderOptions& options) {
-    return tune_first_order(problem, options, {.name = "Wang-Juang-Chan", .least = 0.05, .most = 6}, wang_settings);
+    return tune_first_order(problem, options, {.name = "Wang-Juang-Chan", .min = 0.05, .max = 6}, wang_settings);
 }
 
 }  // namespace
@@ -130,7 +130,7 @@ TuningMethod wang_juang_chan_method() {
     method.source = "Wang, Juang and Chan, Chem. Eng. Communications 132 (1995) 15-34";
     method.needs = "fopdt with T > 0 and L > 0 (others are reduced)";
     method.validity = "L/T from 0.05 to 6; made for set-point steps";
-    method.serve(first_order_options(), tune_wang);
+    method.bind(first_order_options(), tune_wang);
     return method;
 }
 
@@ -166,7 +166,7 @@ const Tables kRegulation{
 Expected<TunedController> tune_zhuang(const TuningProblem& problem, const ZhuangAthertonOptions& options) {
     const bool servo = options.mode == Mode::servo;
     const auto& rows = (servo ? kServo : kRegulation).at(options.controller).at(options.criterion);
-    return tune_first_order(problem, options.model, {.name = "Zhuang-Atherton", .least = 0.1, .most = 2},
+    return tune_first_order(problem, options.model, {.name = "Zhuang-Atherton", .min = 0.1, .max = 2},
                             [&](const ReducedModel& model) {
                                 return error_integral_settings(model.L <= model.T1 ? rows.up_to_1 : rows.above_1,
                                                                servo ? IntegralLaw::line : IntegralLaw::power, model);
@@ -194,7 +194,7 @@ TuningMethod zhuang_atherton_method() {
     method.variants = {{"PI", options.given_for({.controller = PI})},
                        {"PID", {}},
                        {"PID, regulation", options.given_for({.mode = Mode::regulation})}};
-    method.serve(options, tune_zhuang);
+    method.bind(options, tune_zhuang);
     return method;
 }
 

@@ -37,7 +37,7 @@ Expected<TunedController> tune_kappa_tau(const TuningProblem& problem, const Kap
     const Row& row = wants_PID ? (robust ? kPID14 : kPID20) : (robust ? kPI14 : kPI20);
     return tune_first_order(
         problem, options.model,
-        {.name = wants_PID ? "Kappa-tau's PID" : "Kappa-tau's PI", .least = wants_PID ? 0.4 : 0.1, .most = 4},
+        {.name = wants_PID ? "Kappa-tau's PID" : "Kappa-tau's PI", .min = wants_PID ? 0.4 : 0.1, .max = 4},
         [&](const ReducedModel& model) { return settings(row, model); });
 }
 
@@ -66,7 +66,7 @@ TuningMethod kappa_tau_method() {
     method.variants = {{"PI, Ms = 1.4", options.given_for({.controller = ControllerKind::PI})},
                        {"PID, Ms = 1.4", {}},
                        {"PID, Ms = 2", options.given_for({.table_Ms = TableMs::Ms_2_0})}};
-    method.serve(options, tune_kappa_tau);
+    method.bind(options, tune_kappa_tau);
     return method;
 }
 

@@ -68,7 +68,7 @@ TuningMethod t_sum_method() {
                    Words<TSumSpeed>{{"normal", TSumSpeed::normal}, {"fast", TSumSpeed::fast}});
     add_filter(options, "of the derivative part, Td s/(1 + s Tf); the source has none.");
     method.variants = {{"PI", options.given_for({.controller = PI})}, {"PID", {}}};
-    method.serve(options, tune_t_sum);
+    method.bind(options, tune_t_sum);
     return method;
 }
 

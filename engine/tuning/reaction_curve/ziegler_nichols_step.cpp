@@ -60,7 +60,7 @@ TuningMethod ziegler_nichols_step_method() {
         "tangent, as in the source, here with T = static gain over steepest slope; half_rule where there is no "
         "tangent.");
     add_filter(options, "of the derivative part, Td s/(1 + s Tf).");
-    method.serve(options, tune_ziegler_nichols_step);
+    method.bind(options, tune_ziegler_nichols_step);
     return method;
 }
 

@@ -9,9 +9,9 @@
 namespace tunewright {
 namespace {
 
-constexpr double kRounding = 1e-6;   // relative: of a lambda or an error that was asked for as a printed figure
-constexpr double kNearLimit = 1.25;  // times the stability limit of lambda: from here on it is warned
-constexpr double kSlow = 2;          // L/T up to which the source has results
+constexpr double kPrintRounding = 1e-6;  // relative: of a lambda or an error that was asked for as a printed figure
+constexpr double kMinLambdaOverLimit = 1.25;  // times the stability limit of lambda: from here on it is warned
+constexpr double kMaxDeadTimeOverLag = 2;     // L/T up to which the source has results
 constexpr int kCurvePoints = 60;
 
 RimcFilter filter_of(const RimcOptions& options) {
@@ -109,25 +109,25 @@ void warn_of_stability(std::vector<Warning>& warnings, const Fopdt& model, doubl
         warnings.push_back({"unstable-model-loop",
                             figures + "The loop is unstable on the model; if it is stable on the plant, that is by the "
                                       "model's error. Give a larger lambda."});
-    else if (limit && lambda < kNearLimit * *limit)
+    else if (limit && lambda < kMinLambdaOverLimit * *limit)
         warnings.push_back({"near-stability-limit", figures + "A small error of the model may make the loop unstable. "
                                                               "Give a larger lambda, or an Ms in its place."});
-    if (branch.branch() && lambda > branch.branch()->high * (1 + kRounding))
+    if (branch.branch() && lambda > branch.branch()->high * (1 + kPrintRounding))
         warnings.push_back(outside_validity("lambda = " + text(lambda) + " is beyond " + text(branch.branch()->high) +
-                                            ", where Ms is least (" + text(branch.least_Ms()) +
+                                            ", where Ms is least (" + text(branch.min_Ms()) +
                                             "): the response is slower without being more robust."));
 }
 
 std::vector<Warning> remarks(const Fopdt& model, double lambda, const RimcBranch& branch, const RimcOptions& options) {
     std::vector<Warning> warnings;
     warn_of_stability(warnings, model, lambda, branch);
-    if (model.L > kSlow * model.T)
+    if (model.L > kMaxDeadTimeOverLag * model.T)
         warnings.push_back(outside_validity("L/T is " + text(model.L / model.T) +
                                             ": the design is for plants with a slow time constant; with a dead time "
                                             "beyond 2 T it gains little and its PID follows the design badly."));
     if (options.dead_time_error) {
         const double asked = *options.dead_time_error, all = branch.dead_time_error(lambda).value_or(0);
-        if (all < asked * (1 - kRounding))
+        if (all < asked * (1 - kPrintRounding))
             warnings.push_back({"smaller-errors-too",
                                 "Eq. 29 holds for the error " + text(asked) +
                                     ", but not for all smaller ones: for "
@@ -176,7 +176,7 @@ OptionSet<RimcOptions> described_options() {
                "condition of Eq. 29 (sufficient only): the smallest lambda above which it holds.",
                {.unit = "time", .exclusive_minimum = 0});
     set.number(&O::Tf_over_Td, "Tf_over_Td", "Time of the derivative's filter over Td; 0 for none.",
-               {.minimum = 0, .maximum = 1, .otherwise = RimcFilter{}.Tf_over_Td});
+               {.minimum = 0, .maximum = 1, .fallback = RimcFilter{}.Tf_over_Td});
     set.choice(&O::approximation, "approximation",
                "How the controller of Eq. 23 becomes a PID: maclaurin, the first three terms of its series; "
                "linear_fractional: (a0 + a1 s + a2 s^2)/(s (1 + b1 s)) with the first four, which is the same PID with "
@@ -203,7 +203,7 @@ TuningMethod rimc_method() {
     method.needs = "fopdt with T > 0 (others are reduced)";
     method.validity =
         "plants with a slow time constant, L up to about 2 T; lambda between the limit of stability and the least Ms";
-    method.serve(described_options(), tune);
+    method.bind(described_options(), tune);
     return method;
 }
 

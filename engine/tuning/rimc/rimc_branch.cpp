@@ -16,17 +16,18 @@
 namespace tunewright {
 namespace {
 
-constexpr double kSmallest = 1e-4, kLargest = 1e3;    // lambda/tau that are looked at
-constexpr double kStep = 0.8, kFineStep = 0.9;        // from one lambda to the next on the way down
-constexpr double kOfNoDeadTime = 1.4142135623730951;  // theta = 0: |S| <= 1 as long as lambda <= sqrt(2) tau
-constexpr double kLimitAccuracy = 1e-7;               // of the stability limit, relative
-constexpr double kRootTolerance = 1e-11;              // of ln lambda
-constexpr int kPointsPerDecade = 60;                  // of the sweep that finds the branch
+constexpr double kMinLambdaRatio = 1e-4, kMaxLambdaRatio = 1e3;   // lambda/tau that are looked at
+constexpr double kDescentFactor = 0.8, kFineDescentFactor = 0.9;  // from one lambda to the next on the way down
+constexpr double kMaxLambdaWithoutDeadTime =
+    1.4142135623730951;                   // theta = 0: |S| <= 1 as long as lambda <= sqrt(2) tau
+constexpr double kLimitAccuracy = 1e-7;   // of the stability limit, relative
+constexpr double kRootTolerance = 1e-11;  // of ln lambda
+constexpr int kPointsPerDecade = 60;      // of the sweep that finds the branch
 // That sweep's ends, times 1/T or 1/L: no Ms of a PID of the branch peaks beyond them.
 constexpr double kLowestSwept = 0.03, kHighestSwept = 300;
 constexpr double kShortestSwept = 1e-3;  // of L/T: a shorter dead time shows nothing more
-constexpr double kLeastFilter = 0.01;    // of Td: a linear fraction's filter time
-constexpr double kOpenEnd = 1e-9;        // relative: where the admissible range excludes its end
+constexpr double kMinFilter = 0.01;      // of Td: a linear fraction's filter time
+constexpr double kOpenEndMargin = 1e-9;  // relative: where the admissible range excludes its end
 constexpr double kFirstStep = 1e-4;      // relative, from the sweep's answer to a bracket of the true one
 
 LinearPlant scaled_plant(const Fopdt& model) { return *LinearPlant::make(Fopdt{1, 1, model.L / model.T}); }
@@ -43,7 +44,7 @@ RimcBranch::RimcBranch(const Fopdt& model, const RimcFilter& filter)
         omega_.push_back(lowest * std::pow(highest / lowest, static_cast<double>(i) / n));
         response_.push_back(plant_.at({0, omega_.back()}));
     }
-    find_least_Ms();
+    find_min_Ms();
     if (scaled_branch_) find_stability_limit();
 }
 
@@ -59,11 +60,12 @@ std::optional<double> RimcBranch::stability_limit() const {
 void RimcBranch::find_admissible() {
     const auto admissible = [&](double x) { return pid(x).has_value(); };
     double low = 1, high = 1;  // lambda = tau always is
-    while (low > kSmallest && admissible(low * 0.9)) low *= 0.9;
-    while (high < kLargest && admissible(high * 1.05)) high *= 1.05;
-    scaled_admissible_.low = low > kSmallest ? log_bisect({low, low * 0.9}, admissible, kRootTolerance).inside : 0;
+    while (low > kMinLambdaRatio && admissible(low * 0.9)) low *= 0.9;
+    while (high < kMaxLambdaRatio && admissible(high * 1.05)) high *= 1.05;
+    scaled_admissible_.low =
+        low > kMinLambdaRatio ? log_bisect({low, low * 0.9}, admissible, kRootTolerance).inside : 0;
     scaled_admissible_.high =
-        high < kLargest ? log_bisect({high, high * 1.05}, admissible, kRootTolerance).inside : high;
+        high < kMaxLambdaRatio ? log_bisect({high, high * 1.05}, admissible, kRootTolerance).inside : high;
 }
 
 // Least |1 + L| over a fixed set of frequencies, with a parabola through the lowest three: quick, and close enough to
@@ -90,7 +92,7 @@ double RimcBranch::nearest_approach(const IdealPid& pid) const {
     return std::min(std::sqrt(std::max(value, 0.0)), 1 - q);
 }
 
-void RimcBranch::find_least_Ms() {
+void RimcBranch::find_min_Ms() {
     const double lowest = scaled_admissible_.low, highest = scaled_admissible_.high;
     const double ratio = 1.1;
     double best = 0, farthest = 0;
@@ -102,7 +104,7 @@ void RimcBranch::find_least_Ms() {
     }
     if (best == 0) return;
     if (scaled_.L == 0) {
-        best = kOfNoDeadTime;
+        best = kMaxLambdaWithoutDeadTime;
     } else {
         const double right = std::min(best * ratio, highest), left = std::max(best / ratio, lowest);
         const auto quality = [&](double x) { return nearest_approach(*pid(std::min(x, highest))); };
@@ -111,27 +113,27 @@ void RimcBranch::find_least_Ms() {
         if (peak.value > farthest) best = std::min(peak.x, highest);
     }
     scaled_branch_ = Range{best, best};
-    least_Ms_ = Ms_of(*loop(best));
+    min_Ms_ = Ms_of(*loop(best));
 }
 
 void RimcBranch::find_stability_limit() {
     double& low = scaled_branch_->low;
-    double lowest = std::max(scaled_admissible_.low * (1 + kOpenEnd), kSmallest);
+    double lowest = std::max(scaled_admissible_.low * (1 + kOpenEndMargin), kMinLambdaRatio);
     // A linear fraction's filter time goes to 0 at that end, where noise passes without end.
     const auto filtered = [&](double x) {
         const auto settings = pid(x);
-        return settings && settings->filter.Tf >= kLeastFilter * settings->Td;
+        return settings && settings->filter.Tf >= kMinFilter * settings->Td;
     };
     if (filter_.linear_fraction && filtered(low) && !filtered(lowest))
         lowest = log_bisect({low, lowest}, filtered, kRootTolerance).inside;
     const auto stable = [&](double x) { return stable_loop(x).has_value(); };
-    while (low * kStep > lowest) {
-        if (!stable(low * kStep)) {
+    while (low * kDescentFactor > lowest) {
+        if (!stable(low * kDescentFactor)) {
             has_stability_limit_ = true;
-            low = log_bisect({low, low * kStep}, stable, kLimitAccuracy).inside;
+            low = log_bisect({low, low * kDescentFactor}, stable, kLimitAccuracy).inside;
             return;
         }
-        low *= kStep;
+        low *= kDescentFactor;
     }
     low = lowest;
 }
@@ -210,19 +212,19 @@ Expected<double> RimcBranch::lambda_for_Ms(double Ms) const {
                      "Ms is " + text(Ms) + "; on the model with L/T = " + text(scaled_.L) + " it can be " + range +
                          ". Give a value in that range, or lambda."};
     };
-    if (Ms < least_Ms_) return refused(text(least_Ms_) + " (at lambda = " + text(branch()->high) + ") or more");
+    if (Ms < min_Ms_) return refused(text(min_Ms_) + " (at lambda = " + text(branch()->high) + ") or more");
     const Figure swept = [&](const Loop&, double x) { return 1 / nearest_approach(*pid(x)); };
-    const Reach reach = descend(swept, Ms, true, kStep);
+    const Reach reach = descend(swept, Ms, true, kDescentFactor);
     const auto excess = [&](double x) { return Ms_of(*loop(x)) - Ms; };
     double near =
-        reach.x.value_or(Ms > least_Ms_ * 1.01 ? scaled_branch_->low * (1 + 2 * kLimitAccuracy) : scaled_branch_->high);
+        reach.x.value_or(Ms > min_Ms_ * 1.01 ? scaled_branch_->low * (1 + 2 * kLimitAccuracy) : scaled_branch_->high);
     // The sweep is off by little: from its answer outwards until the true Ms lies on both sides.
     double f = excess(near), next = near, f_next = f;
     for (double step = kFirstStep; f != 0 && (f < 0) == (f_next < 0); step *= 4) {
         near = next;
         f = f_next;
         next = std::clamp(f < 0 ? near / (1 + step) : near * (1 + step), scaled_branch_->low, scaled_branch_->high);
-        if (next == near) return refused("from " + text(least_Ms_) + " to " + text(f + Ms));
+        if (next == near) return refused("from " + text(min_Ms_) + " to " + text(f + Ms));
         f_next = excess(next);
     }
     return log_root(excess, near, next, f, f_next, kRootTolerance) * model_.T;
@@ -232,10 +234,10 @@ Expected<double> RimcBranch::lambda_for_disturbance_peak(double peak) const {
     if (!scaled_branch_) return no_branch("disturbance_peak");
     const double gain = std::abs(model_.K), target = std::abs(peak) / gain;
     const Figure figure = [&](const Loop& loop, double x) { return peak_of(loop, x); };
-    const Reach reach = descend(figure, target, false, kStep);
+    const Reach reach = descend(figure, target, false, kDescentFactor);
     if (reach.x) return *reach.x * model_.T;
     const double highest = figure(*loop(scaled_branch_->high), scaled_branch_->high);
-    const double lowest = target > highest ? descend(figure, 0, false, kStep).best : reach.best;
+    const double lowest = target > highest ? descend(figure, 0, false, kDescentFactor).best : reach.best;
     return Error{ErrorKind::no_feasible_controller, "disturbance_peak",
                  "disturbance_peak is " + text(peak) + " per unit of load; with this PID on the model with L/T = " +
                      text(scaled_.L) + " it can be from " + text(lowest * gain) + " to " + text(highest * gain) +
@@ -256,7 +258,7 @@ Expected<double> RimcBranch::lambda_for_dead_time_error(double error) const {
                          " it can be up to " + text(small_gain_dead_time(at_end, make_loop_grid(at_end)) * model_.T) +
                          " (at lambda = " + text(branch()->high) + "). Give a smaller one, or lambda."};
     // Where Eq. 29 holds all the way down, the branch's other end is the answer.
-    return descend(mismatch, 1, true, kFineStep).x.value_or(scaled_branch_->low) * model_.T;
+    return descend(mismatch, 1, true, kFineDescentFactor).x.value_or(scaled_branch_->low) * model_.T;
 }
 
 DisturbancePeakCurve RimcBranch::curve(int points) const {

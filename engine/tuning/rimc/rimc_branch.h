@@ -34,7 +34,7 @@ public:
     std::optional<Range> branch() const;
     /// Below it the loop on the model is unstable; empty where every admissible lambda down to 1e-4 tau is stable.
     std::optional<double> stability_limit() const;
-    double least_Ms() const { return least_Ms_; }
+    double min_Ms() const { return min_Ms_; }
 
     /// Of one lambda; empty where it is not admissible or the loop is unstable.
     std::optional<double> Ms(double lambda) const;
@@ -71,7 +71,7 @@ private:
     static double Ms_of(const Loop& loop);
     double peak_of(const Loop& loop, double x) const;
     void find_admissible();
-    void find_least_Ms();
+    void find_min_Ms();
     void find_stability_limit();
     Reach descend(const Figure& figure, double target, bool rising, double step) const;
     Error no_branch(const char* option) const;
@@ -84,7 +84,7 @@ private:
     Range scaled_admissible_;
     std::optional<Range> scaled_branch_;
     bool has_stability_limit_ = false;
-    double least_Ms_ = 0;
+    double min_Ms_ = 0;
 };
 
 }  // namespace tunewright

@@ -9,9 +9,9 @@
 namespace tunewright::robust {
 namespace {
 
-constexpr double kSettled = 1e-4;     // the tail beyond it is closed by the exact integral of error
-constexpr double kDifference = 1e-5;  // of a logarithm: noise 1e-13/1e-5, curvature error 1e-5
-constexpr int kMaxSteps = 12000;      // a design that needs more is no candidate
+constexpr double kSettledTolerance = 1e-4;   // the tail beyond it is closed by the exact integral of error
+constexpr double kLogDifferenceStep = 1e-5;  // of a logarithm: noise 1e-13/1e-5, curvature error 1e-5
+constexpr int kMaxSteps = 12000;             // a design that needs more is no candidate
 
 constexpr std::array<double, 3> kOfIntegratedError = {-1, 1, 0};  // of ln(Ti/Kp)
 
@@ -27,7 +27,7 @@ CostRun run(const DesignProblem& problem, const DesignPoint& x, bool setpoint, d
             const StepSchedule* repeat) {
     ResponseOptions options;
     options.tolerance = tolerance;
-    options.settled = kSettled;
+    options.settled = kSettledTolerance;
     options.max_steps = kMaxSteps;
     options.repeat = repeat;
     const StepInputs inputs = inputs_of(setpoint);
@@ -52,7 +52,7 @@ std::optional<double> step_iae(const DesignProblem& problem, const DesignPoint& 
 }
 
 double log_cost(const DesignProblem& problem, const DesignPoint& x, double tolerance) {
-    return PricedDesign(problem, x, tolerance).log_cost();
+    return EvaluatedDesign(problem, x, tolerance).log_cost();
 }
 
 double log_cost_bound(const DesignProblem& problem, const DesignPoint& x) {
@@ -66,34 +66,34 @@ double log_cost_bound(const DesignProblem& problem, const DesignPoint& x) {
     return std::log(mixed(problem, std::exp(load), setpoint));
 }
 
-PricedDesign::PricedDesign(const DesignProblem& problem, const DesignPoint& x, double tolerance)
+EvaluatedDesign::EvaluatedDesign(const DesignProblem& problem, const DesignPoint& x, double tolerance)
     : problem_(&problem), x_(x), tolerance_(tolerance) {
     const Objective objective = problem.objective;
     if (objective == Objective::load_ie) {
         log_cost_ = x[1] - x[0];
         return;
     }
-    if (objective != Objective::setpoint_iae) load_ = priced(false);
-    if (objective != Objective::load_iae) setpoint_ = priced(true);
+    if (objective != Objective::setpoint_iae) load_ = evaluated(false);
+    if (objective != Objective::load_iae) setpoint_ = evaluated(true);
     log_cost_ = objective == Objective::load_iae ? load_.log_iae
                 : objective == Objective::setpoint_iae
                     ? setpoint_.log_iae
                     : std::log(mixed(problem, std::exp(load_.log_iae), std::exp(setpoint_.log_iae)));
 }
 
-PricedDesign::Part PricedDesign::priced(bool setpoint) const {
+EvaluatedDesign::Part EvaluatedDesign::evaluated(bool setpoint) const {
     CostRun done = run(*problem_, x_, setpoint, tolerance_, nullptr);
     return {std::log(done.IAE), done.keeps_sign, std::move(done.response)};
 }
 
-std::array<double, 3> PricedDesign::gradient_of(const Part& part, bool setpoint) const {
+std::array<double, 3> EvaluatedDesign::gradient_of(const Part& part, bool setpoint) const {
     if (part.keeps_sign && !setpoint) return kOfIntegratedError;
     const auto n = static_cast<std::size_t>(problem_->dimension());
     std::array<DesignPoint, 3> moved;
     std::array<ParallelPid, 3> controllers;
     for (std::size_t i = 0; i < n; ++i) {
         moved[i] = x_;
-        moved[i][i] += kDifference;
+        moved[i][i] += kLogDifferenceStep;
         controllers[i] = to_parallel(controller_at(*problem_, moved[i]));
     }
     const auto together =
@@ -102,12 +102,12 @@ std::array<double, 3> PricedDesign::gradient_of(const Part& part, bool setpoint)
     for (std::size_t i = 0; i < n; ++i) {
         const double IAE =
             together ? (*together)[i] : run(*problem_, moved[i], setpoint, tolerance_, &part.response.schedule).IAE;
-        gradient[i] = (std::log(IAE) - part.log_iae) / kDifference;
+        gradient[i] = (std::log(IAE) - part.log_iae) / kLogDifferenceStep;
     }
     return gradient;
 }
 
-std::array<double, 3> PricedDesign::gradient() const {
+std::array<double, 3> EvaluatedDesign::gradient() const {
     switch (problem_->objective) {
         case Objective::load_ie: return kOfIntegratedError;
         case Objective::load_iae: return gradient_of(load_, false);
@@ -122,7 +122,7 @@ std::array<double, 3> PricedDesign::gradient() const {
     return gradient;
 }
 
-CostWithGradient PricedDesign::with_gradient() const {
+CostWithGradient EvaluatedDesign::with_gradient() const {
     if (!std::isfinite(log_cost_)) return {log_cost_, {}};
     return {log_cost_, gradient()};
 }

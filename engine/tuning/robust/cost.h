@@ -14,7 +14,7 @@ namespace tunewright::robust {
 std::optional<double> step_iae(const DesignProblem& problem, const DesignPoint& x, bool setpoint, double tolerance);
 
 /// Stands for ln of the cost where there is no design, whatever the units: finite, as a simplex needs it.
-constexpr double kNoDesign = 700;
+constexpr double kLogCostOfNoDesign = 700;
 
 /// ln of the cost; +infinity where it cannot be computed. The loop must be stable.
 double log_cost(const DesignProblem& problem, const DesignPoint& x, double tolerance);
@@ -30,9 +30,9 @@ struct CostWithGradient {
 };
 
 /// A design whose cost is known, and the runs that said so.
-class PricedDesign {
+class EvaluatedDesign {
 public:
-    PricedDesign(const DesignProblem& problem, const DesignPoint& x, double tolerance);
+    EvaluatedDesign(const DesignProblem& problem, const DesignPoint& x, double tolerance);
 
     /// ln of the cost, as `log_cost`.
     double log_cost() const { return log_cost_; }
@@ -49,7 +49,7 @@ private:
         bool keeps_sign = false;  // the error
         StepResponse response;
     };
-    Part priced(bool setpoint) const;
+    Part evaluated(bool setpoint) const;
     std::array<double, 3> gradient() const;  // the cost must be finite
     std::array<double, 3> gradient_of(const Part& part, bool setpoint) const;
 

@@ -15,10 +15,11 @@ using Complex = std::complex<double>;
 constexpr double kBeyondCorners = 100;  // the phase is followed so many times beyond the outer corners
 constexpr int kLagPointsPerDecade = 60;
 
-constexpr double kBarelyDamped = 0.05;              // damping below which a resonance may keep a loop far below it
-constexpr double kStepDown = 1.1, kSlowest = 1e-8;  // down from the resonance: one step, and the end
-constexpr double kFarBelow = 0.1;  // times the usual reference: what lies above is within its grid and its scans
-constexpr double kBelow = 0.5;     // the same, of a loop that must be met more nearly
+constexpr double kMaxResonantDamping = 0.05;  // damping below which a resonance may keep a loop far below it
+constexpr double kStepDown = 1.1, kMinFrequencyRatio = 1e-8;  // down from the resonance: one step, and the end
+constexpr double kFarReferenceRatio =
+    0.1;  // times the usual reference: what lies above is within its grid and its scans
+constexpr double kNearReferenceRatio = 0.5;    // the same, of a loop that must be met more nearly
 constexpr double kSparePhase[] = {0.1, 0.01};  // rad, of a PID's lead over what Ms and Mt need on two integrators
 
 }  // namespace
@@ -52,7 +53,7 @@ double reference_frequency(const DesignProblem& problem) {
     double w = slowest / kBeyondCorners, before = std::arg(lagging(w)),
            unwrapped = -0.5 * std::numbers::pi * plant.integrators();
     double total_before = unwrapped - w * L, fallen = 0;
-    constexpr double kFallen = -0.75 * std::numbers::pi;
+    constexpr double kFallenPhase = -0.75 * std::numbers::pi;
     const double ratio = std::pow(10, 1.0 / kLagPointsPerDecade);
     for (; w < fastest * kBeyondCorners; w *= ratio) {
         const double wrapped = std::arg(lagging(w));
@@ -60,7 +61,7 @@ double reference_frequency(const DesignProblem& problem) {
         before = wrapped;
         const double total = unwrapped - w * L;
         if (total_before > -std::numbers::pi && total <= -std::numbers::pi) return w;
-        if (total_before > kFallen && total <= kFallen) fallen = w;
+        if (total_before > kFallenPhase && total <= kFallenPhase) fallen = w;
         total_before = total;
     }
     if (L > 0) return 1 / L;
@@ -74,16 +75,16 @@ namespace {
 std::optional<double> crossover_below_resonance(const DesignProblem& problem, double usual) {
     const LinearPlant& plant = *problem.plant;
     const auto size = [&](double omega) { return magnitude(plant.at({0, omega})); };
-    double slowest = kFarBelow * usual;
+    double slowest = kFarReferenceRatio * usual;
     for (const auto pole : plant.poles()) {
         const double top = std::abs(pole);
-        if (pole.imag() <= 0 || std::abs(pole.real()) > kBarelyDamped * top) continue;
+        if (pole.imag() <= 0 || std::abs(pole.real()) > kMaxResonantDamping * top) continue;
         const double crossing = size(top) / (1 - 1 / problem.limits.Ms);
         double omega = top;
-        while (omega > kSlowest * top && size(omega) < crossing) omega /= kStepDown;
+        while (omega > kMinFrequencyRatio * top && size(omega) < crossing) omega /= kStepDown;
         slowest = std::min(slowest, omega);
     }
-    return slowest < kFarBelow * usual ? std::optional(slowest) : std::nullopt;
+    return slowest < kFarReferenceRatio * usual ? std::optional(slowest) : std::nullopt;
 }
 
 /// Where the lags beside the integrators have used up that phase, rad.
@@ -105,7 +106,8 @@ std::vector<double> slower_references(const DesignProblem& problem) {
         slower = {*crossover, std::sqrt(*crossover * usual)};
     if (problem.plant->integrators() > 1)
         for (const double phase : kSparePhase)
-            if (const double omega = frequency_of_lag(*problem.plant, phase); omega > 0 && omega < kBelow * usual)
+            if (const double omega = frequency_of_lag(*problem.plant, phase);
+                omega > 0 && omega < kNearReferenceRatio * usual)
                 slower.push_back(omega);
     return slower;
 }

@@ -29,7 +29,7 @@ struct FilterRule {
     std::optional<double> Tf_over_Td;
 };
 
-struct Limits {
+struct RobustnessLimits {
     double Ms = limits::kDefaultMs, Mt = limits::kDefaultMt;
     std::optional<double> Mks;
     bool m_circle = false;  ///< one circle around the circles of Ms and Mt in their place
@@ -48,7 +48,7 @@ constexpr double kMinTi = 1e-6, kMinTd = 2e-4, kMaxTd = 300;
 /// parameters, symmetric. A search that starts near by learns it in as many steps as there are parameters.
 using Curvature = std::array<std::array<double, 3>, 3>;
 
-struct Found {
+struct DesignResult {
     DesignPoint x{};
     double log_cost = 0;
     bool stopped = false;  ///< the report asked to stop: x is the best so far
@@ -62,7 +62,7 @@ struct DesignProblem {
     bool pid = true;
     double sign = 1;  ///< of Kp
     FilterRule filter;
-    Limits limits;
+    RobustnessLimits limits;
     Objective objective = Objective::load_iae;
     double rho = 0.5;         ///< weight of the load in `weighted`
     double load_optimum = 1;  ///< IAE of the load-optimal design, for `weighted`

@@ -19,7 +19,7 @@ Error both_signs() {
             "test: the record leaves even the sign of the plant's gain open, so repeat the test with a larger step."};
 }
 
-double excess_of(const Peaks& peaks, const Limits& limits) {
+double excess_of(const Peaks& peaks, const RobustnessLimits& limits) {
     double worst = std::max(peaks.S.value / limits.Ms, peaks.T.value / limits.Mt);
     if (limits.Mks) worst = std::max(worst, peaks.CS.value / *limits.Mks);
     return worst - 1;

@@ -21,11 +21,11 @@ namespace {
 
 constexpr double kPeakTolerance = 1e-5;                     // of ln M: a hundredth of what is promised
 constexpr double kLongestTi = 200, kShortestPeakTd = 1e-3;  // times the period over 2 pi at the reference frequency
-constexpr double kUnstable = 20;                            // ln of the larger peak, where the loop is unstable
+constexpr double kUnstableLogPeak = 20;                     // ln of the larger peak, where the loop is unstable
 
 double larger_measured_peak(const MeasuredPlant& plant, const ParallelPid& gains) {
     const auto loop = MeasuredLoop::make(plant, gains);
-    if (!loop || loop->band_too_short() || !loop->count_unstable_poles().stable()) return kUnstable;
+    if (!loop || loop->band_too_short() || !loop->count_unstable_poles().stable()) return kUnstableLogPeak;
     const Peaks peaks = loop->peaks();
     return std::log(std::max(peaks.S.value, peaks.T.value));
 }
@@ -38,42 +38,42 @@ double larger_peak(const DesignProblem& problem, const DesignPoint& x) {
     double largest = 0;
     for (std::size_t i = 0; i < problem.plants(); ++i) {
         const auto loop = Loop::make(problem.plant_at(i), gains);
-        if (!loop || !count_unstable_poles(*loop).stable()) return kUnstable;
+        if (!loop || !count_unstable_poles(*loop).stable()) return kUnstableLogPeak;
         const Peaks peaks = find_peaks(*loop, make_loop_grid(*loop));
         largest = std::max({largest, peaks.S.value, peaks.T.value});
     }
     return std::log(largest);
 }
 
-constexpr double kLeastExcess = 0.01, kFirstExcess = 0.5, kMostExcess = 40;  // of peaks over 1, for a start
-constexpr double kExcessStep = 1.6;                                          // from one look to the next
+constexpr double kMinExcess = 0.01, kFirstExcess = 0.5, kMaxExcess = 40;  // of peaks over 1, for a start
+constexpr double kExcessStep = 1.6;                                       // from one look to the next
 constexpr double kCloseStart = 1.05;  // over the least excess at which a scan sees anything
 
 /// A stable loop whose peaks exceed 1 by no more than `excess`; empty if a scan sees none.
 std::optional<DesignPoint> stable_within(DesignProblem problem, double reference, double excess, Stability wanted) {
-    problem.limits = Limits{.Ms = 1 + excess, .Mt = 1 + excess, .Mks = std::nullopt, .m_circle = false};
+    problem.limits = RobustnessLimits{.Ms = 1 + excess, .Mt = 1 + excess, .Mks = std::nullopt, .m_circle = false};
     return first_stable(Sweep(problem, reference), {.Ti_points = 13, .Td_points = 11}, wanted);
 }
 
 /// How far and how hard stable loops are looked for.
-struct Look {
-    double first, most;  // excess
+struct StartSearch {
+    double first, max;  // excess
     Stability wanted;
 };
 // Loops of any peaks are looked for where none of usual ones is seen about any reference. Those of which the sweep's
 // grid tells nothing come last: most of their gains reach to where the dead time turns faster than the grid follows,
 // and none of these is stable.
-constexpr Look kLooks[] = {{kFirstExcess, kFirstExcess, Stability::told},
-                           {kExcessStep * kFirstExcess, kMostExcess, Stability::told},
-                           {kFirstExcess, kMostExcess, Stability::proved}};
+constexpr StartSearch kStartSearches[] = {{kFirstExcess, kFirstExcess, Stability::inferred},
+                                          {kExcessStep * kFirstExcess, kMaxExcess, Stability::inferred},
+                                          {kFirstExcess, kMaxExcess, Stability::verified}};
 
 /// Two stable loops: one of the widest limits needed, and one with nearly the least peaks that a scan sees. From either
 /// a search may stall on the kinks of the larger of two peaks.
-std::vector<DesignPoint> stable_starts(const DesignProblem& problem, double reference, const Look& how) {
+std::vector<DesignPoint> stable_starts(const DesignProblem& problem, double reference, const StartSearch& how) {
     const auto within = [&](double excess) { return stable_within(problem, reference, excess, how.wanted); };
     double enough = how.first;
     auto found = within(enough);
-    while (!found && enough < how.most) found = within(enough *= kExcessStep);
+    while (!found && enough < how.max) found = within(enough *= kExcessStep);
     if (!found) return {};
     std::vector<DesignPoint> starts = {*found};
     double too_little = enough / kExcessStep;
@@ -84,7 +84,7 @@ std::vector<DesignPoint> stable_starts(const DesignProblem& problem, double refe
         return point.has_value();
     };
     if (enough == kFirstExcess)
-        while (too_little > kLeastExcess && look(too_little)) too_little = enough / kExcessStep;
+        while (too_little > kMinExcess && look(too_little)) too_little = enough / kExcessStep;
     while (enough > kCloseStart * too_little) look(std::sqrt(enough * too_little));
     if (*found != starts.front()) starts.push_back(*found);
     return starts;
@@ -97,18 +97,17 @@ struct Stage {
 // Started anew with shorter steps, ever more exactly: the larger of two peaks has kinks on which a search stalls.
 constexpr Stage kFirstStage = {0.4, 100 * kPeakTolerance};
 constexpr Stage kLaterStages[] = {{0.1, 10 * kPeakTolerance}, {0.1, kPeakTolerance}};
-constexpr double kWorthRefining = 0.1;  // of ln M: what the later stages may still win
+constexpr double kMinRefinementGain = 0.1;  // of ln M: what the later stages may still win
 
-/// From `least.x` on; M is kUnstable where it leads nowhere.
-void descend(LeastPeak& least, const DesignProblem& problem, const Stage& stage) {
+/// From `min.x` on; M is kUnstableLogPeak where it leads nowhere.
+void descend(MinPeak& min, const DesignProblem& problem, const Stage& stage) {
     const auto n = static_cast<std::size_t>(problem.dimension());
     // The least peak itself often lies at Ti = infinity, where nothing returns to the set point: kept within what a
     // design would use.
-    const double longest = std::log(kLongestTi / least.reference),
-                 shortest = std::log(kShortestPeakTd / least.reference);
+    const double longest = std::log(kLongestTi / min.reference), shortest = std::log(kShortestPeakTd / min.reference);
     // The unknowns are steps from the centre: a logarithm's own size depends on the unit of time.
     const auto stepped = [&](const std::vector<double>& step) {
-        DesignPoint x = least.x;
+        DesignPoint x = min.x;
         for (std::size_t i = 0; i < n; ++i) x[i] += step[i];
         return x;
     };
@@ -119,33 +118,33 @@ void descend(LeastPeak& least, const DesignProblem& problem, const Stage& stage)
     };
     const auto found = find_local_minimum(LocalSearch::subplex, cost, std::vector<double>(n, 0.0),
                                           {.step = std::vector<double>(n, stage.step), .tolerance = stage.tolerance});
-    least.x = stepped(found.x);
-    least.M = std::exp(found.value);
+    min.x = stepped(found.x);
+    min.M = std::exp(found.value);
 }
 
 }  // namespace
 
-std::optional<LeastPeak> least_common_peak(const DesignProblem& problem) {
+std::optional<MinPeak> min_common_peak(const DesignProblem& problem) {
     std::vector<double> references = slower_references(problem);
     references.insert(references.begin(), reference_frequency(problem));
-    std::vector<LeastPeak> valleys;
-    for (const Look& how : kLooks)
+    std::vector<MinPeak> valleys;
+    for (const StartSearch& how : kStartSearches)
         if (valleys.empty())
             for (const double reference : references)
                 for (const DesignPoint& start : stable_starts(problem, reference, how))
-                    valleys.push_back({.M = std::exp(kUnstable), .x = start, .reference = reference});
-    for (LeastPeak& valley : valleys) descend(valley, problem, kFirstStage);
-    const auto lower = [](const LeastPeak& a, const LeastPeak& b) { return a.M < b.M; };
+                    valleys.push_back({.M = std::exp(kUnstableLogPeak), .x = start, .reference = reference});
+    for (MinPeak& valley : valleys) descend(valley, problem, kFirstStage);
+    const auto lower = [](const MinPeak& a, const MinPeak& b) { return a.M < b.M; };
     std::ranges::sort(valleys, lower);
-    LeastPeak least{.M = std::exp(kUnstable)};
-    for (LeastPeak& valley : valleys) {
-        if (std::log(valley.M / least.M) > kWorthRefining) break;
+    MinPeak min{.M = std::exp(kUnstableLogPeak)};
+    for (MinPeak& valley : valleys) {
+        if (std::log(valley.M / min.M) > kMinRefinementGain) break;
         for (const Stage& stage : kLaterStages) descend(valley, problem, stage);
-        const double won = std::log(least.M / valley.M);
-        least = std::min(least, valley, lower);
+        const double won = std::log(min.M / valley.M);
+        min = std::min(min, valley, lower);
         if (won < kPeakTolerance) break;  // what follows seemed higher than this one, which is not the lower
     }
-    return least.M < std::exp(kUnstable) ? std::optional(least) : std::nullopt;
+    return min.M < std::exp(kUnstableLogPeak) ? std::optional(min) : std::nullopt;
 }
 
 bool has_no_finite_optimum(const DesignProblem& problem) {
@@ -170,7 +169,7 @@ bool has_no_finite_optimum(const DesignProblem& problem) {
     limit.plant = &*asymptote;
     limit.others = {};
     limit.sign = 1;
-    return !scan(Sweep(limit, 1), {.Ti_points = 13, .Td_points = 11}, Stability::proved).empty();
+    return !scan(Sweep(limit, 1), {.Ti_points = 13, .Td_points = 11}, Stability::verified).empty();
 }
 
 namespace {
@@ -180,10 +179,10 @@ double rounded_up(double limit) { return std::ceil(limit * 1000) / 1000; }
 
 /// The smallest common limit at which a controller is really found, from 1 % above the least peak upward; empty if none
 /// is.
-std::optional<double> workable_limit(DesignProblem problem, const LeastPeak& least) {
-    for (double M = least.M * 1.01; M < 4 * least.M; M = 1 + (M - 1) * 1.1) {
+std::optional<double> workable_limit(DesignProblem problem, const MinPeak& min) {
+    for (double M = min.M * 1.01; M < 4 * min.M; M = 1 + (M - 1) * 1.1) {
         problem.limits.Ms = problem.limits.Mt = rounded_up(M);
-        if (feasible_near(Sweep(problem, least.reference), least.x)) return problem.limits.Ms;
+        if (feasible_near(Sweep(problem, min.reference), min.x)) return problem.limits.Ms;
     }
     return std::nullopt;
 }
@@ -195,15 +194,15 @@ std::string on_plants(const DesignProblem& problem) {
 
 }  // namespace
 
-Error why_infeasible(const DesignProblem& problem, const std::optional<LeastPeak>& least) {
+Error why_infeasible(const DesignProblem& problem, const std::optional<MinPeak>& min) {
     const std::string name = problem.pid ? "PID" : "PI";
-    if (!least)
+    if (!min)
         return {ErrorKind::unstable_plant, "",
                 "No " + name + " controller was found that stabilises " +
                     (problem.others.empty() ? "this plant" : "all of these plants") +
                     (problem.pid ? ". " : "; a PID might. ") +
                     "Check the signs and the unit of the dead time, or shorten the dead time."};
-    const auto workable = workable_limit(problem, *least);
+    const auto workable = workable_limit(problem, *min);
     if (problem.limits.Mks && (!workable || *workable <= std::min(problem.limits.Ms, problem.limits.Mt)))
         return {ErrorKind::no_feasible_controller, "Mks",
                 "No " + name + " controller keeps Mks <= " + text(*problem.limits.Mks) +
@@ -213,7 +212,7 @@ Error why_infeasible(const DesignProblem& problem, const std::optional<LeastPeak
                 "Controllers within the limits exist, but none whose response could be computed. Check the units of "
                 "the time constants and the dead time: "
                 "they lie very far apart."};
-    const double common = workable.value_or(rounded_up(least->M * 1.01));
+    const double common = workable.value_or(rounded_up(min->M * 1.01));
     const std::string broken = "No " + name + " controller keeps Ms <= " + text(problem.limits.Ms) +
                                " and Mt <= " + text(problem.limits.Mt) + on_plants(problem) +
                                (problem.limits.Mks ? " with Mks <= " + text(*problem.limits.Mks) : std::string());

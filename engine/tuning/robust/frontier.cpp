@@ -8,7 +8,7 @@
 #include "engine/number_text.h"
 #include "engine/tuning/limits.h"
 #include "engine/tuning/method/setpoint.h"
-#include "engine/tuning/robust/front.h"
+#include "engine/tuning/robust/pareto_front.h"
 
 namespace tunewright {
 namespace {
@@ -43,10 +43,10 @@ Expected<Frontier> frontier(const TuningProblem& tuning, const FrontierOptions& 
     if (auto error = unsuitable(options)) return *error;
     const auto now = [&] { return control.now_ms ? control.now_ms() : 0; };
     const double start = now();
-    RobustFront::Terms terms{.options = {}, .Mt = options.Mt, .on_family = tuning.family.has_value()};
+    ParetoFront::FrontLimits terms{.options = {}, .Mt = options.Mt, .on_family = tuning.family.has_value()};
     terms.options.controller = options.controller;
     terms.options.filter = options.filter;
-    RobustFront front(tuning, terms);
+    ParetoFront front(tuning, terms);
     const RunControl inner{control.stop, nullptr, nullptr};
     Frontier answer;
     const int last = options.Ms.points - 1;
@@ -73,7 +73,7 @@ Expected<Frontier> frontier(const TuningProblem& tuning, const FrontierOptions& 
     return answer;
 }
 
-Expected<Frontier> frontier(const Subject& subject, const FrontierOptions& options, const RunControl& control) {
+Expected<Frontier> frontier(const AnalysedPlant& subject, const FrontierOptions& options, const RunControl& control) {
     if (subject.linear() == nullptr)
         return Error{ErrorKind::unsupported, "plant",
                      "Points of a frequency response have no response over time, so no load IAE belongs to a limit. "
@@ -102,7 +102,7 @@ Expected<TunedController> tune_frontier(const TuningProblem& tuning, const Front
 
 const OptionSet<FrontierOptions>& frontier_options() {
     static const auto options = [] {
-        constexpr int kMostPoints = 200;
+        constexpr int kMaxPoints = 200;
         OptionSet<FrontierRange> range;
         range
             .number(&FrontierRange::from, "from", "Lowest limit on Ms.",
@@ -110,7 +110,7 @@ const OptionSet<FrontierOptions>& frontier_options() {
             .number(&FrontierRange::to, "to", "Highest limit on Ms.",
                     {.exclusive_minimum = 1, .maximum = limits::kMaxMs})
             .number(&FrontierRange::points, "points", "How many limits, evenly spaced.",
-                    {.minimum = 2, .maximum = kMostPoints});
+                    {.minimum = 2, .maximum = kMaxPoints});
         using O = FrontierOptions;
         OptionSet<O> set;
         add_controller(set, {ControllerKind::PID, ControllerKind::PI});
@@ -135,7 +135,7 @@ TuningMethod frontier_method() {
     method.source = "Garpinger and Hagglund (2008), A software tool for robust PID design, IFAC World Congress";
     method.needs = "any linear plant";
     method.validity = "as the method robust";
-    method.serve(frontier_options(), tune_frontier);
+    method.bind(frontier_options(), tune_frontier);
     method.holds_family = true;
     method.compared = method.weighs_setpoint = false;
     return method;

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "engine/plant/subject.h"
+#include "engine/plant/analysed_plant.h"
 #include "engine/tuning/limits.h"
 #include "engine/tuning/robust/filter_rule.h"
 #include "engine/tuning/robust/robust.h"
@@ -47,7 +47,7 @@ struct Frontier : MethodReport {
 Expected<Frontier> frontier(const TuningProblem& tuning, const FrontierOptions& options, const RunControl& control);
 
 /// On a plant as requests give it. Error: unsupported for measured points, which have no response over time.
-Expected<Frontier> frontier(const Subject& subject, const FrontierOptions& options, const RunControl& control);
+Expected<Frontier> frontier(const AnalysedPlant& subject, const FrontierOptions& options, const RunControl& control);
 
 /// The options under their names.
 const OptionSet<FrontierOptions>& frontier_options();

@@ -48,14 +48,14 @@ PlaneStart amigo_start(const TuningProblem& tuning, ControllerKind controller) {
 
 /// Integral action makes C S = 1/P at omega = 0 on a plant without integrator.
 std::optional<Error> check_Mks(const DesignProblem& problem) {
-    double least = 0;
+    double min = 0;
     for (std::size_t i = 0; i < problem.plants(); ++i)
         if (problem.plant_at(i).integrators() == 0)
-            least = std::max(least, 1 / std::abs(problem.plant_at(i).low_frequency_gain()));
-    if (!problem.limits.Mks || *problem.limits.Mks > least) return std::nullopt;
+            min = std::max(min, 1 / std::abs(problem.plant_at(i).low_frequency_gain()));
+    if (!problem.limits.Mks || *problem.limits.Mks > min) return std::nullopt;
     return Error{ErrorKind::no_feasible_controller, "Mks",
                  "Mks is " + text(*problem.limits.Mks) +
-                     ", but holding the output against a load takes |C S| = 1/|P(0)| = " + text(least) +
+                     ", but holding the output against a load takes |C S| = 1/|P(0)| = " + text(min) +
                      " already at rest. Give a limit well above that."};
 }
 
@@ -113,9 +113,10 @@ OptionSet<RobustFilterOptions> filter_options() {
     return set;
 }
 
-Expected<Found> search_everywhere(SearchKind kind, const TuningProblem& tuning, DesignProblem& problem,
-                                  std::vector<LinearPlant>& others, const PlaneStart& start, CostSurface* surface,
-                                  const RunControl& control, const Found* before, std::vector<Warning>& warnings) {
+Expected<DesignResult> search_everywhere(SearchKind kind, const TuningProblem& tuning, DesignProblem& problem,
+                                         std::vector<LinearPlant>& others, const PlaneStart& start,
+                                         CostSurface* surface, const RunControl& control, const DesignResult* before,
+                                         std::vector<Warning>& warnings) {
     problem.others = others;
     auto found = verified_search(kind, problem, start, surface, control, before);
     for (int round = 0; found && !found->stopped && tuning.family; ++round) {
@@ -127,7 +128,7 @@ Expected<Found> search_everywhere(SearchKind kind, const TuningProblem& tuning, 
         }
         others.insert(others.end(), added.begin(), added.end());
         problem.others = others;
-        const Found last = *found;
+        const DesignResult last = *found;
         found = verified_search(kind, problem, start, nullptr, control, &last);
     }
     return found;
@@ -271,8 +272,8 @@ TuningMethod robust_method() {
     method.validity = "Ms, Mt in (1, " + text(limits::kMaxMs) +
                       "]; a finite optimum needs a dead time, a right-half-plane zero, a fixed filter time or a limit "
                       "on Mks";
-    method.serve(described_options({}), tune_robust);
-    method.serve_as_built(described_options({}), tune_robust_as_built);
+    method.bind(described_options({}), tune_robust);
+    method.bind_for_device(described_options({}), tune_robust_for_device);
     method.holds_family = true;
     // An optimum for set points is one for b = 1.
     method.overshoot = [](const MethodOptions& options) {
@@ -288,16 +289,16 @@ TuningMethod robust_method() {
 
 namespace {
 
-constexpr int kMaxBuiltRounds = 5;  // of adding the worst plants found inside the regions
-constexpr int kSamples = 48;        // of a region, looked at before the worst is followed
-constexpr double kHold = 0.5;       // of a sample: the mean delay of the hold
+constexpr int kMaxBuiltRounds = 5;           // of adding the worst plants found inside the regions
+constexpr int kSamples = 48;                 // of a region, looked at before the worst is followed
+constexpr double kHoldDelayInSamples = 0.5;  // of a sample: the mean delay of the hold
 
 /// The plant as a sampled program sees it, nearly: later by half a sample and by the computation. An ideal design for
 /// it is where the search starts; with any sampling it has a finite optimum.
-Expected<TuningProblem> delayed(const TuningProblem& tuning, const built::Build& build) {
+Expected<TuningProblem> delayed(const TuningProblem& tuning, const device::DeviceModel& device) {
     TuningProblem later = tuning;
     later.family.reset();
-    const double extra = kHold * build.Ts + build.computation_delay;
+    const double extra = kHoldDelayInSamples * device.Ts + device.computation_delay;
     std::visit([&](auto& plant) { plant.L += extra; }, later.plant);
     auto linear = LinearPlant::make(later.plant);
     if (!linear) return linear.error();
@@ -313,36 +314,36 @@ struct OwnFilter {
     double shortest = 0;
 };
 
-OwnFilter filter_of(const built::Build& build) {
-    if (build.product == nullptr) return {};
-    const double unit = build.context.seconds_per_time;
+OwnFilter filter_of(const device::DeviceModel& device) {
+    if (device.product == nullptr) return {};
+    const double unit = device.context.seconds_per_time;
     OwnFilter own;
-    if (const auto Tf = product::compiled_filter_time(*build.product, build.context)) own.fixed = *Tf / unit;
-    if (build.product->algorithm.derivative == DerivativeRule::filtered_forward) own.shortest = build.Ts;
+    if (const auto Tf = product::compiled_filter_time(*device.product, device.context)) own.fixed = *Tf / unit;
+    if (device.product->algorithm.derivative == DerivativeRule::filtered_forward) own.shortest = device.Ts;
     return own;
 }
 
 std::function<double(double)> filter_time(const TuningProblem& tuning, const RobustOptions& options,
-                                          const built::Build& build) {
-    const bool sampled = build.sampled();
+                                          const device::DeviceModel& device) {
+    const bool sampled = device.sampled();
     const auto given = explicit_filter(options.filter, options.controller == ControllerKind::PID);
-    const OwnFilter own = given && *given ? OwnFilter{} : filter_of(build);
+    const OwnFilter own = given && *given ? OwnFilter{} : filter_of(device);
     if (own.fixed) return [Tf = *own.fixed](double) { return Tf; };
     const auto rule = filter_rule(tuning, options.filter, options.controller == ControllerKind::PID);
     if (!rule && !sampled) return {};
     const FilterRule held = rule ? *rule : FilterRule{.Tf = {}, .Tf_over_Td = limits::kDefaultTf_over_Td};
     if (held.Tf) return [Tf = std::max(*held.Tf, own.shortest)](double) { return Tf; };
     if (held.Tf_over_Td)
-        return [ratio = *held.Tf_over_Td, least = own.shortest](double Td) { return std::max(ratio * Td, least); };
+        return [ratio = *held.Tf_over_Td, min = own.shortest](double Td) { return std::max(ratio * Td, min); };
     return {};
 }
 
 /// Of each region the plant inside on which the built loop exceeds a limit most, where it does.
-std::vector<LinearPlant> worst_as_built(const PlantFamily& family, const built::Law& law, const built::Limits& limits,
-                                        const RunControl& control) {
+std::vector<LinearPlant> worst_on_device(const PlantFamily& family, const device::Law& law,
+                                         const device::PeakLimits& limits, const RunControl& control) {
     const PlantCost excess = [&](const LinearPlant& plant) {
-        return built::is_stable(plant, law) ? built::peaks_of(plant, law).excess(limits)
-                                            : std::numeric_limits<double>::infinity();
+        return device::is_stable(plant, law) ? device::peaks_of(plant, law).excess(limits)
+                                             : std::numeric_limits<double>::infinity();
     };
     std::vector<LinearPlant> found;
     for (const PlantRegion& region : family.regions) {
@@ -359,10 +360,10 @@ std::vector<LinearPlant> worst_as_built(const PlantFamily& family, const built::
 
 }  // namespace
 
-Expected<BuiltDesign> tune_robust_as_built(const TuningProblem& tuning, const RobustOptions& options,
-                                           const built::Build& build, const RunControl& control) {
-    if (const auto error = built::refuse_sampling(build, tuning.linear)) return *error;
-    const auto start_problem = build.sampled() ? delayed(tuning, build) : Expected<TuningProblem>(tuning);
+Expected<DeviceDesign> tune_robust_for_device(const TuningProblem& tuning, const RobustOptions& options,
+                                              const device::DeviceModel& device, const RunControl& control) {
+    if (const auto error = device::refuse_sampling(device, tuning.linear)) return *error;
+    const auto start_problem = device.sampled() ? delayed(tuning, device) : Expected<TuningProblem>(tuning);
     if (!start_problem) return start_problem.error();
     RobustOptions ideal = options;
     ideal.objective = Objective::load_iae;
@@ -376,24 +377,24 @@ Expected<BuiltDesign> tune_robust_as_built(const TuningProblem& tuning, const Ro
     std::deque<LinearPlant> inside;  // found between the members; their addresses stay
     for (const LinearPlant& other : *others) plants.push_back(&other);
 
-    built::Wish wish;
+    device::Wish wish;
     wish.limits = {options.Ms, options.Mt, options.Mks};
     wish.pid = options.controller == ControllerKind::PID;
     wish.sign = start->controller.Kp < 0 ? -1 : 1;
-    wish.filter_time = filter_time(tuning, options, build);
+    wish.filter_time = filter_time(tuning, options, device);
     wish.filter = wish.filter_time ? FilterType::measurement_second_order : FilterType::none;
     wish.start = start->controller;
-    auto fitted = built::design(build, plants, wish, control);
+    auto fitted = device::design(device, plants, wish, control);
     for (int round = 0; fitted && tuning.family && round < kMaxBuiltRounds; ++round) {
-        auto added = worst_as_built(*tuning.family, fitted->law, wish.limits, control);
+        auto added = worst_on_device(*tuning.family, fitted->law, wish.limits, control);
         if (added.empty()) break;
         for (LinearPlant& plant : added) plants.push_back(&inside.emplace_back(std::move(plant)));
         wish.start = fitted->controller;
-        fitted = built::design(build, plants, wish, control);
+        fitted = device::design(device, plants, wish, control);
     }
     if (!fitted) return fitted.error();
-    BuiltDesign design{std::move(*start), std::move(*fitted)};
-    design.tuned.controller = built::continuous(design.fitted.controller);
+    DeviceDesign design{std::move(*start), std::move(*fitted)};
+    design.tuned.controller = device::continuous(design.fitted.controller);
     design.tuned.warnings.clear();
     design.tuned.Ms_limit = options.Ms;
     if (options.objective != Objective::load_iae || options.constraint != Constraint::circles)

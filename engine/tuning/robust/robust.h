@@ -32,9 +32,9 @@ Expected<TunedController> tune_robust(const TuningProblem& tuning, const RobustO
 
 /// As the method robust, on the controller's own law. Its objective is the load IAE, whatever the options say; a
 /// warning says so. `ideal`: the method on the ideal law, for the start. Errors: those of the method and of
-/// built::design.
-Expected<BuiltDesign> tune_robust_as_built(const TuningProblem& tuning, const RobustOptions& options,
-                                           const built::Build& build, const RunControl& control);
+/// device::design.
+Expected<DeviceDesign> tune_robust_for_device(const TuningProblem& tuning, const RobustOptions& options,
+                                              const device::DeviceModel& device, const RunControl& control);
 
 TuningMethod robust_method();
 
@@ -57,10 +57,11 @@ std::optional<Error> without_optimum(const DesignProblem& problem);
 
 /// verified_search() with the limits held on all of the tuning problem's family: the worst plants that are found inside
 /// it join `others`, which the problem looks at and which must outlive it.
-Expected<Found> search_everywhere(SearchKind kind, const TuningProblem& tuning, DesignProblem& problem,
-                                  std::vector<LinearPlant>& others,
-                                  const std::optional<std::pair<double, double>>& start, CostSurface* surface,
-                                  const RunControl& control, const Found* before, std::vector<Warning>& warnings);
+Expected<DesignResult> search_everywhere(SearchKind kind, const TuningProblem& tuning, DesignProblem& problem,
+                                         std::vector<LinearPlant>& others,
+                                         const std::optional<std::pair<double, double>>& start, CostSurface* surface,
+                                         const RunControl& control, const DesignResult* before,
+                                         std::vector<Warning>& warnings);
 
 /// The options of the filter under their names; at most one of them is given.
 OptionSet<RobustFilterOptions> filter_options();

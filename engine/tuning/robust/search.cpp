@@ -23,9 +23,9 @@ struct FastSearchConstants {
     double short_Td = 0.1;             ///< times 1/reference: below it the cost hardly depends on ln Td
     double same_design = 0.02;         ///< of each: two ends so near are one
     double same_valley = 0.1;          ///< of each: a rough run that comes so near to an end goes there
-    double hopeless_cost = 0.7;        ///< a start so much dearer than the best is left out
+    double hopeless_cost = 0.7;        ///< a start so much costlier than the best is left out
     double rough_tolerance = 3e-3;     ///< of a run that only shows how deep a valley is
-    double worth_following = 0.02;     ///< so much dearer a rough run's end may still be the deepest valley's
+    double worth_following = 0.02;     ///< so much costlier a rough run's end may still be the deepest valley's
     double polish_tolerance = 1e-4;    ///< of a simplex
     double polish_step = 0.05;         ///< its first
     int max_polish_evaluations = 50;   ///< of one simplex
@@ -103,7 +103,7 @@ public:
     /// The same of a valley that is likely not the deepest: it is followed to its end only where it may be.
     void explore(const std::optional<Candidate>& start) {
         if (!start || stopped() || in_known_valley(start->x)) return;
-        const double before = best_ ? best_->log_cost : kNoDesign;
+        const double before = best_ ? best_->log_cost : kLogCostOfNoDesign;
         const SqpResult rough = run(
             *start,
             {.cost_tolerance = k.rough_tolerance, .stable_start = start->stable, .wanted = before + k.worth_following},
@@ -125,7 +125,7 @@ public:
     }
 
     bool stopped() const { return best_ && best_->stopped; }
-    const std::optional<Found>& best() const { return best_; }
+    const std::optional<DesignResult>& best() const { return best_; }
 
 private:
     /// `arrived`: nothing more is to be learnt from here on.
@@ -143,15 +143,16 @@ private:
         return result;
     }
 
-    void simplex(int most_evaluations) {
+    void simplex(int max_evaluations) {
         const DesignPoint start = best_->x;
         // The unknowns are steps from the start: a logarithm's own size depends on the unit of time.
         const auto cost = [&](const std::vector<double>& step, bool& stop) {
             DesignPoint x = start;
             for (std::size_t i = 0; i < step.size(); ++i) x[i] += step[i];
             const auto feasible = feasible_near(sweep_, x);
-            if (!feasible) return kNoDesign;
-            const double value = std::min(kNoDesign, log_cost(problem_, *feasible, SqpOptions{}.simulation_tolerance));
+            if (!feasible) return kLogCostOfNoDesign;
+            const double value =
+                std::min(kLogCostOfNoDesign, log_cost(problem_, *feasible, SqpOptions{}.simulation_tolerance));
             if (value < best_->log_cost)
                 take({*feasible, value, report_ && !report_(*feasible, value), best_->curvature});
             stop = stopped();
@@ -161,10 +162,10 @@ private:
         find_local_minimum(LocalSearch::nelder_mead, cost, std::vector<double>(n, 0.0),
                            {.step = std::vector<double>(n, k.polish_step),
                             .tolerance = k.polish_tolerance,
-                            .most_evaluations = most_evaluations});
+                            .max_evaluations = max_evaluations});
     }
 
-    void take(const Found& found) {
+    void take(const DesignResult& found) {
         const bool stop = found.stopped || stopped();
         if (!best_ || found.log_cost < best_->log_cost) best_ = found;
         best_->stopped = stop;
@@ -175,10 +176,10 @@ private:
 
     /// Near an end in all logarithms; all short Td are one.
     bool known(const DesignPoint& x, double same) const {
-        const double least_Td = short_Td(sweep_);
+        const double min_Td = short_Td(sweep_);
         return std::ranges::any_of(ends_, [&](const DesignPoint& end) {
             return std::abs(x[0] - end[0]) <= same && std::abs(x[1] - end[1]) <= same &&
-                   std::abs(std::max(x[2], least_Td) - std::max(end[2], least_Td)) <= same;
+                   std::abs(std::max(x[2], min_Td) - std::max(end[2], min_Td)) <= same;
         });
     }
 
@@ -186,7 +187,7 @@ private:
     const DesignProblem& problem_;
     const Report& report_;
     std::vector<DesignPoint> ends_;
-    std::optional<Found> best_;
+    std::optional<DesignResult> best_;
 };
 
 /// A run that ends at a short Td may have been led there by the flatness of the cost alone: Td has to prove itself
@@ -198,7 +199,7 @@ void look_beyond_short_Td(Runs& runs, const Sweep& sweep, const DesignProblem& p
     const DesignPoint nearly_PI = {end[0], end[1], shortest};
     runs.from(Candidate{.x = nearly_PI, .stable = sweep.stays_stable(end, nearly_PI)});
     std::erase_if(points, [&](const ScanPoint& point) { return point.x[2] <= ordinary; });
-    runs.from(cheapest(problem, points));
+    runs.from(lowest_cost(problem, points));
 }
 
 /// A Ti that cancels the slowest lag lies inside.
@@ -216,7 +217,7 @@ ScanBox long_Ti_box(const DesignProblem& problem, double reference) {
 void look_at_long_Ti(Runs& runs, const Sweep& sweep, const DesignProblem& problem) {
     const auto points = scan(sweep, long_Ti_box(problem, sweep.reference()));
     const double before = runs.best()->log_cost;
-    const auto best = cheapest(problem, points, before + k.hopeless_cost);
+    const auto best = lowest_cost(problem, points, before + k.hopeless_cost);
     runs.from(best);
     if (!best || best->log_cost >= before) return;
     for (const auto& start : valley_starts(problem, points))
@@ -230,7 +231,7 @@ void look_for_valleys(Runs& runs, const Sweep& sweep, const DesignProblem& probl
         for (const auto& valley : valley_starts(problem, points)) runs.from(valley);
     if (has_setpoint(problem)) look_at_long_Ti(runs, sweep, problem);
     const auto look_in = [&](const ScanBox& box) {
-        runs.explore(cheapest(problem, scan(sweep, box), runs.best()->log_cost + k.hopeless_cost));
+        runs.explore(lowest_cost(problem, scan(sweep, box), runs.best()->log_cost + k.hopeless_cost));
     };
     if (!has_resonant_plant(problem)) {
         if (has_slow_zero(problem, sweep.reference())) look_in(kBoxes.filtered);
@@ -238,10 +239,10 @@ void look_for_valleys(Runs& runs, const Sweep& sweep, const DesignProblem& probl
     }
     const double hopeless = runs.best()->log_cost + k.hopeless_cost;
     for (const auto& valley :
-         valley_starts(problem, scan(sweep, kBoxes.wide, Stability::told, hopeless), short_Td(sweep)))
+         valley_starts(problem, scan(sweep, kBoxes.wide, Stability::inferred, hopeless), short_Td(sweep)))
         runs.explore(valley);
     look_in(kBoxes.integral);
-    if (any_plant(problem, may_have_islands)) runs.explore(cheapest_island(sweep, problem, runs.best()->log_cost));
+    if (any_plant(problem, may_have_islands)) runs.explore(lowest_cost_island(sweep, problem, runs.best()->log_cost));
 }
 
 }  // namespace
@@ -252,7 +253,7 @@ bool is_resonant(const LinearPlant& plant) {
     });
 }
 
-std::optional<Found> fast_search(const Sweep& sweep, const DesignProblem& problem, const Report& report) {
+std::optional<DesignResult> fast_search(const Sweep& sweep, const DesignProblem& problem, const Report& report) {
     std::vector<ScanPoint> points;
     for (const ScanBox& box : {ScanBox{}, kBoxes.slow, kBoxes.close})
         if (points.empty()) points = scan(sweep, box);
@@ -312,8 +313,8 @@ void tighten(const Sweep& sweep, DesignPoint& x, bool upper_end) {
 }
 
 /// The cheapest feasible gain for one (Ti, Td), moved onto the limit exactly; empty where no gain is feasible.
-std::optional<Found> best_gain(const Sweep& sweep, const DesignProblem& problem, double Ti, double Td) {
-    std::optional<Found> best;
+std::optional<DesignResult> best_gain(const Sweep& sweep, const DesignProblem& problem, double Ti, double Td) {
+    std::optional<DesignResult> best;
     const auto gains = feasible_gains(sweep, Ti, Td);
     for (std::size_t i = 0; i < gains.size(); ++i) {
         DesignPoint x = {std::log(gains[i].Kp), std::log(Ti), problem.pid ? std::log(Td) : 0};
@@ -322,7 +323,7 @@ std::optional<Found> best_gain(const Sweep& sweep, const DesignProblem& problem,
         const auto peaks = sweep.peaks(x, kPlane.near_limit);
         if (!peaks.empty() && peaks[0].value > kPlane.closed) continue;
         const double cost = log_cost(problem, x, kPlane.simulation_tolerance);
-        if (std::isfinite(cost) && (!best || cost < best->log_cost)) best = Found{x, cost, false};
+        if (std::isfinite(cost) && (!best || cost < best->log_cost)) best = DesignResult{x, cost, false};
     }
     return best;
 }
@@ -331,11 +332,11 @@ struct PlaneSearch {
     const Sweep* sweep;
     const DesignProblem* problem;
     const Report* report;
-    std::optional<Found> best;
+    std::optional<DesignResult> best;
 
     double cost(double log_Ti, double log_Td) {
         const auto found = best_gain(*sweep, *problem, std::exp(log_Ti), std::exp(log_Td));
-        if (!found) return kNoDesign;
+        if (!found) return kLogCostOfNoDesign;
         if (!best || found->log_cost < best->log_cost) {
             best = found;
             best->stopped = *report && !(*report)(found->x, found->log_cost);
@@ -347,8 +348,8 @@ struct PlaneSearch {
 
 }  // namespace
 
-std::optional<Found> nelder_mead_search(const Sweep& sweep, const DesignProblem& problem, double Ti, double Td,
-                                        const Report& report) {
+std::optional<DesignResult> nelder_mead_search(const Sweep& sweep, const DesignProblem& problem, double Ti, double Td,
+                                               const Report& report) {
     PlaneSearch search{&sweep, &problem, &report, std::nullopt};
     // The unknowns are steps from the first corner: a logarithm's own size depends on the unit of time.
     const auto cost = [&](const std::vector<double>& step, bool& stop) {
@@ -362,8 +363,8 @@ std::optional<Found> nelder_mead_search(const Sweep& sweep, const DesignProblem&
     return search.best;
 }
 
-std::optional<Found> grid_search(const Sweep& sweep, const DesignProblem& problem, double Ti, double Td,
-                                 CostSurface* surface, const Report& report) {
+std::optional<DesignResult> grid_search(const Sweep& sweep, const DesignProblem& problem, double Ti, double Td,
+                                        CostSurface* surface, const Report& report) {
     PlaneSearch search{&sweep, &problem, &report, std::nullopt};
     double centre_Ti = std::log(Ti), centre_Td = std::log(std::max(Td, kPlane.no_Td)), reach = kPlane.grid_reach;
     const int Td_points = problem.pid ? kPlane.grid_points : 1;
@@ -381,8 +382,8 @@ std::optional<Found> grid_search(const Sweep& sweep, const DesignProblem& proble
                 if (search.stopped()) return search.best;
                 if (surface == nullptr || round != 0) continue;
                 if (i == 0) surface->Td.push_back(problem.pid ? std::exp(at(centre_Td, j, Td_points)) : 0);
-                surface->cost.back().push_back(log_cost < kNoDesign ? std::optional<double>(std::exp(log_cost))
-                                                                    : std::nullopt);
+                surface->cost.back().push_back(log_cost < kLogCostOfNoDesign ? std::optional<double>(std::exp(log_cost))
+                                                                             : std::nullopt);
             }
         }
         if (!search.best) return std::nullopt;

@@ -26,19 +26,19 @@ namespace tunewright::robust {
 
 /// A coarse scan, the optimum of the integrated error as a start, then the true cost by quadratic programming; from
 /// further starts where there may be more than one valley. Empty: no feasible controller was seen.
-std::optional<Found> fast_search(const Sweep& sweep, const DesignProblem& problem, const Report& report);
+std::optional<DesignResult> fast_search(const Sweep& sweep, const DesignProblem& problem, const Report& report);
 
 /// Whether a pair of poles is damped so little that designs may lie in several valleys.
 bool is_resonant(const LinearPlant& plant);
 
 /// Nelder-Mead from a simplex with corners (Ti, Td), (0.4 Ti, Td), (Ti, 0.4 Td) (Garpinger and Hagglund 2008,
 /// section 4.2).
-std::optional<Found> nelder_mead_search(const Sweep& sweep, const DesignProblem& problem, double Ti, double Td,
-                                        const Report& report);
+std::optional<DesignResult> nelder_mead_search(const Sweep& sweep, const DesignProblem& problem, double Ti, double Td,
+                                               const Report& report);
 
 /// Gridding around (Ti, Td), refined three times around the best cell. `surface`, if given, receives the cost over the
 /// first grid.
-std::optional<Found> grid_search(const Sweep& sweep, const DesignProblem& problem, double Ti, double Td,
-                                 CostSurface* surface, const Report& report);
+std::optional<DesignResult> grid_search(const Sweep& sweep, const DesignProblem& problem, double Ti, double Td,
+                                        CostSurface* surface, const Report& report);
 
 }  // namespace tunewright::robust

@@ -52,12 +52,12 @@ DesignPoint moved(DesignPoint x, const Vector& p) {
     return x;
 }
 
-/// The peaks' linear models, the `most` largest ones, and the trust region, which ends at the bounds of Ti and Td, for
+/// The peaks' linear models, the `max` largest ones, and the trust region, which ends at the bounds of Ti and Td, for
 /// a step from x. H and g are those of the shortest step.
 SmallProgram linearised(const std::vector<ActivePeak>& peaks, const Sweep& sweep, const DesignPoint& x, double radius,
-                        std::size_t most) {
+                        std::size_t max) {
     const int n = sweep.problem().dimension();
-    const std::size_t count = std::min(most, peaks.size());
+    const std::size_t count = std::min(max, peaks.size());
     SmallProgram program(n, Eigen::Index(count) + 2 * n);
     for (std::size_t i = 0; i < count; ++i) program.add(vector(peaks[i].gradient, n), -peaks[i].value - k.aim_below);
     const auto log_time = [&](double in_reference) { return std::log(in_reference / sweep.reference()); };
@@ -144,7 +144,7 @@ public:
     struct State {
         DesignPoint x{};
         std::vector<ActivePeak> peaks;
-        std::optional<PricedDesign> priced;
+        std::optional<EvaluatedDesign> evaluated;
         CostWithGradient cost;
     };
     struct Step {
@@ -165,8 +165,8 @@ public:
 
     SqpResult run(const DesignPoint& start) {
         auto inside = restored(sweep_, start);
-        State here{.x = inside ? inside->x : start, .peaks = {}, .priced = {}, .cost = {}};
-        here.priced.emplace(problem_, here.x, options_.simulation_tolerance);
+        State here{.x = inside ? inside->x : start, .peaks = {}, .evaluated = {}, .cost = {}};
+        here.evaluated.emplace(problem_, here.x, options_.simulation_tolerance);
         differentiate(here);
         result_.x = here.x;
         result_.log_cost = here.cost.value;
@@ -206,9 +206,9 @@ public:
             !stays_stable(inside->x))
             return std::nullopt;
         last_stable_ = inside->x;
-        State next{.x = inside->x, .peaks = std::move(inside->peaks), .priced = {}, .cost = {}};
-        next.priced.emplace(problem_, next.x, options_.simulation_tolerance);
-        next.cost.value = next.priced->log_cost();
+        State next{.x = inside->x, .peaks = std::move(inside->peaks), .evaluated = {}, .cost = {}};
+        next.evaluated.emplace(problem_, next.x, options_.simulation_tolerance);
+        next.cost.value = next.evaluated->log_cost();
         return next;
     }
 
@@ -223,7 +223,7 @@ public:
         return (!report_ || report_(here.x, here.cost.value)) && !result_.converged;
     }
 
-    void differentiate(State& state) const { state.cost = state.priced->with_gradient(); }
+    void differentiate(State& state) const { state.cost = state.evaluated->with_gradient(); }
 
     void learn(const State& before, const State& here, const Step& step) {
         Vector y = difference(here.cost.gradient, before.cost.gradient, n_);

@@ -11,30 +11,30 @@ namespace tunewright::robust {
 
 namespace {
 
-constexpr double kScanTolerance = 1e-3;  // of the simulations that only compare starting points
-constexpr double kRoughCost = 1e-4;      // of ln of the integrated error of a start
+constexpr double kScanTolerance = 1e-3;       // of the simulations that only compare starting points
+constexpr double kRoughCostTolerance = 1e-4;  // of ln of the integrated error of a start
 constexpr int kMaxCompared = 12;
 constexpr std::size_t kMaxValleys = 4;
-constexpr double kSameTd = 1e-9;      // of ln Td: rounding of one value of the scan
-constexpr double kWiderLimits = 1.4;  // times M - 1
-constexpr double kMainland = 0.7;     // of ln Kp
+constexpr double kLogTdTolerance = 1e-9;         // of ln Td: rounding of one value of the scan
+constexpr double kWiderLimits = 1.4;             // times M - 1
+constexpr double kMaxMainlandLogDistance = 0.7;  // of ln Kp
 constexpr ScanBox kIslandBox = {
     .Ti_points = 12, .Td_points = 12, .Ti_low = 0.01, .Ti_high = 1000, .Td_low = 0.02, .Td_high = 60};
 
 void consider(Candidate& best, const DesignProblem& problem, const ScanPoint& point) {
     if (log_cost_bound(problem, point.x) >= best.log_cost) return;
-    if (!point.proved && !is_stable(problem, point.x)) return;
+    if (!point.verified && !is_stable(problem, point.x)) return;
     const double cost = log_cost(problem, point.x, kScanTolerance);
     if (cost < best.log_cost) best = {point.x, cost, true};
 }
 
 /// The least integrated error Ti/Kp costs sweeps only, and often is next to the optimum (Garpinger and Hagglund 2008;
 /// Hast et al. 2013).
-ScanPoint least_integrated_error(const Sweep& sweep, DesignProblem problem, const ScanPoint& start) {
+ScanPoint min_integrated_error(const Sweep& sweep, DesignProblem problem, const ScanPoint& start) {
     problem.objective = Objective::load_ie;
     SqpOptions options;
-    options.cost_tolerance = kRoughCost;
-    options.stable_start = start.proved;
+    options.cost_tolerance = kRoughCostTolerance;
+    options.stable_start = start.verified;
     const SqpResult found = minimise(sweep, problem, start.x, options, {});
     return {found.x, found.x[1] - found.x[0], found.stable};
 }
@@ -47,7 +47,7 @@ std::optional<Candidate> if_below(const Candidate& best, double below) {
 
 std::optional<Candidate> best_start(const Sweep& sweep, const DesignProblem& problem,
                                     const std::vector<ScanPoint>& points) {
-    const ScanPoint integrated = least_integrated_error(sweep, problem, points.front());
+    const ScanPoint integrated = min_integrated_error(sweep, problem, points.front());
     Candidate best;
     consider(best, problem, integrated);
     int compared = 0;
@@ -68,7 +68,7 @@ std::vector<Candidate> valley_starts(const DesignProblem& problem, const std::ve
     std::vector<Candidate> starts;
     for (const auto& point : points) {
         const auto same_Td = [&](const Candidate& c) {
-            return std::abs(std::max(c.x[2], short_Td) - std::max(point.x[2], short_Td)) < kSameTd;
+            return std::abs(std::max(c.x[2], short_Td) - std::max(point.x[2], short_Td)) < kLogTdTolerance;
         };
         auto at = std::find_if(starts.begin(), starts.end(), same_Td);
         if (at == starts.end()) at = starts.insert(starts.end(), Candidate{.x = point.x});
@@ -82,7 +82,7 @@ std::vector<Candidate> valley_starts(const DesignProblem& problem, const std::ve
     return starts;
 }
 
-std::optional<Candidate> cheapest(const DesignProblem& problem, const std::vector<ScanPoint>& points, double below) {
+std::optional<Candidate> lowest_cost(const DesignProblem& problem, const std::vector<ScanPoint>& points, double below) {
     Candidate best{.log_cost = below};
     for (const auto& point : points) consider(best, problem, point);
     return if_below(best, below);
@@ -90,8 +90,8 @@ std::optional<Candidate> cheapest(const DesignProblem& problem, const std::vecto
 
 namespace {
 
-constexpr double kInside = 1e-9;  // of a gain: from the end of a gap
-constexpr double kWide = 1.3;     // ends of a gap: narrower ones lie between the grid's own points
+constexpr double kRelativeInset = 1e-9;   // of a gain: from the end of a gap
+constexpr double kMinWideGapRatio = 1.3;  // ends of a gap: narrower ones lie between the grid's own points
 
 std::vector<double> spaced(double low, double high, int n) {
     std::vector<double> values;
@@ -106,13 +106,13 @@ namespace {
 
 /// False: there is no design between the gap's ends.
 bool is_open(const GainGap& gap) {
-    return std::isfinite(gap.upper) && gap.upper > gap.lower * (1 + kInside) && gap.stable != false;
+    return std::isfinite(gap.upper) && gap.upper > gap.lower * (1 + kRelativeInset) && gap.stable != false;
 }
 
 /// Whether the loop is proved stable between a gap's ends; empty: there is no design.
 std::optional<bool> usable(const DesignProblem& problem, const GainGap& gap, double Ti, double Td, Stability wanted) {
     if (!is_open(gap)) return std::nullopt;
-    if (gap.proved || (wanted == Stability::told && gap.stable)) return gap.proved;
+    if (gap.verified || (wanted == Stability::inferred && gap.stable)) return gap.verified;
     if (!is_stable(problem, {std::log(gap.middle()), std::log(Ti), problem.pid ? std::log(Td) : 0}))
         return std::nullopt;
     return true;
@@ -120,8 +120,8 @@ std::optional<bool> usable(const DesignProblem& problem, const GainGap& gap, dou
 
 /// The upper one, with its largest gain.
 ScanPoint end_of(const GainGap& gap, const DesignProblem& problem, double Ti, double Td) {
-    const double Kp = gap.upper * (1 - kInside);
-    return {{std::log(Kp), std::log(Ti), problem.pid ? std::log(Td) : 0}, std::log(Ti / Kp), gap.proved};
+    const double Kp = gap.upper * (1 - kRelativeInset);
+    return {{std::log(Kp), std::log(Ti), problem.pid ? std::log(Td) : 0}, std::log(Ti / Kp), gap.verified};
 }
 
 /// With the largest of feasible_gains; empty if there is none, or if it certainly costs not less than `below`.
@@ -131,8 +131,8 @@ std::optional<ScanPoint> point_at(const Sweep& sweep, double Ti, double Td, Stab
     for (std::size_t i = gaps.size(); i-- > 0;) {
         ScanPoint end = end_of(gaps[i], problem, Ti, Td);
         if (std::isfinite(end.x[0]) && log_cost_bound(problem, end.x) >= below) continue;
-        if (const auto proved = usable(problem, gaps[i], Ti, Td, wanted)) {
-            end.proved = *proved;
+        if (const auto verified = usable(problem, gaps[i], Ti, Td, wanted)) {
+            end.verified = *verified;
             return end;
         }
     }
@@ -146,10 +146,10 @@ std::vector<FeasibleGain> feasible_gains(const Sweep& sweep, double Ti, double T
     std::vector<FeasibleGain> gains;
     for (std::size_t i = gaps.size(); i-- > 0;) {
         const GainGap& gap = gaps[i];
-        const auto proved = usable(sweep.problem(), gap, Ti, Td, wanted);
-        if (!proved) continue;
-        gains.push_back({gap.upper * (1 - kInside), *proved});
-        if (gap.lower > 0) gains.push_back({gap.lower * (1 + kInside), *proved});
+        const auto verified = usable(sweep.problem(), gap, Ti, Td, wanted);
+        if (!verified) continue;
+        gains.push_back({gap.upper * (1 - kRelativeInset), *verified});
+        if (gap.lower > 0) gains.push_back({gap.lower * (1 + kRelativeInset), *verified});
     }
     return gains;
 }
@@ -180,7 +180,7 @@ std::vector<ScanPoint> scan(const Sweep& sweep, const ScanBox& box, Stability wa
 std::optional<DesignPoint> first_stable(const Sweep& sweep, const ScanBox& box, Stability wanted) {
     const bool measured = sweep.problem().measured != nullptr;
     const auto worth_counting = [&](const GainGap& gap) {
-        return wanted == Stability::proved && (measured || gap.upper > kWide * gap.lower);
+        return wanted == Stability::verified && (measured || gap.upper > kMinWideGapRatio * gap.lower);
     };
     const auto add_open = [&](std::vector<ScanPoint>& open, double Ti, double Td) {
         for (const GainGap& gap : sweep.gain_gaps(Ti, Td))
@@ -188,7 +188,7 @@ std::optional<DesignPoint> first_stable(const Sweep& sweep, const ScanBox& box, 
                 open.push_back(end_of(gap, sweep.problem(), Ti, Td));
     };
     for (const ScanPoint& point : points_over(sweep, box, add_open))
-        if (point.proved || is_stable(sweep.problem(), point.x)) return point.x;
+        if (point.verified || is_stable(sweep.problem(), point.x)) return point.x;
     return std::nullopt;
 }
 
@@ -196,19 +196,20 @@ namespace {
 
 /// Whether the true limits leave nearly as high a gain at the same Ti and Td: other scans have been near there.
 bool on_mainland(const Sweep& sweep, const DesignPoint& x) {
-    const auto gains = feasible_gains(sweep, std::exp(x[1]), std::exp(x[2]), Stability::told);
-    return !gains.empty() && std::log(gains.front().Kp) > x[0] - kMainland;
+    const auto gains = feasible_gains(sweep, std::exp(x[1]), std::exp(x[2]), Stability::inferred);
+    return !gains.empty() && std::log(gains.front().Kp) > x[0] - kMaxMainlandLogDistance;
 }
 
 }  // namespace
 
-std::optional<Candidate> cheapest_island(const Sweep& sweep, const DesignProblem& problem, double below) {
+std::optional<Candidate> lowest_cost_island(const Sweep& sweep, const DesignProblem& problem, double below) {
     DesignProblem wider = problem;
     for (double* limit : {&wider.limits.Ms, &wider.limits.Mt}) *limit = 1 + (*limit - 1) * kWiderLimits;
     Candidate best{.log_cost = below};
-    for (const auto& point : scan(Sweep(wider, sweep.reference()), kIslandBox, Stability::told, below)) {
+    for (const auto& point : scan(Sweep(wider, sweep.reference()), kIslandBox, Stability::inferred, below)) {
         if (log_cost_bound(problem, point.x) >= best.log_cost || on_mainland(sweep, point.x)) continue;
-        if (const auto inside = feasible_near(sweep, point.x)) consider(best, problem, {.x = *inside, .proved = true});
+        if (const auto inside = feasible_near(sweep, point.x))
+            consider(best, problem, {.x = *inside, .verified = true});
     }
     return if_below(best, below);
 }

@@ -13,23 +13,23 @@ namespace tunewright::robust {
 
 struct ScanPoint {
     DesignPoint x{};
-    double log_ie = 0;    ///< ln(Ti/|Kp|), a lower bound of ln(load IAE)
-    bool proved = false;  ///< the loop is stable, not only by what the sweep's grid tells
+    double log_ie = 0;      ///< ln(Ti/|Kp|), a lower bound of ln(load IAE)
+    bool verified = false;  ///< the loop is stable, not only by what the sweep's grid tells
 };
 
 /// How sure it must be that a loop is stable: by what the sweep's grid tells of the encirclements of -1, where it does;
 /// or by an exact count.
-enum class Stability { told, proved };
+enum class Stability { inferred, verified };
 
 /// A gain at the end of a gap.
 struct FeasibleGain {
     double Kp = 0;  ///< > 0: its magnitude
-    bool proved = false;
+    bool verified = false;
 };
 
 /// The gains at the ends of the gaps (feasible, stable, largest first) for one (Ti, Td).
 std::vector<FeasibleGain> feasible_gains(const Sweep& sweep, double Ti, double Td,
-                                         Stability wanted = Stability::proved);
+                                         Stability wanted = Stability::verified);
 
 /// The points looked at, spaced evenly in logarithms; times in 1/reference frequency. The default box holds what
 /// optimal designs of lag-dominant to dead-time-dominant plants use.
@@ -42,11 +42,11 @@ struct ScanBox {
 /// The feasible points of the box with their largest gain, ascending in `log_ie`. Empty: no point of it is feasible.
 /// Where stability is only told, whoever uses a point has it proved first: few of them are used. Points whose ln of the
 /// cost is certainly not less than `below` are left out, most of them before their stability is asked for.
-std::vector<ScanPoint> scan(const Sweep& sweep, const ScanBox& box = {}, Stability wanted = Stability::told,
+std::vector<ScanPoint> scan(const Sweep& sweep, const ScanBox& box = {}, Stability wanted = Stability::inferred,
                             double below = std::numeric_limits<double>::infinity());
 
-/// The first of these points, with any gap of a place, whose loop is stable. `told`: of those alone of which the
-/// sweep's grid tells so; `proved`: also of those of which it tells nothing, slivers between its points left out.
+/// The first of these points, with any gap of a place, whose loop is stable. `inferred`: of those alone of which the
+/// sweep's grid tells so; `verified`: also of those of which it tells nothing, slivers between its points left out.
 std::optional<DesignPoint> first_stable(const Sweep& sweep, const ScanBox& box, Stability wanted);
 
 struct Candidate {
@@ -66,11 +66,11 @@ std::vector<Candidate> valley_starts(const DesignProblem& problem, const std::ve
                                      double short_Td = -std::numeric_limits<double>::infinity());
 
 /// The cheapest point whose ln of the cost is less than `below`; empty if there is none.
-std::optional<Candidate> cheapest(const DesignProblem& problem, const std::vector<ScanPoint>& points,
-                                  double below = std::numeric_limits<double>::infinity());
+std::optional<Candidate> lowest_cost(const DesignProblem& problem, const std::vector<ScanPoint>& points,
+                                     double below = std::numeric_limits<double>::infinity());
 
 /// The cheapest design that a scan under wider limits leads to, moved inside the true ones, if ln of its cost is less
 /// than `below`. Islands of high gain, which may be narrower than any scan's spacing, are wider under wider limits.
-std::optional<Candidate> cheapest_island(const Sweep& sweep, const DesignProblem& problem, double below);
+std::optional<Candidate> lowest_cost_island(const Sweep& sweep, const DesignProblem& problem, double below);
 
 }  // namespace tunewright::robust

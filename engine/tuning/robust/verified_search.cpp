@@ -59,8 +59,8 @@ private:
     int steps_ = 0;
 };
 
-std::optional<Found> search(SearchKind kind, const Sweep& sweep, const DesignProblem& problem, PlaneStart start,
-                            CostSurface* surface, const Report& report) {
+std::optional<DesignResult> search(SearchKind kind, const Sweep& sweep, const DesignProblem& problem, PlaneStart start,
+                                   CostSurface* surface, const Report& report) {
     if (kind == SearchKind::fast && surface == nullptr) return fast_search(sweep, problem, report);
     if (!start || feasible_gains(sweep, start->first, start->second).empty()) {
         const auto points = scan(sweep);
@@ -90,40 +90,40 @@ bool has_reference_optima(DesignProblem& problem, const Sweep& sweep) {
 }
 
 /// With the other sign of Kp, which `problem` then has, where none stabilises with its own.
-std::optional<LeastPeak> least_peak_of_either_sign(DesignProblem& problem) {
-    if (const auto least = least_common_peak(problem)) return least;
+std::optional<MinPeak> min_peak_of_either_sign(DesignProblem& problem) {
+    if (const auto min = min_common_peak(problem)) return min;
     DesignProblem other = problem;
     other.sign = -problem.sign;
-    const auto least = least_common_peak(other);
-    if (least) problem.sign = other.sign;
-    return least;
+    const auto min = min_common_peak(other);
+    if (min) problem.sign = other.sign;
+    return min;
 }
 
 /// Where the scan saw nothing: the feasible set may be a small one around the least peak.
-std::optional<Found> search_from(const LeastPeak& least, DesignProblem& problem, const Report& report) {
-    const Sweep sweep(problem, least.reference);
-    const auto start = feasible_near(sweep, least.x);
+std::optional<DesignResult> search_from(const MinPeak& min, DesignProblem& problem, const Report& report) {
+    const Sweep sweep(problem, min.reference);
+    const auto start = feasible_near(sweep, min.x);
     if (!start) return std::nullopt;
     const SqpResult result = minimise(sweep, problem, *start, {}, report);
     if (!std::isfinite(result.log_cost)) return std::nullopt;
-    problem.reference = least.reference;
-    return Found{result.x, result.log_cost, false, result.curvature};
+    problem.reference = min.reference;
+    return DesignResult{result.x, result.log_cost, false, result.curvature};
 }
 
-constexpr double kShortLags = 0.01;              // of the dead time
-constexpr double kOfPromiseFromElsewhere = 0.1;  // of what a curvature of another limit promises, believed less
+constexpr double kMaxShortLagRatio = 0.01;      // of the dead time
+constexpr double kTrustInOtherCurvature = 0.1;  // of what a curvature of another limit promises, believed less
 
 /// Lags so short beside the dead time leave a derivative next to nothing to gain, and valleys where it costs much.
 bool all_dead_time(const DesignProblem& problem) {
     if (problem.plant == nullptr || problem.plant->integrators() > 0) return false;
     double lags = 0;
     for (const auto pole : problem.plant->poles()) lags += 1 / std::abs(pole);
-    return lags < kShortLags * problem.plant->dead_time();
+    return lags < kMaxShortLagRatio * problem.plant->dead_time();
 }
 
 /// From a design that was right for fewer plants or another limit; empty where it cannot be moved within the limits.
-std::optional<Found> search_again(const Sweep& sweep, const DesignProblem& problem, const Found& before,
-                                  const Report& report) {
+std::optional<DesignResult> search_again(const Sweep& sweep, const DesignProblem& problem, const DesignResult& before,
+                                         const Report& report) {
     const auto start = feasible_near(sweep, before.x);
     if (!start) return std::nullopt;
     bool stopped = false;
@@ -134,45 +134,45 @@ std::optional<Found> search_again(const Sweep& sweep, const DesignProblem& probl
     SqpOptions options{.stable_start = true};
     if (before.curvature && !all_dead_time(problem)) {
         options.curvature = before.curvature;
-        options.cost_tolerance *= kOfPromiseFromElsewhere;
+        options.cost_tolerance *= kTrustInOtherCurvature;
     }
     const SqpResult result = minimise(sweep, problem, *start, options, watch);
     if (!std::isfinite(result.log_cost)) return std::nullopt;
-    return Found{result.x, result.log_cost, stopped, result.curvature ? result.curvature : before.curvature};
+    return DesignResult{result.x, result.log_cost, stopped, result.curvature ? result.curvature : before.curvature};
 }
 
-constexpr int kRounds = 4;                 // searches under tighter limits
-constexpr double kLeastTightening = 1e-6;  // of ln M - 1: what moves a design at all
-constexpr double kMostTightening = 0.5;
+constexpr int kRounds = 4;               // searches under tighter limits
+constexpr double kMinTightening = 1e-6;  // of ln M - 1: what moves a design at all
+constexpr double kMaxTightening = 0.5;
 
-constexpr double kExactRuns = 1e-5;            // tolerance of runs that compare two designs
+constexpr double kExactRunTolerance = 1e-5;    // tolerance of runs that compare two designs
 constexpr double kShortestTd = 1.01 * kMinTd;  // over the reference frequency: the derivative's time is at its end
 
 /// The search and its check. `promising`: a search from the usual starts may find something. `explain`: where nothing
 /// is found, look harder, and say why.
-Expected<Found> checked_search(SearchKind kind, const Sweep& sweep, DesignProblem& problem, bool promising,
-                               const PlaneStart& start, CostSurface* surface, const RunControl& control,
-                               const Found* before, bool explain = true) {
+Expected<DesignResult> checked_search(SearchKind kind, const Sweep& sweep, DesignProblem& problem, bool promising,
+                                      const PlaneStart& start, CostSurface* surface, const RunControl& control,
+                                      const DesignResult* before, bool explain = true) {
     ProgressReport progress(problem, control);
     const Report report = [&](const DesignPoint& x, double cost) { return progress(x, cost); };
-    std::optional<Found> found;
+    std::optional<DesignResult> found;
     if (promising && before != nullptr) found = search_again(sweep, problem, *before, report);
     if (promising && !found) found = search(kind, sweep, problem, start, surface, report);
     if (control.stop.stop_requested() && !found)
         return Error{ErrorKind::cancelled, "", "The search was stopped before a feasible controller was found."};
     if (!found && !explain) return Error{ErrorKind::no_feasible_controller, "", "Nothing was found here."};
     if (!found) {
-        const auto least = least_peak_of_either_sign(problem);
-        if (least) found = search_from(*least, problem, report);
-        if (!found) return why_infeasible(problem, least);
+        const auto min = min_peak_of_either_sign(problem);
+        if (min) found = search_from(*min, problem, report);
+        if (!found) return why_infeasible(problem, min);
     }
     double tighter = 0;
     for (int round = 0; round < kRounds; ++round) {
         const double excess = measured_excess(problem, found->x);
         if (excess <= 0.5 * limits::kMaxRelativeExcessVerified) return *found;
         if (!std::isfinite(excess) || round + 1 == kRounds) break;
-        tighter += 1.5 * excess * problem.limits.Ms / (problem.limits.Ms - 1) + kLeastTightening;
-        const DesignProblem narrowed = tightened(problem, std::min(tighter, kMostTightening));
+        tighter += 1.5 * excess * problem.limits.Ms / (problem.limits.Ms - 1) + kMinTightening;
+        const DesignProblem narrowed = tightened(problem, std::min(tighter, kMaxTightening));
         const Sweep narrow_sweep(narrowed, reference_frequency(problem));
         const auto again = minimise(narrow_sweep, narrowed, restore(narrow_sweep, found->x).value_or(found->x),
                                     {.curvature = found->curvature}, {});
@@ -186,8 +186,8 @@ Expected<Found> checked_search(SearchKind kind, const Sweep& sweep, DesignProble
 
 /// A PI is a PID too. It may be the better one where Td has come to its end, and under a dead time that repeats what
 /// the derivative makes of lags far shorter than it; and it is the one that is left where no PID passes the check.
-Expected<Found> or_without_derivative(Expected<Found> found, const DesignProblem& problem, double reference,
-                                      const RunControl& control, const Found* before) {
+Expected<DesignResult> or_without_derivative(Expected<DesignResult> found, const DesignProblem& problem,
+                                             double reference, const RunControl& control, const DesignResult* before) {
     if (!problem.pid || (found && found->stopped)) return found;
     const bool at_end = found && std::exp(found->x[2]) * reference <= kShortestTd;
     const bool doubtful = found ? at_end || all_dead_time(problem) : found.error().kind == ErrorKind::numerical_failure;
@@ -199,14 +199,15 @@ Expected<Found> or_without_derivative(Expected<Found> found, const DesignProblem
     // A PID whose Td is at its end is as good as a PI; set-point steps, and a limit on |C S|, may want another valley.
     const bool as_good =
         at_end && !all_dead_time(problem) && problem.objective == Objective::load_iae && !problem.limits.Mks;
-    const Found* nearest = before != nullptr ? before : as_good ? &*found : nullptr;
-    const Found near = nearest != nullptr ? Found{.x = {nearest->x[0], nearest->x[1], 0}} : Found{};
+    const DesignResult* nearest = before != nullptr ? before : as_good ? &*found : nullptr;
+    const DesignResult near =
+        nearest != nullptr ? DesignResult{.x = {nearest->x[0], nearest->x[1], 0}} : DesignResult{};
     auto other = checked_search(SearchKind::fast, sweep, without, true, std::nullopt, nullptr, control,
                                 nearest != nullptr ? &near : nullptr);
     if (!other) return found;
     // The two may differ by less than the search's runs are exact to.
-    const auto exactly = [](const DesignProblem& one, const Found& design) {
-        const double cost = log_cost(one, design.x, kExactRuns);
+    const auto exactly = [](const DesignProblem& one, const DesignResult& design) {
+        const double cost = log_cost(one, design.x, kExactRunTolerance);
         return std::isfinite(cost) ? cost : design.log_cost;
     };
     if (found && exactly(problem, *found) <= exactly(without, *other)) return found;
@@ -214,45 +215,48 @@ Expected<Found> or_without_derivative(Expected<Found> found, const DesignProblem
     return other;
 }
 
-constexpr double kSlower = 0.1;            // times the reference, where nothing is found about it
-constexpr double kFarTi = 30, kFarTd = 8;  // over the reference: near the ends of the scan
-constexpr double kWide = 8;                // times these, where the valleys of a resonant plant are looked for
-constexpr double kUsualTi = 10;            // over the reference of a loop within limits as narrow
-constexpr int kMoves = 3;                  // of the reference
-constexpr double kWorthMoving = 1e-3;      // of ln of the cost
+constexpr double kSlowReferenceRatio = 0.1;          // times the reference, where nothing is found about it
+constexpr double kMaxTiRatio = 30, kMaxTdRatio = 8;  // over the reference: near the ends of the scan
+constexpr double kResonantRangeFactor = 8;      // times these, where the valleys of a resonant plant are looked for
+constexpr double kUsualTiRatio = 10;            // over the reference of a loop within limits as narrow
+constexpr int kMaxReferenceMoves = 3;           // of the reference
+constexpr double kMinLogCostGainOfMove = 1e-3;  // of ln of the cost
 
 /// Where the loop of a design lives that lies beyond the box that was scanned; empty where it lies inside.
-std::optional<double> reference_of(const Found& found, const DesignProblem& problem) {
+std::optional<double> reference_of(const DesignResult& found, const DesignProblem& problem) {
     if (problem.measured) return std::nullopt;
     const double reference = reference_frequency(problem), Ti = std::exp(found.x[1]);
-    const double wide = problem.pid && is_resonant(*problem.plant) ? kWide : 1;
-    if (problem.pid && std::isfinite(found.x[2]) && std::exp(found.x[2]) * reference > wide * kFarTd)
+    const double wide = problem.pid && is_resonant(*problem.plant) ? kResonantRangeFactor : 1;
+    if (problem.pid && std::isfinite(found.x[2]) && std::exp(found.x[2]) * reference > wide * kMaxTdRatio)
         return 1 / std::exp(found.x[2]);
-    return Ti * reference > wide * kFarTi ? std::optional(kUsualTi / Ti) : std::nullopt;
+    return Ti * reference > wide * kMaxTiRatio ? std::optional(kUsualTiRatio / Ti) : std::nullopt;
 }
 
 /// `other` and its problem in the place of what was found, if it is the cheaper; whether it was worth the look.
-bool take_cheaper(Expected<Found>& found, DesignProblem& problem, Expected<Found> other, const DesignProblem& posed) {
+bool take_better(Expected<DesignResult>& found, DesignProblem& problem, Expected<DesignResult> other,
+                 const DesignProblem& posed) {
     if (!other) return false;
     // Of a weighted cost each place has reference optima of its own.
     const bool own_scale = problem.objective == Objective::weighted;
-    const double standing = !found ? INFINITY : own_scale ? log_cost(posed, found->x, kExactRuns) : found->log_cost;
+    const double standing = !found      ? INFINITY
+                            : own_scale ? log_cost(posed, found->x, kExactRunTolerance)
+                                        : found->log_cost;
     const bool stopped = other->stopped;
     if (!found || other->log_cost < standing) {
         found = std::move(other);
         problem = posed;
     }
     found->stopped = stopped;
-    return found->log_cost < standing - kWorthMoving;
+    return found->log_cost < standing - kMinLogCostGainOfMove;
 }
 
 }  // namespace
 
-Expected<Found> verified_search(SearchKind kind, DesignProblem& problem, const PlaneStart& start, CostSurface* surface,
-                                const RunControl& control, const Found* before) {
+Expected<DesignResult> verified_search(SearchKind kind, DesignProblem& problem, const PlaneStart& start,
+                                       CostSurface* surface, const RunControl& control, const DesignResult* before) {
     if (!problem.reference) problem.reference = reference_frequency(problem);
     // A design without derivative is no start for one with it.
-    const Found* near = before != nullptr && (!problem.pid || std::isfinite(before->x[2])) ? before : nullptr;
+    const DesignResult* near = before != nullptr && (!problem.pid || std::isfinite(before->x[2])) ? before : nullptr;
     const auto about = [&](DesignProblem& posed, CostSurface* drawn, bool explain) {
         const Sweep sweep(posed, reference_frequency(posed));
         const bool promising = has_reference_optima(posed, sweep);
@@ -266,19 +270,19 @@ Expected<Found> verified_search(SearchKind kind, DesignProblem& problem, const P
         DesignProblem moved = problem;
         moved.reference = reference;
         auto other = about(moved, nullptr, false);
-        return take_cheaper(found, problem, std::move(other), moved);
+        return take_better(found, problem, std::move(other), moved);
     };
     for (const double reference : slower_references(problem))
         if (!over()) look_at(reference);
     if (!found) {
         // Where the scans saw nothing a small feasible set may be left about the least peak.
         DesignProblem usual = problem;
-        if (!over() && !problem.measured) look_at(kSlower * reference_frequency(problem));
+        if (!over() && !problem.measured) look_at(kSlowReferenceRatio * reference_frequency(problem));
         auto last = about(usual, surface, true);
         if (!found && !last) return last;
-        take_cheaper(found, problem, std::move(last), usual);
+        take_better(found, problem, std::move(last), usual);
     }
-    for (int moves = 0; found && moves < kMoves && !over() && before == nullptr; ++moves) {
+    for (int moves = 0; found && moves < kMaxReferenceMoves && !over() && before == nullptr; ++moves) {
         const auto reference = reference_of(*found, problem);
         if (!reference || !look_at(*reference)) break;
     }

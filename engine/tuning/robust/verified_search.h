@@ -25,7 +25,7 @@ using PlaneStart = std::optional<std::pair<double, double>>;
 ///
 /// Errors: cancelled, unstable_plant, no_feasible_controller (with the smallest limit that
 /// works), numerical_failure.
-Expected<Found> verified_search(SearchKind kind, DesignProblem& problem, const PlaneStart& start, CostSurface* surface,
-                                const RunControl& control, const Found* before);
+Expected<DesignResult> verified_search(SearchKind kind, DesignProblem& problem, const PlaneStart& start,
+                                       CostSurface* surface, const RunControl& control, const DesignResult* before);
 
 }  // namespace tunewright::robust

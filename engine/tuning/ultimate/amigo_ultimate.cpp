@@ -51,7 +51,7 @@ TuningMethod amigo_ultimate_method() {
     add_controller(options, {ControllerKind::PI, ControllerKind::PID});
     options.embed(&AmigoUltimateOptions::point, ultimate_options());
     add_filter(options, "second order on the measurement, as in the source.");
-    method.serve(options, tune_amigo_ultimate);
+    method.bind(options, tune_amigo_ultimate);
     return method;
 }
 

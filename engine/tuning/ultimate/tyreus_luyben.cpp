@@ -46,7 +46,7 @@ TuningMethod tyreus_luyben_method() {
     add_controller(options, {ControllerKind::PI, ControllerKind::PID});
     options.embed(&TyreusLuybenOptions::point, ultimate_options());
     add_filter(options, "of the derivative part, Td s/(1 + s Tf); the source has none.");
-    method.serve(options, tune_tyreus_luyben);
+    method.bind(options, tune_tyreus_luyben);
     return method;
 }
 

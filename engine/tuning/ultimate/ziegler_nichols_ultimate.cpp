@@ -79,7 +79,7 @@ TuningMethod ziegler_nichols_ultimate_method() {
     method.variants = {{"PI", options.given_for({.controller = ControllerKind::PI})},
                        {"PID", {}},
                        {"PID, no overshoot", options.given_for({.variant = ZieglerNicholsVariant::no_overshoot})}};
-    method.serve(options, tune_ziegler_nichols_ultimate);
+    method.bind(options, tune_ziegler_nichols_ultimate);
     return method;
 }
 

@@ -8,41 +8,41 @@
 namespace tunewright::server::http {
 namespace {
 
-struct Kind {
+struct ProblemKind {
     int status;
     const char* type;
 };
 
 constexpr std::array kKinds{
-    Kind{400, "malformed-request"},
-    Kind{401, "unauthorized"},
-    Kind{403, "forbidden"},
-    Kind{404, "not-found"},
-    Kind{405, "method-not-allowed"},
-    Kind{406, "not-acceptable"},
-    Kind{408, "request-timeout"},
-    Kind{409, "conflict"},
-    Kind{411, "length-required"},
-    Kind{412, "precondition-failed"},
-    Kind{413, "too-large"},
-    Kind{414, "uri-too-long"},
-    Kind{415, "unsupported-media-type"},
-    Kind{417, "expectation-failed"},
-    Kind{421, "unknown-host"},
-    Kind{422, "invalid-request"},
-    Kind{429, "queue-full"},
-    Kind{431, "head-too-large"},
-    Kind{500, "internal"},
-    Kind{501, "not-implemented"},
-    Kind{503, "unavailable"},
-    Kind{505, "http-version"},
-    Kind{507, "disk-full"},
+    ProblemKind{400, "malformed-request"},
+    ProblemKind{401, "unauthorized"},
+    ProblemKind{403, "forbidden"},
+    ProblemKind{404, "not-found"},
+    ProblemKind{405, "method-not-allowed"},
+    ProblemKind{406, "not-acceptable"},
+    ProblemKind{408, "request-timeout"},
+    ProblemKind{409, "conflict"},
+    ProblemKind{411, "length-required"},
+    ProblemKind{412, "precondition-failed"},
+    ProblemKind{413, "too-large"},
+    ProblemKind{414, "uri-too-long"},
+    ProblemKind{415, "unsupported-media-type"},
+    ProblemKind{417, "expectation-failed"},
+    ProblemKind{421, "unknown-host"},
+    ProblemKind{422, "invalid-request"},
+    ProblemKind{429, "queue-full"},
+    ProblemKind{431, "head-too-large"},
+    ProblemKind{500, "internal"},
+    ProblemKind{501, "not-implemented"},
+    ProblemKind{503, "unavailable"},
+    ProblemKind{505, "http-version"},
+    ProblemKind{507, "disk-full"},
 };
 
 }  // namespace
 
 api::Problem problem(int status, std::string detail) {
-    const auto it = std::ranges::find(kKinds, status, &Kind::status);
+    const auto it = std::ranges::find(kKinds, status, &ProblemKind::status);
     api::Problem made;
     made.status = status;
     made.type = it == kKinds.end() ? "about:blank" : it->type;

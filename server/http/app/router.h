@@ -50,7 +50,9 @@ public:
     void streamed(const std::string& method, const std::string& pattern, Handler handler);
 
     /// Asked on GET and HEAD where no pattern matches: files.
-    void otherwise(std::function<std::optional<Response>(const Request&)> fallback) { fallback_ = std::move(fallback); }
+    void set_fallback(std::function<std::optional<Response>(const Request&)> fallback) {
+        fallback_ = std::move(fallback);
+    }
     /// Asked first about every request; what it returns is the answer.
     void guard(std::function<std::optional<Response>(Request&)> admit) { admit_ = std::move(admit); }
     /// Called once for each answer, on the thread that gave it.

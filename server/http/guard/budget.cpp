@@ -8,12 +8,12 @@ namespace tunewright::server::http {
 namespace {
 
 // Parts of the whole: what a small request holds at most, and what is kept for such, whoever fills the rest.
-constexpr std::size_t kSmallRequest = 512, kForSmall = 4;
-constexpr std::chrono::seconds kToLeave{1};  // for one that was asked to give way, before another is
+constexpr std::size_t kSmallRequestShare = 512, kSmallShare = 4;
+constexpr std::chrono::seconds kLeaveTime{1};  // for one that was asked to give way, before another is
 
 }  // namespace
 
-Budget::Share Budget::open(std::string client, std::function<void()> give_way) {
+Budget::Reservation Budget::open(std::string client, std::function<void()> give_way) {
     const std::lock_guard lock(mutex_);
     return {*this, entries_.insert(entries_.end(), Entry{std::move(client), 0, std::move(give_way)})};
 }
@@ -23,26 +23,26 @@ std::size_t Budget::taken() const {
     return arriving_.all + answering_.all;
 }
 
-bool Budget::is_small(std::size_t bytes) const { return bytes <= most_ / kSmallRequest; }
+bool Budget::is_small(std::size_t bytes) const { return bytes <= max_ / kSmallRequestShare; }
 
 /// Whether one that holds `before` of `sum` may hold `own` bytes. Others do not count what small ones hold in the room
 /// that is kept for them.
 bool Budget::fits(const Sum& sum, std::size_t own, std::size_t before) const {
-    const std::size_t kept = most_ / kForSmall, together = sum.all - before + own;
-    return together <= most_ / 2 + (is_small(own) ? kept : std::min(kept, sum.small - (is_small(before) ? before : 0)));
+    const std::size_t kept = max_ / kSmallShare, together = sum.all - before + own;
+    return together <= max_ / 2 + (is_small(own) ? kept : std::min(kept, sum.small - (is_small(before) ? before : 0)));
 }
 
 bool Budget::grow(Entry& entry, std::size_t bytes, std::chrono::milliseconds patience) {
     const auto end = Clock::now() + patience;
     std::unique_lock lock(mutex_);
-    bytes = std::min(bytes, most_ / 2 - std::min(most_ / 2, entry.bytes));
+    bytes = std::min(bytes, max_ / 2 - std::min(max_ / 2, entry.bytes));
     const std::size_t own = entry.bytes + bytes;
     while (!fits(arriving_, own, entry.bytes) && !entry.leaving) {
         if (Entry* victim = to_give_way(entry.client, own)) {
             victim->leaving = Clock::now();
             victim->give_way();
             freed_.notify_all();  // it may be waiting here itself
-        } else if (freed_.wait_until(lock, std::min(end, Clock::now() + kToLeave)) == std::cv_status::timeout &&
+        } else if (freed_.wait_until(lock, std::min(end, Clock::now() + kLeaveTime)) == std::cv_status::timeout &&
                    Clock::now() >= end) {
             break;
         }
@@ -57,7 +57,7 @@ bool Budget::arrived(Entry& entry, std::size_t more, std::chrono::milliseconds p
         std::unique_lock lock(mutex_);
         entry.give_way = nullptr;
         entry.leaving = {};
-        const std::size_t own = std::min(entry.bytes + more, most_ / 2);
+        const std::size_t own = std::min(entry.bytes + more, max_ / 2);
         if (!freed_.wait_for(lock, patience, [&] { return fits(answering_, own, 0); })) return false;
         set(entry, 0);
         entry.answering = true;
@@ -84,7 +84,7 @@ void Budget::set(Entry& entry, std::size_t bytes) {
     entry.bytes = bytes;
 }
 
-void Budget::close(Place place) {
+void Budget::close(EntryIterator place) {
     {
         const std::lock_guard lock(mutex_);
         set(*place, 0);
@@ -97,7 +97,7 @@ void Budget::close(Place place) {
 /// only one that is more than twice as large goes.
 Budget::Entry* Budget::to_give_way(const std::string& client, std::size_t bytes) {
     const auto now = Clock::now();
-    if (std::ranges::any_of(entries_, [&](const Entry& one) { return one.leaving && now - *one.leaving < kToLeave; }))
+    if (std::ranges::any_of(entries_, [&](const Entry& one) { return one.leaving && now - *one.leaving < kLeaveTime; }))
         return nullptr;
     // Clients by what they hold in requests that can still give way.
     std::map<std::string_view, std::pair<std::size_t, Entry*>> clients;
@@ -107,10 +107,10 @@ Budget::Entry* Budget::to_give_way(const std::string& client, std::size_t bytes)
         sum += entry.bytes;
         if (largest == nullptr || entry.bytes > largest->bytes) largest = &entry;
     }
-    const auto most = std::ranges::max_element(clients, {}, [](const auto& item) { return item.second.first; });
-    if (most == clients.end()) return nullptr;
-    Entry* largest = most->second.second;
-    return most->first == client && largest->bytes <= 2 * bytes ? nullptr : largest;
+    const auto max = std::ranges::max_element(clients, {}, [](const auto& item) { return item.second.first; });
+    if (max == clients.end()) return nullptr;
+    Entry* largest = max->second.second;
+    return max->first == client && largest->bytes <= 2 * bytes ? nullptr : largest;
 }
 
 }  // namespace tunewright::server::http

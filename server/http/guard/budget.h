@@ -17,7 +17,7 @@ class Budget {
     using Clock = std::chrono::steady_clock;
 
 public:
-    explicit Budget(std::size_t bytes) : most_(bytes) {}
+    explicit Budget(std::size_t bytes) : max_(bytes) {}
 
 private:
     struct Entry {
@@ -27,23 +27,23 @@ private:
         bool answering = false;                         ///< counts among those that are being answered
         std::optional<Clock::time_point> leaving = {};  ///< since when it has been asked to give way
     };
-    using Place = std::list<Entry>::iterator;
+    using EntryIterator = std::list<Entry>::iterator;
     struct Sum {
         std::size_t all = 0, small = 0;  ///< bytes, and those of small requests
     };
 
 public:
     /// A request's part of the budget; given back when it goes.
-    class Share {
+    class Reservation {
     public:
-        Share() = default;
-        Share(Share&& other) noexcept { *this = std::move(other); }
-        Share& operator=(Share&& other) noexcept {
+        Reservation() = default;
+        Reservation(Reservation&& other) noexcept { *this = std::move(other); }
+        Reservation& operator=(Reservation&& other) noexcept {
             std::swap(budget_, other.budget_);
             std::swap(place_, other.place_);
             return *this;
         }
-        ~Share() {
+        ~Reservation() {
             if (budget_ != nullptr) budget_->close(place_);
         }
         /// Holds so many bytes more of a request that arrives. Where they are too many it waits, while of the client
@@ -64,14 +64,14 @@ public:
 
     private:
         friend class Budget;
-        Share(Budget& budget, Place place) : budget_(&budget), place_(place) {}
+        Reservation(Budget& budget, EntryIterator place) : budget_(&budget), place_(place) {}
         Budget* budget_ = nullptr;
-        Place place_;
+        EntryIterator place_;
     };
 
     /// A share of nothing yet. `give_way` is called once at most, from any thread and under a lock: it only tells the
     /// one whose share it is.
-    Share open(std::string client, std::function<void()> give_way);
+    Reservation open(std::string client, std::function<void()> give_way);
     /// The sum over all requests.
     std::size_t taken() const;
 
@@ -80,12 +80,12 @@ private:
     bool arrived(Entry& entry, std::size_t more, std::chrono::milliseconds patience);
     void keep(Entry& entry, std::size_t bytes);
     void set(Entry& entry, std::size_t bytes);
-    void close(Place place);
+    void close(EntryIterator place);
     bool is_small(std::size_t bytes) const;
     bool fits(const Sum& sum, std::size_t own, std::size_t before) const;
     Entry* to_give_way(const std::string& client, std::size_t bytes);
 
-    const std::size_t most_;
+    const std::size_t max_;
     mutable std::mutex mutex_;
     std::condition_variable freed_;
     std::list<Entry> entries_;

@@ -17,11 +17,11 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::nanoseconds;
 
-constexpr std::size_t kGathered = 16 * 1024;
-constexpr std::size_t kKeptCapacity = 32 * 1024;
-constexpr std::size_t kSlowestBytesPerMs = 16;
-constexpr std::size_t kDroppedMost = 256 * 1024;
-constexpr std::size_t kLingerBodyMost = 64 * 1024 * 1024;
+constexpr std::size_t kMaxGathered = 16 * 1024;
+constexpr std::size_t kMaxKeptCapacity = 32 * 1024;
+constexpr std::size_t kMinBytesPerMs = 16;
+constexpr std::size_t kMaxDropped = 256 * 1024;
+constexpr std::size_t kMaxLingerBody = 64 * 1024 * 1024;
 constexpr std::size_t kMaxSizeDigits = 8;
 
 /// Errors and the end of the stream count as ready. False where the time is over.
@@ -33,7 +33,7 @@ bool wait_for(int fd, short what, nanoseconds patience) {
 
 }  // namespace
 
-Connection::Connection(int fd, std::string client, std::string of_network, const Limits& limits)
+Connection::Connection(int fd, std::string client, std::string of_network, const ServerLimits& limits)
     : address(std::move(client)),
       network(std::move(of_network)),
       heard(Clock::now()),
@@ -41,7 +41,7 @@ Connection::Connection(int fd, std::string client, std::string of_network, const
       moved(Clock::now()),
       fd_(fd),
       limits_(limits) {
-    const timeval look{.tv_sec = kLook.count(), .tv_usec = 0};
+    const timeval look{.tv_sec = kSocketTimeout.count(), .tv_usec = 0};
     ::setsockopt(fd_, SOL_SOCKET, SO_RCVTIMEO, &look, sizeof look);
 }
 
@@ -53,8 +53,8 @@ Connection::~Connection() { ::close(fd_); }
 bool Connection::receive(nanoseconds patience) {
     std::array<char, 64 * 1024> piece;
     for (const auto end = Clock::now() + patience;;) {
-        // The socket itself waits for as long as kLook, which saves a call for every request.
-        const bool long_wait = end - Clock::now() > kLook;
+        // The socket itself waits for as long as kSocketTimeout, which saves a call for every request.
+        const bool long_wait = end - Clock::now() > kSocketTimeout;
         const ssize_t n = ::recv(fd_, piece.data(), piece.size(), long_wait ? 0 : MSG_DONTWAIT);
         if (n > 0) return in_.append(piece.data(), static_cast<std::size_t>(n)), true;
         if (n == 0 || (errno != EAGAIN && errno != EINTR)) return gone_ = true, false;
@@ -64,7 +64,7 @@ bool Connection::receive(nanoseconds patience) {
 }
 
 std::optional<Head> Connection::next_head() {
-    if (in_.capacity() > kKeptCapacity) in_.shrink_to_fit();
+    if (in_.capacity() > kMaxKeptCapacity) in_.shrink_to_fit();
     rest();
     if (in_ == "\r\n") in_.clear();  // after a body, beyond its length: no request begins with it
     if (in_.empty() && !receive(limits_.idle)) return std::nullopt;
@@ -152,9 +152,9 @@ bool Connection::receive_body() {
 }
 
 /// The next line of the body without its CR LF, of at most so many bytes.
-bool Connection::take_line(std::string& line, std::size_t most, const char* rule) {
-    for (std::size_t end = 0; (end = in_.find('\n')) == std::string::npos || end > most + 1;) {
-        if (in_.size() > most + 1) return fail(400, rule);
+bool Connection::take_line(std::string& line, std::size_t max, const char* rule) {
+    for (std::size_t end = 0; (end = in_.find('\n')) == std::string::npos || end > max + 1;) {
+        if (in_.size() > max + 1) return fail(400, rule);
         if (!receive_body()) return false;
     }
     line = in_.substr(0, in_.find('\n'));
@@ -180,10 +180,10 @@ bool Connection::next_chunk() {
 }
 
 bool Connection::drop_body() {
-    if (left_ > kDroppedMost || (asks_first_ && !body_done())) return false;
+    if (left_ > kMaxDropped || (asks_first_ && !body_done())) return false;
     patience_ = {};
     std::array<char, 4096> piece;
-    for (std::size_t dropped = 0; !failed_ && !body_done() && dropped <= kDroppedMost;)
+    for (std::size_t dropped = 0; !failed_ && !body_done() && dropped <= kMaxDropped;)
         dropped += static_cast<std::size_t>(std::max<ssize_t>(read(piece.data(), piece.size()), 0));
     return !failed_ && body_done();
 }
@@ -192,7 +192,7 @@ bool Connection::drop_body() {
 
 ssize_t Connection::write(const char* from, size_t size) {
     const std::string_view bytes(from, size);
-    const bool fits = gathers_ && out_.size() + size <= kGathered;
+    const bool fits = gathers_ && out_.size() + size <= kMaxGathered;
     if (fits) out_.append(bytes);
     return fits || (flush() && send(bytes)) ? static_cast<ssize_t>(size) : -1;
 }
@@ -200,7 +200,7 @@ ssize_t Connection::write(const char* from, size_t size) {
 bool Connection::flush() { return out_.empty() || send(std::exchange(out_, {})); }
 
 bool Connection::send(std::string_view bytes) {
-    const auto end = Clock::now() + limits_.writing + milliseconds(bytes.size() / kSlowestBytesPerMs);
+    const auto end = Clock::now() + limits_.writing + milliseconds(bytes.size() / kMinBytesPerMs);
     while (!bytes.empty() && !gone_) {
         const ssize_t n = ::send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
         if (n >= 0) {
@@ -237,7 +237,7 @@ void Connection::linger() {
     in_.clear();
     gives_way_ = false;
     rest();
-    std::size_t allowance = std::max(left_ <= kLingerBodyMost ? left_ : 0, kDroppedMost);
+    std::size_t allowance = std::max(left_ <= kMaxLingerBody ? left_ : 0, kMaxDropped);
     const auto end = Clock::now() + limits_.lingering;
     for (; !gone_ && receive(end - Clock::now()) && in_.size() <= allowance; in_.clear()) allowance -= in_.size();
 }

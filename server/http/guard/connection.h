@@ -20,7 +20,7 @@ class Connection : public httplib::Stream {
 public:
     using Clock = std::chrono::steady_clock;
 
-    Connection(int fd, std::string address, std::string network, const Limits& limits);
+    Connection(int fd, std::string address, std::string network, const ServerLimits& limits);
     ~Connection() override;
     Connection(const Connection&) = delete;
     Connection& operator=(const Connection&) = delete;
@@ -54,7 +54,7 @@ public:
     void linger();
     /// From any thread: wakes who waits on the socket.
     void cut_off() const;
-    /// From any thread: the rest of a body is refused within a second (kLook), as another needs the room.
+    /// From any thread: the rest of a body is refused within a second (kSocketTimeout), as another needs the room.
     void give_way() { gives_way_ = true; }
     /// Since when it has waited for its client, for a head or for more of a body; nothing while it does not.
     std::optional<Clock::time_point> waiting_since() const;
@@ -78,20 +78,20 @@ public:
     std::atomic<Clock::time_point> moved;  ///< when the client took something of an answer
 
     /// What its socket waits for by itself (SO_RCVTIMEO).
-    static constexpr std::chrono::seconds kLook{1};
+    static constexpr std::chrono::seconds kSocketTimeout{1};
 
 private:
     void rest();
     bool receive(std::chrono::nanoseconds patience);
     bool receive_body();
     bool next_chunk();
-    bool take_line(std::string& line, std::size_t most, const char* rule);
+    bool take_line(std::string& line, std::size_t max, const char* rule);
     bool send(std::string_view bytes);
     bool reset() const;
     bool fail(int status, std::string detail);
 
     const int fd_;
-    const Limits& limits_;
+    const ServerLimits& limits_;
     std::string in_;  ///< received and not used up
 
     std::string_view head_;  ///< what the library has not read of it

@@ -7,8 +7,8 @@
 namespace tunewright::server::http {
 namespace {
 
-constexpr std::size_t kPiece = 256 * 1024;
-constexpr std::size_t kChunk = 64 * 1024;
+constexpr std::size_t kPieceBytes = 256 * 1024;
+constexpr std::size_t kChunkBytes = 64 * 1024;
 constexpr const char* kNoRoom = "Too many requests are being received; try again in a moment.";
 
 using HandlerResponse = httplib::Server::HandlerResponse;
@@ -34,13 +34,13 @@ const std::string& http_date() {
 /// The library's sink as our handlers see it.
 class SinkWriter : public BodyWriter {
 public:
-    SinkWriter(httplib::DataSink& sink, Connection& stream, Answers& answers)
+    SinkWriter(httplib::DataSink& sink, Connection& stream, UnsentResponses& answers)
         : sink_(sink), stream_(stream), answers_(answers) {}
     // An empty chunk would be the end of the body; the library copies each, so none is large.
     bool write(std::string_view piece) override {
         bool taken = true;
-        for (; taken && !piece.empty(); piece.remove_prefix(std::min(piece.size(), kChunk)))
-            taken = sink_.write(piece.data(), std::min(piece.size(), kChunk));
+        for (; taken && !piece.empty(); piece.remove_prefix(std::min(piece.size(), kChunkBytes)))
+            taken = sink_.write(piece.data(), std::min(piece.size(), kChunkBytes));
         return taken;
     }
     bool gone() const override { return stream_.gone(); }
@@ -52,14 +52,14 @@ public:
 private:
     httplib::DataSink& sink_;
     Connection& stream_;
-    Answers& answers_;
-    Answers::Share held_;
+    UnsentResponses& answers_;
+    UnsentResponses::Reservation held_;
 };
 
 }  // namespace
 
-Exchange::Exchange(Connection& connection, const Head& head, const Application& application, const Limits& limits,
-                   Budget& bodies, Answers& answers, const std::atomic<bool>& stopping)
+Exchange::Exchange(Connection& connection, const Head& head, const Application& application, const ServerLimits& limits,
+                   Budget& bodies, UnsentResponses& answers, const std::atomic<bool>& stopping)
     : connection_(connection),
       head_(head),
       application_(application),
@@ -125,7 +125,7 @@ bool Exchange::count(std::size_t bytes) {
 
 void Exchange::answer(httplib::Response& out, const httplib::ContentReader& body) {
     const std::string& client = request_.client == connection_.address ? connection_.network : request_.client;
-    share_ = std::make_shared<Budget::Share>(bodies_.open(client, [this] { connection_.give_way(); }));
+    share_ = std::make_shared<Budget::Reservation>(bodies_.open(client, [this] { connection_.give_way(); }));
     request_.keep = [share = share_](std::size_t bytes) { share->keep(bytes); };
     // The library reads in small pieces; they are handed on when there are no more at hand.
     const auto read = [this, &body](const BodyTaker& take) {
@@ -133,7 +133,7 @@ void Exchange::answer(httplib::Response& out, const httplib::ContentReader& body
         const auto pass_on = [&] { return piece.empty() || take(std::exchange(piece, {})); };
         const bool whole = body([&](const char* data, std::size_t size) {
             piece.append(data, size);
-            if (connection_.has_more() && piece.size() < kPiece) return true;
+            if (connection_.has_more() && piece.size() < kPieceBytes) return true;
             return count(piece.size()) ? pass_on() : connection_.refuse_body(kNoRoom);
         });
         if (whole) share_->arrived(0, {});

@@ -4,17 +4,17 @@
 
 #include <httplib.h>
 
-#include "server/http/guard/answers.h"
 #include "server/http/guard/budget.h"
 #include "server/http/guard/connection.h"
 #include "server/http/guard/server.h"
+#include "server/http/guard/unsent_responses.h"
 
 namespace tunewright::server::http {
 
 class Exchange {
 public:
-    Exchange(Connection& connection, const Head& head, const Application& application, const Limits& limits,
-             Budget& bodies, Answers& answers, const std::atomic<bool>& stopping);
+    Exchange(Connection& connection, const Head& head, const Application& application, const ServerLimits& limits,
+             Budget& bodies, UnsentResponses& answers, const std::atomic<bool>& stopping);
 
     /// Gives the connection to `process`, which is the library's process_request with the hooks below. True where
     /// another request may follow on it.
@@ -49,15 +49,15 @@ private:
     Connection& connection_;
     Head head_;
     const Application& application_;
-    const Limits& limits_;
+    const ServerLimits& limits_;
     Budget& bodies_;
-    Answers& answers_;
+    UnsentResponses& answers_;
     const std::atomic<bool>& stopping_;
     Request request_;
-    std::shared_ptr<Budget::Share> share_;
-    std::size_t come_ = 0;  ///< of the body, as far as it is held
-    Answers::Share held_;   ///< the body of the answer; the library has it until the end of the exchange
-    bool taken_ = false;    ///< the library could read the head
+    std::shared_ptr<Budget::Reservation> share_;
+    std::size_t come_ = 0;               ///< of the body, as far as it is held
+    UnsentResponses::Reservation held_;  ///< the body of the answer; the library has it until the end of the exchange
+    bool taken_ = false;                 ///< the library could read the head
     bool streamed_ = false;
     bool keep_;
 };

@@ -54,7 +54,7 @@ bool is_loopback(const std::string& address) {
 
 }  // namespace
 
-Server::Guard::Guard(const Limits& limits, Application application)
+Server::Guard::Guard(const ServerLimits& limits, Application application)
     : limits_(limits),
       application_(std::move(application)),
       bodies_(limits.bodies),
@@ -160,8 +160,8 @@ void Server::Guard::expect_one(int socket) {
 
 /// Under the lock. Who has the most is known when every thread has a connection.
 void Server::Guard::thin_out() {
-    const std::size_t most = starved_ ? served_ : limits_.connections;
-    if (neighbours_.empty() || connections_ - leaving_ <= most || served_ < most) return;
+    const std::size_t max = starved_ ? served_ : limits_.connections;
+    if (neighbours_.empty() || connections_ - leaving_ <= max || served_ < max) return;
     make_room(std::ranges::max_element(neighbours_, {}, [](const auto& item) { return item.second.size(); })->second);
 }
 
@@ -232,7 +232,7 @@ bool Server::Guard::converse(Connection& connection) {
 
 // ---- the door to it ----
 
-Server::Server(const Limits& limits, Application application)
+Server::Server(const ServerLimits& limits, Application application)
     : guard_(std::make_unique<Guard>(limits, std::move(application))) {}
 
 Server::~Server() = default;

@@ -9,17 +9,17 @@
 #include <set>
 #include <string>
 
-#include "server/http/guard/answers.h"
 #include "server/http/guard/budget.h"
 #include "server/http/guard/connection.h"
-#include "server/http/guard/crew.h"
 #include "server/http/guard/server.h"
+#include "server/http/guard/thread_pool.h"
+#include "server/http/guard/unsent_responses.h"
 
 namespace tunewright::server::http {
 
 class Server::Guard : public httplib::Server {
 public:
-    Guard(const Limits& limits, Application application);
+    Guard(const ServerLimits& limits, Application application);
     ~Guard() override;
 
     int open(const std::string& host, int port);
@@ -42,10 +42,10 @@ private:
     template <class Which>
     bool any(const Which& which) const;
 
-    const Limits limits_;
+    const ServerLimits limits_;
     const Application application_;
     Budget bodies_;
-    Answers answers_;
+    UnsentResponses answers_;
     std::atomic<bool> stopping_ = false;                         ///< answers say that they are the last
     std::atomic<bool> closed_ = false;                           ///< nobody is accepted any more
     int listener_ = -1;                                          ///< the port
@@ -56,7 +56,7 @@ private:
     std::size_t served_ = 0;                                     ///< of these: have a thread
     std::size_t leaving_ = 0;                                    ///< and of those: give way, and have not left yet
     bool starved_ = false;                                       ///< the system had no thread for who came last
-    Crew crew_;                                                  ///< last: its threads use all of the above
+    ThreadPool crew_;                                            ///< last: its threads use all of the above
 };
 
 }  // namespace tunewright::server::http

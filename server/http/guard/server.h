@@ -12,7 +12,7 @@
 
 namespace tunewright::server::http {
 
-struct Limits {
+struct ServerLimits {
     std::size_t max_body = 8 * 1024 * 1024;          ///< bytes of one body
     std::size_t max_batch_body = 256 * 1024 * 1024;  ///< bytes of one body that is read as it arrives
     std::size_t bodies = 128 * 1024 * 1024;          ///< bytes for all requests that are not answered yet; see Budget
@@ -56,7 +56,7 @@ struct Occupancy {
 
 class Server {
 public:
-    Server(const Limits& limits, Application application);
+    Server(const ServerLimits& limits, Application application);
     ~Server();
     Server(const Server&) = delete;
     Server& operator=(const Server&) = delete;

@@ -16,11 +16,11 @@
 namespace tunewright::server {
 namespace {
 
-constexpr std::size_t kGroup = 500;                   ///< entries of one write
-constexpr std::size_t kGroupBytes = 2 * 1024 * 1024;  ///< and bytes, but for an entry that has more by itself
+constexpr std::size_t kMaxGroupEntries = 500;            ///< entries of one write
+constexpr std::size_t kMaxGroupBytes = 2 * 1024 * 1024;  ///< and bytes, but for an entry that has more by itself
 // A slow client may leave more time between two groups than the store waits.
-constexpr std::chrono::seconds kLifeSign{15};
-static_assert(kLifeSign * 3 <= JobStore::kReceiving);
+constexpr std::chrono::seconds kReceiptInterval{15};
+static_assert(kReceiptInterval * 3 <= JobStore::kReceiving);
 
 /// One batch on its way in, from its bytes into the store. Used by the thread that receives the body; what it reads is
 /// worked on by the lane, one piece after the other. Entries go to the store in groups, of which few bytes are on their
@@ -110,8 +110,8 @@ BatchReceipt Reception::run(const BatchBody& body) {
 bool Reception::take(std::string_view piece) {
     if (failed()) return false;
     if (jobs_.draining() || !lane_.run([&] { read(piece); })) return fail(BatchReceipt::Kind::draining), false;
-    if (opened_ && Clock::now() - last_sent_ > kLifeSign) sign_of_life();
-    return wait_until(kGroupBytes);
+    if (opened_ && Clock::now() - last_sent_ > kReceiptInterval) sign_of_life();
+    return wait_until(kMaxGroupBytes);
 }
 
 /// A known key: the body is only compared with the earlier one's.
@@ -161,7 +161,7 @@ void Reception::keep(std::vector<api::BatchEntry> entries) {
         }
         group_bytes_ += made.request.size() + made.error.size();
         group_.push_back(std::move(made));
-        if (group_.size() >= kGroup || group_bytes_ >= kGroupBytes) send();
+        if (group_.size() >= kMaxGroupEntries || group_bytes_ >= kMaxGroupBytes) send();
     }
 }
 

@@ -6,18 +6,19 @@
 namespace tunewright::server {
 namespace {
 
-constexpr double kShortJob = 0.020;  // seconds; also what is claimed ahead for one worker
+constexpr double kShortJobSeconds = 0.020;  // seconds; also what is claimed ahead for one worker
 constexpr std::size_t kMaxAhead = 16;
 // One claim in so many takes a job of low priority first, so that batches go on however many single jobs come.
 constexpr std::uint64_t kLowShare = 8;
-constexpr double kForgetting = 0.2;
+constexpr double kPaceForgetting = 0.2;
 // Where no worker has come for that long, each is at a long job, whatever the latest took.
-constexpr std::chrono::milliseconds kBusy{25};
-constexpr std::chrono::seconds kPolite{10};  // that jobs which must run alone wait for a process that is never idle
+constexpr std::chrono::milliseconds kMaxTimeSinceTake{25};
+constexpr std::chrono::seconds kMaxPoliteWait{
+    10};  // that jobs which must run alone wait for a process that is never idle
 
 }  // namespace
 
-Claims::Claims(JobQueue& queue, HeldJobs& held, Outage& outage, ClaimSettings settings)
+Claims::Claims(JobQueue& queue, HeldJobs& held, StoreOutageLog& outage, ClaimSettings settings)
     : queue_(queue), held_(held), outage_(outage), settings_(std::move(settings)) {}
 
 std::shared_ptr<HeldJob> Claims::take(const std::stop_token& stop) {
@@ -45,8 +46,8 @@ void Claims::arrived() {
 void Claims::took(double seconds, bool whole) {
     const std::lock_guard lock(mutex_);
     // One that was stopped would have taken longer: of its time only a lower bound is known.
-    if (whole || seconds > pace_) pace_ = std::max(seconds, (1 - kForgetting) * pace_ + kForgetting * seconds);
-    streak_ = pace_ < kShortJob ? streak_ + 1 : 0;
+    if (whole || seconds > pace_) pace_ = std::max(seconds, (1 - kPaceForgetting) * pace_ + kPaceForgetting * seconds);
+    streak_ = pace_ < kShortJobSeconds ? streak_ + 1 : 0;
 }
 
 void Claims::unsaved(std::size_t bytes) {
@@ -81,8 +82,8 @@ double Claims::pace() const {
 bool Claims::urgent() const { return !ready_.empty() && !ready_.front()->goes_first; }
 
 std::size_t Claims::ahead() const {
-    if (!more_ || HeldJob::Clock::now() > last_take_ + kBusy) return 0;
-    return std::min({kMaxAhead, streak_, static_cast<std::size_t>(kShortJob / std::max(pace_, 1e-4))});
+    if (!more_ || HeldJob::Clock::now() > last_take_ + kMaxTimeSinceTake) return 0;
+    return std::min({kMaxAhead, streak_, static_cast<std::size_t>(kShortJobSeconds / std::max(pace_, 1e-4))});
 }
 
 std::size_t Claims::wanted() const {
@@ -97,7 +98,7 @@ bool Claims::suspects_turn(std::size_t held) const { return suspects_ > 0 && hel
 
 /// For a job that runs alone, or that has waited long enough to.
 bool Claims::keeps_clear(std::size_t held) const {
-    return held > 0 && (alone_ || (suspects_ > 0 && HeldJob::Clock::now() > suspects_since_ + kPolite));
+    return held > 0 && (alone_ || (suspects_ > 0 && HeldJob::Clock::now() > suspects_since_ + kMaxPoliteWait));
 }
 
 /// Called with the lock, returns with it; asks the store without.
@@ -106,21 +107,20 @@ void Claims::ask(std::unique_lock<std::mutex>& lock) {
     alone_ = alone_ && held > 0;
     const bool suspects = suspects_turn(held);
     if (closed_ || asking_ || failed_ || !(more_ || arrivals_ != seen_ || suspects) || keeps_clear(held)) return;
-    if (held >= settings_.most_held || unsaved_ >= settings_.most_unsaved) return;
-    std::size_t most = suspects ? 1 : std::min(wanted(), settings_.most_held - held);
-    if (most == 0) return;
+    if (held >= settings_.max_held || unsaved_ >= settings_.max_unsaved) return;
+    std::size_t max = suspects ? 1 : std::min(wanted(), settings_.max_held - held);
+    if (max == 0) return;
     // One job then, and whatever has arrived is still to be asked for.
     const bool low_first = !suspects && ++claims_ % kLowShare == 0;
-    if (low_first) most = 1;
+    if (low_first) max = 1;
     asking_ = true;
     asking_for_suspects_ = suspects;
     asking_for_arrivals_ = !suspects && !low_first && arrivals_ != seen_;
     if (!suspects && !low_first) seen_ = arrivals_;
     lock.unlock();
-    queue_.claim({settings_.worker, settings_.now(), settings_.lease, most, suspects, low_first},
-                 [this, most, low_first](Outcome<std::vector<JobRecord>> outcome) {
-                     come(std::move(outcome), most, low_first);
-                 });
+    queue_.claim(
+        {settings_.worker, settings_.now(), settings_.lease, max, suspects, low_first},
+        [this, max, low_first](Outcome<std::vector<JobRecord>> outcome) { come(std::move(outcome), max, low_first); });
     lock.lock();
 }
 

@@ -18,8 +18,8 @@
 #include <string>
 #include <vector>
 
-#include "server/jobs/outage.h"
 #include "server/jobs/running/held.h"
+#include "server/jobs/store_outage_log.h"
 #include "server/store/queue.h"
 
 namespace tunewright::server {
@@ -28,8 +28,8 @@ struct ClaimSettings {
     std::string worker;  ///< names this process
     std::chrono::milliseconds lease{10'000};
     std::function<UnixMs()> now;
-    std::size_t most_held = 64;                        ///< no claim while so many are held, results not stored included
-    std::size_t most_unsaved = std::size_t{64} << 20;  ///< nor while results of so many bytes wait for the store
+    std::size_t max_held = 64;                        ///< no claim while so many are held, results not stored included
+    std::size_t max_unsaved = std::size_t{64} << 20;  ///< nor while results of so many bytes wait for the store
     std::function<void(const std::vector<JobRecord>&)> claimed;  ///< called on the store's thread
     std::function<void(std::shared_ptr<HeldJob>)> late;          ///< one that came after close(): it is the listener's
 };
@@ -37,7 +37,7 @@ struct ClaimSettings {
 class Claims {
 public:
     /// All of them must outlive the claims.
-    Claims(JobQueue& queue, HeldJobs& held, Outage& outage, ClaimSettings settings);
+    Claims(JobQueue& queue, HeldJobs& held, StoreOutageLog& outage, ClaimSettings settings);
 
     /// The next job, once there is one; nothing after close() or a stop. Jobs come here before any worker has them, so
     /// they may have been asked to stop already.
@@ -75,7 +75,7 @@ private:
 
     JobQueue& queue_;
     HeldJobs& held_;
-    Outage& outage_;
+    StoreOutageLog& outage_;
     ClaimSettings settings_;
 
     mutable std::mutex mutex_;

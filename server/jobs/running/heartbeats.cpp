@@ -8,7 +8,7 @@
 
 namespace tunewright::server {
 
-Heartbeats::Heartbeats(JobQueue& queue, HeldJobs& held, Outage& outage, HeartbeatSettings settings)
+Heartbeats::Heartbeats(JobQueue& queue, HeldJobs& held, StoreOutageLog& outage, HeartbeatSettings settings)
     : queue_(queue), held_(held), outage_(outage), settings_(std::move(settings)) {}
 
 std::chrono::milliseconds Heartbeats::interval() const {

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "server/jobs/outage.h"
 #include "server/jobs/running/held.h"
+#include "server/jobs/store_outage_log.h"
 #include "server/store/queue.h"
 
 namespace tunewright::server {
@@ -27,7 +27,7 @@ struct HeartbeatSettings {
 
 class Heartbeats {
 public:
-    Heartbeats(JobQueue& queue, HeldJobs& held, Outage& outage, HeartbeatSettings settings);
+    Heartbeats(JobQueue& queue, HeldJobs& held, StoreOutageLog& outage, HeartbeatSettings settings);
 
     /// How often beat() is to be called.
     std::chrono::milliseconds interval() const;
@@ -43,7 +43,7 @@ private:
 
     JobQueue& queue_;
     HeldJobs& held_;
-    Outage& outage_;
+    StoreOutageLog& outage_;
     HeartbeatSettings settings_;
     std::atomic<bool> beating_ = false;
     std::atomic<bool> resend_ = false;

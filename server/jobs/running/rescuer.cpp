@@ -6,8 +6,7 @@ void Rescuer::look() {
     const auto drift = drift_.since_last(settings_.now());
     if (!drift || *drift > settings_.lease / 4) return settings_.clock_jumped();
     if (looking_.exchange(true)) return;
-    const Reclaim what{settings_.now(), settings_.most_attempts, settings_.given_up, settings_.shared,
-                       settings_.period};
+    const Reclaim what{settings_.now(), settings_.max_attempts, settings_.given_up, settings_.shared, settings_.period};
     queue_.reclaim(what, [this](const auto& outcome) {
         if (const auto* fault = std::get_if<StoreFault>(&outcome)) {
             outage_.failed("nobody looks for jobs of processes that have gone", *fault);

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "server/clock.h"
-#include "server/jobs/outage.h"
+#include "server/jobs/store_outage_log.h"
 #include "server/store/queue.h"
 
 namespace tunewright::server {
@@ -17,7 +17,7 @@ struct RescuerSettings {
     std::chrono::milliseconds lease{10'000};
     std::chrono::milliseconds period{1000};  ///< how often it is due, all processes together
     bool shared = false;                     ///< else no other process has jobs
-    int most_attempts = 10;
+    int max_attempts = 10;
     std::string given_up;  ///< problem of a job that was interrupted that often
     std::function<UnixMs()> now;
     std::function<void()> clock_jumped;              ///< a sign of life is due before anybody is thought dead
@@ -26,7 +26,7 @@ struct RescuerSettings {
 
 class Rescuer {
 public:
-    Rescuer(JobQueue& queue, Outage& outage, RescuerSettings settings)
+    Rescuer(JobQueue& queue, StoreOutageLog& outage, RescuerSettings settings)
         : queue_(queue), outage_(outage), settings_(std::move(settings)) {}
 
     /// Not at the first call, nor where the wall clock has jumped since the last one: this machine slept, or its clock
@@ -35,7 +35,7 @@ public:
 
 private:
     JobQueue& queue_;
-    Outage& outage_;
+    StoreOutageLog& outage_;
     RescuerSettings settings_;
     std::atomic<bool> looking_ = false;
     WallDrift drift_;  ///< of the caller's thread alone

@@ -11,7 +11,7 @@ std::size_t size_of(const Ended& ended) { return ended.end.result.size() + ended
 
 }  // namespace
 
-ResultOutbox::ResultOutbox(JobQueue& queue, Outage& outage, Listener listener)
+ResultOutbox::ResultOutbox(JobQueue& queue, StoreOutageLog& outage, Listener listener)
     : queue_(queue), outage_(outage), listener_(std::move(listener)) {}
 
 void ResultOutbox::finish(Ended ended) {

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "server/jobs/outage.h"
 #include "server/jobs/running/held.h"
+#include "server/jobs/store_outage_log.h"
 #include "server/store/queue.h"
 
 namespace tunewright::server {
@@ -33,7 +33,7 @@ public:
         std::function<void(std::size_t bytes)> unsaved;
     };
 
-    ResultOutbox(JobQueue& queue, Outage& outage, Listener listener);
+    ResultOutbox(JobQueue& queue, StoreOutageLog& outage, Listener listener);
 
     void finish(Ended ended);
     /// The job is queued again; where that cannot be written its lease runs out instead.
@@ -46,7 +46,7 @@ private:
     void count(std::size_t more, std::size_t less);
 
     JobQueue& queue_;
-    Outage& outage_;
+    StoreOutageLog& outage_;
     Listener listener_;
     std::mutex mutex_;
     std::vector<std::shared_ptr<const Ended>> refused_;

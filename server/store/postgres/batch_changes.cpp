@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "server/store/postgres/moves.h"
 #include "server/store/postgres/reading.h"
 #include "server/store/postgres/text.h"
+#include "server/store/postgres/transitions.h"
 
 namespace tunewright::server::postgres {
 namespace {
@@ -131,7 +131,7 @@ std::optional<std::int64_t> leave_batch(Work& work, const std::string& id) {
                     Values().text(id)));
 }
 
-std::size_t delete_entries(Work& work, std::int64_t batch, std::size_t most) {
+std::size_t delete_entries(Work& work, std::int64_t batch, std::size_t max) {
     Session& session = work.session;
     // An entry that moves at this moment may stay behind in a place: the last call clears those.
     const auto gone = session
@@ -141,7 +141,7 @@ std::size_t delete_entries(Work& work, std::int64_t batch, std::size_t most) {
                               "w AS (DELETE FROM waiting w USING gone g WHERE w.class = g.class AND w.turn = g.turn "
                               "AND w.seq = g.seq), e AS (DELETE FROM ended e USING gone g WHERE e.seq = g.seq), "
                               "r AS (DELETE FROM running r USING gone g WHERE r.seq = g.seq) SELECT seq FROM gone",
-                              Values().number(batch).number(static_cast<std::int64_t>(most)))
+                              Values().number(batch).number(static_cast<std::int64_t>(max)))
                           .size();
     if (gone > 0) return static_cast<std::size_t>(gone);
     session.run("DELETE FROM running WHERE batch = $1", Values().number(batch));
@@ -174,7 +174,7 @@ std::optional<std::int64_t> begin_cancel(Work& work, const std::string& id) {
 
 std::optional<std::int64_t> cancel_entries(Work& work, std::int64_t batch, std::int64_t from, UnixMs now) {
     Session& session = work.session;
-    const std::int64_t next = from + static_cast<std::int64_t>(kSlice);
+    const std::int64_t next = from + static_cast<std::int64_t>(kSliceEntries);
     const auto count =
         session
             .run(
@@ -235,14 +235,14 @@ Unsettled settle_batches(Session& session) {
 
 namespace {
 
-std::size_t sweep_state(Session& session, JobStatus status, UnixMs ended_before, std::size_t most) {
+std::size_t sweep_state(Session& session, JobStatus status, UnixMs ended_before, std::size_t max) {
     const pqxx::result gone = session.run(
         "WITH due AS MATERIALIZED (SELECT seq FROM ended WHERE single AND status = $1 AND finished_at < $2 "
         "ORDER BY finished_at LIMIT $3), "
         // One that waits again by now is not among those that have ended, and stays.
         "gone AS (DELETE FROM ended WHERE seq IN (SELECT seq FROM due) RETURNING seq) "
         "DELETE FROM jobs WHERE seq IN (SELECT seq FROM gone) RETURNING seq",
-        Values().plain(std::string(to_string(status))).number(ended_before).number(static_cast<std::int64_t>(most)));
+        Values().plain(std::string(to_string(status))).number(ended_before).number(static_cast<std::int64_t>(max)));
     return static_cast<std::size_t>(gone.size());
 }
 
@@ -256,7 +256,7 @@ bool leave_if_over(Session& session, std::int64_t batch, UnixMs ended_before) {
     return true;
 }
 
-std::size_t sweep_batch(Work& work, UnixMs ended_before, std::size_t most) {
+std::size_t sweep_batch(Work& work, UnixMs ended_before, std::size_t max) {
     settle_batches(work.session);
     for (;;) {
         const std::optional<std::int64_t> batch = one_number(work.session.run(
@@ -265,14 +265,14 @@ std::size_t sweep_batch(Work& work, UnixMs ended_before, std::size_t most) {
             Values().number(ended_before)));
         if (!batch) return 0;
         if (!leave_if_over(work.session, *batch, ended_before)) continue;
-        if (const std::size_t gone = delete_entries(work, *batch, most); gone > 0) return gone;
+        if (const std::size_t gone = delete_entries(work, *batch, max); gone > 0) return gone;
     }
 }
 
 }  // namespace
 
-std::size_t sweep_slice(Work& work, UnixMs now, const Retention& retention, std::size_t most) {
-    const std::size_t slice = std::min(most, kSlice);
+std::size_t sweep_slice(Work& work, UnixMs now, const Retention& retention, std::size_t max) {
+    const std::size_t slice = std::min(max, kSliceEntries);
     const pqxx::row row = work.session.run(
         "SELECT least($1, (extract(epoch FROM clock_timestamp()) * 1000)::bigint), "
         "pg_try_advisory_xact_lock(x'74756e6577737765'::bigint)",  // "tunewswe": one process sweeps at a time

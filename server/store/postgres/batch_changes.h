@@ -23,11 +23,11 @@ bool add_entries(Session& session, const std::string& id, const std::vector<NewE
 SealedBatch seal_batch(Work& work, const BatchSeal& seal);
 std::optional<std::int64_t> leave_batch(Work& work, const std::string& id);
 RemovedBatch remove_batch(Work& work, const std::string& id);
-std::size_t delete_entries(Work& work, std::int64_t batch, std::size_t most);
+std::size_t delete_entries(Work& work, std::int64_t batch, std::size_t max);
 std::optional<std::int64_t> begin_cancel(Work& work, const std::string& id);
 std::optional<std::int64_t> cancel_entries(Work& work, std::int64_t batch, std::int64_t from, UnixMs now);
 std::vector<std::string> end_cancel(Work& work, std::int64_t batch);
-std::size_t sweep_slice(Work& work, UnixMs now, const Retention& retention, std::size_t most);
+std::size_t sweep_slice(Work& work, UnixMs now, const Retention& retention, std::size_t max);
 /// Batches whose receiver has not been heard of for BatchStore::kReceiving are dropped; ended ones are settled.
 Unsettled settle_batches(Session& session);
 

@@ -4,9 +4,9 @@
 #include <map>
 #include <set>
 
-#include "server/store/postgres/moves.h"
 #include "server/store/postgres/reading.h"
 #include "server/store/postgres/text.h"
+#include "server/store/postgres/transitions.h"
 
 namespace tunewright::server::postgres {
 
@@ -354,7 +354,7 @@ const std::string kGoing = "NOT EXISTS (SELECT 1 FROM settings WHERE name = 'pau
 
 std::vector<JobRecord> claim_by(Session& session, const std::string& sql, const Claim& claim) {
     const Values values = Values()
-                              .number(static_cast<std::int64_t>(claim.most))
+                              .number(static_cast<std::int64_t>(claim.max))
                               .text(claim.worker)
                               .number(claim.now)
                               .number(claim.lease.count());
@@ -436,7 +436,7 @@ std::string id_of(Session& session, std::int64_t seq) {
     return rows.empty() ? std::string{} : text_of(rows[0][0]);
 }
 
-void count(Session& session, const Run& run, JobStatus to, UnixMs now) {
+void count(Session& session, const RunningJob& run, JobStatus to, UnixMs now) {
     BatchCounts counts;
     counts.move(run.batch, JobStatus::running, to, 1, has_ended(to) ? now : 0);
     counts.write(session);
@@ -479,7 +479,7 @@ std::optional<Recovery> reclaim_jobs(Session& session, const Reclaim& what) {
         const std::optional<RunningRow> row = RunningRow::take(session, seq, 0);
         if (!row) continue;
         const int crashes = row->run().crashes + 1;
-        const bool tired = crashes >= what.most_attempts;
+        const bool tired = crashes >= what.max_attempts;
         JobStatus to = tired ? JobStatus::failed : JobStatus::queued;
         if (row->run().unwanted) to = JobStatus::cancelled;
         if (has_ended(to))
@@ -494,13 +494,13 @@ std::optional<Recovery> reclaim_jobs(Session& session, const Reclaim& what) {
     return recovery;
 }
 
-std::vector<Delivery> take_deliveries(Session& session, UnixMs now, std::chrono::milliseconds hold, std::size_t most) {
+std::vector<Delivery> take_deliveries(Session& session, UnixMs now, std::chrono::milliseconds hold, std::size_t max) {
     const pqxx::result rows = session.run(
         "WITH due AS MATERIALIZED (SELECT seq, due_at FROM deliveries WHERE due_at <= $1 ORDER BY due_at LIMIT $3 "
         "FOR UPDATE SKIP LOCKED), held AS (UPDATE deliveries d SET due_at = $2 FROM due WHERE d.seq = due.seq "
         "RETURNING d.seq, d.target, d.job, d.batch, d.tries, d.created_at, due.due_at AS was) "
         "SELECT seq, target, job, batch, tries, created_at FROM held ORDER BY was, seq",
-        Values().number(now).number(now + hold.count()).number(static_cast<std::int64_t>(most)));
+        Values().number(now).number(now + hold.count()).number(static_cast<std::int64_t>(max)));
     std::vector<Delivery> due;
     for (const pqxx::row& row : rows)
         due.push_back({row[0].as<std::int64_t>(), NotifyTarget::of_text(text_of(row[1])), text_of(row[2]),

@@ -32,7 +32,7 @@ std::optional<Released> release_job(Session& session, std::int64_t seq, int atte
 std::optional<Recovery> reclaim_jobs(Session& session, const Reclaim& what);
 
 // ---- notifications of ends, and the settings that all processes share
-std::vector<Delivery> take_deliveries(Session& session, UnixMs now, std::chrono::milliseconds hold, std::size_t most);
+std::vector<Delivery> take_deliveries(Session& session, UnixMs now, std::chrono::milliseconds hold, std::size_t max);
 bool settle_delivery(Session& session, std::int64_t seq, UnixMs now, std::optional<std::chrono::milliseconds> pause,
                      bool tried);
 bool pause_queue(Session& session, bool paused);

@@ -19,7 +19,7 @@ namespace postgres {
 namespace {
 
 /// Of what is quickly done where all is well.
-constexpr std::chrono::seconds kSilence{5};
+constexpr std::chrono::seconds kMaxSilence{5};
 
 class PostgresStore : public JobStore {
 public:
@@ -37,7 +37,7 @@ public:
         if (listener_) listener_->watch(std::move(notify));
     }
     bool healthy() const override {
-        return writer_.healthy() && results_.healthy() && bulk_.healthy() && writer_.silence() < kSilence;
+        return writer_.healthy() && results_.healthy() && bulk_.healthy() && writer_.silence() < kMaxSilence;
     }
 
     Recovery recover(UnixMs now, int attempts, const std::string& error) override {
@@ -164,14 +164,14 @@ public:
     void remove_batch(std::string id, Done<RemoveEffect> done) override {
         slices_.remove(std::move(id), std::move(done));
     }
-    void sweep(UnixMs now, Retention retention, std::size_t most, Done<std::size_t> done) override {
-        slices_.sweep(now, retention, most, std::move(done));
+    void sweep(UnixMs now, Retention retention, std::size_t max, Done<std::size_t> done) override {
+        slices_.sweep(now, retention, max, std::move(done));
     }
 
-    void take_deliveries(UnixMs now, std::chrono::milliseconds hold, std::size_t most,
+    void take_deliveries(UnixMs now, std::chrono::milliseconds hold, std::size_t max,
                          Done<std::vector<Delivery>> done) override {
         write<std::vector<Delivery>>(
-            kQuick, [=](Work& work) { return postgres::take_deliveries(work.session, now, hold, most); },
+            kQuick, [=](Work& work) { return postgres::take_deliveries(work.session, now, hold, max); },
             std::move(done));
     }
     void settle_delivery(std::int64_t seq, UnixMs now, std::optional<std::chrono::milliseconds> pause, bool tried,
@@ -227,20 +227,20 @@ private:
 };
 
 void PostgresStore::reclaim(Reclaim what, Done<Recovery> done) {
-    using Found = std::pair<Recovery, Unsettled>;
+    using Reclaimed = std::pair<Recovery, Unsettled>;
     const UnixMs now = what.now;
-    write<Found>(
+    write<Reclaimed>(
         kBulky,
         [what = std::move(what)](Work& work) {
             const std::optional<Recovery> recovery = reclaim_jobs(work.session, what);
-            if (!recovery) return Found{};
+            if (!recovery) return Reclaimed{};
             if (recovery->interrupted > 0) work.notices.queued();
             for (const std::string& id : recovery->ended) work.notices.ended(id);
-            return Found{*recovery, settle_batches(work.session)};
+            return Reclaimed{*recovery, settle_batches(work.session)};
         },
-        [this, now, done = std::move(done)](Outcome<Found> outcome) {
+        [this, now, done = std::move(done)](Outcome<Reclaimed> outcome) {
             if (const auto* fault = std::get_if<StoreFault>(&outcome)) return done(*fault);
-            auto& [recovery, unsettled] = std::get<Found>(outcome);
+            auto& [recovery, unsettled] = std::get<Reclaimed>(outcome);
             slices_.go_on(unsettled, now);
             done(std::move(recovery));
         });

@@ -5,7 +5,7 @@
 namespace tunewright::server::postgres {
 namespace {
 
-constexpr std::chrono::milliseconds kPause{100};  // after a try to connect that failed
+constexpr std::chrono::milliseconds kReconnectPause{100};  // after a try to connect that failed
 
 }  // namespace
 
@@ -20,7 +20,7 @@ std::unique_ptr<Session> Readers::open() {
         return std::make_unique<Session>(address_, watch_.line());
     } catch (const Failure&) {
         const std::lock_guard lock(mutex_);
-        next_try_ = std::chrono::steady_clock::now() + kPause;
+        next_try_ = std::chrono::steady_clock::now() + kReconnectPause;
         throw;
     }
 }

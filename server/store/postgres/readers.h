@@ -19,7 +19,7 @@ public:
     template <class Work>
     std::invoke_result_t<Work, Session&> read(Work work) {
         try {
-            Pool<Session>::Place place(pool_, kPatience);
+            Pool<Session>::Slot place(pool_, kMaxWait);
             if (!place.is_held()) throw Failure(Failure::Kind::broken, "no connection for reading became free");
             std::unique_ptr<Session> session = place.connection();
             const bool fresh = session == nullptr;
@@ -46,14 +46,14 @@ public:
     }
 
 private:
-    static constexpr std::size_t kPlaces = 4;
-    static constexpr std::chrono::seconds kPatience{5};
+    static constexpr std::size_t kMaxConnections = 4;
+    static constexpr std::chrono::seconds kMaxWait{5};
 
     std::unique_ptr<Session> open();
 
     Address address_;
     Watch& watch_;
-    Pool<Session> pool_{kPlaces};
+    Pool<Session> pool_{kMaxConnections};
     std::mutex mutex_;
     std::chrono::steady_clock::time_point next_try_{};
 };

@@ -58,9 +58,9 @@ std::map<std::string, std::string> options_of(const std::string& uri) {
 
 Address::Address(const std::string& uri, bool pooled) : pooled_(pooled) {
     std::map<std::string, std::string> options = options_of(uri);
-    const auto value = [&](const char* keyword, const char* otherwise) {
+    const auto value = [&](const char* keyword, const char* fallback) {
         const auto found = options.find(keyword);
-        return found == options.end() ? otherwise : found->second;
+        return found == options.end() ? fallback : found->second;
     };
     shown_ = "postgresql://" + value("host", "localhost") + ":" + value("port", "5432") + "/" + value("dbname", "");
     options.insert(kDefaults.begin(), kDefaults.end());

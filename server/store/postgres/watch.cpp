@@ -7,7 +7,7 @@
 namespace tunewright::server::postgres {
 namespace {
 
-constexpr std::chrono::milliseconds kLookAgain{500};
+constexpr std::chrono::milliseconds kPollInterval{500};
 
 }  // namespace
 
@@ -52,10 +52,10 @@ std::shared_ptr<Line> Watch::line() {
 
 void Watch::look() {
     std::unique_lock lock(mutex_);
-    while (!stopped_.wait_for(lock, kLookAgain, [this] { return stopping_; })) {
+    while (!stopped_.wait_for(lock, kPollInterval, [this] { return stopping_; })) {
         std::erase_if(lines_, [](const std::weak_ptr<Line>& line) { return line.expired(); });
         for (const std::weak_ptr<Line>& each : lines_)
-            if (const std::shared_ptr<Line> line = each.lock()) line->cut_after(kPatience);
+            if (const std::shared_ptr<Line> line = each.lock()) line->cut_after(kMaxStatementTime);
     }
 }
 

@@ -32,7 +32,7 @@ private:
 class Watch {
 public:
     /// Longer than the server lets any statement take: one that is alive has refused it by then.
-    static constexpr std::chrono::milliseconds kPatience{15'000};
+    static constexpr std::chrono::milliseconds kMaxStatementTime{15'000};
 
     Watch();
     ~Watch();

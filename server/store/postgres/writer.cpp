@@ -12,13 +12,13 @@
 namespace tunewright::server::postgres {
 namespace {
 
-constexpr std::size_t kLargestGroup = 200;             // changes of a kind
-constexpr std::size_t kResults = 12;                   // long ones: somebody may wait for the next group
-constexpr std::size_t kOtherChanges = 16;              // a statement each, or more
-constexpr std::size_t kLargestText = 4 * 1024 * 1024;  // of a kind
+constexpr std::size_t kMaxGroup = 200;             // changes of a kind
+constexpr std::size_t kMaxResults = 12;            // long ones: somebody may wait for the next group
+constexpr std::size_t kMaxOtherChanges = 16;       // a statement each, or more
+constexpr std::size_t kMaxText = 4 * 1024 * 1024;  // of a kind
 constexpr std::chrono::milliseconds kFirstPause{100};
 constexpr std::chrono::milliseconds kMaxPause{2000};
-constexpr std::chrono::seconds kDoubt{10};
+constexpr std::chrono::seconds kMaxDoubtTime{10};
 constexpr int kTriesMore = 4;  // of a group that was in another's way, or whose connection was lost
 
 std::size_t bytes(const Ask<NewJob, Accepted>& ask) { return ask.in.request.size(); }
@@ -28,11 +28,11 @@ std::size_t bytes(const T&) {
     return 0;
 }
 
-/// Moves the first to the end of another list: at most `most`, and about kLargestText of text.
+/// Moves the first to the end of another list: at most `max`, and about kMaxText of text.
 template <class T>
-void move_some(std::vector<T>& from, std::vector<T>& to, std::size_t most) {
+void move_some(std::vector<T>& from, std::vector<T>& to, std::size_t max) {
     std::size_t count = 0;
-    for (std::size_t text = 0; count < std::min(most, from.size()) && text < kLargestText; count++)
+    for (std::size_t text = 0; count < std::min(max, from.size()) && text < kMaxText; count++)
         text += bytes(from[count]);
     const auto end = from.begin() + static_cast<std::ptrdiff_t>(count);
     to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(end));
@@ -79,11 +79,11 @@ void claim_all(Session& session, std::vector<Ask<Claim, std::vector<JobRecord>>>
             return other.worker == together.worker && other.lease == together.lease &&
                    other.suspects == together.suspects && other.low_first == together.low_first;
         };
-        for (; last < asks.size() && alike(asks[last].in); last++) together.most += asks[last].in.most;
+        for (; last < asks.size() && alike(asks[last].in); last++) together.max += asks[last].in.max;
         std::vector<JobRecord> claimed = claim_jobs(session, together);
         for (; first < last; first++) {
             asks[first].out.clear();
-            move_some(claimed, asks[first].out, asks[first].in.most);
+            move_some(claimed, asks[first].out, asks[first].in.max);
         }
     }
 }
@@ -160,14 +160,14 @@ Group Writer::next_group() {
     const bool quick = !waiting_.claims.empty() || !waiting_.beats.empty();
     const bool others = waiting_.size() > waiting_.claims.size() + waiting_.beats.size();
     if (quick && (!others || !std::exchange(quick_went_, true))) {
-        move_some(waiting_.beats, group.beats, kLargestGroup);
-        move_some(waiting_.claims, group.claims, kLargestGroup);
+        move_some(waiting_.beats, group.beats, kMaxGroup);
+        move_some(waiting_.claims, group.claims, kMaxGroup);
         return group;
     }
     quick_went_ = false;
-    move_some(waiting_.ends, group.ends, kResults);
-    move_some(waiting_.accepts, group.accepts, kLargestGroup);
-    move_some(waiting_.others, group.others, kOtherChanges);
+    move_some(waiting_.ends, group.ends, kMaxResults);
+    move_some(waiting_.accepts, group.accepts, kMaxGroup);
+    move_some(waiting_.others, group.others, kMaxOtherChanges);
     return group;
 }
 
@@ -272,7 +272,7 @@ bool Writer::connect() {
 }
 
 std::optional<bool> Writer::was_committed(std::int64_t transaction, const std::string& life) {
-    const Clock::time_point end = Clock::now() + kDoubt;
+    const Clock::time_point end = Clock::now() + kMaxDoubtTime;
     while (Clock::now() < end) {
         try {
             if (session_ || connect()) {

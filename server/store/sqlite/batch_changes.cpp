@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "server/store/sqlite/moves.h"
+#include "server/store/sqlite/transitions.h"
 
 namespace tunewright::server {
 namespace {
@@ -33,7 +33,7 @@ void add_entry(Connection& store, const Receiving& batch, const NewEntry& entry,
         .with(entry.id, entry.name, batch.owner, batch.flow, kLow, turn, batch.seq, entry.index, now, entry.timeout_s,
               entry.request_hash, batch.request_id, batch.traceparent, entry.request)
         .run();
-    const Place place{store.database().getLastInsertRowid(), kLow, turn, batch.flow, batch.seq, 0, 0};
+    const RowPosition place{store.database().getLastInsertRowid(), kLow, turn, batch.flow, batch.seq, 0, 0};
     if (entry.error.empty()) return put_waiting(store, place);
     Ending ending = Ending::failed(now, entry.error);
     put_ended(store, place, std::nullopt,
@@ -115,15 +115,15 @@ std::optional<std::int64_t> leave_batch(Connection& store, const std::string& id
     return seq;
 }
 
-std::size_t delete_entries(Connection& store, std::int64_t batch, std::size_t most) {
-    std::vector<Place> places;
+std::size_t delete_entries(Connection& store, std::int64_t batch, std::size_t max) {
+    std::vector<RowPosition> places;
     {
         Connection::Use row = store.use(
             "SELECT seq, class, turn, '', batch, 0, 0 FROM jobs WHERE batch = ?1 ORDER BY batch_index LIMIT ?2");
-        row.with(batch, static_cast<std::int64_t>(most));
+        row.with(batch, static_cast<std::int64_t>(max));
         while (row.next()) places.push_back(read_place(row));
     }
-    for (const Place& place : places) {
+    for (const RowPosition& place : places) {
         if (!take_waiting(store, place) && store.use("DELETE FROM ended WHERE seq = ?1").with(place.seq).run() == 0)
             take_running(store, place.seq, std::nullopt);
         store.use("DELETE FROM jobs WHERE seq = ?1").with(place.seq).run();
@@ -156,8 +156,8 @@ std::optional<std::int64_t> begin_cancel(Connection& store, const std::string& i
 }
 
 std::optional<std::int64_t> cancel_entries(Connection& store, std::int64_t batch, std::int64_t from, UnixMs now) {
-    const std::int64_t next = from + static_cast<std::int64_t>(kSlice);
-    std::vector<Place> places;
+    const std::int64_t next = from + static_cast<std::int64_t>(kSliceEntries);
+    std::vector<RowPosition> places;
     {
         Connection::Use row = store.use(
             "SELECT w.seq, w.class, w.turn, w.flow, w.batch, w.attempts, w.crashes FROM jobs j "
@@ -167,7 +167,7 @@ std::optional<std::int64_t> cancel_entries(Connection& store, std::int64_t batch
         while (row.next()) places.push_back(read_place(row));
     }
     BatchCounts counts;
-    for (const Place& place : places) {
+    for (const RowPosition& place : places) {
         take_waiting(store, place);
         put_ended(store, place, std::nullopt, Ending::cancelled(now));
         counts.move(batch, JobStatus::queued, JobStatus::cancelled, now);
@@ -215,13 +215,13 @@ Unsettled settle_batches(Connection& store, UnixMs heard_before) {
 
 namespace {
 
-std::size_t sweep_state(Connection& store, JobStatus status, UnixMs ended_before, std::size_t most) {
+std::size_t sweep_state(Connection& store, JobStatus status, UnixMs ended_before, std::size_t max) {
     std::vector<std::int64_t> due;
     {
         const std::string name(to_string(status));
         Connection::Use row = store.use(
             "SELECT seq FROM ended WHERE single AND status = ?1 AND finished_at < ?2 ORDER BY finished_at LIMIT ?3");
-        due = numbers(row.with(name, ended_before, static_cast<std::int64_t>(most)));
+        due = numbers(row.with(name, ended_before, static_cast<std::int64_t>(max)));
     }
     for (const std::int64_t seq : due) {
         store.use("DELETE FROM ended WHERE seq = ?1").with(seq).run();
@@ -230,7 +230,7 @@ std::size_t sweep_state(Connection& store, JobStatus status, UnixMs ended_before
     return due.size();
 }
 
-std::size_t sweep_batch(Connection& store, UnixMs ended_before, std::size_t most) {
+std::size_t sweep_batch(Connection& store, UnixMs ended_before, std::size_t max) {
     settle_batches(store, 0);
     for (;;) {
         std::int64_t batch = 0;
@@ -243,14 +243,14 @@ std::size_t sweep_batch(Connection& store, UnixMs ended_before, std::size_t most
             batch = row.integer(0);
         }
         leave(store, batch);
-        if (const std::size_t gone = delete_entries(store, batch, most); gone > 0) return gone;
+        if (const std::size_t gone = delete_entries(store, batch, max); gone > 0) return gone;
     }
 }
 
 }  // namespace
 
-std::size_t sweep_slice(Connection& store, UnixMs now, const Retention& retention, std::size_t most) {
-    const std::size_t slice = std::min(most, kSlice);
+std::size_t sweep_slice(Connection& store, UnixMs now, const Retention& retention, std::size_t max) {
+    const std::size_t slice = std::min(max, kSliceEntries);
     for (const auto& [status, age] : retention.by_state())
         if (age)
             if (const std::size_t gone = sweep_state(store, status, now - age->count(), slice); gone > 0) return gone;

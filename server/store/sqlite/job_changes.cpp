@@ -1,7 +1,7 @@
 #include "server/store/sqlite/job_changes.h"
 
-#include "server/store/sqlite/moves.h"
 #include "server/store/sqlite/reading.h"
+#include "server/store/sqlite/transitions.h"
 
 namespace tunewright::server {
 
@@ -19,7 +19,7 @@ std::optional<Accepted> find_by_key(Connection& store, const NewJob& job) {
 }
 
 /// A job that is not of a batch being deleted.
-struct FoundJob : Place {
+struct FoundJob : RowPosition {
     JobStatus status = JobStatus::queued;
     bool batch_cancelled = false;
 };
@@ -31,7 +31,7 @@ std::optional<FoundJob> find_job(Connection& store, const std::string& id) {
     Connection::Use row = store.use(sql);
     if (!row.with(id).next()) return std::nullopt;
     FoundJob found;
-    static_cast<Place&>(found) = read_place(row);
+    static_cast<RowPosition&>(found) = read_place(row);
     found.status = job_status(row.text(7)).value();
     found.batch_cancelled = row.integer(8) != 0;
     return found;
@@ -39,9 +39,9 @@ std::optional<FoundJob> find_job(Connection& store, const std::string& id) {
 
 /// The single jobs of its flow are counted only where so many have come since the last count that there may be no room.
 bool has_room(Connection& store, ClientBounds& bounds, const NewJob& job) {
-    constexpr std::size_t most_flows = 10'000;
+    constexpr std::size_t max_flows = 10'000;
     if (job.client_limit == 0) return true;
-    if (bounds.size() > most_flows) bounds.clear();
+    if (bounds.size() > max_flows) bounds.clear();
     std::size_t& bound = bounds.try_emplace(job.flow, job.client_limit).first->second;
     if (bound >= job.client_limit) {
         Connection::Use row = store.use(
@@ -55,7 +55,7 @@ bool has_room(Connection& store, ClientBounds& bounds, const NewJob& job) {
 }
 
 /// The job's place in the queue: by its time where that has not come, else by the next turn of its flow.
-void find_turn(Connection& store, Place& job, std::optional<UnixMs> not_before, UnixMs now) {
+void find_turn(Connection& store, RowPosition& job, std::optional<UnixMs> not_before, UnixMs now) {
     const bool later = not_before.value_or(0) > now;
     job.turn = later ? *not_before : next_turn(store, job.priority, job.flow);
     if (later) job.priority = kScheduled;
@@ -85,7 +85,7 @@ bool take_key_back(Connection& store, std::int64_t seq) {
     return true;
 }
 
-void move_in_batch(Connection& store, const Place& job, JobStatus from, JobStatus to, UnixMs ended_at = 0) {
+void move_in_batch(Connection& store, const RowPosition& job, JobStatus from, JobStatus to, UnixMs ended_at = 0) {
     BatchCounts counts;
     counts.move(job.batch, from, to, ended_at);
     counts.write(store);
@@ -100,7 +100,7 @@ Accepted accept_job(Connection& store, ClientBounds& bounds, const NewJob& job) 
     if (!has_room(store, bounds, job)) return {Accepted::Kind::too_many, {}};
     if (earlier) give_key_up(store, earlier->job.seq);
     const int priority = static_cast<int>(job.priority);
-    Place place{0, priority, 0, job.flow, {}, 0, 0};
+    RowPosition place{0, priority, 0, job.flow, {}, 0, 0};
     find_turn(store, place, job.not_before, job.created_at);
     const std::optional<UnixMs> time = place.priority == kScheduled ? job.not_before : std::nullopt;
     const std::string target = job.notify.text();
@@ -122,7 +122,7 @@ Accepted accept_job(Connection& store, ClientBounds& bounds, const NewJob& job) 
 }
 
 bool finish_job(Connection& store, const JobEnd& end) {
-    const std::optional<Run> run = take_running(store, end.seq, end.attempts);
+    const std::optional<RunningJob> run = take_running(store, end.seq, end.attempts);
     if (!run) return false;
     put_ended(store, *run, run->started_at,
               {end.status, end.finished_at, run->cancel_requested, end.version, end.outline, end.error, end.result});
@@ -138,7 +138,7 @@ CancelEffect cancel_job(Connection& store, const std::string& id, UnixMs now) {
         store.use("UPDATE running SET cancel_requested = 1 WHERE seq = ?1").with(found->seq).run();
         return CancelEffect::requested;
     }
-    Place scheduled = *found;
+    RowPosition scheduled = *found;
     scheduled.priority = kScheduled;
     if (!take_waiting(store, *found)) take_waiting(store, scheduled);
     put_ended(store, *found, std::nullopt, Ending::cancelled(now));
@@ -182,29 +182,29 @@ namespace {
 
 constexpr const char* kNext = "SELECT seq, class, turn, flow, batch, attempts, crashes FROM waiting WHERE ";
 
-std::vector<Place> read_places(Connection::Use& row) {
-    std::vector<Place> places;
+std::vector<RowPosition> read_places(Connection::Use& row) {
+    std::vector<RowPosition> places;
     while (row.next()) places.push_back(read_place(row));
     return places;
 }
 
-std::vector<Place> next_places(Connection& store, const Claim& claim) {
+std::vector<RowPosition> next_places(Connection& store, const Claim& claim) {
     static const std::string usual =
         std::string(kNext) + "class < 2 AND crashes < 2 ORDER BY class, turn, seq LIMIT ?1";
     static const std::string low = std::string(kNext) + "crashes < 2 AND class = 1 ORDER BY turn, seq LIMIT ?1";
     static const std::string suspects =
         std::string(kNext) + "crashes > 1 AND " + pause_over("?2") + " ORDER BY not_before LIMIT ?1";
-    const auto most = static_cast<std::int64_t>(claim.most);
+    const auto max = static_cast<std::int64_t>(claim.max);
     if (claim.suspects) {
         Connection::Use row = store.use(suspects);
-        return read_places(row.with(most, claim.now));
+        return read_places(row.with(max, claim.now));
     }
     if (claim.low_first) {
         Connection::Use row = store.use(low);
-        if (std::vector<Place> places = read_places(row.with(most)); !places.empty()) return places;
+        if (std::vector<RowPosition> places = read_places(row.with(max)); !places.empty()) return places;
     }
     Connection::Use row = store.use(usual);
-    return read_places(row.with(most));
+    return read_places(row.with(max));
 }
 
 void hear_of(Connection& store, const std::string& worker, UnixMs lease_until) {
@@ -217,7 +217,7 @@ void hear_of(Connection& store, const std::string& worker, UnixMs lease_until) {
 }
 
 /// Where an end was asked for, of the job or of its batch, it comes now instead of another attempt.
-bool is_unwanted(Connection& store, const Run& run) {
+bool is_unwanted(Connection& store, const RunningJob& run) {
     if (run.cancel_requested) return true;
     if (!run.batch) return false;
     Connection::Use row = store.use("SELECT cancel_requested FROM batches WHERE seq = ?1");
@@ -245,7 +245,7 @@ std::vector<JobRecord> claim_jobs(Connection& store, const Claim& claim) {
     if (is_paused(store)) return {};
     std::vector<JobRecord> claimed;
     BatchCounts counts;
-    for (Place& place : next_places(store, claim)) {
+    for (RowPosition& place : next_places(store, claim)) {
         take_waiting(store, place);
         place.attempts++;
         put_running(store, place, claim.worker, claim.now);
@@ -265,14 +265,14 @@ bool any_due(Connection& store, UnixMs now) {
 }
 
 std::size_t start_due(Connection& store, UnixMs now) {
-    std::vector<Place> due;
+    std::vector<RowPosition> due;
     {
         Connection::Use row = store.use(
             "SELECT w.seq, j.class, w.turn, w.flow, w.batch, w.attempts, w.crashes FROM waiting w "
             "JOIN jobs j ON j.seq = w.seq WHERE w.class = 2 AND w.turn <= ?1 ORDER BY w.turn, w.seq LIMIT 1000");
         due = read_places(row.with(now));
     }
-    for (const Place& job : due) {
+    for (const RowPosition& job : due) {
         const std::int64_t turn = next_turn(store, job.priority, job.flow);
         store.use("UPDATE waiting SET class = ?3, turn = ?4 WHERE class = 2 AND turn = ?2 AND seq = ?1")
             .with(job.seq, job.turn, job.priority, turn)
@@ -298,7 +298,7 @@ std::vector<Holding> beat_worker(Connection& store, const Heartbeat& beat) {
 }
 
 bool release_job(Connection& store, std::int64_t seq, int attempts, UnixMs now) {
-    const std::optional<Run> run = take_running(store, seq, attempts);
+    const std::optional<RunningJob> run = take_running(store, seq, attempts);
     if (!run) return false;
     const bool unwanted = is_unwanted(store, *run);
     unwanted ? put_ended(store, *run, run->started_at, Ending::cancelled(now)) : put_waiting(store, *run);
@@ -313,10 +313,10 @@ Recovery reclaim_jobs(Connection& store, UnixMs lease_at, const Reclaim& what) {
     Recovery recovery;
     BatchCounts counts;
     for (const std::int64_t seq : abandoned(store, lease_at)) {
-        Run run = take_running(store, seq, std::nullopt).value();
+        RunningJob run = take_running(store, seq, std::nullopt).value();
         const bool unwanted = is_unwanted(store, run);
         run.crashes++;
-        if (!unwanted && run.crashes < what.most_attempts) {
+        if (!unwanted && run.crashes < what.max_attempts) {
             std::optional<UnixMs> not_before;
             if (run.crashes > 1) not_before = what.now + pause_after(run.crashes).count();
             put_waiting(store, run, not_before);
@@ -335,13 +335,13 @@ Recovery reclaim_jobs(Connection& store, UnixMs lease_at, const Reclaim& what) {
     return recovery;
 }
 
-std::vector<Delivery> take_deliveries(Connection& store, UnixMs now, std::chrono::milliseconds hold, std::size_t most) {
+std::vector<Delivery> take_deliveries(Connection& store, UnixMs now, std::chrono::milliseconds hold, std::size_t max) {
     std::vector<Delivery> due;
     {
         Connection::Use row = store.use(
             "SELECT seq, target, job, batch, tries, created_at FROM deliveries WHERE due_at <= ?1 "
             "ORDER BY due_at LIMIT ?2");
-        row.with(now, static_cast<std::int64_t>(most));
+        row.with(now, static_cast<std::int64_t>(max));
         while (row.next())
             due.push_back({row.integer(0), NotifyTarget::of_text(row.text(1)), row.text(2), row.text(3),
                            static_cast<int>(row.integer(4)), row.integer(5)});

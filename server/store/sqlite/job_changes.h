@@ -32,7 +32,7 @@ Recovery reclaim_jobs(Connection& store, UnixMs lease_at, const Reclaim& what);
 // ---- notifications of ends, and the settings that last
 bool pause_queue(Connection& store, bool paused);
 bool is_paused(Connection& store);
-std::vector<Delivery> take_deliveries(Connection& store, UnixMs now, std::chrono::milliseconds hold, std::size_t most);
+std::vector<Delivery> take_deliveries(Connection& store, UnixMs now, std::chrono::milliseconds hold, std::size_t max);
 bool settle_delivery(Connection& store, std::int64_t seq, UnixMs now, std::optional<std::chrono::milliseconds> pause,
                      bool tried);
 

@@ -11,15 +11,15 @@
 namespace tunewright::server {
 namespace {
 
-constexpr std::size_t kMost = 4 << 20;
-constexpr std::size_t kShare = 8;
-constexpr std::size_t kScarce = 1 << 20;
+constexpr std::size_t kMaxReserve = 4 << 20;
+constexpr std::size_t kFileSystemShare = 8;
+constexpr std::size_t kScarceBytes = 1 << 20;
 
 }  // namespace
 
 Reserve::Reserve(const std::string& path)
     : file_(std::filesystem::weakly_canonical(path).string() + "-reserve"),
-      wanted_(std::min(kMost, room_of(file_).whole / kShare)) {
+      wanted_(std::min(kMaxReserve, room_of(file_).whole / kFileSystemShare)) {
     std::error_code none;
     const auto size = std::filesystem::file_size(file_, none);
     if (!none) bytes_ = static_cast<std::size_t>(size);
@@ -27,7 +27,7 @@ Reserve::Reserve(const std::string& path)
 
 void Reserve::fill() {
     const std::size_t bytes = std::min(wanted_, bytes_ + room_of(file_).left);
-    if (bytes < bytes_ + kLeast) return;
+    if (bytes < bytes_ + kMinBytes) return;
     const int fd = ::open(file_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
     if (fd < 0) return;
     if (::posix_fallocate(fd, 0, static_cast<off_t>(bytes)) == 0) bytes_ = bytes;
@@ -41,7 +41,7 @@ bool Reserve::release(bool all) {
     return ::truncate(file_.c_str(), static_cast<off_t>(kept)) == 0;
 }
 
-bool Reserve::is_scarce() const { return room_of(file_).left + bytes_ < wanted_ + std::min(wanted_, kScarce); }
+bool Reserve::is_scarce() const { return room_of(file_).left + bytes_ < wanted_ + std::min(wanted_, kScarceBytes); }
 
 DiskRoom room_of(const std::string& path) {
     constexpr std::size_t unknown = std::numeric_limits<std::size_t>::max() / 2;

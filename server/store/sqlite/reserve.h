@@ -16,12 +16,12 @@ public:
     void fill();
     /// Gives all of it, or what is more than half, to the disk; false where there is no more than that.
     bool release(bool all = true);
-    bool filled() const { return bytes_ + kLeast > wanted_; }
+    bool filled() const { return bytes_ + kMinBytes > wanted_; }
     /// True where the disk has less left than new jobs should leave for the results of those that are there.
     bool is_scarce() const;
 
 private:
-    static constexpr std::size_t kLeast = 64 << 10;  ///< what is worth taking
+    static constexpr std::size_t kMinBytes = 64 << 10;  ///< what is worth taking
     const std::string file_;
     std::size_t wanted_ = 0, bytes_ = 0;
 };

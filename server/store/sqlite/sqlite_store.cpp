@@ -20,8 +20,8 @@
 namespace tunewright::server {
 namespace {
 
-constexpr UnixMs kEver = std::numeric_limits<UnixMs>::max();
-constexpr std::size_t kOpening = 256 << 10;                       // bytes that opening may take
+constexpr UnixMs kEndOfTime = std::numeric_limits<UnixMs>::max();
+constexpr std::size_t kOpeningBytes = 256 << 10;                  // bytes that opening may take
 constexpr std::size_t kReaders = 8;                               // connections for reading
 constexpr const char* kPageCache = "PRAGMA cache_size = -16384";  // KiB; the default of 2 MiB thrashes in long queues
 
@@ -159,15 +159,14 @@ public:
     void remove_batch(std::string id, Done<RemoveEffect> done) override {
         slices_.remove(std::move(id), std::move(done));
     }
-    void sweep(UnixMs now, Retention retention, std::size_t most, Done<std::size_t> done) override {
-        slices_.sweep(now, retention, most, std::move(done));
+    void sweep(UnixMs now, Retention retention, std::size_t max, Done<std::size_t> done) override {
+        slices_.sweep(now, retention, max, std::move(done));
     }
 
-    void take_deliveries(UnixMs now, std::chrono::milliseconds hold, std::size_t most,
+    void take_deliveries(UnixMs now, std::chrono::milliseconds hold, std::size_t max,
                          Done<std::vector<Delivery>> done) override {
         write<std::vector<Delivery>>(
-            kQuick, [=](Connection& store) { return server::take_deliveries(store, now, hold, most); },
-            std::move(done));
+            kQuick, [=](Connection& store) { return server::take_deliveries(store, now, hold, max); }, std::move(done));
     }
     void settle_delivery(std::int64_t seq, UnixMs now, std::optional<std::chrono::milliseconds> pause, bool tried,
                          Done<bool> done) override {
@@ -226,7 +225,7 @@ private:
     template <class Work>
     std::invoke_result_t<Work, Connection&> read(Work work) {
         try {
-            Pool<Connection>::Place place(readers_);
+            Pool<Connection>::Slot place(readers_);
             std::unique_ptr<Connection> reader = place.connection();
             if (!reader) reader = std::make_unique<Connection>(path_, SQLite::OPEN_READONLY);
             auto found = work(*reader);
@@ -251,32 +250,33 @@ private:
 
 Recovery SqliteStore::recover(UnixMs now, int attempts, const std::string& error) {
     // What was interrupted is finished first, slice by slice, so that none of it is taken for waiting jobs.
-    const auto unsettled = write_now<Unsettled>([](Connection& store) { return settle_batches(store, kEver); });
+    const auto unsettled = write_now<Unsettled>([](Connection& store) { return settle_batches(store, kEndOfTime); });
     for (const std::int64_t batch : unsettled.leaving)
-        while (write_now<std::size_t>([&](Connection& store) { return delete_entries(store, batch, kSlice); }) > 0) {
+        while (write_now<std::size_t>([&](Connection& store) { return delete_entries(store, batch, kSliceEntries); }) >
+               0) {
         }
     using Next = std::optional<std::int64_t>;
     for (const std::int64_t batch : unsettled.cancelling)
         for (Next next = 0; next;)
             next = write_now<Next>([&](Connection& store) { return cancel_entries(store, batch, *next, now); });
     const Reclaim what{now, attempts, error};
-    return write_now<Recovery>([&](Connection& store) { return reclaim_jobs(store, kEver, what); });
+    return write_now<Recovery>([&](Connection& store) { return reclaim_jobs(store, kEndOfTime, what); });
 }
 
 void SqliteStore::reclaim(Reclaim what, Done<Recovery> done) {
-    using Found = std::pair<Recovery, Unsettled>;
+    using Reclaimed = std::pair<Recovery, Unsettled>;
     const UnixMs now = what.now;
-    write<Found>(
+    write<Reclaimed>(
         kBulky,
         [what = std::move(what)](Connection& store) {
-            Found found;
+            Reclaimed found;
             if (what.leases) found.first = reclaim_jobs(store, what.now, what);
             found.second = settle_batches(store, what.now - kReceiving.count());
             return found;
         },
-        [this, now, done = std::move(done)](Outcome<Found> outcome) {
+        [this, now, done = std::move(done)](Outcome<Reclaimed> outcome) {
             if (const auto* fault = std::get_if<StoreFault>(&outcome)) return done(*fault);
-            auto& [recovery, unsettled] = std::get<Found>(outcome);
+            auto& [recovery, unsettled] = std::get<Reclaimed>(outcome);
             slices_.go_on(unsettled, now);
             done(std::move(recovery));
         });
@@ -294,7 +294,7 @@ auto opening_where_room(const std::string& path, Work work) {
             } catch (const SQLite::Exception& error) {
                 // It may lack room for the files beside it, which it reports in many ways.
                 StoreFault fault = fault_of(error, errno);
-                if (room_of(path).left < kOpening) fault.kind = StoreFault::Kind::full;
+                if (room_of(path).left < kOpeningBytes) fault.kind = StoreFault::Kind::full;
                 if (fault.kind != StoreFault::Kind::full || !Reserve(path).release()) throw StoreError(fault);
             }
         }

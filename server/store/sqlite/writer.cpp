@@ -18,13 +18,13 @@ namespace tunewright::server {
 namespace {
 
 /// Keeps the time that one transaction holds the others up, and the log it writes, within bounds.
-constexpr std::size_t kLargestGroup = 256;
+constexpr std::size_t kMaxGroup = 256;
 constexpr std::chrono::milliseconds kProbePause{500};
-constexpr std::chrono::seconds kQuiet{30};
+constexpr std::chrono::seconds kMinQuietTime{30};
 constexpr std::chrono::milliseconds kShortWait{20};
-constexpr std::chrono::seconds kLook{1};  // whether the file is still there
-constexpr std::size_t kRow = 4096;        // what a change without texts may take
-constexpr std::int64_t kFewPages = 256;   // of 4 KiB, free within the file
+constexpr std::chrono::seconds kFilePollInterval{1};  // whether the file is still there
+constexpr std::size_t kRowBytes = 4096;               // what a change without texts may take
+constexpr std::int64_t kMinFreePages = 256;           // of 4 KiB, free within the file
 const StoreFault kMoved{StoreFault::Kind::unavailable,
                         "its file was removed or replaced while it was open; put it back, or start again"};
 
@@ -76,13 +76,13 @@ void SqliteWriter::submit(Change change) {
 void SqliteWriter::next_group(std::vector<Change>& group) {
     std::unique_lock lock(mutex_);
     const auto ready = [this] { return stopping_ || !quick_.empty() || !waiting_.empty() || !bulky_.empty(); };
-    changed_.wait_for(lock, healthy_ ? std::chrono::milliseconds(kLook) : kProbePause, ready);
+    changed_.wait_for(lock, healthy_ ? std::chrono::milliseconds(kFilePollInterval) : kProbePause, ready);
     // What need not wait for the disk goes ahead, by itself: a claim that was put into a group with others would keep a
     // worker waiting for their results. Every other group is theirs, whatever comes.
     std::deque<Change>& first = !quick_.empty() && !std::exchange(quick_went_, true) ? quick_ : waiting_;
     if (&first == &waiting_) quick_went_ = false;
     std::deque<Change>& chosen = first.empty() && bulky_.empty() ? quick_ : first;
-    while (!chosen.empty() && group.size() < kLargestGroup) {
+    while (!chosen.empty() && group.size() < kMaxGroup) {
         group.push_back(std::move(chosen.front()));
         chosen.pop_front();
     }
@@ -94,7 +94,7 @@ void SqliteWriter::next_group(std::vector<Change>& group) {
 
 void SqliteWriter::work() {
     std::vector<Change> group;
-    group.reserve(kLargestGroup + 1);  // now: what has been taken over is not lost where memory runs out
+    group.reserve(kMaxGroup + 1);  // now: what has been taken over is not lost where memory runs out
     for (;;) {
         next_group(group);
         if (group.empty() && stopping()) return;
@@ -143,7 +143,7 @@ void SqliteWriter::failed(const StoreFault& fault, std::size_t bytes) {
 
 void SqliteWriter::worked(std::size_t bytes) {
     if (healthy_ || is_scarce()) return;
-    const bool quiet = std::chrono::steady_clock::now() - failed_at_ > kQuiet;
+    const bool quiet = std::chrono::steady_clock::now() - failed_at_ > kMinQuietTime;
     if (bytes < awaited_ && !quiet && !has_room(awaited_)) return;
     awaited_ = 0;
     healthy_ = true;
@@ -152,7 +152,7 @@ void SqliteWriter::worked(std::size_t bytes) {
 
 void SqliteWriter::write_group(std::vector<Change>& group) {
     if (group.empty()) return;
-    const auto size_of = [](const Change& change) { return change.bytes + kRow; };
+    const auto size_of = [](const Change& change) { return change.bytes + kRowBytes; };
     const auto answer = [](Change& change, const std::optional<StoreFault>& fault) {
         survive([&] { change.done(fault); });
     };
@@ -181,7 +181,7 @@ bool SqliteWriter::has_moved() {
 
 /// Neither the disk nor the file itself has much room left.
 bool SqliteWriter::is_scarce() {
-    return reserve_.is_scarce() && connection_.number("PRAGMA freelist_count") < kFewPages;
+    return reserve_.is_scarce() && connection_.number("PRAGMA freelist_count") < kMinFreePages;
 }
 
 /// Makes room on a full disk: what the log of changes has grown by goes back to the disk, and the reserve is taken

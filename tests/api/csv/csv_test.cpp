@@ -208,7 +208,7 @@ TEST(Csv, OneColumnCannotBeTwoThings) {
 
 TEST(Csv, TooManySamplesAreRefused) {
     CsvOptions options;
-    options.most_samples = 2;
+    options.max_samples = 2;
     EXPECT_THAT(fault("t,u,y\n0,1,2\n1,1,2\n2,1,2\n", options).message, HasSubstr("more than 2 samples"));
 }
 

@@ -287,8 +287,8 @@ TEST(PidAlgorithm, TheSwitchToAutomaticKeepsNothingOfTheDerivativesNoise) {
                 for (int k = 0; k < 400; ++k) machine.step(50, 50);
                 return machine.step(50, 50);
             };
-            const double most = kFalse * (pid.gains.Kp + Ki * pid.Ts);
-            EXPECT_LE(std::abs(later(kFalse) - later(0)), most * (1 + 1e-9)) << "Ki " << Ki;
+            const double max = kFalse * (pid.gains.Kp + Ki * pid.Ts);
+            EXPECT_LE(std::abs(later(kFalse) - later(0)), max * (1 + 1e-9)) << "Ki " << Ki;
         }
     });
 }

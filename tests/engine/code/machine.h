@@ -17,9 +17,10 @@ class Machine {
 public:
     explicit Machine(const Program& program) : program_(program) {
         for (const Declaration& variable : program.variables)
-            cells_[variable.name].assign(
-                static_cast<std::size_t>(std::max(variable.length, 1)),
-                variable.role == Role::local || variable.role == Role::output ? std::nan("") : variable.initial);
+            cells_[variable.name].assign(static_cast<std::size_t>(std::max(variable.length, 1)),
+                                         variable.role == VariableRole::local || variable.role == VariableRole::output
+                                             ? std::nan("")
+                                             : variable.initial);
     }
 
     double& operator[](const std::string& name) { return cells_.at(name).front(); }
@@ -32,13 +33,13 @@ public:
         (*this)["manual_output"] = manual_output;
         // A local that is read before it is assigned shows as no number.
         for (const Declaration& variable : program_.variables)
-            if (variable.role == Role::local) (*this)[variable.name] = std::nan("");
+            if (variable.role == VariableRole::local) (*this)[variable.name] = std::nan("");
         run(program_.body);
         return (*this)["u"];
     }
 
 private:
-    double& cell(const Place& place) {
+    double& cell(const VariableReference& place) {
         std::size_t index = 0;
         if (!place.index.empty()) index = static_cast<std::size_t>(value(place.index[0]));
         return cells_.at(place.name).at(index);
@@ -46,7 +47,7 @@ private:
 
     double value(const Expr& expression) {
         if (const auto* literal = std::get_if<Literal>(&expression->what)) return literal->value;
-        if (const auto* place = std::get_if<Place>(&expression->what)) return cell(*place);
+        if (const auto* place = std::get_if<VariableReference>(&expression->what)) return cell(*place);
         const auto& what = std::get<Operated>(expression->what);
         const double a = value(what.operands[0]), b = what.operands.size() > 1 ? value(what.operands[1]) : 0;
         switch (what.operation) {
@@ -70,11 +71,11 @@ private:
     void run(const Block& block) {
         for (const Statement& statement : block) {
             if (const auto* assignment = std::get_if<Assignment>(&statement.what)) {
-                cell(std::get<Place>(assignment->target->what)) = value(assignment->value);
+                cell(std::get<VariableReference>(assignment->target->what)) = value(assignment->value);
             } else if (const auto* decision = std::get_if<Decision>(&statement.what)) {
                 run(value(decision->condition) != 0 ? decision->then : decision->otherwise);
             } else if (const auto* repetition = std::get_if<Repetition>(&statement.what)) {
-                double& index = cell(std::get<Place>(repetition->index->what));
+                double& index = cell(std::get<VariableReference>(repetition->index->what));
                 for (int i = 0; i < repetition->count; ++i) {
                     index = i;
                     run(repetition->body);

@@ -23,7 +23,7 @@ std::vector<std::string> written(const std::function<Expr(Program&)>& make) {
     std::vector<std::string> out;
     for (const Language language : kLanguages) {
         Program program;
-        const Expr u = program.declare({.role = Role::output, .name = "u"});
+        const Expr u = program.declare({.role = VariableRole::output, .name = "u"});
         program.body.push_back(assign(u, make(program)));
         const std::string text = print(program, language, {});
         // Above the statement the head tells how the program is called, with a u of its own.
@@ -34,7 +34,7 @@ std::vector<std::string> written(const std::function<Expr(Program&)>& make) {
 }
 
 Expr local(Program& program, const char* name, Type type = Type::real) {
-    return program.declare({.role = Role::local, .type = type, .name = name});
+    return program.declare({.role = VariableRole::local, .type = type, .name = name});
 }
 
 TEST(CodePrinter, AnExpressionKeepsTheOrderInWhichItWasBuilt) {
@@ -96,9 +96,9 @@ TEST(CodePrinter, TheHeadTellsSettingsRulesAndHowItIsCalled) {
 
 TEST(CodeProgram, FaultsOfTheProgramThatBuildsAreNotPrinted) {
     Program program;
-    const Expr x = program.declare({.role = Role::state, .name = "x"}),
-               yes = program.declare({.role = Role::input, .type = Type::boolean, .name = "yes"}),
-               n = program.declare({.role = Role::local, .type = Type::integer, .name = "n"});
+    const Expr x = program.declare({.role = VariableRole::state, .name = "x"}),
+               yes = program.declare({.role = VariableRole::input, .type = Type::boolean, .name = "yes"}),
+               n = program.declare({.role = VariableRole::local, .type = Type::integer, .name = "n"});
     EXPECT_THROW(program.declare({.name = "X"}), std::logic_error);  // Structured Text has one case
     EXPECT_THROW(x + yes, std::logic_error);
     EXPECT_THROW(x + n, std::logic_error);

@@ -127,8 +127,8 @@ private:
 
     double rated(double u) const {
         if (options_.rate_limit > 0) {
-            const double most = options_.rate_limit * law_.Ts;
-            u = std::clamp(u, at(u_, 0) - most, at(u_, 0) + most);
+            const double max = options_.rate_limit * law_.Ts;
+            u = std::clamp(u, at(u_, 0) - max, at(u_, 0) + max);
         }
         return limited(u);
     }

@@ -148,12 +148,12 @@ TEST(MinError, NoNeighbourCostsLess) {
         for (const auto method : kMethods) {
             const auto model = reduce(plant, {.method = method});
             ASSERT_TRUE(model) << model.error().message;
-            const double least = criterion(method, difference.to(*model));
+            const double min = criterion(method, difference.to(*model));
             for (const double T : {0.99, 1.0, 1.01})
                 for (const double L : {-0.01, 0.0, 0.01}) {
                     const ReducedModel other{
                         .K = model->K, .T1 = model->T1 * T, .L = std::max(0.0, model->L + L * model->T1)};
-                    EXPECT_LE(least, criterion(method, difference.to(other)) * (1 + 1e-5)) << T << " " << L;
+                    EXPECT_LE(min, criterion(method, difference.to(other)) * (1 + 1e-5)) << T << " " << L;
                 }
         }
     }

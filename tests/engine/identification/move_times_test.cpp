@@ -68,11 +68,11 @@ TEST(MoveTimes, StatedErrorsAreAsLargeAsTheErrors) {
 TEST(MoveTimes, ADesignIsAsGoodAsTheRecordAllows) {
     const Sopdt truth{kK, kT1, kT2, kL};
     TuningRequest of_truth;
-    of_truth.subject = std::get<Subject>(Subject::make(PlantModel(Plant(truth))));
+    of_truth.subject = std::get<AnalysedPlant>(AnalysedPlant::make(PlantModel(Plant(truth))));
     of_truth.evaluate.points = 0;
     const auto best = tune(of_truth, {});
     ASSERT_TRUE(best);
-    const double least = *best->controllers.front().evaluation->performance.load.IAE;
+    const double min = *best->controllers.front().evaluation->performance.load.IAE;
     for (unsigned seed = 0; seed < 3; ++seed) {
         TuningRequest request;
         request.record = heater_record(heater_moves(seed), seed);
@@ -82,7 +82,7 @@ TEST(MoveTimes, ADesignIsAsGoodAsTheRecordAllows) {
         const auto judged = evaluate(PlantModel(Plant(truth)), result->controllers.front().evaluation->controller, {});
         ASSERT_TRUE(judged);
         EXPECT_LE(*judged->robustness.Ms, 1.5) << seed;
-        EXPECT_LE(*judged->performance.load.IAE, 3 * least) << seed;
+        EXPECT_LE(*judged->performance.load.IAE, 3 * min) << seed;
     }
 }
 

@@ -189,15 +189,15 @@ TEST(IdentifiedRegion, HoldsNoPlantThatTheRecordExcludes) {
         const PlantRegion& region = family->regions.front();
         const auto ellipsoid =
             PlantRegion::of_covariance(model->plant, model->covariance.names, model->covariance.matrix);
-        const double least = left_by(std::get<Fopdt>(model->plant), record);
+        const double min = left_by(std::get<Fopdt>(model->plant), record);
         const auto growth = [&](const PlantRegion& in, PlantRegion::Point z, double share) {
             for (double& x : z) x *= share;
-            return left_by(std::get<Fopdt>(in.at(z)), record) - least;
+            return left_by(std::get<Fopdt>(in.at(z)), record) - min;
         };
         for (const auto& z : region.ends()) {
             // The curvature of the sum of squares, which the covariance means.
             const double curvature = 0.5 * (growth(*ellipsoid, z, 0.02) + growth(*ellipsoid, z, -0.02)) / (0.02 * 0.02);
-            EXPECT_LT(growth(region, z, 1), 1.7 * curvature + 1e-3 * least) << seed;
+            EXPECT_LT(growth(region, z, 1), 1.7 * curvature + 1e-3 * min) << seed;
             excluded += growth(*ellipsoid, z, 1) > 1.7 * curvature;
         }
     }

@@ -211,7 +211,7 @@ TEST(Records, ARelayThatSwitchesBetweenRowsGivesADesignThatHolds) {
         });
         EXPECT_TRUE(counted || warned(*model, "coarse-relay-record")) << hysteresis;
         TuningRequest request;
-        request.subject = std::get<Subject>(Subject::make(model->plant));
+        request.subject = std::get<AnalysedPlant>(AnalysedPlant::make(model->plant));
         request.tune = {{.method = "robust", .options = {}}};
         const auto tuned = tune(request, {});
         ASSERT_TRUE(tuned);

@@ -29,7 +29,7 @@ TEST(PairComplex, UnitCircleIsSineAndCosineOfTheLibrary) {
     // Next to the multiples of pi/4, where polynomials and quarters change.
     for (int k = -50; k <= 50; ++k)
         for (const double off : {-1e-9, -1e-16, 0.0, 1e-16, 1e-9}) near(k * std::numbers::pi / 4 * (1 + off));
-    near(kLargestPairAngle);
+    near(kMaxPairAngle);
 }
 
 TEST(Loop, AtManyFrequenciesIsThatAtEachAndSoIsItsPlant) {

@@ -21,7 +21,7 @@ struct BruteForce {
     double dead_time = 0;
     SampledPid law;
     int parts = 2000;
-    int most_samples = 20000;
+    int max_samples = 20000;
 
     BruteResponse respond(double r, double d, double rest) const {
         const OwnPlant::Motion part = plant.over(law.Ts / parts);
@@ -33,7 +33,7 @@ struct BruteForce {
         BruteResponse out;
         double v = 0, largest = std::abs(rest), u_before = 0;
         int unsettled = 0;
-        for (int k = 0; k < most_samples; ++k) {
+        for (int k = 0; k < max_samples; ++k) {
             out.u.push_back(program.step(r, plant.output(x, v)));
             out.TV += std::abs(out.u.back() - u_before);
             u_before = out.u.back();
@@ -64,11 +64,11 @@ struct PulseResponse {
     std::vector<double> S, CS;  // samples of S and of C S
 };
 
-inline std::optional<PulseResponse> pulse_response_of(OwnLoop loop, int most_samples, int delay_samples) {
+inline std::optional<PulseResponse> pulse_response_of(OwnLoop loop, int max_samples, int delay_samples) {
     PulseResponse out;
     double largest = 1, largest_u = 0;
     int unsettled = 0;
-    for (int k = 0; k < most_samples; ++k) {
+    for (int k = 0; k < max_samples; ++k) {
         const double n = k == 0 ? 1 : 0;
         out.S.push_back(loop.y() + n);
         out.CS.push_back(-loop.step(n));

@@ -26,7 +26,8 @@ void expect_numbers(const Figure& figure, const char* name) {
 }
 
 /// All figures of the loop, which are numbers or tell why not.
-BuiltLoop evaluated(const Plant& plant, const SampledPid& law, const ProgramLimits& limits = {}, bool horizon = false) {
+DeviceLoop evaluated(const Plant& plant, const SampledPid& law, const ProgramLimits& limits = {},
+                     bool horizon = false) {
     EvaluateOptions options;
     if (horizon) options.horizon = 30 * law.Ts;
     const auto built = evaluate_sampled(subject_of(plant), law, limits, options);
@@ -67,7 +68,7 @@ TEST(SampledExtremes, ADeadTimeBeyondCountingIsRefusedWithTheSampleTime) {
 TEST(SampledExtremes, ALagOfRoundingNeitherFillsTheMemoryNorKeepsAStopWaiting) {
     const LinearPlant plant = *LinearPlant::make(Fopdt{.K = 2, .T = 1e-15, .L = 3});
     const SampledPid law{.gains = {.Kp = 0.01, .Ki = 1e-7}, .Ts = 0.5};
-    const StepResponse response = simulate_sampled(plant, law, {}, {1, 0}, {.most_samples = 20000});
+    const StepResponse response = simulate_sampled(plant, law, {}, {1, 0}, {.max_samples = 20000});
     EXPECT_LT(response.nodes.size(), 1'100'000u);
     std::stop_source stop;
     stop.request_stop();
@@ -76,12 +77,12 @@ TEST(SampledExtremes, ALagOfRoundingNeitherFillsTheMemoryNorKeepsAStopWaiting) {
 
 TEST(SampledExtremes, ASampleTimeOfAThousandLags) {
     // y is at K u before the next sample: z = -K Kp of a proportional law, -(K Ki Ts - 1) of a pure integral one.
-    const BuiltLoop built = evaluated(Fopdt{.K = 0.5, .T = 1, .L = 3}, {.gains = {.Kp = 1}, .Ts = 1000}, {}, true);
+    const DeviceLoop built = evaluated(Fopdt{.K = 0.5, .T = 1, .L = 3}, {.gains = {.Kp = 1}, .Ts = 1000}, {}, true);
     EXPECT_TRUE(built.robustness.stable);
     EXPECT_NEAR(*built.robustness.Ms, 2, 1e-9);  // 1/(1 - 0.5) at z = -1
     EXPECT_NEAR(*built.robustness.gain_margin, 2, 1e-9);
     EXPECT_FALSE(count(Fopdt{.K = 0.5, .T = 1, .L = 3}, {.gains = {.Kp = 2.1}, .Ts = 1000}).stable());
-    const BuiltLoop integral = evaluated(Fopdt{.K = 0.5, .T = 1}, {.gains = {.Ki = 0.002}, .Ts = 1000});
+    const DeviceLoop integral = evaluated(Fopdt{.K = 0.5, .T = 1}, {.gains = {.Ki = 0.002}, .Ts = 1000});
     EXPECT_TRUE(integral.robustness.stable);
     EXPECT_NEAR(*integral.performance.setpoint.IAE, 1, 1e-5);  // deadbeat: what one lag takes
     // e^1000 is no number: the loop is unstable, whatever the gain.
@@ -91,7 +92,7 @@ TEST(SampledExtremes, ASampleTimeOfAThousandLags) {
 
 TEST(SampledExtremes, ASampleTimeOfATenThousandthOfALag) {
     const SampledPid law{.gains = {.Kp = 0.5, .Ki = 0.5}, .Ts = 1e-4};
-    const BuiltLoop built = evaluated(Fopdt{.K = 1, .T = 1, .L = 1}, law);
+    const DeviceLoop built = evaluated(Fopdt{.K = 1, .T = 1, .L = 1}, law);
     const LinearPlant plant = *LinearPlant::make(Fopdt{.K = 1, .T = 1, .L = 1});
     const StepResponse load = simulate_linear(plant, law.gains, {0, 1}, {});
     EXPECT_NEAR(*built.performance.load.IAE, integral_of_absolute_error(load.nodes, 0, load.error_integral_final),
@@ -107,16 +108,17 @@ TEST(SampledExtremes, ASampleTimeOfATenThousandthOfALag) {
 
 TEST(SampledExtremes, ADeadTimeOfFiveThousandSamples) {
     for (const double T : {0.5, 5.0, 50.0}) {
-        const BuiltLoop lag = evaluated(Fopdt{.K = 1, .T = T, .L = 5}, {.gains = {.Kp = 0.3, .Ki = 0.08}, .Ts = 1e-3});
+        const DeviceLoop lag = evaluated(Fopdt{.K = 1, .T = T, .L = 5}, {.gains = {.Kp = 0.3, .Ki = 0.08}, .Ts = 1e-3});
         EXPECT_TRUE(lag.robustness.stable);
     }
     // y = K u(t - L): |L| = K Kp all the way.
-    const BuiltLoop gain = evaluated(Fopdt{.K = 1, .T = 0, .L = 5}, {.gains = {.Kp = 0.5}, .Ts = 1e-3}, {}, true);
+    const DeviceLoop gain = evaluated(Fopdt{.K = 1, .T = 0, .L = 5}, {.gains = {.Kp = 0.5}, .Ts = 1e-3}, {}, true);
     EXPECT_TRUE(gain.robustness.stable);
     EXPECT_NEAR(*gain.robustness.Ms, 2, 1e-9);
     EXPECT_NEAR(*gain.robustness.gain_margin, 2, 1e-9);
     EXPECT_NEAR(*gain.robustness.Mks, 1, 1e-9);
-    const BuiltLoop integral = evaluated(Fopdt{.K = 1, .T = 0, .L = 5}, {.gains = {.Kp = 0.3, .Ki = 0.08}, .Ts = 1e-3});
+    const DeviceLoop integral =
+        evaluated(Fopdt{.K = 1, .T = 0, .L = 5}, {.gains = {.Kp = 0.3, .Ki = 0.08}, .Ts = 1e-3});
     EXPECT_TRUE(integral.robustness.stable);
     EXPECT_FALSE(count(Fopdt{.K = 1, .T = 0, .L = 5}, {.gains = {.Kp = 1.01}, .Ts = 1e-3}).stable());
     evaluated(TransferFunction{.num = {0.5, 1}, .den = {1, 1}, .L = 5}, {.gains = {.Kp = 0.4, .Ki = 0.08}, .Ts = 1e-3});
@@ -132,7 +134,7 @@ TEST(SampledExtremes, SwingsFasterThanTheSamples) {
                                     .poles = {{-zeta * omega, omega}, {-zeta * omega, -omega}, -0.3},
                                     .L = 0.3};
             const SampledPid law{.gains = {.Kp = 0.01, .Ki = 0.002}, .Ts = 1};
-            const BuiltLoop built = evaluated(plant, law);
+            const DeviceLoop built = evaluated(plant, law);
             const auto own = [&](const SampledPid& l) {
                 return OwnLoop(
                     OwnPlant({omega * omega}, with_roots({{-zeta * omega, omega}, {-zeta * omega, -omega}, -0.3}, 1)),
@@ -165,7 +167,7 @@ TEST(SampledExtremes, APoleExactlyOnTheCircle) {
     // Of an integrator, z - 1 + K Kp Ts: at -1, at 0 (deadbeat) and at 1.
     EXPECT_TRUE(on_it(Ipdt{.K = 1}, {.gains = {.Kp = 2}, .Ts = 1}));
     EXPECT_TRUE(count(Ipdt{.K = 1}, {.gains = {.Kp = 1}, .Ts = 1}).stable());
-    const BuiltLoop deadbeat = evaluated(Ipdt{.K = 1}, {.gains = {.Kp = 1}, .Ts = 1});
+    const DeviceLoop deadbeat = evaluated(Ipdt{.K = 1}, {.gains = {.Kp = 1}, .Ts = 1});
     EXPECT_NEAR(*deadbeat.robustness.Ms, 2, 1e-12);  // S = 1 - 1/z
     EXPECT_NEAR(*deadbeat.performance.setpoint.IAE, 0.5, 1e-9);
     // Kp = -1/K: 1 + L = 0 at z = 1.
@@ -187,7 +189,7 @@ TEST(SampledExtremes, APoleExactlyOnTheCircle) {
     for (const auto z : OwnLoop(OwnPlant({1}, {1, 0, 1}), 0, law).eigenvalues())
         largest = std::max(largest, std::abs(z));
     EXPECT_LT(largest, 1);
-    const BuiltLoop built = evaluated(undamped, law);
+    const DeviceLoop built = evaluated(undamped, law);
     EXPECT_TRUE(built.robustness.stable);
     const auto pulse = pulse_response_of(OwnLoop(OwnPlant({1}, {1, 0, 1}), 0, law), 20000, 0);
     EXPECT_NEAR(*built.robustness.Mks / peaks_of(*pulse).CS, 1, 1e-7);
@@ -200,13 +202,13 @@ TEST(SampledExtremes, AFilterWithItsPoleAtMinusOne) {
     const OwnPlant own({1}, {1, 1});
     double largest = 0;
     for (const auto z : OwnLoop(own, 0, law).eigenvalues()) largest = std::max(largest, std::abs(z));
-    const BuiltLoop built = evaluated(Fopdt{.K = 1, .T = 1}, law);
+    const DeviceLoop built = evaluated(Fopdt{.K = 1, .T = 1}, law);
     EXPECT_EQ(built.robustness.stable, largest < 1) << largest;
     for (const double Kd : {-0.1, 0.02}) {
         law.gains.Kd = Kd;
         largest = 0;
         for (const auto z : OwnLoop(own, 0, law).eigenvalues()) largest = std::max(largest, std::abs(z));
-        const BuiltLoop other = evaluated(Fopdt{.K = 1, .T = 1}, law);
+        const DeviceLoop other = evaluated(Fopdt{.K = 1, .T = 1}, law);
         EXPECT_EQ(other.robustness.stable, largest < 1) << largest;
         const auto pulse = pulse_response_of(OwnLoop(own, 0, law), 100000, 0);
         EXPECT_EQ(pulse.has_value(), largest < 1);
@@ -220,7 +222,7 @@ TEST(SampledExtremes, AFilterWithItsPoleAtMinusOne) {
 TEST(SampledExtremes, AZeroAtTheOriginUnderAnIntegral) {
     const Plant plant = TransferFunction{.num = {1, 0}, .den = {1, 2, 1}};
     EXPECT_FALSE(count(plant, {.gains = {.Kp = 0.5, .Ki = 0.3}, .Ts = 0.2}).stable());
-    const BuiltLoop proportional = evaluated(plant, {.gains = {.Kp = 0.5}, .Ts = 0.2});
+    const DeviceLoop proportional = evaluated(plant, {.gains = {.Kp = 0.5}, .Ts = 0.2});
     EXPECT_TRUE(proportional.robustness.stable);
     evaluated(plant, {.gains = {.Kp = 0.5, .Ki = 0.3}, .Ts = 0.2});
 }
@@ -231,10 +233,10 @@ TEST(SampledExtremes, LawsWithoutAPart) {
     for (const ParallelPid& g : {ParallelPid{.Kp = 0.3}, ParallelPid{.Ki = 0.2}, ParallelPid{.Kp = 0.3, .Kd = 0.1},
                                  ParallelPid{.Ki = 0.2, .Kd = 0.1}, ParallelPid{.Kd = 0.1}, ParallelPid{}}) {
         SampledPid law{.gains = g, .Ts = 0.1};
-        const BuiltLoop one = evaluated(plant, law);
+        const DeviceLoop one = evaluated(plant, law);
         EXPECT_TRUE(one.robustness.stable);
         law.gains.Kp *= -1, law.gains.Ki *= -1, law.gains.Kd *= -1;
-        const BuiltLoop mirrored = evaluated(negative, law);
+        const DeviceLoop mirrored = evaluated(negative, law);
         EXPECT_EQ(*mirrored.robustness.Ms, *one.robustness.Ms);
         if (one.performance.load.IAE) {
             EXPECT_NEAR(*mirrored.performance.load.IAE, *one.performance.load.IAE, 1e-12);

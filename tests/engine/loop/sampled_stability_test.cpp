@@ -15,9 +15,9 @@ struct RandomLoop {
     SampledPid law;
 };
 
-/// Any plant of the searches' random ones under any law, stable or not: up to `most` samples of dead time and five of
+/// Any plant of the searches' random ones under any law, stable or not: up to `max` samples of dead time and five of
 /// delay.
-RandomLoop random_loop(int index, int most = 15) {
+RandomLoop random_loop(int index, int max = 15) {
     Random random(1000 + static_cast<std::uint64_t>(index));
     RandomPlant drawn = random_plant(static_cast<std::uint64_t>(index), index % 4 == 0);
     double slowest = 0;
@@ -26,7 +26,7 @@ RandomLoop random_loop(int index, int most = 15) {
     if (slowest == 0) slowest = 1;
     SampledPid law;
     law.Ts = slowest * random.log_uniform(0.02, 2);
-    drawn.plant.L = law.Ts * (random.one_in(3) ? random.whole(0, most) : random.uniform(0, most));
+    drawn.plant.L = law.Ts * (random.one_in(3) ? random.whole(0, max) : random.uniform(0, max));
     law.computation_delay = law.Ts * (random.one_in(2) ? 0 : random.uniform(0, 5));
     law.integral = static_cast<IntegralRule>(random.whole(0, 2));
     law.derivative = static_cast<DerivativeRule>(random.whole(0, 5));

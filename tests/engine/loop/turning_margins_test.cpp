@@ -15,7 +15,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double kMostIntegral = 1;  // rad: pi/2 is the limit of stability
+constexpr double kMaxIntegral = 1;  // rad: pi/2 is the limit of stability
 
 /// 1/|L| at the crossing of the negative real axis where |L| is largest, between two frequencies.
 double walked(const std::function<Complex(double)>& L, double from, double to, double delay) {
@@ -59,7 +59,7 @@ TEST(TurningMargins, TheGainMarginIsExactHoweverOftenTheDeadTimeTurns) {
     for (const double turns : {20.0, 70.0, 70.3, 150.55, 400.8, 1000.1})
         for (const double zeta : {2e-5, 3e-4, 2e-3}) {
             const Resonance r(turns, zeta, 0.39);
-            if (r.gains.Ki * r.plant.L > kMostIntegral) continue;  // the integral alone would be unstable
+            if (r.gains.Ki * r.plant.L > kMaxIntegral) continue;  // the integral alone would be unstable
             const LinearPlant plant = *LinearPlant::make(Plant(r.plant));
             const auto loop = Loop::make(plant, r.gains);
             ASSERT_TRUE(loop);
@@ -75,14 +75,14 @@ TEST(TurningMargins, OfALoopThatIsSampledToo) {
     for (const double turns : {70.3, 400.8})
         for (const double zeta : {2e-5, 2e-3}) {
             const Resonance r(turns, zeta, 0.39);
-            if (r.gains.Ki * r.plant.L > kMostIntegral) continue;  // the integral alone would be unstable
+            if (r.gains.Ki * r.plant.L > kMaxIntegral) continue;  // the integral alone would be unstable
             const LinearPlant plant = *LinearPlant::make(Plant(r.plant));
             const SampledLoop loop(plant, {.gains = r.gains, .Ts = 0.9});
             const auto L = [&](double w) { return loop.open_loop(w); };
             const double wide = std::max(0.02, 20 * zeta),
-                         least = std::min(walked(L, 1 - wide, 1 + wide, r.plant.L),
-                                          walked(L, 0.2 / r.plant.L, 8 / r.plant.L, r.plant.L));
-            EXPECT_NEAR(loop.margins(loop.grid()).gain_margin, least, 1e-6) << turns << " turns, zeta " << zeta;
+                         min = std::min(walked(L, 1 - wide, 1 + wide, r.plant.L),
+                                        walked(L, 0.2 / r.plant.L, 8 / r.plant.L, r.plant.L));
+            EXPECT_NEAR(loop.margins(loop.grid()).gain_margin, min, 1e-6) << turns << " turns, zeta " << zeta;
         }
 }
 

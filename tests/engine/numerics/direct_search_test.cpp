@@ -23,15 +23,15 @@ TEST(LocalMinimum, IsFoundWhereTheFunctionHasAKink) {
 
 TEST(LocalMinimum, AnswersTheBestPointMetWhenItIsStopped) {
     int evaluations = 0;
-    double least = HUGE_VAL;
+    double min = HUGE_VAL;
     const auto f = [&](const std::vector<double>& x, bool& stop) {
         stop = ++evaluations == 7;
-        least = std::min(least, bowl(x));
+        min = std::min(min, bowl(x));
         return bowl(x);
     };
     const auto best = find_local_minimum(LocalSearch::nelder_mead, f, {0, 0}, {.step = {0.5, 0.5}});
     EXPECT_EQ(evaluations, 7);
-    EXPECT_EQ(best.value, least);
+    EXPECT_EQ(best.value, min);
 }
 
 TEST(Explore, KeepsEveryPointOfTheBoxInOrder) {
@@ -39,13 +39,13 @@ TEST(Explore, KeepsEveryPointOfTheBoxInOrder) {
     const auto f = [&](const std::vector<double>& x, bool&) { return values.emplace_back(bowl(x)); };
     const auto met = explore(f, {{-4, -4}, {4, 4}}, 200);
     ASSERT_EQ(met.size(), values.size());
-    double least = HUGE_VAL;
+    double min = HUGE_VAL;
     for (std::size_t i = 0; i < met.size(); ++i) {
         EXPECT_EQ(met[i].value, values[i]);
         for (const double x : met[i].x) EXPECT_LE(std::abs(x), 4);
-        least = std::min(least, met[i].value);
+        min = std::min(min, met[i].value);
     }
-    EXPECT_LT(least, 0.1);
+    EXPECT_LT(min, 0.1);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include "engine/loop/peaks.h"
 #include "engine/loop/stability.h"
 #include "engine/numerics/optimise/direct_search.h"
-#include "engine/range/search/places.h"
+#include "engine/range/search/point_designs.h"
 #include "engine/tuning/robust/cost.h"
 
 namespace tunewright::range {
@@ -32,7 +32,7 @@ Expected<OneSetting> one_setting(const std::vector<RangePoint>& points, const Ra
     if (!rules) return rules.error();
     const Scheduling scheduling{"load", "%"};
     const RunControl control;
-    Places places(**model, scheduling, *rules, control);
+    PointDesigns places(**model, scheduling, *rules, control);
     return design_one_setting(places, (*model)->points(), options);
 }
 
@@ -63,7 +63,7 @@ struct BruteForce {
     }
 
     /// Subplex runs from spread starts (each own optimum with several gains), each begun anew until nothing is won.
-    double least(const std::vector<robust::DesignPoint>& starts) const {
+    double min(const std::vector<robust::DesignPoint>& starts) const {
         double best = 100;
         const std::size_t n = problem.pid ? 3 : 2;
         for (const auto& start : starts) {
@@ -77,7 +77,7 @@ struct BruteForce {
                 const auto found = find_local_minimum(
                     LocalSearch::subplex, [&](const std::vector<double>& p, bool&) { return cost(at(p)); },
                     std::vector<double>(n, 0.0),
-                    {.step = std::vector<double>(n, step), .tolerance = 1e-6, .most_evaluations = 250});
+                    {.step = std::vector<double>(n, step), .tolerance = 1e-6, .max_evaluations = 250});
                 centre = at(found.x);
                 best = std::min(best, found.value);
             }
@@ -136,9 +136,9 @@ TEST_P(OneSettingOfSet, IsWithinHalfAPercentOfWhatBruteForceFinds) {
     // From the answer too: a search over kinks that begins elsewhere often stalls short of the optimum.
     const IdealPid& answer = one->controller;
     starts.push_back({std::log(std::abs(answer.Kp)), std::log(answer.Ti), std::log(answer.Td)});
-    const double least = std::exp(brute.least(starts));
+    const double min = std::exp(brute.min(starts));
     const double mine = set.options.aim == Aim::worst ? one->worst_relative_IAE : one->mean_relative_IAE;
-    EXPECT_LE(mine, 1.005 * least) << set.name;
+    EXPECT_LE(mine, 1.005 * min) << set.name;
     for (const auto& point : one->points) {
         EXPECT_LE(point.Ms.value_or(99), set.options.limits.Ms * (1 + 2e-5)) << set.name << " at " << point.at;
         EXPECT_LE(point.Mt.value_or(99), set.options.limits.Mt * (1 + 2e-5)) << set.name << " at " << point.at;
@@ -218,7 +218,7 @@ TEST(OneSetting, StoppedEarlySaysSo) {
     const auto model = model_of_points(points_of({Fopdt{1, 10, 2}, Fopdt{2, 10, 2}}), Between::parameters);
     const RunControl control{.stop = stop.get_token(), .progress = {}, .now_ms = {}};
     const Scheduling scheduling;
-    Places places(**model, scheduling, *design_rules(**model, {}), control);
+    PointDesigns places(**model, scheduling, *design_rules(**model, {}), control);
     const auto one = design_one_setting(places, (*model)->points(), {});
     ASSERT_FALSE(one);
     EXPECT_EQ(one.error().kind, ErrorKind::cancelled);

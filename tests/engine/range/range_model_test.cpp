@@ -45,13 +45,13 @@ TEST(RangeModel, InterpolatesWhatIsUncertainOfBothNeighbours) {
     const auto model = model_of_points(two(uncertain, Fopdt{4, 10, 2}), Between::parameters);
     const auto middle = (*model)->at(2);
     ASSERT_TRUE(middle);
-    double least = 99, largest = 0;
+    double min = 99, largest = 0;
     for (const auto& member : middle->members) {
-        least = std::min(least, member.low_frequency_gain());
+        min = std::min(min, member.low_frequency_gain());
         largest = std::max(largest, member.low_frequency_gain());
     }
     // Nothing is uncertain at the right: halfway the factors 0.5 and 2 have become their roots, of the 2 between.
-    EXPECT_NEAR(least, 2 / std::sqrt(2.0), 1e-12);
+    EXPECT_NEAR(min, 2 / std::sqrt(2.0), 1e-12);
     EXPECT_NEAR(largest, 2 * std::sqrt(2.0), 1e-12);
     Fopdt surer{4, 10, 2};
     surer.uncertainty.K = FactorRange{0.9, 1.1};

@@ -58,9 +58,9 @@ double worst_on_the_plant(const Schedule& schedule) {
 }
 
 /// More than the build runs where TUNEWRIGHT_SEEDS says so: docs/correctness.md has what 100 of them gave.
-unsigned seeds(unsigned otherwise) {
+unsigned seeds(unsigned fallback) {
     const char* wanted = std::getenv("TUNEWRIGHT_SEEDS");
-    return wanted == nullptr ? otherwise : static_cast<unsigned>(std::atoi(wanted));
+    return wanted == nullptr ? fallback : static_cast<unsigned>(std::atoi(wanted));
 }
 
 TEST(RangeOfRecords, ItsScheduleHoldsTheLimitsOnThePlantItself) {

@@ -130,7 +130,7 @@ TEST(Schedule, ThatIsGivenIsFoundToExceedALimitBetweenTheCurvesPlaces) {
     const auto judged = judge_schedule({.scheduling = {}, .model = *model, .options = options}, given, {});
     ASSERT_TRUE(judged && judged->schedule);
     EXPECT_FALSE(judged->schedule->holds_limits);
-    const WorstPlace& worst = *std::ranges::find(judged->schedule_curve.worst, Quantity::Ms, &WorstPlace::quantity);
+    const WorstPoint& worst = *std::ranges::find(judged->schedule_curve.worst, Quantity::Ms, &WorstPoint::quantity);
     EXPECT_NEAR(worst.at, 57.18, 0.1);
     EXPECT_NEAR(worst.value.value_or(0), 1.3586, 3e-4);  // 1.35858 at 57.196 by a dense sweep
 

@@ -37,10 +37,10 @@ TEST(ScheduleSampleTime, KeepsMsWithinFivePerCentWhereItIsTightest) {
     const auto Ts = longest_sample_time(*model, schedule);
     ASSERT_TRUE(Ts);
     ASSERT_TRUE(*Ts);
-    double most = 0;
+    double max = 0;
     for (const double at : {0.0, 50.0, 70.0, 100.0})
-        most = std::max(most, raised(*model, at, settings_at(schedule, at), **Ts));
-    EXPECT_NEAR(most, 1.05, 2e-3);
+        max = std::max(max, raised(*model, at, settings_at(schedule, at), **Ts));
+    EXPECT_NEAR(max, 1.05, 2e-3);
 }
 
 TEST(ScheduleSampleTime, OfStepsCountsBothRowsInUseAtABorder) {

@@ -8,7 +8,7 @@
 
 #include "engine/range/design_range.h"
 #include "engine/range/equations/steady_branch.h"
-#include "engine/range/schedule/look.h"
+#include "engine/range/schedule/point_evaluation.h"
 #include "engine/simulation/linear/indices.h"
 #include "engine/tuning/robust/robust.h"
 #include "tests/engine/plant/nonlinear_plants.h"

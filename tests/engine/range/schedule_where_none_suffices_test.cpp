@@ -8,7 +8,7 @@
 
 #include "engine/range/design_range.h"
 #include "engine/range/equations/steady_branch.h"
-#include "engine/range/schedule/look.h"
+#include "engine/range/schedule/point_evaluation.h"
 
 namespace tunewright::range {
 namespace {
@@ -52,7 +52,7 @@ TEST(ScheduleWhereNoneSuffices, TheOneThatComesNearestIsAnsweredWithAWarning) {
     expect_worth_having(design);
     EXPECT_FALSE(design.schedule->within_allowance);
     EXPECT_LT(design.schedule->worst_relative_IAE, 1.3);
-    EXPECT_EQ(design.schedule->schedule.rows.size(), std::size_t(kMostRows));
+    EXPECT_EQ(design.schedule->schedule.rows.size(), std::size_t(kMaxRows));
     EXPECT_TRUE(warned(design, "schedule-over-allowance"));
 }
 
@@ -143,7 +143,7 @@ TEST(ScheduleWhereNoneSuffices, RowsThatALayoutLeavesOverGoIntoTheWidestParts) {
 TEST(ScheduleWhereNoneSuffices, TheWarningsFiguresDiffer) {
     ScheduleDesign design;
     design.worst_relative_IAE = 1.200004;
-    remark_price(design, 0.2);
+    remark_cost(design, 0.2);
     ASSERT_EQ(design.warnings.size(), 1u);
     EXPECT_NE(design.warnings[0].detail.find("up to 20.0004 % more"), std::string::npos) << design.warnings[0].detail;
 }

@@ -37,8 +37,8 @@ Expected<RangeDesign> judged(const std::vector<RangePoint>& points) {
     return judge_schedule({.scheduling = {}, .model = *model, .options = options}, given_rows(), {});
 }
 
-const WorstPlace& worst_of(const RangeCurve& curve, Quantity quantity) {
-    return *std::ranges::find(curve.worst, quantity, &WorstPlace::quantity);
+const WorstPoint& worst_of(const RangeCurve& curve, Quantity quantity) {
+    return *std::ranges::find(curve.worst, quantity, &WorstPoint::quantity);
 }
 
 /// The largest Ms at the corners of what is uncertain, over the range, by a dense sweep.
@@ -66,7 +66,7 @@ TEST(UncertainRange, AGivenScheduleIsJudgedOnTheWorstOfTheUncertainPlants) {
     ASSERT_TRUE(Ms);
     EXPECT_NEAR(*Ms, dense_Ms(2, 0.5), 2e-3);
     EXPECT_GT(*Ms, 2.4);
-    for (const PlaceFigures& place : design->schedule_curve.places) EXPECT_LE(place.Ms.value_or(99), *Ms * (1 + 1e-4));
+    for (const PointFigures& place : design->schedule_curve.places) EXPECT_LE(place.Ms.value_or(99), *Ms * (1 + 1e-4));
 }
 
 TEST(UncertainRange, AnUnstableCornerLeavesNoFigure) {
@@ -86,10 +86,10 @@ TEST(UncertainRange, OneSettingThatExceedsALimitBetweenThePointsIsWarnedOf) {
     const auto design = design_range({.scheduling = {}, .model = *model, .options = options}, {});
     ASSERT_TRUE(design) << design.error().message;
     ASSERT_TRUE(design->one);
-    for (const PlacePrice& point : design->one->points) EXPECT_LE(point.Ms.value_or(99), 1.7 * (1 + 1e-4)) << point.at;
+    for (const PointCost& point : design->one->points) EXPECT_LE(point.Ms.value_or(99), 1.7 * (1 + 1e-4)) << point.at;
     const auto& Ms = worst_of(design->one_curve, Quantity::Ms).value;
     double curve = 0;
-    for (const PlaceFigures& place : design->one_curve.places) curve = std::max(curve, place.Ms.value_or(99));
+    for (const PointFigures& place : design->one_curve.places) curve = std::max(curve, place.Ms.value_or(99));
     EXPECT_GT(curve, 1.75);
     EXPECT_NEAR(Ms.value_or(0), curve, 1e-2);
     EXPECT_TRUE(std::ranges::any_of(design->warnings,

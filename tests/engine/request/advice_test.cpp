@@ -102,9 +102,9 @@ TEST(Advice, TheLeastLoadIaeOfADeadTimeIsBelowThatOfEveryController) {
                 const Finding* finding = said(entry, "dead-time-rules");
                 if (finding == nullptr || !finding->figures.contains("least_load_IAE")) continue;
                 ++seen;
-                const double least = finding->figures.at("least_load_IAE");
-                EXPECT_NEAR(least / (2 * std::abs(K) * (L - (1 - std::exp(-L)))), 1, 1e-8);
-                EXPECT_GT(*entry.evaluation->performance.load.IAE, least * (1 - 1e-6)) << entry.title;
+                const double min = finding->figures.at("least_load_IAE");
+                EXPECT_NEAR(min / (2 * std::abs(K) * (L - (1 - std::exp(-L)))), 1, 1e-8);
+                EXPECT_GT(*entry.evaluation->performance.load.IAE, min * (1 - 1e-6)) << entry.title;
             }
             EXPECT_GT(seen, 10);
         }
@@ -252,7 +252,7 @@ TEST(Advice, AStepBeyondTheActuatorExcusesItsOwnResponseAlone) {
     auto entry = evaluated(Fopdt{.K = 2, .T = 10, .L = 3}, IdealPid{.Kp = 0.8, .Ti = 8}, options, {});
     ASSERT_NE(said(entry, "actuator-too-small"), nullptr);
     EXPECT_EQ(said(entry, "not-settling"), nullptr);
-    const Subject subject = test::subject_of(Fopdt{.K = 2, .T = 10, .L = 3});
+    const AnalysedPlant subject = test::subject_of(Fopdt{.K = 2, .T = 10, .L = 3});
     entry.evaluation->performance.setpoint.settling_time = no_figure("It does not settle.");
     std::vector<TuningEntry> entries{entry};
     verdict::judge(entries, {subject, options, {}});
@@ -285,7 +285,7 @@ TEST(Advice, ACureWhoseSearchIsStoppedIsNone) {
     const Finding* finding = said(result->controllers[0], "filter-rules");
     ASSERT_NE(finding, nullptr);
     ASSERT_TRUE(finding->figures.contains("shorter_Tf"));
-    const Subject& subject = *request.subject;
+    const AnalysedPlant& subject = *request.subject;
     const TuningProblem problem{*subject.nominal(), *subject.linear(), {}, {}};
     std::stop_source source;
     verdict::Context context{subject, request.evaluate, {}, 0, nullptr, &problem, {}, {}};
@@ -330,16 +330,16 @@ void expect_overshoot_told(std::optional<double> asked) {
         const double limit = asked.value_or(5);
         const auto* known = product::find(product);
         ASSERT_NE(known, nullptr) << product;
-        built::Build build;
-        build.product = known;
-        build.context = product::Context::with_spans({.y_low = 0, .y_high = 200, .u_low = 0, .u_high = 100}, 1);
-        build.context.loop_clock_s = 1;
-        build.Ts = 1;
-        request.implement = build;
+        device::DeviceModel device;
+        device.product = known;
+        device.context = product::Context::with_spans({.y_low = 0, .y_high = 200, .u_low = 0, .u_high = 100}, 1);
+        device.context.loop_clock_s = 1;
+        device.Ts = 1;
+        request.device = device;
         const auto result = tune(request, {});
-        if (!result || !result->controllers[0].as_built) continue;
+        if (!result || !result->controllers[0].on_device) continue;
         const TuningEntry& entry = result->controllers[0];
-        const double reached = *entry.as_built->loop.performance.setpoint.overshoot_percent;
+        const double reached = *entry.on_device->loop.performance.setpoint.overshoot_percent;
         const Finding* finding = said(entry, "overshoot");
         EXPECT_EQ(finding != nullptr, reached > limit + 0.05) << product << " reaches " << reached;
         if (finding == nullptr) continue;
@@ -351,7 +351,7 @@ void expect_overshoot_told(std::optional<double> asked) {
         EXPECT_EQ(finding->level, reached > doubted_from ? Level::warning : Level::note) << product;
         EXPECT_EQ(entry.verdict.front().level == Level::good, reached <= doubted_from) << product;
         ASSERT_TRUE(finding->figures.contains("setpoint_lag")) << product << finding->text;
-        SampledPid law = entry.as_built->fitted.law;
+        SampledPid law = entry.on_device->fitted.law;
         law.gains.setpoint_lag = finding->figures.at("setpoint_lag");
         const auto cured = evaluate_sampled(*request.subject, law, {}, request.evaluate);
         ASSERT_TRUE(cured);

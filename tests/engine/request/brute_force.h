@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <optional>
 
-#include "tests/engine/request/as_built_cases.h"
+#include "tests/engine/request/device_cases.h"
 
 namespace tunewright::test {
 
@@ -44,7 +44,7 @@ public:
         return refined(at_S, false) <= Ms_ * kHolds && refined(at_T, true) <= Mt_ * kHolds;
     }
     /// 1/Ki: what the load IAE cannot be below. Of the program last asked about.
-    double least_iae() const { return Ts_ / std::abs(rest_); }
+    double min_iae() const { return Ts_ / std::abs(rest_); }
     double iae(const OwnProgram& program, double enough) const {
         OwnLoopPlant plant = plant_;
         return own_load_iae(plant, program, 400000, enough);
@@ -206,9 +206,9 @@ private:
         double low = 0, high = 0;
         for (double K = 8 * K_; K > K_ / 30 && low == 0; K /= 1.3) {
             if (!serves(K, Ti, Td)) continue;
-            if (judge_.least_iae() > best_.IAE) return;
+            if (judge_.min_iae() > best_.IAE) return;
             // Small |S| and |T| of an unstable loop are no use.
-            const double bound = 1e4 * judge_.least_iae();
+            const double bound = 1e4 * judge_.min_iae();
             if (!std::isfinite(judge_.iae(own_program(product_, typed(K, Ti, Td)), bound))) continue;
             low = K;
             high = K * 1.3;
@@ -220,7 +220,7 @@ private:
         }
         for (const double share : {1.0, 0.97, 0.93, 0.85}) {
             const double K = share * low;
-            if (!serves(K, Ti, Td) || judge_.least_iae() > best_.IAE * 1.0001) continue;
+            if (!serves(K, Ti, Td) || judge_.min_iae() > best_.IAE * 1.0001) continue;
             const Typed t = typed(K, Ti, Td);
             const double IAE = judge_.iae(own_program(product_, t), 1.0001 * best_.IAE);
             if (!(IAE < best_.IAE)) continue;

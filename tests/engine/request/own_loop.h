@@ -15,13 +15,13 @@
 namespace tunewright::test {
 
 /// The integral of |y| after a unit load step at the plant's input; infinite where it does not come to rest within
-/// `most` samples, or exceeds `enough`.
-inline double own_load_iae(OwnLoopPlant& plant, OwnProgram program, int most = 3000000,
+/// `max` samples, or exceeds `enough`.
+inline double own_load_iae(OwnLoopPlant& plant, OwnProgram program, int max = 3000000,
                            double enough = std::numeric_limits<double>::infinity()) {
     constexpr double kRest = 2e-5;  // of the whole, in the second half of the time
     double earlier = 0;
     int next = 512;
-    for (int k = 1; k <= most; ++k) {
+    for (int k = 1; k <= max; ++k) {
         plant.step(program(plant.y()));
         if (!(plant.iae() < enough)) break;
         if (k != next) continue;

@@ -21,8 +21,8 @@ struct Typed {
     double Sy = 1, Su = 1;  ///< spans
 
     double number(const std::string& name) const { return std::stod(text.at(name)); }
-    double number(const std::string& name, double otherwise) const {
-        return text.contains(name) ? number(name) : otherwise;
+    double number(const std::string& name, double fallback) const {
+        return text.contains(name) ? number(name) : fallback;
     }
     bool is(const std::string& name, const std::string& word) const {
         const auto found = text.find(name);

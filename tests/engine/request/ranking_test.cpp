@@ -93,7 +93,7 @@ TEST(Ranking, ATableUnderATighterLimitFollowsFromOrderAndLeastLimit) {
     std::vector<int> holds;
     for (const int index : wide.ranking) {
         const Standing& standing = *wide.controllers[static_cast<std::size_t>(index)].standing;
-        if (standing.least_limit && *standing.least_limit <= 1.6) holds.push_back(index);
+        if (standing.min_limit && *standing.min_limit <= 1.6) holds.push_back(index);
     }
     std::ranges::sort(holds, {},
                       [&](int index) { return wide.controllers[static_cast<std::size_t>(index)].standing->order; });

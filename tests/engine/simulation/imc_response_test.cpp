@@ -19,16 +19,16 @@ TEST(ImcResponse, AVanishingDeadTimeOfTheModelIsALimitLikeAnyOther) {
         c.beta = 4;
         return simulate_imc(*plant, c, {.r = 1, .d = 0.5}, {});
     };
-    const StepResponse least = response(1e-13), small = response(1e-4);
-    ASSERT_TRUE(least.settles && small.settles);
+    const StepResponse min = response(1e-13), small = response(1e-4);
+    ASSERT_TRUE(min.settles && small.settles);
     for (const double t : {0.0, 1.0, 2.0, 5.0, 10.0, 20.0}) {
         const auto at = [&](const StepResponse& r) {
             const auto node = std::ranges::upper_bound(r.nodes, t + 1e-9, {}, &ResponseNode::t) - 1;
             return node->y + (t - node->t) * node->y_slope;
         };
-        EXPECT_NEAR(at(least), at(small), 2e-2) << t;
+        EXPECT_NEAR(at(min), at(small), 2e-2) << t;
     }
-    EXPECT_NEAR(least.nodes.back().error_integral, small.nodes.back().error_integral, 1e-3);
+    EXPECT_NEAR(min.nodes.back().error_integral, small.nodes.back().error_integral, 1e-3);
 }
 
 }  // namespace

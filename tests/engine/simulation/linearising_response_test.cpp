@@ -50,7 +50,7 @@ TEST(LinearisingResponse, CstrConcentrationFollowsTheSecondOrderTarget) {
 
 struct Published {
     const char* output;
-    double r, IAE, settling, u_start, u_most, u_least;
+    double r, IAE, settling, u_start, u_max, u_min;
 };
 
 // The independent reference's loops (DOP853, relative tolerance 1e-11), per unit of r.
@@ -85,8 +85,8 @@ TEST(LinearisingResponse, ReferenceLoopsOfTheCstr) {
         EXPECT_NEAR(settling, row.settling, dt);
         EXPECT_LT(overshoot, 1e-9);
         EXPECT_NEAR(even.u[0], row.u_start, 1e-8 * std::abs(row.u_start));
-        EXPECT_NEAR(*std::max_element(even.u.begin(), even.u.end()), row.u_most, 2e-3 * std::abs(row.u_most));
-        EXPECT_NEAR(*std::min_element(even.u.begin(), even.u.end()), row.u_least, 2e-3 * std::abs(row.u_least));
+        EXPECT_NEAR(*std::max_element(even.u.begin(), even.u.end()), row.u_max, 2e-3 * std::abs(row.u_max));
+        EXPECT_NEAR(*std::min_element(even.u.begin(), even.u.end()), row.u_min, 2e-3 * std::abs(row.u_min));
     }
 }
 

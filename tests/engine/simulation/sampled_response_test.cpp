@@ -241,7 +241,7 @@ TEST(SampledResponse, DoesNotRestWhereALimitLeavesAnIntegratorMoving) {
     const LinearPlant plant = *LinearPlant::make(Ipdt{.K = 1, .L = 0.2});
     const ProgramLimits limits{.output = ActuatorLimits{-0.3, 0.3}};
     SampledOptions options;
-    options.most_samples = 3000;
+    options.max_samples = 3000;
     const StepResponse response = simulate_sampled(plant, pid(0.5, 0.1, 0, 0.2), limits, {0, 1}, options);
     EXPECT_FALSE(response.settles);
     EXPECT_NEAR(response.nodes.back().y_slope, 0.7, 1e-9);

@@ -136,15 +136,15 @@ TEST(Emulation, BoundsAreAlphaTimesTheFirstLevelsSettings) {
     set_range(options, "bounds/Td", 0.01, 0.3);
     const auto answer = emulated(given.problem, options);
     ASSERT_TRUE(answer) << answer.error().message;
-    double least = HUGE_VAL, most = 0;
+    double min = HUGE_VAL, max = 0;
     for (const LevelOneRow& row : answer->report_as<EmulationReport>()->level1) {
         ASSERT_TRUE(row.controller) << row.error;
-        least = std::min(least, -std::get<IdealPid>(*row.controller).Kp);
-        most = std::max(most, -std::get<IdealPid>(*row.controller).Kp);
+        min = std::min(min, -std::get<IdealPid>(*row.controller).Kp);
+        max = std::max(max, -std::get<IdealPid>(*row.controller).Kp);
     }
     const auto& bounds = answer->report_as<EmulationReport>()->bounds;
-    EXPECT_DOUBLE_EQ(bounds.at("Kp").low, -3 * most);
-    EXPECT_DOUBLE_EQ(bounds.at("Kp").high, -0.5 * least);
+    EXPECT_DOUBLE_EQ(bounds.at("Kp").low, -3 * max);
+    EXPECT_DOUBLE_EQ(bounds.at("Kp").high, -0.5 * min);
     EXPECT_DOUBLE_EQ(bounds.at("Td").low, 0.01);
     EXPECT_DOUBLE_EQ(bounds.at("Td").high, 0.3);
 }

@@ -169,7 +169,7 @@ double cost(const LinearPlant& plant, IdealPid pid, const Claim& claim) {
     return integral(simulate_linear(plant, gains, step, {}).nodes, step.r, criterion_of(claim.criterion));
 }
 
-double least_cost(const LinearPlant& plant, const IdealPid& start, const Claim& claim) {
+double min_cost(const LinearPlant& plant, const IdealPid& start, const Claim& claim) {
     const bool has_D = start.Td > 0;
     std::vector<double> x{std::log(start.Kp), std::log(start.Ti)};
     if (has_D) x.push_back(std::log(start.Td));
@@ -199,7 +199,7 @@ TEST(ErrorIntegralRules, AreNearTheOptimumThatTheyClaim) {
         const LinearPlant plant = *LinearPlant::make(given_plant);
         const auto answer = tuned(claim.id, given_plant, claim.given);
         ASSERT_TRUE(answer);
-        const double ratio = cost(plant, answer->controller, claim) / least_cost(plant, answer->controller, claim);
+        const double ratio = cost(plant, answer->controller, claim) / min_cost(plant, answer->controller, claim);
         EXPECT_LT(ratio, 1.05);
     }
 }

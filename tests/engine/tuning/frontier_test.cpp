@@ -110,7 +110,7 @@ TEST(Frontier, KeepsAGivenMt) {
 }
 
 TEST(Frontier, HoldsOnEveryPlantOfAFamily) {
-    const Subject subject =
+    const AnalysedPlant subject =
         test::subject_of(Plant(Fopdt{.K = 2, .T = 10, .L = 3, .uncertainty = {.K = FactorRange{0.8, 1.25}}}));
     const FrontierOptions options{.Ms = {.from = 1.4, .to = 2, .points = 4}};
     const auto front = frontier(subject, options, {});

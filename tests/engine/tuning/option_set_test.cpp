@@ -126,7 +126,7 @@ OptionSet<Whole> whole_set() {
         .range(&Whole::span, "span", "Span.", {.unit = "time", .minimum = 0})
         .numbers_by_name(&Whole::start, "start", "Start.")
         .number(&Whole::asked, "asked", "Asked.", {.required = true})
-        .number(&Whole::Tf, "Tf", "Filter.", {.otherwise = 0.5})
+        .number(&Whole::Tf, "Tf", "Filter.", {.fallback = 0.5})
         .number_or_range(&Whole::either, "either", "Either.");
     return set;
 }

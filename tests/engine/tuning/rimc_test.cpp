@@ -116,7 +116,7 @@ TEST(Rimc, TheBranchEndsWhereMsIsLeast) {
     const double cases[][3] = {{0.1, 1.04, 1.5}, {0.5, 1.16, 1.7}, {1, 1.25, 2.0}};
     for (const auto& [L, Ms, lambda] : cases) {
         const RimcBranch branch({1, 1, L}, {});
-        EXPECT_NEAR(branch.least_Ms(), Ms, 0.005) << L;
+        EXPECT_NEAR(branch.min_Ms(), Ms, 0.005) << L;
         EXPECT_NEAR(branch.branch()->high, lambda, 0.06) << L;
     }
     const RimcBranch long_dead_time({1, 1, 2}, {});

@@ -58,7 +58,7 @@ TEST(RobustFamily, ASetOfOnePlantIsThePlainDesign) {
 TEST(RobustFamily, LimitsHoldOnEveryPlantOfASetWithEverySearch) {
     const PlantSet set{
         {Fopdt{.K = 2, .T = 10, .L = 3}, Fopdt{.K = 2.5, .T = 8, .L = 4}, Sopdt{.K = 1, .T1 = 9, .T2 = 3, .L = 2}}};
-    double least = INFINITY;
+    double min = INFINITY;
     for (const std::string search : {"fast", "nelder_mead", "grid"}) {
         const auto entry = robust_entry(set, {{"search", search}, {"controller", std::string("PI")}});
         ASSERT_TRUE(entry.evaluation) << search;
@@ -66,8 +66,8 @@ TEST(RobustFamily, LimitsHoldOnEveryPlantOfASetWithEverySearch) {
         EXPECT_EQ(entry.evaluation->region->stable_fraction, 1);
         EXPECT_LE(*entry.evaluation->region->worst_Ms, 1.4 * (1 + 3e-5));
         const double IAE = *entry.evaluation->performance.load.IAE;
-        least = std::min(least, IAE);
-        EXPECT_LT(IAE, least * 1.02) << search;
+        min = std::min(min, IAE);
+        EXPECT_LT(IAE, min * 1.02) << search;
     }
 }
 
@@ -125,7 +125,7 @@ TEST(RobustFamily, LimitsHoldOverAConfidenceEllipsoid) {
     ASSERT_TRUE(tuned.has_value());
     EvaluateOptions options;
     options.points = 0;
-    const auto judged = evaluate(*Subject::of_family(family), tuned->controller, options);
+    const auto judged = evaluate(*AnalysedPlant::of_family(family), tuned->controller, options);
     EXPECT_EQ(judged->region->stable_fraction, 1);
     EXPECT_NEAR(*judged->region->worst_Ms, 1.4, 1.4e-4);
     EXPECT_LT(*judged->robustness.Ms, 1.38);

@@ -150,7 +150,7 @@ TEST(RobustSearch, NoResonanceIsTooLightlyDampedForAnAnswer) {
 }
 
 /// `fast` costs at most what `known` does, a design within the limits whose filter follows the same rule.
-void expect_no_dearer_than(const IdealPid& known, const DesignTask& task) {
+void expect_no_costlier_than(const IdealPid& known, const DesignTask& task) {
     const LinearPlant linear = *LinearPlant::make(task.plant);
     const auto fast = designed(task, "fast");
     ASSERT_TRUE(fast.has_value());
@@ -166,7 +166,7 @@ TEST(RobustSearch, ASmallIslandOfHighGainIsFound) {
     const DesignTask task{drawn.plant, drawn.M, "load_iae"};
     const auto grid = designed(task, "grid");
     ASSERT_TRUE(grid.has_value());
-    expect_no_dearer_than(grid->controller, task);
+    expect_no_costlier_than(grid->controller, task);
 }
 
 // Kp and Td do nothing here but through Ki and the filter.
@@ -180,7 +180,7 @@ TEST(RobustSearch, AnIntegralAloneBehindAHeavyFilterIsFound) {
     known.Kp = 5.77e-6;
     known.Ti = 6.27e-5 * unit;
     known.Td = 237.6 * unit;
-    expect_no_dearer_than(known, {drawn.plant, drawn.M, "load_iae"});
+    expect_no_costlier_than(known, {drawn.plant, drawn.M, "load_iae"});
 }
 
 // Where one start alone ended 0.2 to 140 % above the best: at an integral behind a heavy filter (27, 195, 246, 294), at

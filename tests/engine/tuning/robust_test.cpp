@@ -113,7 +113,7 @@ TEST(Robust, MksIsKept) {
 }
 
 TEST(Robust, ATightMksIsMetAtTheCheapestOfItsValleys) {
-    // The published gridding sees the whole plane; the fast search must not end in a dearer valley.
+    // The published gridding sees the whole plane; the fast search must not end in a costlier valley.
     const Plant plant = Fopdt{.K = 2, .T = 3, .L = 1};
     const auto fast = design(plant, with({{"Mks", 2.0}})),
                grid = design(plant, with({{"Mks", 2.0}, {"search", std::string("grid")}}));
@@ -135,13 +135,13 @@ double cure_of(const Error& refusal) {
 
 TEST(Robust, UnstablePlantsHaveASmallestPeakThatWorks) {
     // e^(-Ls)/(s - 1) needs M of about 1.22, 1.34, 1.57, 1.82 for L = 0.05, 0.1, 0.2, 0.3.
-    for (const auto& [L, least] : {std::pair{0.2, 1.57}, {0.3, 1.82}}) {
+    for (const auto& [L, min] : {std::pair{0.2, 1.57}, {0.3, 1.82}}) {
         const Plant plant = Fopdt{.K = -1, .T = -1, .L = L};
-        const auto below = design(plant, with({{"Ms", least * 0.97}, {"Mt", least * 0.97}}));
+        const auto below = design(plant, with({{"Ms", min * 0.97}, {"Mt", min * 0.97}}));
         ASSERT_FALSE(below.has_value()) << L;
         EXPECT_EQ(below.error().kind, ErrorKind::no_feasible_controller);
         const double named = cure_of(below.error());
-        EXPECT_NEAR(named, least * 1.01, 0.02 * least) << below.error().message;
+        EXPECT_NEAR(named, min * 1.01, 0.02 * min) << below.error().message;
         EXPECT_TRUE(design(plant, with({{"Ms", named}, {"Mt", named}})).has_value())
             << "the limit that the refusal names must work";
         EXPECT_NE(below.error().message.find("Ms = Mt = " + text(named)), std::string::npos) << below.error().message;
@@ -257,8 +257,8 @@ TEST(LocalMinimum, BothSearchesFindRosenbrocksValley) {
         return 100 * std::pow(x[1] - x[0] * x[0], 2) + std::pow(1 - x[0], 2);
     };
     for (const auto search : {LocalSearch::nelder_mead, LocalSearch::subplex}) {
-        const auto minimum = find_local_minimum(search, f, {-1.2, 1},
-                                                {.step = {0.5, 0.5}, .tolerance = 1e-12, .most_evaluations = 4000});
+        const auto minimum =
+            find_local_minimum(search, f, {-1.2, 1}, {.step = {0.5, 0.5}, .tolerance = 1e-12, .max_evaluations = 4000});
         EXPECT_NEAR(minimum.x[0], 1, 1e-3);
         EXPECT_NEAR(minimum.x[1], 1, 1e-3);
     }

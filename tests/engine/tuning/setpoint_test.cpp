@@ -97,8 +97,8 @@ TEST(Setpoint, AnyOvershootIsKeptOnPlantsOfManyKinds) {
 }
 
 /// The shortest filter that keeps the limit with this weight, by halving; of each pair the evaluation's own figures.
-double least_IAE_of_a_grid(const Plant& plant, IdealPid pid, double limit) {
-    double least = std::numeric_limits<double>::infinity();
+double min_IAE_of_a_grid(const Plant& plant, IdealPid pid, double limit) {
+    double min = std::numeric_limits<double>::infinity();
     const auto over = [&](double T) {
         pid.setpoint_lag = T;
         return *judged(plant, pid).performance.setpoint.overshoot_percent > limit;
@@ -113,9 +113,9 @@ double least_IAE_of_a_grid(const Plant& plant, IdealPid pid, double limit) {
             high = 0;
         }
         pid.setpoint_lag = high;
-        least = std::min(least, *judged(plant, pid).performance.setpoint.IAE);
+        min = std::min(min, *judged(plant, pid).performance.setpoint.IAE);
     }
-    return least;
+    return min;
 }
 
 // 2 e^(-3s)/(10 s + 1) at Ms 1.4: b = 0 needs T = 5.54 and has an IAE of 15.60; b = 1 with T = 8.01 has 12.29.
@@ -149,7 +149,7 @@ TEST(Setpoint, NoOtherPairHasALowerIae) {
         const IdealPid pid = weighed(plant, design->controller, {.overshoot = limit});
         filtered += pid.setpoint_lag > 0;
         EXPECT_LE(*judged(plant, pid).performance.setpoint.IAE,
-                  least_IAE_of_a_grid(plant, design->controller, limit) * (1 + 3e-3))
+                  min_IAE_of_a_grid(plant, design->controller, limit) * (1 + 3e-3))
             << "plant " << i << ": b " << pid.b << ", T " << pid.setpoint_lag;
     }
     EXPECT_GT(filtered, 8);
@@ -162,10 +162,10 @@ TEST(Setpoint, WithoutAFilterTheWeightWithTheLeastOvershootIsTaken) {
     const auto warnings = choose_setpoint(*LinearPlant::make(plant), {.overshoot = 5, .may_filter = false}, pid);
     EXPECT_TRUE(warnings.empty());
     EXPECT_EQ(pid.setpoint_lag, 0);
-    const double least = *judged(plant, pid).performance.setpoint.overshoot_percent;
+    const double min = *judged(plant, pid).performance.setpoint.overshoot_percent;
     for (const double b : {0.0, 0.05, 0.2, 0.5, 1.0}) {
         pid.b = b;
-        EXPECT_GE(*judged(plant, pid).performance.setpoint.overshoot_percent, least - 1e-3) << b;
+        EXPECT_GE(*judged(plant, pid).performance.setpoint.overshoot_percent, min - 1e-3) << b;
     }
 }
 
@@ -237,7 +237,7 @@ TEST(Setpoint, OnEquationsTheFilterDoesWhatItDoesOnTheirLinearTwin) {
     tank.equations = {{"x", "-x + u"}};
     tank.output = "x";
     tank.input.name = "u";
-    const Subject subject = test::subject_of(tank);
+    const AnalysedPlant subject = test::subject_of(tank);
     EvaluateOptions options;
     options.points = 0;
     for (const Filter& filter :

@@ -128,8 +128,8 @@ TEST(SweepLoops, TopsAreNoLowerThanBeforeAndHigherThanAfter) {
         for (std::size_t i = 0; i < n; ++i)
             if (level[i] >= 3 && (i == 0 || level[i] >= level[i - 1]) && (i + 1 == n || level[i] > level[i + 1]))
                 plain.push_back(i);
-        tops_of(level, 3, common, Registers::common);
-        tops_of(level, 3, widest);
+        local_maxima(level, 3, common, Registers::common);
+        local_maxima(level, 3, widest);
         EXPECT_EQ(common, plain) << n;
         EXPECT_EQ(widest, plain) << n;
         found += static_cast<int>(plain.size());
@@ -175,8 +175,8 @@ TEST(SweepLoops, MovesLessIsRouchesConditionOnTheGrid) {
         for (const double slack : {0.999, 1.001}) {
             EXPECT_EQ(moves_less(grid.view(), from, to, largest * slack, Phase::as_it_is), slack > 1);
             const bool reached = !std::isfinite(worst);
-            const double most = reached ? 1e9 : worst * slack;
-            EXPECT_EQ(moves_less(grid.view(), from, to, most, Phase::worst), !reached && slack > 1);
+            const double max = reached ? 1e9 : worst * slack;
+            EXPECT_EQ(moves_less(grid.view(), from, to, max, Phase::worst), !reached && slack > 1);
         }
     }
 }

@@ -64,7 +64,7 @@ TEST(BodySource, CarriesMoreThanItHoldsAndLosesNothing) {
     std::string body;
     for (std::int64_t i = 0; body.size() < 20'000'000; i++) body += std::to_string(i * 7919) + "\n";
     const std::string answer = std::to_string(std::hash<std::string>{}(body)) + " end";
-    Limits limits;
+    ServerLimits limits;
     limits.bodies = 1'000'000;
     Loopback server(read_all, limits, at_batches);
     Client client(server);
@@ -83,7 +83,7 @@ TEST(BodySource, CarriesMoreThanItHoldsAndLosesNothing) {
 }
 
 TEST(BodySource, RefusesWhatIsTooLongOrMalformedAndCloses) {
-    Limits limits;
+    ServerLimits limits;
     limits.max_batch_body = 10;
     limits.max_body = 5;
     Loopback server(read_all, limits, at_batches);
@@ -182,7 +182,7 @@ TEST(BodySource, AnAnswerBeforeTheEndClosesAndIsNotLost) {
 }
 
 TEST(BodySource, ATrickleIsCutOffAndASlowReaderIsNot) {
-    Limits limits;
+    ServerLimits limits;
     limits.pace_time = 200ms;
     Loopback server(
         [&](const Request& request) {
@@ -202,7 +202,7 @@ TEST(BodySource, ATrickleIsCutOffAndASlowReaderIsNot) {
 
 TEST(BodySource, EndsWithTheService) {
     std::promise<bool> whole;
-    Limits limits;
+    ServerLimits limits;
     limits.stopping = limits.farewell = 1ms;
     Loopback server(telling(whole), limits, at_batches);
     Client client(server);
@@ -213,7 +213,7 @@ TEST(BodySource, EndsWithTheService) {
 }
 
 TEST(BodySource, AGatheredBodyThatDoesNotComeIs408) {
-    Limits limits;
+    ServerLimits limits;
     limits.body_time = 100ms;
     Loopback server(read_all, limits);
     Client client(server);
@@ -222,7 +222,7 @@ TEST(BodySource, AGatheredBodyThatDoesNotComeIs408) {
 }
 
 TEST(BodySource, BodiesBeyondTheBudgetAreRefusedAndALengthAloneTakesNothing) {
-    Limits limits;
+    ServerLimits limits;
     limits.bodies = 1'000'000;
     limits.room = 50ms;
     std::promise<void> held, go;

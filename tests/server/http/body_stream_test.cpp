@@ -122,7 +122,7 @@ TEST(BodyStream, TellsItsProducerThatAnIdleClientLeft) {
 TEST(BodyStream, IsGivenUpWhereTheClientTakesNothing) {
     Dictation stream;
     stream.write(std::string(32 * 1024 * 1024, 'x'));
-    Limits limits;
+    ServerLimits limits;
     limits.writing = std::chrono::milliseconds(300);
     std::promise<bool> taken;
     Loopback server(streaming([&](BodyWriter& out) {
@@ -139,7 +139,7 @@ TEST(BodyStream, IsGivenUpWhereTheClientTakesNothing) {
 
 TEST(BodyStream, StaysOpenForAsLongAsNothingWaits) {
     Dictation stream;
-    Limits limits;
+    ServerLimits limits;
     limits.writing = limits.idle = std::chrono::milliseconds(1);
     Loopback server(streaming(stream.producer()), limits);
     Client client(server);
@@ -154,7 +154,7 @@ TEST(BodyStream, StaysOpenForAsLongAsNothingWaits) {
 
 TEST(BodyStream, WithAnEndIsFinishedWhenTheServiceStops) {
     Dictation stream;
-    Limits limits;
+    ServerLimits limits;
     limits.stopping = std::chrono::seconds(20);
     Loopback server(streaming(stream.producer()), limits);
     Client client(server);
@@ -168,7 +168,7 @@ TEST(BodyStream, WithAnEndIsFinishedWhenTheServiceStops) {
 
 TEST(BodyStream, IsCutOffWhereItOutlastsTheTimeOfStopping) {
     Dictation stream;
-    Limits limits;
+    ServerLimits limits;
     limits.stopping = limits.farewell = std::chrono::milliseconds(1);
     Loopback server(streaming(stream.producer()), limits);
     Client client(server);

@@ -15,11 +15,11 @@ using namespace std::chrono_literals;
 TEST(Budget, TheLargestArrivingRequestOfWhoHoldsMostGivesWay) {
     Budget budget(200);
     std::atomic<int> asked = 0;
-    Budget::Share small = budget.open("greedy", [&] { asked = 1; });
-    Budget::Share large = budget.open("greedy", [&] { asked = 2; });
-    Budget::Share whole = budget.open("greedy", [&] { asked = 3; });
+    Budget::Reservation small = budget.open("greedy", [&] { asked = 1; });
+    Budget::Reservation large = budget.open("greedy", [&] { asked = 2; });
+    Budget::Reservation whole = budget.open("greedy", [&] { asked = 3; });
     ASSERT_TRUE(small.grow(10, 0ms) && large.grow(30, 0ms) && whole.grow(40, 0ms) && whole.arrived(0, 0ms));
-    Budget::Share other = budget.open("modest", [] {});
+    Budget::Reservation other = budget.open("modest", [] {});
     std::thread leaves([&] {
         while (asked == 0) std::this_thread::sleep_for(1ms);
         EXPECT_FALSE(large.grow(1, 0ms)) << "it has been asked to give way";
@@ -35,9 +35,9 @@ TEST(Budget, WhoHoldsMostWaitsForItsOwnUnlessOneIsTwiceAsLarge) {
     Budget budget(200);
     std::atomic<bool> asked = false;
     const auto ask = [&] { asked = true; };
-    Budget::Share first = budget.open("greedy", ask);
-    Budget::Share second = budget.open("greedy", ask);
-    Budget::Share other = budget.open("modest", ask);
+    Budget::Reservation first = budget.open("greedy", ask);
+    Budget::Reservation second = budget.open("greedy", ask);
+    Budget::Reservation other = budget.open("modest", ask);
     ASSERT_TRUE(first.grow(60, 0ms) && other.grow(30, 0ms));
     EXPECT_FALSE(second.grow(31, 10ms));
     EXPECT_FALSE(asked);
@@ -51,7 +51,7 @@ TEST(Budget, WhoHoldsMostWaitsForItsOwnUnlessOneIsTwiceAsLarge) {
 
 TEST(Budget, RequestsThatWaitToBeAnsweredLeaveRoomForOneThatIs) {
     Budget budget(200);
-    std::vector<Budget::Share> all;
+    std::vector<Budget::Reservation> all;
     for (int i = 0; i < 5; ++i) {
         all.push_back(budget.open("one", [] {}));
         ASSERT_TRUE(all.back().grow(20, 0ms));
@@ -64,20 +64,20 @@ TEST(Budget, RequestsThatWaitToBeAnsweredLeaveRoomForOneThatIs) {
 
 TEST(Budget, WhatIsBeingAnsweredKeepsNoBodyFromArriving) {
     Budget budget(200);
-    Budget::Share computing = budget.open("greedy", [] {});
+    Budget::Reservation computing = budget.open("greedy", [] {});
     ASSERT_TRUE(computing.grow(90, 0ms) && computing.arrived(1000, 0ms));
-    Budget::Share other = budget.open("modest", [] {});
+    Budget::Reservation other = budget.open("modest", [] {});
     EXPECT_TRUE(other.grow(100, 0ms));
 }
 
 TEST(Budget, WhoHoldsMuchThatIsAnsweredShieldsNobodyElsesBodies) {
     Budget budget(200);
     std::atomic<bool> asked = false;
-    Budget::Share computing = budget.open("one", [] {});
+    Budget::Reservation computing = budget.open("one", [] {});
     ASSERT_TRUE(computing.grow(100, 0ms) && computing.arrived(1000, 0ms));
-    Budget::Share stalled = budget.open("two", [&] { asked = true; });
+    Budget::Reservation stalled = budget.open("two", [&] { asked = true; });
     ASSERT_TRUE(stalled.grow(80, 0ms));
-    Budget::Share other = budget.open("three", [] {});
+    Budget::Reservation other = budget.open("three", [] {});
     std::thread leaves([&] {
         while (!asked) std::this_thread::sleep_for(1ms);
         stalled = {};
@@ -88,14 +88,14 @@ TEST(Budget, WhoHoldsMuchThatIsAnsweredShieldsNobodyElsesBodies) {
 
 TEST(Budget, OneThatWaitsForRoomIsWokenToGiveWay) {
     Budget budget(200);
-    Budget::Share first = budget.open("greedy", [] {}), second = budget.open("greedy", [] {});
+    Budget::Reservation first = budget.open("greedy", [] {}), second = budget.open("greedy", [] {});
     ASSERT_TRUE(first.grow(30, 0ms) && second.grow(40, 0ms));
     std::thread waits([&] {
         EXPECT_FALSE(second.grow(40, 60s));
         second = {};
     });
     std::this_thread::sleep_for(50ms);
-    Budget::Share other = budget.open("modest", [] {});
+    Budget::Reservation other = budget.open("modest", [] {});
     EXPECT_TRUE(other.grow(40, 30s));
     waits.join();
 }
@@ -103,20 +103,20 @@ TEST(Budget, OneThatWaitsForRoomIsWokenToGiveWay) {
 TEST(Budget, OneThatDoesNotLeaveIsNotTheOnlyOneAsked) {
     Budget budget(200);
     std::atomic<bool> asked = false;
-    Budget::Share stays = budget.open("greedy", [] {}), leaves = budget.open("greedy", [&] { asked = true; });
+    Budget::Reservation stays = budget.open("greedy", [] {}), leaves = budget.open("greedy", [&] { asked = true; });
     ASSERT_TRUE(stays.grow(50, 0ms) && leaves.grow(40, 0ms));
     std::thread left([&] {
         while (!asked) std::this_thread::sleep_for(1ms);
         leaves = {};
     });
-    Budget::Share other = budget.open("modest", [] {});
+    Budget::Reservation other = budget.open("modest", [] {});
     EXPECT_TRUE(other.grow(30, 30s));
     left.join();
 }
 
 TEST(Budget, WhatIsNeededNoLongerIsThereForOthers) {
     Budget budget(51'200);
-    Budget::Share first = budget.open("one", [] {}), second = budget.open("two", [] {});
+    Budget::Reservation first = budget.open("one", [] {}), second = budget.open("two", [] {});
     ASSERT_TRUE(first.grow(10'000, 0ms) && first.arrived(15'000, 0ms) && second.grow(10'000, 0ms));
     std::thread ends([&] {
         std::this_thread::sleep_for(20ms);
@@ -131,18 +131,18 @@ TEST(Budget, WhatIsNeededNoLongerIsThereForOthers) {
 
 TEST(Budget, SmallRequestsThatWaitForTheirAnswersKeepNoLargeOneFromItsOwn) {
     Budget budget(51'200);
-    std::vector<Budget::Share> small;
+    std::vector<Budget::Reservation> small;
     for (int i = 0; i < 128; ++i) {
         small.push_back(budget.open("many", [] {}));
         ASSERT_TRUE(small.back().grow(100, 0ms) && small.back().arrived(0, 0ms));
     }
-    Budget::Share large = budget.open("modest", [] {});
+    Budget::Reservation large = budget.open("modest", [] {});
     ASSERT_TRUE(large.grow(20'000, 0ms));
     EXPECT_TRUE(large.arrived(1'000'000, 0ms));
     EXPECT_EQ(budget.taken(), 25'600U + 12'800U);
     small[0].keep(0);
     small[0] = {};
-    Budget::Share other = budget.open("other", [] {});
+    Budget::Reservation other = budget.open("other", [] {});
     ASSERT_TRUE(other.grow(200, 0ms));
     EXPECT_FALSE(other.arrived(0, 0ms)) << "only the small have that room";
     small.clear();
@@ -153,9 +153,9 @@ TEST(Budget, SmallRequestsThatWaitForTheirAnswersKeepNoLargeOneFromItsOwn) {
 
 TEST(Budget, SmallRequestsHaveRoomWhoeverFillsTheRest) {
     Budget budget(51'200);
-    Budget::Share large = budget.open("greedy", [] {});
+    Budget::Reservation large = budget.open("greedy", [] {});
     ASSERT_TRUE(large.grow(30'000, 0ms) && large.arrived(30'000, 0ms));
-    std::vector<Budget::Share> small;
+    std::vector<Budget::Reservation> small;
     for (int i = 0; i < 384; ++i) {
         small.push_back(budget.open("greedy", [] {}));
         EXPECT_TRUE(small.back().grow(100, 0ms));

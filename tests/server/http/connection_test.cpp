@@ -23,7 +23,7 @@ struct Outcome {
 
 /// One body that begins behind `head`, and whether the next head behind it is read as such.
 Outcome body_of(const std::string& head, const std::string& bytes, std::size_t split = kAny, std::size_t limit = 1000) {
-    Limits limits;
+    ServerLimits limits;
     limits.max_batch_body = limit;
     const std::string all = head + bytes;
     const CutBytes client(all, [&] { return split; });

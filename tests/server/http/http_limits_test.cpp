@@ -22,7 +22,7 @@ Response answer(const Request& request) {
 }
 
 TEST(Unsent, AnswersThatNobodyTakesGoTheOldestFirst) {
-    Limits limits;
+    ServerLimits limits;
     limits.unsent = 50 * 1024 * 1024;
     Loopback server(answer, limits);
     std::array<std::unique_ptr<Client>, kClients> clients;
@@ -32,7 +32,7 @@ TEST(Unsent, AnswersThatNobodyTakesGoTheOldestFirst) {
         // Their order is that of the answers' beginnings.
         client->read_to("\r\n\r\n");
     }
-    std::this_thread::sleep_for(2 * Connection::kLook);
+    std::this_thread::sleep_for(2 * Connection::kSocketTimeout);
     EXPECT_LT(clients.front()->read_all().size(), kEach);
     EXPECT_THAT(clients.back()->read_to("end"), EndsWith("end"));
     Client other(server);
@@ -59,7 +59,7 @@ bool is_served(Client& client) {
 TEST(Connections, UnfinishedRequestsOfWhoeverHasTheMostGiveWay) {
     const std::string head = "POST /small HTTP/1.1\r\nHost: x\r\nContent-Length: 9\r\n\r\n";
     for (const std::string& sent : {std::string("G"), head, head + "body"}) {
-        Limits limits;
+        ServerLimits limits;
         limits.connections = 20;
         Loopback server(answer, limits);
         Client idle(server, 0, 3);

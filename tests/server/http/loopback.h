@@ -26,7 +26,7 @@ namespace tunewright::server::http {
 /// Serves from its own thread until it is stopped or destroyed.
 class Loopback {
 public:
-    explicit Loopback(std::function<Response(Request)> handle, Limits limits = {},
+    explicit Loopback(std::function<Response(Request)> handle, ServerLimits limits = {},
                       std::function<bool(const Request&)> streams = {})
         : server_(limits, application(std::move(handle), std::move(streams))),
           port_(server_.listen("127.0.0.1", 0)),

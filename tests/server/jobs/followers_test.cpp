@@ -84,7 +84,7 @@ protected:
 
     std::filesystem::path folder_;
     HeldJobs held_;
-    Outage outage_;
+    StoreOutageLog outage_;
     std::unique_ptr<JobStore> store_;
     std::unique_ptr<Followers> followers_;
 };

@@ -6,7 +6,7 @@
 #include <atomic>
 #include <future>
 
-#include "server/notify/lanes.h"
+#include "server/notify/delivery_pool.h"
 
 namespace tunewright::server {
 namespace {
@@ -80,7 +80,7 @@ TEST(Schedule, ReadsRetryAfter) {
 class LanesTest : public testing::Test {
 protected:
     bool add(const std::string& machine) {
-        return lanes_.add({machine, Lanes::Clock::now() + 1min, [this, machine] {
+        return lanes_.add({machine, DeliveryPool::Clock::now() + 1min, [this, machine] {
                                ++begun_;
                                gate_.wait();
                            }});
@@ -92,7 +92,7 @@ protected:
     std::atomic<int> begun_ = 0;
     std::promise<void> open_;
     std::shared_future<void> gate_ = open_.get_future().share();
-    Lanes lanes_;
+    DeliveryPool lanes_;
 };
 
 TEST_F(LanesTest, OneMachineHoldsUpNoOther) {
@@ -115,8 +115,8 @@ TEST_F(LanesTest, EightRunAndTheRoomIsBounded) {
     wait_for(8);
     std::this_thread::sleep_for(50ms);
     EXPECT_EQ(begun_, 8);
-    EXPECT_GE(added, Lanes::kRoom);
-    EXPECT_LE(added, Lanes::kRoom + Lanes::kThreads);
+    EXPECT_GE(added, DeliveryPool::kMaxWaiting);
+    EXPECT_LE(added, DeliveryPool::kMaxWaiting + DeliveryPool::kThreads);
     EXPECT_FALSE(lanes_.stop(50ms));
     open_.set_value();
     EXPECT_TRUE(lanes_.stop(5s));
@@ -126,7 +126,7 @@ TEST_F(LanesTest, EightRunAndTheRoomIsBounded) {
 TEST_F(LanesTest, WhatIsSlowKeepsFewWaiting) {
     for (int i = 0; i < 10; i++) add("slow");
     wait_for(2);
-    std::this_thread::sleep_for(Lanes::kSlow + 100ms);
+    std::this_thread::sleep_for(DeliveryPool::kSlowTime + 100ms);
     open_.set_value();
     for (int i = 0; i < 500 && lanes_.size() > 0; i++) std::this_thread::sleep_for(10ms);
     EXPECT_LE(begun_, 6);
@@ -135,7 +135,7 @@ TEST_F(LanesTest, WhatIsSlowKeepsFewWaiting) {
 
 TEST_F(LanesTest, WhatWaitedForTooLongIsNotBegun) {
     open_.set_value();
-    EXPECT_TRUE(lanes_.add({"m", Lanes::Clock::now() - 1s, [this] { ++begun_; }}));
+    EXPECT_TRUE(lanes_.add({"m", DeliveryPool::Clock::now() - 1s, [this] { ++begun_; }}));
     for (int i = 0; i < 500 && lanes_.size() > 0; i++) std::this_thread::sleep_for(10ms);
     EXPECT_EQ(begun_, 0);
 }

@@ -103,7 +103,7 @@ TEST_F(SecretsTest, FollowTheFile) {
     write("new whsec_half");
     later();
     EXPECT_EQ(secrets.of(""), Bytes{std::string(24, 'n')});
-    later(WatchedFile::kPatience);
+    later(WatchedFile::kMaxBrokenTime);
     EXPECT_EQ(secrets.of(""), Bytes{});
     write(line("new", 'm'));
     later();

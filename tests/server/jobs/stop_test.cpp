@@ -48,7 +48,7 @@ TEST(Stop, UnderLoadCutsNoRequestOff) {
 
 TEST(Stop, WaitsForAnAnswerThatIsBeingMade) {
     std::promise<void> asked, go;
-    Limits limits;
+    ServerLimits limits;
     limits.stopping = 20s;
     Loopback server(
         [&, may_go = go.get_future().share()](const Request& request) {
@@ -68,7 +68,7 @@ TEST(Stop, WaitsForAnAnswerThatIsBeingMade) {
 }
 
 TEST(Stop, AnswersARequestThatHasOnlyHalfArrived) {
-    Limits limits;
+    ServerLimits limits;
     limits.stopping = 20s;
     limits.farewell = 20s;
     Loopback server(answer_done, limits);
@@ -81,7 +81,7 @@ TEST(Stop, AnswersARequestThatHasOnlyHalfArrived) {
 }
 
 TEST(Stop, DoesNotWaitForWhoNeverEnds) {
-    Limits limits;
+    ServerLimits limits;
     limits.stopping = 300ms;
     std::promise<void> go;
     Loopback server(

@@ -29,8 +29,8 @@ protected:
         const NewJob made = job(id);
         return completed<Accepted>([&](auto done) { store.accept(made, done); }).kind == Accepted::Kind::created;
     }
-    static std::vector<JobRecord> claim(JobStore& store, std::size_t most = 1) {
-        const Claim claim{"worker", 2000, std::chrono::minutes(10), most};
+    static std::vector<JobRecord> claim(JobStore& store, std::size_t max = 1) {
+        const Claim claim{"worker", 2000, std::chrono::minutes(10), max};
         return completed<std::vector<JobRecord>>([&](auto done) { store.claim(claim, done); });
     }
     /// Until the database says so. Throws where it has not within a minute.

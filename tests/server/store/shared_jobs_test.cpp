@@ -262,7 +262,7 @@ TEST_F(SharedJobs, AJobWhoseClaimWasNeverAnsweredIsGivenBackByItsWorkerItself) {
 
 TEST_F(SharedJobs, AJobThatIsInterruptedTooOftenFailsWithTheReason) {
     JobSettings settings;
-    settings.most_attempts = 2;
+    settings.max_attempts = 2;
     Process& watcher = add("watcher", 0, settings);
     const std::string id = post(watcher, "long");
     for (int i = 0; i < 2; i++) {

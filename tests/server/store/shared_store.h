@@ -158,12 +158,12 @@ public:
         store_.cancel_batch(std::move(id), now, done);
     }
     void remove_batch(std::string id, Done<RemoveEffect> done) override { store_.remove_batch(std::move(id), done); }
-    void sweep(UnixMs now, Retention retention, std::size_t most, Done<std::size_t> done) override {
-        store_.sweep(now, retention, most, done);
+    void sweep(UnixMs now, Retention retention, std::size_t max, Done<std::size_t> done) override {
+        store_.sweep(now, retention, max, done);
     }
-    void take_deliveries(UnixMs now, std::chrono::milliseconds hold, std::size_t most,
+    void take_deliveries(UnixMs now, std::chrono::milliseconds hold, std::size_t max,
                          Done<std::vector<Delivery>> done) override {
-        write(done, [&] { store_.take_deliveries(now, hold, most, done); });
+        write(done, [&] { store_.take_deliveries(now, hold, max, done); });
     }
     void settle_delivery(std::int64_t seq, UnixMs now, std::optional<std::chrono::milliseconds> pause, bool tried,
                          Done<bool> done) override {

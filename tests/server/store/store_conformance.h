@@ -58,10 +58,10 @@ protected:
     /// No store's clock is later: a job ends no earlier than it began.
     static constexpr UnixMs kIn2096{4'000'000'000'000};
 
-    Recovery reopen(int most_attempts = 10, UnixMs at = 9000) {
+    Recovery reopen(int max_attempts = 10, UnixMs at = 9000) {
         store_.reset();
         store_ = place_->open();
-        return store_->recover(at, most_attempts, kGivenUp);
+        return store_->recover(at, max_attempts, kGivenUp);
     }
 
     static UnixMs now() { return wall_clock(); }
@@ -98,9 +98,9 @@ protected:
     std::vector<JobRecord> claim_by(const Claim& claim) {
         return completed<std::vector<JobRecord>>([&](auto done) { store_->claim(claim, done); });
     }
-    std::vector<JobRecord> claim_many(std::size_t most, Milliseconds lease = kAlive,
+    std::vector<JobRecord> claim_many(std::size_t max, Milliseconds lease = kAlive,
                                       const std::string& worker = "worker") {
-        return claim_by({worker, now(), lease, most});
+        return claim_by({worker, now(), lease, max});
     }
     std::optional<JobRecord> claim(Milliseconds lease = kAlive, const std::string& worker = "worker") {
         std::vector<JobRecord> claimed = claim_many(1, lease, worker);
@@ -142,13 +142,13 @@ protected:
     RemoveEffect remove(const std::string& id) {
         return completed<RemoveEffect>([&](auto done) { store_->remove(id, done); });
     }
-    std::size_t sweep(UnixMs at, const Retention& retention, std::size_t most = 10) {
-        return completed<std::size_t>([&](auto done) { store_->sweep(at, retention, most, done); });
+    std::size_t sweep(UnixMs at, const Retention& retention, std::size_t max = 10) {
+        return completed<std::size_t>([&](auto done) { store_->sweep(at, retention, max, done); });
     }
     /// Whatever state they ended in.
-    std::size_t sweep(UnixMs ended_before, std::size_t most) {
+    std::size_t sweep(UnixMs ended_before, std::size_t max) {
         constexpr Milliseconds none{0};
-        return sweep(ended_before, {none, none, none}, most);
+        return sweep(ended_before, {none, none, none}, max);
     }
     void pause(bool paused) {
         EXPECT_TRUE(completed<bool>([&](auto done) { store_->pause(paused, done); }));
@@ -182,8 +182,8 @@ protected:
             if (holding.seq == seq) return holding;
         return std::nullopt;
     }
-    Recovery reclaim(int most_attempts = 10) {
-        return completed<Recovery>([&](auto done) { store_->reclaim({now(), most_attempts, kGivenUp}, done); });
+    Recovery reclaim(int max_attempts = 10) {
+        return completed<Recovery>([&](auto done) { store_->reclaim({now(), max_attempts, kGivenUp}, done); });
     }
 
     // ---- batches
@@ -238,8 +238,8 @@ protected:
     BatchSummary batch(const std::string& id) { return store_->find_batch(id).value(); }
 
     // ---- deliveries
-    std::vector<Delivery> take(UnixMs at, std::size_t most = 100, Milliseconds hold = kAlive) {
-        return completed<std::vector<Delivery>>([&](auto done) { store_->take_deliveries(at, hold, most, done); });
+    std::vector<Delivery> take(UnixMs at, std::size_t max = 100, Milliseconds hold = kAlive) {
+        return completed<std::vector<Delivery>>([&](auto done) { store_->take_deliveries(at, hold, max, done); });
     }
     bool settle(std::int64_t seq, UnixMs at = 0, std::optional<Milliseconds> pause = std::nullopt) {
         return completed<bool>([&](auto done) { store_->settle_delivery(seq, at, pause, true, done); });

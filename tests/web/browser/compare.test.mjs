@@ -120,7 +120,7 @@ test("two rows are overlaid in every plot, four at most, by the keyboard alone",
       await boxes.nth(at).focus();
       await page.keyboard.press("Space");
       await page.waitForFunction(
-        (count) => document.querySelectorAll(".league-table tr.drawn").length === count,
+        (count) => document.querySelectorAll(".comparison-table tr.drawn").length === count,
         at + 1,
       );
       assert.ok(await boxes.nth(at).evaluate((box) => box === document.activeElement), "the focus stays on its box");
@@ -135,7 +135,7 @@ test("two rows are overlaid in every plot, four at most, by the keyboard alone",
     const names = await page.locator(".overlay-legend span").allInnerTexts();
     assert.equal(names.length, 2);
     for (const at of [2, 3]) await boxes.nth(at).check();
-    await page.waitForFunction(() => document.querySelectorAll(".league-table tr.drawn").length === 4);
+    await page.waitForFunction(() => document.querySelectorAll(".comparison-table tr.drawn").length === 4);
     assert.ok(await boxes.nth(4).isDisabled());
     await tracesShown(page, "Nyquist curve of L", 4);
     const rows = /rows=([\d.]+)/.exec(page.url())[1];
@@ -146,7 +146,7 @@ test("two rows are overlaid in every plot, four at most, by the keyboard alone",
     await tracesShown(page, "Nyquist curve of L", 4);
     assert.ok((await page.locator(".legend-item").count()) <= 8);
     await page.getByRole("link", { name: "Comparison table" }).click();
-    await page.waitForFunction(() => document.querySelectorAll(".league-table tr.drawn").length === 4);
+    await page.waitForFunction(() => document.querySelectorAll(".comparison-table tr.drawn").length === 4);
   });
 });
 
@@ -198,7 +198,7 @@ test("the limit on Ms is the request's on every way in, and a typed one stays af
   const { id } = await response.json();
   await withPage(`#/jobs/${id}/design`, {}, async (page) => {
     const limit = page.getByLabel(/among Ms/);
-    const table = page.locator(".league-table tbody a");
+    const table = page.locator(".comparison-table tbody a");
     const stands = async (value) => {
       await table.first().waitFor();
       assert.equal(await limit.inputValue(), value);
@@ -353,7 +353,7 @@ test("a nonlinear PID is taken as today's settings, and shown in its own form wi
 });
 
 for (const [name, options] of WINDOWS) {
-  test(`the league table on a ${name}: axe finds nothing, and nothing is wider than the window`, async () => {
+  test(`the comparison on a ${name}: axe finds nothing, and nothing is wider than the window`, async () => {
     await withPage(PLANT, options, async (page) => {
       await compareAll(page);
       assert.deepEqual(await accessibilityViolations(page), []);

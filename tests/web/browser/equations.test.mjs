@@ -191,12 +191,12 @@ test("other scenarios are drawn on request, and settings by hand answer on the e
   });
 });
 
-test("the league table takes a nonlinear plant's methods, with their curves together", async () => {
+test("the comparison takes a nonlinear plant's methods, with their curves together", async () => {
   await withPage("", {}, async (page) => {
     await tuneReactor(page);
     await page.getByRole("link", { name: "Comparison table" }).click();
     await page.getByRole("heading", { name: "Chosen rows, together" }).waitFor();
-    assert.equal(await page.locator(".league tbody tr").count(), 2);
+    assert.equal(await page.locator(".comparison tbody tr").count(), 2);
     await tracesShown(page, "Load step at the plant input", 8);
     assert.deepEqual(await accessibilityViolations(page), []);
   });
@@ -210,7 +210,7 @@ test("all methods are compared on equations, the emulation among them", async ()
     assert.deepEqual(request.tune, [{ method: "all" }]);
     assert.ok(result.controllers.some((entry) => entry.emulation));
     const answers = result.controllers.filter((entry) => !entry.error).length;
-    assert.equal(await page.locator(".league tbody:not(.refused) tr").count(), answers);
+    assert.equal(await page.locator(".comparison tbody:not(.refused) tr").count(), answers);
     await tracesShown(page, "Set-point step", 8);
   });
 });

@@ -26,8 +26,8 @@ test("a slider on a design for a record's region designs for the region", async 
     await page.keyboard.press("ArrowRight");
     await page.waitForURL(/Ms=1\.41/);
     await settled();
-    const turned = await setting(page, "Kp");
-    assert.ok(turned > Kp && turned < 1.05 * Kp, `Kp ${Kp} becomes ${turned}`);
+    const modified = await setting(page, "Kp");
+    assert.ok(modified > Kp && modified < 1.05 * Kp, `Kp ${Kp} becomes ${modified}`);
     const { request } = await assertRequestIsShown(page, post, "one step");
     assert.equal(request.tune[0].Ms, 1.41);
     assert.ok(request.record, "the request is that of the record");
@@ -143,15 +143,15 @@ for (const [what, open] of [
         await field.press("Enter");
         await settled();
       }
-      const turned = await designOnScreen(page);
-      assert.notDeepEqual(turned.settings, first.settings);
+      const modified = await designOnScreen(page);
+      assert.notDeepEqual(modified.settings, first.settings);
       await page.getByRole("button", { name: "Keep this design" }).click();
       await page.waitForFunction((id) => !location.hash.includes(id), first.job);
       await settled();
-      assert.deepEqual(await designOnScreen(page), turned);
+      assert.deepEqual(await designOnScreen(page), modified);
       const kept = await jobOf(page);
       const entry = Number(/entry=(\d+)/.exec(page.url())[1]);
-      assert.deepEqual(designAnswered(kept.result.controllers[entry]).settings, turned.settings);
+      assert.deepEqual(designAnswered(kept.result.controllers[entry]).settings, modified.settings);
       assert.equal(await page.getByText("The kept design differs from the one shown").count(), 0);
       await page.goBack();
       await page.waitForURL(new RegExp(first.job));
@@ -162,7 +162,7 @@ for (const [what, open] of [
       await page.waitForURL(new RegExp(kept.id));
       await slider(page, "Robustness Ms").waitFor();
       await settled();
-      assert.deepEqual(await designOnScreen(page), turned);
+      assert.deepEqual(await designOnScreen(page), modified);
     });
   });
 }

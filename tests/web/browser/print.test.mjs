@@ -52,16 +52,16 @@ test("on paper every column has its heading, and the table is no wider than its 
   // The area of A4 between usual margins.
   await withPage(PLANT, { width: 720, height: 1000 }, async (page) => {
     await compareAll(page);
-    await page.locator(".league-table tbody tr").first().waitFor();
-    const headings = await page.locator(".league-table thead th").allInnerTexts();
+    await page.locator(".comparison-table tbody tr").first().waitFor();
+    const headings = await page.locator(".comparison-table thead th").allInnerTexts();
     await page.emulateMedia({ media: "print" });
-    const printed = page.locator(".league-table thead th:visible");
+    const printed = page.locator(".comparison-table thead th:visible");
     assert.deepEqual(
       (await printed.allInnerTexts()).map((text) => text.replace(/\s+/g, " ").trim()),
       headings.map((text) => text.replace(/\s+/g, " ").trim()).filter((text) => !text.startsWith("y, ")),
     );
     const edge = (selector) => page.locator(selector).first().evaluate((box) => box.getBoundingClientRect().right);
-    assert.ok((await edge(".league-table")) <= (await edge(".card.league")));
+    assert.ok((await edge(".comparison-table")) <= (await edge(".card.comparison")));
     await page.emulateMedia({ media: "screen" });
     await page.getByRole("link", { name: "Settings and verdict" }).click();
     await page.getByRole("heading", { name: /^Settings to enter/ }).waitFor();
@@ -74,8 +74,8 @@ test("on paper every column has its heading, and the table is no wider than its 
 test("the table begins on the first page and is printed whole", async () => {
   await withPage(PLANT, {}, async (page) => {
     await compareAll(page);
-    await page.locator(".league-table tbody tr").first().waitFor();
-    const rows = await page.locator(".league-table tbody tr").count();
+    await page.locator(".comparison-table tbody tr").first().waitFor();
+    const rows = await page.locator(".comparison-table tbody tr").count();
     const pieces = textPieces(await page.pdf({ format: "A4", landscape: true }));
     assert.ok(pieces.length > 1, `${pieces.length} pages of ${rows} rows`);
     assert.ok(pieces[0] > 100, `the first page holds ${pieces[0]} pieces of text, the pages ${pieces.join(", ")}`);

@@ -267,7 +267,7 @@ test("a design that takes long can be stopped, and asked for again", async () =>
   });
 });
 
-test("a range as a job shows its schedule and its report, has no league table, and opens in Range without another design", async () => {
+test("a range as a job shows its schedule and its report, has no comparison, and opens in Range without another design", async () => {
   await withPage("#/range", {}, async (page) => {
     await verdict(page).waitFor();
     await page.getByRole("button", { name: "Send as a job" }).click();

@@ -81,13 +81,13 @@ for (const [product, more] of [
       }
 
       // Turned: another limit is asked, and what is reached is the new answer's.
-      const turned = await askedOf(page, async () => {
+      const modified = await askedOf(page, async () => {
         await field(page).fill("12");
         await field(page).press("Enter");
       });
       await settled();
-      assert.equal(turned.options.setpoint.overshoot, 12);
-      await assertBeside(page, turned, 12);
+      assert.equal(modified.options.setpoint.overshoot, 12);
+      await assertBeside(page, modified, 12);
       await assertRequestIsShown(page, post, product);
     });
   });

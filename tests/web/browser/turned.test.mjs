@@ -95,7 +95,7 @@ test("ticking Mt = Ms makes them equal, also where the request has no Ms of its 
   });
 });
 
-test("a gain by hand on a turned design is the same after a reload, its set-point filter too", async () => {
+test("a gain by hand on a modified design is the same after a reload, its set-point filter too", async () => {
   await withPage(PLANT, {}, async (page) => {
     await openDesign(page);
     const controls = page.locator(".controls");

@@ -8,7 +8,7 @@ import { columnChoices, csvOf, samplesOf } from "../../../web/src/form/record_fi
 import { formWords, timeWords } from "../../../web/src/form/record_preview.ts";
 import { stepParts } from "../../../web/src/charts/record.ts";
 import { serviceChoice, structureOf, tuneSubject } from "../../../web/src/form/tuning_request.ts";
-import { readTest } from "../../../web/src/record_at_hand.ts";
+import { readTest } from "../../../web/src/current_record.ts";
 import { parameterTexts } from "../../../web/src/views/cards/candidates_card.ts";
 import { cycleRows } from "../../../web/src/words/cycle.ts";
 import { formatUncertain, unitNames } from "../../../web/src/words/numbers.ts";

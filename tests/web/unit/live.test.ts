@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 import type { Controller, Entry, Method, TuneEntry } from "../../../web/src/api/types.ts";
 import { frontFrame } from "../../../web/src/charts/front.ts";
-import { handKnobs, handValue, isTied, optionKnobs, withHand, withOption } from "../../../web/src/live/knobs.ts";
+import { manualSliders, manualValue, isTied, optionSliders, withManual, withOption } from "../../../web/src/live/sliders.ts";
 import { firstStep, pointOf, stepBack, stepForward, stepTo, valuesOf } from "../../../web/src/live/point.ts";
 import type { Point } from "../../../web/src/live/point.ts";
 import { formatRoute, parseRoute } from "../../../web/src/routes.ts";
@@ -51,7 +51,7 @@ const robust: Method = {
   },
 };
 const idsOf = (tune: TuneEntry, entry = entryOf("robust"), method: Method = robust): string[] =>
-  optionKnobs(tune, entry, method, units).map((knob) => knob.id);
+  optionSliders(tune, entry, method, units).map((spec) => spec.id);
 
 test("a robust design is turned by its limits, its noise and its set point", () => {
   assert.deepEqual(idsOf({ method: "robust" }), ["Ms", "filter.Tf_over_Td", "setpoint.overshoot"]);
@@ -61,20 +61,20 @@ test("a robust design is turned by its limits, its noise and its set point", () 
   const PI = entryOf("robust", { controller: { ...controller, Td: 0, filter: { type: "none" } } });
   assert.deepEqual(idsOf({ method: "robust", controller: "PI" }, PI), ["Ms", "Mks", "setpoint.overshoot"]);
   assert.deepEqual(idsOf({ method: "robust" }, entryOf("robust"), { id: "robust", title: "" }), [], "of a service that describes none");
-  const [Ms] = optionKnobs({ method: "robust" }, entryOf("robust"), robust, units);
+  const [Ms] = optionSliders({ method: "robust" }, entryOf("robust"), robust, units);
   assert.deepEqual([Ms!.lo, Ms!.hi, Ms!.step, Ms!.value], [1.1, 2.5, 0.01, 1.4]);
 });
 
 test("a slider asks for the overshoot that was asked for, or for none; what is reached is the loop's that runs", () => {
-  const knob = (tune: TuneEntry, more: Partial<Entry> = {}) =>
-    optionKnobs(tune, entryOf("robust", more), robust, units).find(({ id }) => id === "setpoint.overshoot")!;
+  const spec = (tune: TuneEntry, more: Partial<Entry> = {}) =>
+    optionSliders(tune, entryOf("robust", more), robust, units).find(({ id }) => id === "setpoint.overshoot")!;
   const resolved = { options: { setpoint: { overshoot: 5 } } };
-  assert.equal(knob({ method: "robust" }, resolved).value, 5);
-  assert.equal(knob({ method: "robust", setpoint: { overshoot: 12 } }, resolved).value, 12);
-  assert.equal(knob({ method: "robust", setpoint: { best: "iae" } }, { options: { setpoint: { best: "iae" } } }).value, null);
-  assert.equal(knob({ method: "robust", objective: "setpoint_iae" }).value, null);
+  assert.equal(spec({ method: "robust" }, resolved).value, 5);
+  assert.equal(spec({ method: "robust", setpoint: { overshoot: 12 } }, resolved).value, 12);
+  assert.equal(spec({ method: "robust", setpoint: { best: "iae" } }, { options: { setpoint: { best: "iae" } } }).value, null);
+  assert.equal(spec({ method: "robust", objective: "setpoint_iae" }).value, null);
   const over = (percent: number | null) => ({ setpoint: { overshoot_percent: percent } });
-  const { reached } = knob({ method: "robust" });
+  const { reached } = spec({ method: "robust" });
   const ideal = entryOf("robust", { performance: over(4.9) });
   assert.equal(reached!(ideal), 4.9);
   assert.equal(reached!({ ...ideal, implemented: { performance: over(31) } } as Entry), 31);
@@ -84,10 +84,10 @@ test("a slider asks for the overshoot that was asked for, or for none; what is r
 
 test("of the filter's ratio the one asked for is turned, and the design's own is what is reached", () => {
   const entry = entryOf("robust");
-  const ratio = optionKnobs({ method: "robust", filter: { Tf_over_Td: 0.3 } }, entry, robust, units)[1]!;
+  const ratio = optionSliders({ method: "robust", filter: { Tf_over_Td: 0.3 } }, entry, robust, units)[1]!;
   assert.deepEqual([ratio.id, ratio.value, ratio.reached!(entry)], ["filter.Tf_over_Td", 0.3, 0.1]);
   assert.equal(ratio.reached!(entryOf("robust", { controller: { ...controller, Td: 0 } })), null);
-  const time = optionKnobs({ method: "robust", filter: { Tf: 0.5 } }, entry, robust, units)[1]!;
+  const time = optionSliders({ method: "robust", filter: { Tf: 0.5 } }, entry, robust, units)[1]!;
   assert.deepEqual([time.id, time.value, time.reached!(entry)], ["filter.Tf", 0.5, 0.2]);
 });
 
@@ -104,16 +104,16 @@ test("options are moved as the method describes: between ends, about their value
       },
     },
   };
-  const knobs = optionKnobs({ method: "m" }, entryOf("m"), method, units);
+  const sliders = optionSliders({ method: "m" }, entryOf("m"), method, units);
   assert.deepEqual(
-    knobs.map(({ id, value, log, unit }) => [id, value, log, unit]),
+    sliders.map(({ id, value, log, unit }) => [id, value, log, unit]),
     [
       ["gain_margin", 3, false, ""],
       ["tau_c", null, true, "s"],
     ],
   );
-  assert.ok(knobs[1]!.lo < 2 && knobs[1]!.hi > 2, "about 1 over the crossover");
-  assert.equal(optionKnobs({ method: "m", tau_c: 7 }, entryOf("m"), method, units)[1]!.value, 7);
+  assert.ok(sliders[1]!.lo < 2 && sliders[1]!.hi > 2, "about 1 over the crossover");
+  assert.equal(optionSliders({ method: "m", tau_c: 7 }, entryOf("m"), method, units)[1]!.value, 7);
 });
 
 test("limits go together while they are tied, and parts of an option replace each other", () => {
@@ -128,17 +128,17 @@ test("limits go together while they are tied, and parts of an option replace eac
 });
 
 test("settings by hand are those that the controller has, on both sides of the proposal", () => {
-  assert.deepEqual(handKnobs(controller, units).map((knob) => knob.id), ["Kp", "Ti", "Td", "Tf"]);
+  assert.deepEqual(manualSliders(controller, units).map((spec) => spec.id), ["Kp", "Ti", "Td", "Tf"]);
   const PI = { ...controller, Kp: -3, Td: 0, filter: { type: "none" } };
-  const [Kp, ...rest] = handKnobs(PI, units);
-  assert.deepEqual(rest.map((knob) => knob.id), ["Ti"]);
+  const [Kp, ...rest] = manualSliders(PI, units);
+  assert.deepEqual(rest.map((spec) => spec.id), ["Ti"]);
   assert.ok(Kp!.lo < 0 && Kp!.hi < Kp!.lo, "further from 0 to the right");
-  assert.equal(handValue(withHand(controller, "Tf", 0.5), "Tf"), 0.5);
-  assert.equal(withHand(controller, "Tf", 0.5).filter!.type, "measurement_second_order");
+  assert.equal(manualValue(withManual(controller, "Tf", 0.5), "Tf"), 0.5);
+  assert.equal(withManual(controller, "Tf", 0.5).filter!.type, "measurement_second_order");
 });
 
 test("steps go back and forth, a hundred of them, and a new one forgets what was undone", () => {
-  const at = (Ms: number): Point => ({ tune: { method: "robust", Ms }, hand: null });
+  const at = (Ms: number): Point => ({ tune: { method: "robust", Ms }, manual: null });
   let steps = firstStep(at(1.4));
   steps = stepTo(steps, at(1.5));
   assert.equal(stepTo(steps, at(1.5)), steps, "nothing moved");
@@ -154,38 +154,38 @@ test("steps go back and forth, a hundred of them, and a new one forgets what was
 });
 
 test("the address says where the sliders stand, and brings them back", () => {
-  const proposal: Point = { tune: { method: "robust", Ms: 1.4, Mt: 1.4 }, hand: null };
-  const knobs = optionKnobs(proposal.tune!, entryOf("robust"), robust, units);
-  assert.deepEqual(valuesOf(proposal, proposal, controller, knobs), {});
-  const turned: Point = {
+  const proposal: Point = { tune: { method: "robust", Ms: 1.4, Mt: 1.4 }, manual: null };
+  const sliders = optionSliders(proposal.tune!, entryOf("robust"), robust, units);
+  assert.deepEqual(valuesOf(proposal, proposal, controller, sliders), {});
+  const modified: Point = {
     tune: { method: "robust", Ms: 1.65, Mt: 1.65, filter: { Tf_over_Td: 0.3 }, setpoint: { overshoot: 12 } },
-    hand: null,
+    manual: null,
   };
-  for (const point of [turned, { ...turned, hand: withHand(controller, "Kp", 2.5) }]) {
-    const values = valuesOf(point, proposal, controller, knobs);
+  for (const point of [modified, { ...modified, manual: withManual(controller, "Kp", 2.5) }]) {
+    const values = valuesOf(point, proposal, controller, sliders);
     const route = parseRoute(formatRoute({ screen: "design", job: "j", entry: 1, values }));
     assert.ok(route.screen === "design");
     assert.equal(route.entry, 1);
-    assert.deepEqual(pointOf(route.values ?? {}, proposal, controller, knobs), point);
+    assert.deepEqual(pointOf(route.values ?? {}, proposal, controller, sliders), point);
   }
-  assert.deepEqual(pointOf({ Ms: "nonsense", other: "3" }, proposal, controller, knobs), proposal);
+  assert.deepEqual(pointOf({ Ms: "nonsense", other: "3" }, proposal, controller, sliders), proposal);
 });
 
-test("settings by hand on a turned design come back from the address with all that belongs to them", () => {
-  const proposal: Point = { tune: { method: "robust" }, hand: null };
+test("settings by hand on a modified design come back from the address with all that belongs to them", () => {
+  const proposal: Point = { tune: { method: "robust" }, manual: null };
   const filtered: Controller = { ...controller, b: 0, setpoint_filter: { T: 16.8 } };
-  const knobs = optionKnobs(proposal.tune!, entryOf("robust"), robust, units);
-  const back = (hand: Controller, from: Controller): Controller | null => {
-    const values = valuesOf({ ...proposal, hand }, proposal, from, knobs);
+  const sliders = optionSliders(proposal.tune!, entryOf("robust"), robust, units);
+  const back = (manual: Controller, from: Controller): Controller | null => {
+    const values = valuesOf({ ...proposal, manual }, proposal, from, sliders);
     const route = parseRoute(formatRoute({ screen: "design", job: "j", entry: null, values }));
-    return pointOf(route.screen === "design" ? (route.values ?? {}) : {}, proposal, from, knobs).hand;
+    return pointOf(route.screen === "design" ? (route.values ?? {}) : {}, proposal, from, sliders).manual;
   };
-  const turned: Controller = { ...filtered, Td: 3.3592532104, b: 0.3, setpoint_filter: { T: 4.851 } };
-  assert.deepEqual(back(turned, filtered), turned, "not those of the proposal, and no digit less");
-  assert.deepEqual(back(controller, filtered), controller, "nor a filter that the turned design has not");
+  const modified: Controller = { ...filtered, Td: 3.3592532104, b: 0.3, setpoint_filter: { T: 4.851 } };
+  assert.deepEqual(back(modified, filtered), modified, "not those of the proposal, and no digit less");
+  assert.deepEqual(back(controller, filtered), controller, "nor a filter that the modified design has not");
   assert.deepEqual(back(filtered, controller), filtered);
   const bare: Controller = { ...controller, filter: { type: "none" } };
-  assert.deepEqual(back(controller, bare), controller, "the turned design filters the measurement");
+  assert.deepEqual(back(controller, bare), controller, "the modified design filters the measurement");
   assert.deepEqual(back(bare, controller), bare);
 });
 
@@ -216,6 +216,6 @@ test("the front has the design as a point that can be taken, today's settings, a
     ["today", 1.4, false, false],
     ["", 1.5, false, true],
   ]);
-  const byHand = frontFrame({ ...shown, here: { ...shown.here, at: null } }, units).panes[0]!.marks!.at(-1)!;
-  assert.ok(byHand.kind === "point" && !byHand.handle, "settings by hand are no point of the front");
+  const isManual = frontFrame({ ...shown, here: { ...shown.here, at: null } }, units).panes[0]!.marks!.at(-1)!;
+  assert.ok(isManual.kind === "point" && !isManual.handle, "settings by hand are no point of the front");
 });

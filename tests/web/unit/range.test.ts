@@ -17,7 +17,7 @@ import {
 import { formatRoute, parseRoute } from "../../../web/src/routes.ts";
 import { unitNames } from "../../../web/src/words/numbers.ts";
 import {
-  handVerdict,
+  manualVerdict,
   placeWords,
   rangeWords,
   runFacts,
@@ -302,9 +302,9 @@ test("places, settings and verdicts in words", () => {
     handleWords(row(51.875, 0.553), 1, { designed: content, moved: null }),
     "Row 2 at load 51.875 %, Kp 0.553, largest Ms 1.40",
   );
-  assert.equal(handVerdict({ ...content.schedule!, holds_limits: false }).level, "bad");
-  assert.equal(handVerdict({ ...content.schedule!, within_allowance: false }).level, "warning");
-  assert.match(handVerdict(content.schedule!).text, /^These 2 rows hold the limits everywhere.* 1\.03 times/);
+  assert.equal(manualVerdict({ ...content.schedule!, holds_limits: false }).level, "bad");
+  assert.equal(manualVerdict({ ...content.schedule!, within_allowance: false }).level, "warning");
+  assert.match(manualVerdict(content.schedule!).text, /^These 2 rows hold the limits everywhere.* 1\.03 times/);
   assert.equal(rangeWords(loads), "operating range over load (%): 2 points");
   assert.equal(rangeWords(cone), "operating range of equations, 10 to 32");
 });

@@ -47,9 +47,9 @@ test("a record's model is sent in its place, where the answer tells all of its r
 
 test("a frame asks for the turned row alone, and the hand's letting go for the whole request", () => {
   const from = { request, result, index: 2 };
-  const turned = { method: "robust", Ms: 1.6 };
-  assert.deepEqual(questionOf(from, turned, true)["tune"], [turned]);
-  assert.deepEqual(questionOf(from, turned, false)["tune"], [tune[0], turned, tune[2]]);
+  const modified = { method: "robust", Ms: 1.6 };
+  assert.deepEqual(questionOf(from, modified, true)["tune"], [modified]);
+  assert.deepEqual(questionOf(from, modified, false)["tune"], [tune[0], modified, tune[2]]);
 });
 
 test("an answer of the row alone stands among the others, whose common verdict waits", () => {

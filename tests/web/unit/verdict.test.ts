@@ -3,7 +3,7 @@ import test from "node:test";
 import type { Entry } from "../../../web/src/api/types.ts";
 import { figureGroups } from "../../../web/src/words/figures.ts";
 import type { FigureRow } from "../../../web/src/words/figures.ts";
-import { leagueColumns } from "../../../web/src/words/league.ts";
+import { comparisonColumns } from "../../../web/src/words/comparison.ts";
 import { formatNumber, formatSetting, formatShare, unitNames, withMinus } from "../../../web/src/words/numbers.ts";
 import { settingsOf, settingsText } from "../../../web/src/views/cards/settings_card.ts";
 import type { Setting } from "../../../web/src/views/cards/settings_card.ts";
@@ -91,7 +91,7 @@ test("a figure that is null carries the service's reason", () => {
 
 test("the limit on the overshoot stands beside it, on Design and in the table, where the verdict says that there is more", () => {
   const figures = figureGroups(unitNames(undefined)).flatMap((group) => group.rows);
-  const columns = leagueColumns(unitNames(undefined));
+  const columns = comparisonColumns(unitNames(undefined));
   const texts = (percent: number | null, limit?: number, who = "asked"): string[] => {
     const said = limit === undefined ? {} : { [`${who}_percent`]: limit };
     const made: Entry = {

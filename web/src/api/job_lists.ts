@@ -25,10 +25,10 @@ export async function listBatches(): Promise<Batch[]> {
 export const getBatch = async (id: string): Promise<Batch> => (await call("GET", batchPath(id))).data as Batch;
 
 /** Its jobs in their order, at most so many. */
-export async function jobsOfBatch(id: string, most: number): Promise<ListedJob[]> {
+export async function jobsOfBatch(id: string, max: number): Promise<ListedJob[]> {
   const found: ListedJob[] = [];
   let address: string | null = `v1/jobs?batch=${encodeURIComponent(id)}&limit=${PAGE}`;
-  while (address !== null && found.length < most) {
+  while (address !== null && found.length < max) {
     const page: JobList = await nextJobs(address);
     found.push(...page.jobs);
     address = page.next;

@@ -9,7 +9,7 @@ export interface Drawn {
   entry: Entry;
 }
 
-export const MOST_DRAWN = 4;
+export const MAX_DRAWN = 4;
 
 /** Short names of the entries: the method, numbered where it occurs twice; "today" for the baseline. */
 export function entryNames(entries: Entry[]): string[] {
@@ -57,7 +57,7 @@ export function defaultDrawn(result: Result): number[] {
   const today = entries.findIndex((entry) => entry.method === "baseline");
   const chosen = new Set<number>(today >= 0 && drawable(entries[today]) ? [today] : []);
   for (const index of worthDrawing(result)) {
-    if (chosen.size >= MOST_DRAWN) break;
+    if (chosen.size >= MAX_DRAWN) break;
     chosen.add(index);
   }
   return [...chosen].sort((a, b) => a - b);
@@ -75,7 +75,7 @@ export function defaultOverlay(result: Result): number[] {
 /** Looks: today's settings are always series 2, the others take 1, 3, 4 (and 2 if it is free) in order. */
 export function drawnEntries(result: Result, indices: number[]): Drawn[] {
   const names = entryNames(result.controllers);
-  const shown = indices.filter((index) => drawable(result.controllers[index])).slice(0, MOST_DRAWN);
+  const shown = indices.filter((index) => drawable(result.controllers[index])).slice(0, MAX_DRAWN);
   const hasToday = shown.some((index) => result.controllers[index]!.method === "baseline");
   const free: Look[] = hasToday ? [1, 3, 4] : [1, 2, 3, 4];
   return shown.map((index) => {

@@ -43,8 +43,8 @@ export function bareRecordFrame(record: Samples, units: UnitNames, part: { from:
 /** A residual below a thousandth of y's movement is not blown up to fill its pane: rounding would look like a signal. */
 function wideRange(residual: Column, y: Column): Range | null {
   const [lo, hi] = extent([residual], "linear");
-  const [least, most] = extent([y], "linear");
-  const floor = 1e-3 * (most - least);
+  const [min, max] = extent([y], "linear");
+  const floor = 1e-3 * (max - min);
   return Math.max(-lo, hi) < floor ? [-floor, floor] : null;
 }
 

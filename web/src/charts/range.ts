@@ -19,7 +19,7 @@ export interface RangeShown {
 
 const LINK = "range";
 /** Curves that leave the picture by more than that much of what is asked say no more than that they leave it. */
-const MOST_OVER_LIMIT = 2.5;
+const MAX_OVER_LIMIT = 2.5;
 
 const scheduledCurves = ({ designed, moved }: RangeShown) => (moved ?? designed).curves;
 
@@ -37,7 +37,7 @@ function traceOf(shown: RangeShown, quantity: "Ms" | "relative_IAE"): Trace[] {
 /** From the least that is possible to what is drawn, the limit in view. */
 function rangeOfMs(traces: Trace[], limit: number | null): Range {
   const values = traces.flatMap(({ y }) => y.filter((value): value is number => typeof value === "number"));
-  const over = 1 + MOST_OVER_LIMIT * ((limit ?? 1) - 1);
+  const over = 1 + MAX_OVER_LIMIT * ((limit ?? 1) - 1);
   const top = Math.min(Math.max(limit ?? 1, ...values), Math.max(over, 2));
   return [1 - 0.06 * (top - 1), top + 0.12 * (top - 1)];
 }
@@ -46,11 +46,11 @@ const limitLine = (limit: number | null): Mark[] =>
   limit === null ? [] : [{ kind: "level", value: limit, role: "limit", label: `limit ${formatNumber(limit)}` }];
 
 /** One setting may cost many times as much as the schedule: on a logarithmic axis both can be read. */
-const MOST_IAE = 100;
+const MAX_IAE = 100;
 
 function rangeOfIAE(traces: Trace[]): Range {
   const values = traces.flatMap(({ y }) => y.filter((value): value is number => typeof value === "number"));
-  return [Math.max(0.3, 0.95 * Math.min(1, ...values)), 1.15 * Math.min(MOST_IAE, Math.max(1.3, ...values))];
+  return [Math.max(0.3, 0.95 * Math.min(1, ...values)), 1.15 * Math.min(MAX_IAE, Math.max(1.3, ...values))];
 }
 
 const uprights = (rows: readonly ScheduleRow[]): Mark[] =>

@@ -61,8 +61,8 @@ export function recordFramed(panes: Pane[], title: string, description: string, 
 
 /** The moves of u beyond 2 % of its range, each from half of the rest before it to the next. */
 export function stepParts(t: readonly number[], u: Column): { at: number; from: number; to: number }[] {
-  const [least, most] = extent([u], "linear");
-  const range = most - least;
+  const [min, max] = extent([u], "linear");
+  const range = max - min;
   const moves: number[] = [];
   for (let index = 1; index < t.length; index += 1) {
     const [before, now] = [u[index - 1], u[index]];

@@ -7,7 +7,7 @@ import { inputOf } from "../words/plant.ts";
 import type { Drawn } from "./drawn.ts";
 
 /** With more entries than these the linear counterparts of all would be a thicket. */
-const MOST_WITH_LINEAR = 2;
+const MAX_WITH_LINEAR = 2;
 
 /** Whether the responses are those of a nonlinear plant, with the linearised loop's beside them. */
 export const hasLinear = (drawn: Drawn[]): boolean => drawn.some((item) => item.entry.linear?.responses);
@@ -27,7 +27,7 @@ export function responseFrame(
   const traces = (signal: "y" | "u"): Trace[] =>
     drawn.flatMap((item): Trace[] => {
       const response = item.entry.responses?.[kind];
-      const beside = drawn.length <= MOST_WITH_LINEAR || item.index === selected;
+      const beside = drawn.length <= MAX_WITH_LINEAR || item.index === selected;
       const linear = beside ? item.entry.linear?.responses?.[kind] : undefined;
       return [
         ...(response ? [{ name: item.name, look: item.look, x: response.t, y: response[signal] }] : []),

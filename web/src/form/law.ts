@@ -77,9 +77,9 @@ class Parser {
     return rest ? [fraction, times(), ...product(rest)] : [fraction];
   }
 
-  private factors(most = Infinity): Factor[] | null {
+  private factors(max = Infinity): Factor[] | null {
     const parts: Factor[] = [];
-    while (parts.length < most) {
+    while (parts.length < max) {
       const part = this.factor();
       if (!part) break;
       const power = this.take("^") ? this.factor() : null;

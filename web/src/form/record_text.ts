@@ -18,7 +18,7 @@ export interface RecordText {
   onChange(act: () => void): void;
 }
 
-const MOST_SHOWN = 100_000;
+const MAX_SHOWN = 100_000;
 const LINES_SHOWN = 30;
 
 export function recordText(options: ControlOptions, errors: FormErrors): RecordText {
@@ -32,7 +32,7 @@ export function recordText(options: ControlOptions, errors: FormErrors): RecordT
   let changed = (): void => undefined;
 
   function write(text: string): void {
-    whole = text.length > MOST_SHOWN ? text : null;
+    whole = text.length > MAX_SHOWN ? text : null;
     input.readOnly = whole !== null;
     note.hidden = whole === null;
     if (whole === null) {

@@ -15,7 +15,7 @@ export interface Ahead<Question, Answer> {
 /** One at the service, one on its way: what is really asked never waits for more. */
 const UNDER_WAY = 2;
 /** Two long sliders in whole. */
-const MOST_KEPT = 700;
+const MAX_KEPT = 700;
 
 /** `work` as for a question that is really asked; `busy`: such a question is under way, and comes first. */
 export function ahead<Question, Answer>(
@@ -30,7 +30,7 @@ export function ahead<Question, Answer>(
 
   function keep(question: Question, answer: Answer): void {
     answers.set(JSON.stringify(question), answer);
-    if (answers.size > MOST_KEPT) answers.delete(answers.keys().next().value!);
+    if (answers.size > MAX_KEPT) answers.delete(answers.keys().next().value!);
   }
 
   function next(): Question | null {

@@ -8,12 +8,12 @@ import type { Controller, Entry } from "../api/types.ts";
 import { ahead } from "./ahead.ts";
 import { samePoint, stepBack, stepForward, stepTo } from "./point.ts";
 import type { Point, Steps } from "./point.ts";
-import { costOfRow, designShown, handQuestion, handShown, questionOf } from "./shown.ts";
-import type { Shown, Turnable } from "./shown.ts";
+import { costOfRow, designShown, manualQuestion, manualShown, questionOf } from "./shown.ts";
+import type { Shown, Modifiable } from "./shown.ts";
 
 /** What the sliders start from: an entry of a job. */
 export interface Proposal {
-  from: Turnable;
+  from: Modifiable;
   point: Point;
   /** Today's settings in the ideal form, where they could be read so. */
   today: Controller | null;
@@ -84,8 +84,8 @@ export function liveDesign(onSettled: (point: Point) => void): Live {
 
   const waits = signal(0);
   /** Time of the last design of this proposal, ms; by hand nothing is searched unless it is made for a product. */
-  const cost = { design: 0, hand: 0 };
-  const costs = (asked: Point): "design" | "hand" => (asked.hand ? "hand" : "design");
+  const cost = { design: 0, manual: 0 };
+  const costs = (asked: Point): "design" | "manual" => (asked.manual ? "manual" : "design");
   const waitsFor = (asked: Point): number => {
     const ms = cost[costs(asked)];
     return ms > LONGEST_FRAME_MS ? ms : 0;
@@ -93,12 +93,12 @@ export function liveDesign(onSettled: (point: Point) => void): Live {
 
   async function work({ point: asked, held: coarse }: Question, abort: AbortSignal): Promise<Shown> {
     const { from, today } = proposal.peek()!;
-    if (!asked.hand) {
+    if (!asked.manual) {
       const answer = await designOf(questionOf(from, asked.tune!, coarse), abort);
       return designShown(from, asked.tune!, answer, coarse);
     }
-    const body = handQuestion(from, asked, today)!;
-    return handShown(from, asked, body, await entriesOf(coarse ? withHeldPoints(body) : body, abort));
+    const body = manualQuestion(from, asked, today)!;
+    return manualShown(from, asked, body, await entriesOf(coarse ? withHeldPoints(body) : body, abort));
   }
 
   /** A design that does not follow the slider is not asked for ahead of it either. */
@@ -202,7 +202,7 @@ export function liveDesign(onSettled: (point: Point) => void): Live {
   function standAt(from: Proposal | null, at: Steps | null): void {
     forget();
     cost.design = from ? costOfRow(from.from) : 0;
-    cost.hand = 0;
+    cost.manual = 0;
     batch(() => {
       waits.value = 0;
       proposal.value = from;

@@ -1,18 +1,18 @@
 // A design as it was turned: the method's options, or settings by hand; its steps back and forth, and its place in the address.
 import type { Controller, Method, TuneEntry } from "../api/types.ts";
-import { HAND, handValue, isTied, withHand, withOption } from "./knobs.ts";
-import type { HandName, Knob } from "./knobs.ts";
+import { MANUAL, manualValue, isTied, withManual, withOption } from "./sliders.ts";
+import type { ManualName, SliderSpec } from "./sliders.ts";
 
 export interface Point {
   /** The method with its options; null where there is none, as for today's settings. */
   tune: TuneEntry | null;
   /** Settings that were moved by hand; they leave what the method says. */
-  hand: Controller | null;
+  manual: Controller | null;
 }
 
 export const samePoint = (a: Point, b: Point): boolean => JSON.stringify(a) === JSON.stringify(b);
 
-const MOST_STEPS = 100;
+const MAX_STEPS = 100;
 
 export interface Steps {
   past: readonly Point[];
@@ -25,7 +25,7 @@ export const firstStep = (now: Point): Steps => ({ past: [], now, future: [] });
 /** A step on; what was undone before is gone. */
 export function stepTo(steps: Steps, next: Point): Steps {
   if (samePoint(steps.now, next)) return steps;
-  return { past: [...steps.past, steps.now].slice(-MOST_STEPS), now: next, future: [] };
+  return { past: [...steps.past, steps.now].slice(-MAX_STEPS), now: next, future: [] };
 }
 
 export function stepBack(steps: Steps): Steps {
@@ -38,34 +38,34 @@ export function stepForward(steps: Steps): Steps {
   return after ? { past: [...steps.past, steps.now], now: after, future: rest } : steps;
 }
 
-/** What no slider by hand moves and a turned design may have otherwise than the proposal. */
-const BESIDE_HAND = ["b", "c", "delta_r", "filter.type", "setpoint_filter.T"];
+/** What no slider by hand moves and a modified design may have otherwise than the proposal. */
+const BESIDE_MANUAL = ["b", "c", "delta_r", "filter.type", "setpoint_filter.T"];
 
 const at = (whole: TuneEntry | Controller | null | undefined, id: string): unknown =>
   id.split(".").reduce<unknown>((value, part) => (value as Record<string, unknown> | undefined)?.[part], whole ?? {});
 
 /** What an address may name of a method's options. */
-const idsOf = (knobs: readonly Knob[]): string[] => [...new Set(knobs.flatMap(({ id, along = [] }) => [id, ...along]))];
+const idsOf = (sliders: readonly SliderSpec[]): string[] => [...new Set(sliders.flatMap(({ id, along = [] }) => [id, ...along]))];
 
 /** What of a point differs from the proposal and its controller, for the address; with all its digits. */
 export function valuesOf(
   point: Point,
   proposal: Point,
   controller: Controller | undefined,
-  knobs: readonly Knob[],
+  sliders: readonly SliderSpec[],
 ): Record<string, string> {
   const values: Record<string, string> = {};
-  for (const id of idsOf(knobs)) {
+  for (const id of idsOf(sliders)) {
     const value = at(point.tune, id);
     if (typeof value === "number" && value !== at(proposal.tune, id)) values[id] = String(value);
   }
-  if (!point.hand) return values;
-  for (const name of HAND) {
-    const value = handValue(point.hand, name);
+  if (!point.manual) return values;
+  for (const name of MANUAL) {
+    const value = manualValue(point.manual, name);
     if (value !== null) values[name] = String(value);
   }
-  for (const id of BESIDE_HAND) {
-    const value = at(point.hand, id);
+  for (const id of BESIDE_MANUAL) {
+    const value = at(point.manual, id);
     if (value !== at(controller, id)) values[id] = String(value ?? "");
   }
   return values;
@@ -86,13 +86,13 @@ const numberIn = (values: Record<string, string>, id: string): number | null => 
 };
 
 /** The settings by hand that an address means; null where it names none. */
-function handOf(values: Record<string, string>, controller: Controller): Controller | null {
-  const has = (name: HandName): boolean =>
-    handValue(controller, name) !== null || (name === "Tf" && "filter.type" in values);
-  const given = HAND.filter((name) => numberIn(values, name) !== null && has(name));
+function manualOf(values: Record<string, string>, controller: Controller): Controller | null {
+  const has = (name: ManualName): boolean =>
+    manualValue(controller, name) !== null || (name === "Tf" && "filter.type" in values);
+  const given = MANUAL.filter((name) => numberIn(values, name) !== null && has(name));
   if (given.length === 0) return null;
-  const base = BESIDE_HAND.filter((id) => id in values).reduce((to, id) => withPart(to, id, values[id]!), controller);
-  return given.reduce((to, name) => withHand(to, name, numberIn(values, name)!), base);
+  const base = BESIDE_MANUAL.filter((id) => id in values).reduce((to, id) => withPart(to, id, values[id]!), controller);
+  return given.reduce((to, name) => withManual(to, name, numberIn(values, name)!), base);
 }
 
 /** The point that an address means; what it does not name is as proposed. */
@@ -100,14 +100,14 @@ export function pointOf(
   values: Record<string, string>,
   proposal: Point,
   controller: Controller | undefined,
-  knobs: readonly Knob[],
+  sliders: readonly SliderSpec[],
 ): Point {
   let { tune } = proposal;
-  for (const id of idsOf(knobs)) {
+  for (const id of idsOf(sliders)) {
     const value = numberIn(values, id);
     if (tune && value !== null) tune = withOption(tune, id, value);
   }
-  return { tune, hand: (controller && handOf(values, controller)) ?? proposal.hand };
+  return { tune, manual: (controller && manualOf(values, controller)) ?? proposal.manual };
 }
 
 /** Whether options that may move with another one do. */

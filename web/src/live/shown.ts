@@ -1,4 +1,4 @@
-// A turned design: one request with one member altered, and the result that belongs to it. No element of the page.
+// A modified design: one request with one member altered, and the result that belongs to it. No element of the page.
 import { callSubject, designBody, evaluateBody, withHeldPoints } from "../api/live.ts";
 import type { DesignAnswer } from "../api/live.ts";
 import type { Controller, Entry, Result, TuneEntry, TuningRequest } from "../api/types.ts";
@@ -6,7 +6,7 @@ import { rowsOf, withTune } from "../form/tuning_request.ts";
 import type { Point } from "./point.ts";
 
 /** A job's entry that is turned. */
-export interface Turnable {
+export interface Modifiable {
   request: TuningRequest;
   result: Result;
   index: number;
@@ -28,20 +28,20 @@ export interface Shown {
 }
 
 /** The job's request with the one member altered that a slider moves. */
-export const alteredBy = ({ request, result, index }: Turnable, tune: TuneEntry): TuningRequest =>
+export const alteredBy = ({ request, result, index }: Modifiable, tune: TuneEntry): TuningRequest =>
   withTune(request, result, index, tune);
 
 /** Rows of the request; one is asked for as a whole while a slider is held. */
 const rowCount = (request: TuningRequest): number => (Array.isArray(request.tune) ? request.tune.length : 1);
 
 /** The body for POST /v1/design; `held`: of the turned row alone, with few samples. */
-export function questionOf(from: Turnable, tune: TuneEntry, held: boolean): Record<string, unknown> {
+export function questionOf(from: Modifiable, tune: TuneEntry, held: boolean): Record<string, unknown> {
   const body = designBody(alteredBy(from, tune), from.result);
   return held ? { ...withHeldPoints(body), tune: [tune] } : body;
 }
 
 /** The entries of the job that the same row of its request has made. */
-function rowMates({ request, result, index }: Turnable): number[] {
+function rowMates({ request, result, index }: Modifiable): number[] {
   const rows = rowsOf(request, result);
   return rows.flatMap((row, at) => (row === rows[index] && row >= 0 ? [at] : []));
 }
@@ -49,8 +49,8 @@ function rowMates({ request, result, index }: Turnable): number[] {
 const todaysOf = (entries: readonly Entry[]): Entry | undefined => entries.find((entry) => entry.method === "baseline");
 
 /** Which of a row's new entries is the one that was turned: held on the region before the model alone. */
-const sameKind = (turned: Entry, made: readonly Entry[]): number =>
-  Math.max(0, made.findIndex((entry) => Boolean(entry.over_region) === Boolean(turned.over_region)));
+const sameKind = (modified: Entry, made: readonly Entry[]): number =>
+  Math.max(0, made.findIndex((entry) => Boolean(entry.over_region) === Boolean(modified.over_region)));
 
 /** Without what is said over all entries. */
 function withoutComparison(result: Result): Result {
@@ -59,7 +59,7 @@ function withoutComparison(result: Result): Result {
 }
 
 /** An answer of the turned row alone, among the job's other entries, which it does not touch. */
-function amongOthers(from: Turnable, answer: DesignAnswer): Pick<Shown, "result" | "index" | "origin"> {
+function amongOthers(from: Modifiable, answer: DesignAnswer): Pick<Shown, "result" | "index" | "origin"> {
   const { result, index } = from;
   const mates = rowMates(from);
   const made = answer.controllers.filter((entry) => entry.method !== "baseline");
@@ -83,7 +83,7 @@ function amongOthers(from: Turnable, answer: DesignAnswer): Pick<Shown, "result"
 }
 
 /** A design's answer as it is shown. */
-export function designShown(from: Turnable, tune: TuneEntry, answer: DesignAnswer, held: boolean): Shown {
+export function designShown(from: Modifiable, tune: TuneEntry, answer: DesignAnswer, held: boolean): Shown {
   const request = alteredBy(from, tune);
   const row = rowsOf(from.request, from.result)[from.index]!;
   const single = rowCount(request) === 1;
@@ -107,19 +107,19 @@ export function designShown(from: Turnable, tune: TuneEntry, answer: DesignAnswe
 
 /** The body for POST /v1/evaluate; null if there is no plant. The settings are held to the limit on Ms of the design that
  * they leave. */
-export function handQuestion(from: Turnable, { tune, hand }: Point, today: Controller | null): Record<string, unknown> | null {
+export function manualQuestion(from: Modifiable, { tune, manual }: Point, today: Controller | null): Record<string, unknown> | null {
   const subject = callSubject(from.request, from.result);
   const Ms = tune?.["Ms"] ?? from.result.controllers[from.index]?.options?.["Ms"];
   const evaluate = { ...from.request.evaluate, ...(typeof Ms === "number" ? { rank_limits: { Ms } } : {}) };
-  return subject && evaluateBody({ ...from.request, evaluate }, subject, [hand!, ...(today ? [today] : [])]);
+  return subject && evaluateBody({ ...from.request, evaluate }, subject, [manual!, ...(today ? [today] : [])]);
 }
 
 /** Settings by hand as they are shown: the job's other entries stay, without a verdict over all of them. */
-export function handShown(from: Turnable, point: Point, body: unknown, [entry, today]: Entry[]): Shown {
+export function manualShown(from: Modifiable, point: Point, body: unknown, [entry, today]: Entry[]): Shown {
   const kept = withoutComparison(from.result);
   const controllers = kept.controllers.map((other, at) =>
     at === from.index
-      ? byHand(entry!, from.result.controllers[from.index]!, point)
+      ? manualEntry(entry!, from.result.controllers[from.index]!, point)
       : other.method === "baseline" && today
         ? { ...other, ...today, method: "baseline" }
         : other,
@@ -130,7 +130,7 @@ export function handShown(from: Turnable, point: Point, body: unknown, [entry, t
 }
 
 /** Settings by hand keep the name of what they were moved from, and its limits to be drawn. */
-function byHand(entry: Entry, from: Entry, { tune }: Point): Entry {
+function manualEntry(entry: Entry, from: Entry, { tune }: Point): Entry {
   const limits = Object.entries({ ...from.options, ...tune }).filter(([name]) => name === "Ms" || name === "Mt");
   return { ...entry, method: from.method, options: Object.fromEntries(limits), title: `${from.title ?? from.method}, by hand` };
 }
@@ -139,5 +139,5 @@ function byHand(entry: Entry, from: Entry, { tune }: Point): Entry {
 const costOf = (entries: readonly Entry[]): number =>
   entries.reduce((sum, entry) => sum + (entry.method === "baseline" ? 0 : (entry.compute_ms ?? 0)), 0);
 
-export const costOfRow = (from: Turnable): number =>
+export const costOfRow = (from: Modifiable): number =>
   costOf(rowMates(from).map((index) => from.result.controllers[index]!));

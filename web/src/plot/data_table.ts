@@ -3,7 +3,7 @@ import { h } from "../dom.ts";
 import { tickText } from "./axis.ts";
 import type { Frame } from "./frame.ts";
 
-const MOST_ROWS = 60;
+const MAX_ROWS = 60;
 
 export function dataTable(frame: Frame): HTMLElement {
   return h(
@@ -12,7 +12,7 @@ export function dataTable(frame: Frame): HTMLElement {
     frame.panes.map((pane) => {
       const traces = pane.traces;
       const longest = Math.max(0, ...traces.map((trace) => trace.x.length));
-      const rows = Math.min(longest, MOST_ROWS);
+      const rows = Math.min(longest, MAX_ROWS);
       const at = (row: number, length: number): number =>
         rows < 2 ? 0 : Math.round((row * (length - 1)) / (rows - 1));
       const text = (value: number | null | undefined): string =>

@@ -38,14 +38,14 @@ export function columnExtremes(columns: readonly number[], values: readonly numb
   let start = 0;
   while (start < columns.length) {
     let end = start;
-    let least = start;
+    let min = start;
     let greatest = start;
     while (end + 1 < columns.length && columns[end + 1] === columns[start]) {
       end += 1;
-      if (values[end]! < values[least]!) least = end;
+      if (values[end]! < values[min]!) min = end;
       if (values[end]! > values[greatest]!) greatest = end;
     }
-    for (const index of [...new Set([start, Math.min(least, greatest), Math.max(least, greatest), end])])
+    for (const index of [...new Set([start, Math.min(min, greatest), Math.max(min, greatest), end])])
       kept.push(index);
     start = end + 1;
   }

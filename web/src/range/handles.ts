@@ -28,7 +28,7 @@ export interface HandleEvents {
 
 export function rangeHandles(events: HandleEvents): RangeHandles {
   const layer = h("div", { class: "handles" });
-  let knobs: HTMLElement[] = [];
+  let handles: HTMLElement[] = [];
   let shown: HandlesShown | null = null;
   let box: PaneBox | null = null;
   let taken: number | null = null;
@@ -36,17 +36,17 @@ export function rangeHandles(events: HandleEvents): RangeHandles {
   const placeUnder = (event: PointerEvent): number =>
     box!.x.toValue(event.clientX - layer.getBoundingClientRect().left);
 
-  function knobOf(index: number): HTMLElement {
-    const knob = h("div", { class: "handle", role: "slider", tabindex: 0, "aria-label": `Handle of row ${index + 1}` });
-    knob.addEventListener("pointerdown", (event) => {
+  function handleOf(index: number): HTMLElement {
+    const handle = h("div", { class: "handle", role: "slider", tabindex: 0, "aria-label": `Handle of row ${index + 1}` });
+    handle.addEventListener("pointerdown", (event) => {
       if (event.button !== 0 || !box) return;
       event.preventDefault();
-      knob.focus();
-      knob.setPointerCapture(event.pointerId);
+      handle.focus();
+      handle.setPointerCapture(event.pointerId);
       taken = index;
       events.onHold(true);
     });
-    knob.addEventListener("pointermove", (event) => {
+    handle.addEventListener("pointermove", (event) => {
       if (taken === index) events.onMove(index, placeUnder(event), false);
     });
     const release = (event: PointerEvent): void => {
@@ -56,9 +56,9 @@ export function rangeHandles(events: HandleEvents): RangeHandles {
       // A touch that the browser takes away ends where the handle stands.
       events.onMove(index, event.type === "pointerup" ? placeUnder(event) : shown!.rows[index]!.at, true);
     };
-    knob.addEventListener("pointerup", release);
-    knob.addEventListener("pointercancel", release);
-    knob.addEventListener("keydown", (event) => {
+    handle.addEventListener("pointerup", release);
+    handle.addEventListener("pointercancel", release);
+    handle.addEventListener("keydown", (event) => {
       const row = shown?.rows[index];
       if (!row || event.ctrlKey || event.metaKey || event.altKey) return;
       const to = keyedPlace(
@@ -72,7 +72,7 @@ export function rangeHandles(events: HandleEvents): RangeHandles {
       event.preventDefault();
       events.onMove(index, to, true);
     });
-    return knob;
+    return handle;
   }
 
   /** On the curve; where that is not known, or out of sight, at the edge. */
@@ -86,11 +86,11 @@ export function rangeHandles(events: HandleEvents): RangeHandles {
     if (!shown || !box) return;
     const at = box;
     shown.rows.forEach((row, index) => {
-      const knob = knobs[index]!;
+      const handle = handles[index]!;
       const x = at.x.toPixel(row.at);
-      knob.hidden = x < at.left - 1 || x > at.left + at.width + 1;
-      knob.style.left = `${x}px`;
-      knob.style.top = `${heightOf(row)}px`;
+      handle.hidden = x < at.left - 1 || x > at.left + at.width + 1;
+      handle.style.left = `${x}px`;
+      handle.style.top = `${heightOf(row)}px`;
     });
   }
 
@@ -102,17 +102,17 @@ export function rangeHandles(events: HandleEvents): RangeHandles {
     },
     show(next) {
       shown = next;
-      if (knobs.length !== next.rows.length) {
-        knobs = next.rows.map((_, index) => knobOf(index));
-        layer.replaceChildren(...knobs);
+      if (handles.length !== next.rows.length) {
+        handles = next.rows.map((_, index) => handleOf(index));
+        layer.replaceChildren(...handles);
       }
       next.rows.forEach((row, index) => {
-        const knob = knobs[index]!;
+        const handle = handles[index]!;
         const [lo, hi] = reachOf(next.rows, index, next.extent);
-        setAttribute(knob, "aria-valuemin", String(lo));
-        setAttribute(knob, "aria-valuemax", String(hi));
-        setAttribute(knob, "aria-valuenow", String(row.at));
-        setAttribute(knob, "aria-valuetext", next.words(row, index));
+        setAttribute(handle, "aria-valuemin", String(lo));
+        setAttribute(handle, "aria-valuemax", String(hi));
+        setAttribute(handle, "aria-valuenow", String(row.at));
+        setAttribute(handle, "aria-valuetext", next.words(row, index));
       });
       arrange();
     },

@@ -161,8 +161,8 @@ export const EMPTY_POINTS: PointTexts[] = [
   { at: "", text: "" },
 ];
 
-const written = (value: unknown, otherwise: string): string =>
-  typeof value === "number" ? plainSetting(value) : typeof value === "string" ? value : otherwise;
+const written = (value: unknown, fallback: string): string =>
+  typeof value === "number" ? plainSetting(value) : typeof value === "string" ? value : fallback;
 
 /** The texts that show a request; what a schedule was given is not part of a design. */
 export function textsOf(request: RangeRequest): RangeTexts {

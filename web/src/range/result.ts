@@ -11,7 +11,7 @@ import { createPlot } from "../plot/plot.ts";
 import type { Plot } from "../plot/plot.ts";
 import type { Store } from "../store.ts";
 import { unitNames } from "../words/numbers.ts";
-import { handOn } from "./hand.ts";
+import { manualSchedule } from "./manual_schedule.ts";
 import { rangeHandles } from "./handles.ts";
 import { ownRows } from "./own_rows.ts";
 import { resultCards, showRangeVerdict } from "./result_cards.ts";
@@ -44,7 +44,7 @@ export function rangeResult(
   let first: Plot | null = null;
   let held = false;
   const cards = resultCards();
-  const hand = handOn({
+  const manual = manualSchedule({
     onRows: follow,
     onCurves(settled) {
       draw();
@@ -63,12 +63,12 @@ export function rangeResult(
       first?.hold(now);
       plots.hold(now);
     },
-    onMove: hand.move,
+    onMove: manual.move,
   });
-  const schedule = scheduleCard({ onChange: hand.change, onBack: hand.back });
+  const schedule = scheduleCard({ onChange: manual.change, onBack: manual.back });
   const plots = plotGrid(announce);
   const own = ownRows(store, announce);
-  const runs = runsCard(announce, hand.runAgain);
+  const runs = runsCard(announce, manual.runAgain);
   const slot = h("div", { class: "range-first" });
   const stale = staleMark(() => element);
   const element = h(
@@ -86,11 +86,11 @@ export function rangeResult(
   );
 
   function drawn(): RangeShown {
-    const { designed, moved } = hand.shown()!;
+    const { designed, moved } = manual.shown()!;
     return {
       designed,
       moved,
-      rows: hand.rows(),
+      rows: manual.rows(),
       Ms: limitOn("Ms", designed) ?? about.schedule?.Ms ?? null,
       allowance: about.schedule?.allowance ?? DEFAULT_ALLOWANCE,
       units: unitNames(about.units),
@@ -141,7 +141,7 @@ export function rangeResult(
     const parameter = about.range?.along === "parameter" ? (about.range.parameter ?? null) : null;
     runs.show(designed, moved, parameter, units);
     showOwn();
-    onAsked(hand.asked());
+    onAsked(manual.asked());
   }
 
   function showOwn(): void {
@@ -159,15 +159,15 @@ export function rangeResult(
       form = typed;
       element.hidden = false;
       stale.set(false);
-      hand.start(request, content);
+      manual.start(request, content);
       draw();
       showMoving();
       showCards();
     },
     withMoved(request) {
-      const { designed } = hand.shown() ?? {};
+      const { designed } = manual.shown() ?? {};
       if (!designed || element.hidden) return request;
-      const rows = [...hand.rows()];
+      const rows = [...manual.rows()];
       // A job may have been given its rows: they are no more the form's design than those that were moved here.
       const given = about.schedule?.given !== undefined || !sameRows(rows, designed.schedule?.rows ?? []);
       if (!given) return request;

@@ -6,7 +6,7 @@ import { download } from "../plot/export.ts";
 import { formatRoute } from "../routes.ts";
 import { batchColumns, sorted } from "../words/job_list.ts";
 import type { BatchColumn } from "../words/job_list.ts";
-import { orderOf, sortText } from "../words/league.ts";
+import { orderOf, sortText } from "../words/comparison.ts";
 import { jobTable, reader, troubleLine } from "./job_actions.ts";
 import type { View } from "./start.ts";
 
@@ -17,9 +17,9 @@ export interface BatchEvents {
 }
 
 /** So many loops are listed; the CSV has all of them. */
-const MOST_LISTED = 2000;
+const MAX_LISTED = 2000;
 /** A batch of more loops is read again only when it has ended. */
-const MOST_FOLLOWED = 400;
+const MAX_FOLLOWED = 400;
 const WORDS = ["name", "plant", "method", "status"];
 
 export function batchView(id: string, sort: string, announce: (sentence: string) => void, events: BatchEvents): View {
@@ -192,8 +192,8 @@ export function batchView(id: string, sort: string, announce: (sentence: string)
     batch = now;
     showHead(now);
     const done = now.counts.succeeded + now.counts.failed + now.counts.cancelled;
-    if (done !== readAt && (hasEnded(now) || now.total <= MOST_FOLLOWED)) {
-      const listed = await jobsOfBatch(id, MOST_LISTED);
+    if (done !== readAt && (hasEnded(now) || now.total <= MAX_FOLLOWED)) {
+      const listed = await jobsOfBatch(id, MAX_LISTED);
       if (disposed) return false;
       jobs = listed;
       readAt = done;

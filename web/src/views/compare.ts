@@ -1,4 +1,4 @@
-// Compare: every method on this plant as a league table, and the chosen rows together in every plot.
+// Compare: every method on this plant as a comparison, and the chosen rows together in every plot.
 import { isFinal } from "../api/types.ts";
 import type { Job, Result } from "../api/types.ts";
 import { defaultOverlay, drawnEntries } from "../charts/drawn.ts";
@@ -11,8 +11,8 @@ import { plotGrid } from "../plot/grid.ts";
 import { swatch } from "../plot/marks.ts";
 import { formatRoute } from "../routes.ts";
 import type { Store, Workspace } from "../store.ts";
-import { leagueColumns, leagueRows, leagueTable as tableOf, orderOf, sortText } from "../words/league.ts";
-import type { LeagueColumn } from "../words/league.ts";
+import { comparisonColumns, comparisonRows, comparisonTable as tableOf, orderOf, sortText } from "../words/comparison.ts";
+import type { ComparisonColumn } from "../words/comparison.ts";
 import { unitNames } from "../words/numbers.ts";
 import { progressCard } from "./cards/progress_card.ts";
 import { titleCard } from "./cards/title_card.ts";
@@ -21,35 +21,35 @@ import { showFailure } from "./cards/verdict_card.ts";
 import { showEntryPlots } from "./drawn_entries.ts";
 import { jobActions } from "./job_actions.ts";
 import type { JobEvents } from "./job_actions.ts";
-import { leagueControls } from "./league_controls.ts";
-import { leagueTable } from "./league_table.ts";
+import { comparisonControls } from "./comparison_controls.ts";
+import { comparisonTable } from "./comparison_table.ts";
 import type { View } from "./start.ts";
 
 export function compareView(store: Store, announce: (sentence: string) => void, events: JobEvents): View {
   let shown: Result | null = null;
   let drawnBefore: number[] | null = null;
-  let columns: LeagueColumn[] = [];
+  let columns: ComparisonColumn[] = [];
   const designLink = h("a", { href: "#/" }, "Settings and verdict");
   const { all, trouble, complain, cancel } = jobActions(store, events);
   const title = titleCard("Compare", announce, designLink);
   const failure = h("section", { class: "verdict", "aria-label": "Verdict" });
   const progress = progressCard(announce, () => void cancel());
-  const heading = h("h2", { id: "league-title" });
-  const controls = leagueControls({
+  const heading = h("h2", { id: "comparison-title" });
+  const controls = comparisonControls({
     onChange: arrange,
     onLimit: (rankMs) => store.set((workspace) => ({ ...workspace, rankMs })),
     onColumns: rebuild,
     onExport: exportTable,
   });
-  const table = leagueTable({ onSort: sortBy, onDraw: choose });
+  const table = comparisonTable({ onSort: sortBy, onDraw: choose });
   const star = h("p", { class: "hint" }, "* the least load IAE that any PID reaches on this plant at the same Ms.");
   const legend = h("p", { class: "pane-legend overlay-legend" });
   const plots = plotGrid(announce);
   const tradeoff = tradeoffCard(announce);
-  const league = h(
+  const comparison = h(
     "section",
-    { class: "card league", "aria-labelledby": heading.id },
-    h("div", { class: "league-head" }, heading, controls.element),
+    { class: "card comparison", "aria-labelledby": heading.id },
+    h("div", { class: "comparison-head" }, heading, controls.element),
     table.element,
     star,
     all,
@@ -70,7 +70,7 @@ export function compareView(store: Store, announce: (sentence: string) => void, 
     trouble,
     failure,
     progress.element,
-    league,
+    comparison,
     overlay,
   );
 
@@ -100,10 +100,10 @@ export function compareView(store: Store, announce: (sentence: string) => void, 
   function exportTable(): void {
     const job = store.get().job;
     if (!job?.result) return;
-    const every = leagueColumns(unitNames(job.request?.units));
-    const rows = leagueRows(job.result, controls.limit());
+    const every = comparisonColumns(unitNames(job.request?.units));
+    const rows = comparisonRows(job.result, controls.limit());
     const blob = new Blob([csvText(tableOf(rows, every))], { type: "text/csv" });
-    download(blob, "league-table.csv");
+    download(blob, "comparison-table.csv");
   }
 
   function arrange(): void {
@@ -114,7 +114,7 @@ export function compareView(store: Store, announce: (sentence: string) => void, 
     const job = store.get().job;
     const result = job?.result;
     if (!job || !result) return;
-    const every = leagueColumns(unitNames(job.request?.units));
+    const every = comparisonColumns(unitNames(job.request?.units));
     controls.setColumns(every);
     columns = every.filter((column) => controls.shows(column.id));
     star.hidden = !controls.shows("excess");
@@ -162,8 +162,8 @@ export function compareView(store: Store, announce: (sentence: string) => void, 
     const result = job?.result && (job.result.controllers?.length ?? 0) > 0 ? job.result : null;
     progress.element.hidden = !job || isFinal(job.status);
     failure.hidden = !job || !isFinal(job.status) || result !== null;
-    league.hidden = !job || !isFinal(job.status) || result === null;
-    overlay.hidden = league.hidden;
+    comparison.hidden = !job || !isFinal(job.status) || result === null;
+    overlay.hidden = comparison.hidden;
     if (!job) return;
     designLink.href = formatRoute({ screen: "design", job: job.id, entry: workspace.selected });
     if (!isFinal(job.status)) progress.show(job);

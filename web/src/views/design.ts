@@ -34,18 +34,18 @@ import { modelResult } from "./model_result.ts";
 import { showComputed, showNotes } from "./notes.ts";
 import { ownController } from "./own_controller.ts";
 import type { View } from "./start.ts";
-import { turnedDesign } from "./turned_design.ts";
-import type { OnScreen } from "./turned_design.ts";
+import { modifiedDesign } from "./modified_design.ts";
+import type { OnScreen } from "./modified_design.ts";
 
 /** From so many entries on the figures stand below the plots, across the page. */
 const BROAD_FROM = 3;
 
-/** A job of more entries than these shows here those that are drawn or chosen: its league table has them all. */
-const MOST_LISTED = 8;
+/** A job of more entries than these shows here those that are drawn or chosen: its comparison has them all. */
+const MAX_LISTED = 8;
 
 function listedEntries(count: number, drawn: Drawn[], selected: number): number[] {
   const every = [...Array(count).keys()];
-  if (count <= MOST_LISTED) return every;
+  if (count <= MAX_LISTED) return every;
   return every.filter((index) => index === selected || drawn.some((item) => item.index === index));
 }
 
@@ -57,9 +57,9 @@ export interface DesignEvents extends JobEvents {
 }
 
 export function designView(store: Store, announce: (sentence: string) => void, events: DesignEvents): View {
-  const league = h("a", { href: "#/" }, "Comparison table");
+  const comparison = h("a", { href: "#/" }, "Comparison table");
   const { all, trouble, cancel, complain } = jobActions(store, events, "quiet");
-  const title = titleCard("Design", announce, league, all);
+  const title = titleCard("Design", announce, comparison, all);
   const verdict = h("section", { class: "verdict", "aria-label": "Verdict" });
   const cures = cureButtons((request) => events.onTune(request).catch(complain));
   const range = rangeJobCard(announce);
@@ -87,8 +87,8 @@ export function designView(store: Store, announce: (sentence: string) => void, e
   let screen: OnScreen | null = null;
   /** The job that the cards are of. */
   let screenOf = "";
-  const turned = turnedDesign(store, announce, {
-    onAnswer: showTurned,
+  const modified = modifiedDesign(store, announce, {
+    onAnswer: showModified,
     onLate: (late) => {
       plots.setBusy(late);
       verdict.classList.toggle("late", late);
@@ -111,7 +111,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
   const below = h("div", { class: "below" }, followsLater, model, ...reportsAt("above"), notes, more);
   const headRight = h("div", { class: "head-right" }, trouble, verdict, cures.element, progress.element, range.element);
   const element = h("main", { class: "design", id: "main" }, title.element, headRight);
-  const bodyParts = [turned.controls, main, turned.front, aside, below];
+  const bodyParts = [modified.controls, main, modified.front, aside, below];
 
   /** The entry whose settings are shown. */
   function selectedEntry(result: Result, workspace: Workspace): number {
@@ -156,7 +156,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
 
   /** What moves with a slider: verdict, settings, figures and plots. */
   function showMoving(job: Job, whole: Result, workspace: Workspace, held: boolean): Drawn[] {
-    screen = turned.onScreen(job, whole, selectedEntry(whole, workspace));
+    screen = modified.onScreen(job, whole, selectedEntry(whole, workspace));
     const { result, index, origin } = screen;
     title.setShown(screen, result === whole);
     const entries = result.controllers;
@@ -180,7 +180,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
   function showResult(job: Job, whole: Result, workspace: Workspace): void {
     const selected = selectedEntry(whole, workspace);
     screenOf = job.id;
-    turned.show(job, whole, selected);
+    modified.show(job, whole, selected);
     if (!main.isConnected) element.append(...bodyParts);
     const drawn = showMoving(job, whole, workspace, false);
     const { result, index, origin } = screen!;
@@ -212,7 +212,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
   }
 
   /** An answer to the sliders is drawn when it arrives, not in a later frame; what stands below waits for the hand. */
-  function showTurned(held: boolean): void {
+  function showModified(held: boolean): void {
     if (!finished) return;
     const { job, result } = finished;
     const workspace = store.get();
@@ -220,7 +220,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     below.classList.toggle("late", held);
     if (!held) showResult(job, result, workspace);
     else showMoving(job, result, workspace, true);
-    if (!held && turned.answer()) announce(verdict.textContent ?? "");
+    if (!held && modified.answer()) announce(verdict.textContent ?? "");
   }
 
   let announced: Result | null = null;
@@ -233,9 +233,9 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     title.show(job, job?.result?.controllers?.length ? selectedEntry(job.result, workspace) : null);
     cures.show(job);
     if (!job) return;
-    league.href = formatRoute({ screen: "compare", job: job.id, sort: workspace.sort, rows: workspace.drawn });
-    league.hidden = (job.result?.controllers?.length ?? 0) < 2;
-    all.hidden = !league.hidden || isRangeRequest(job.request);
+    comparison.href = formatRoute({ screen: "compare", job: job.id, sort: workspace.sort, rows: workspace.drawn });
+    comparison.hidden = (job.result?.controllers?.length ?? 0) < 2;
+    all.hidden = !comparison.hidden || isRangeRequest(job.request);
     range.element.hidden = !job.result?.range;
     finished = null;
     if (!isFinal(job.status)) {
@@ -248,7 +248,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
       announce(verdict.textContent ?? "");
     } else if (job.result && isOfUltimate(job.request)) {
       for (const part of bodyParts) part.remove();
-      league.hidden = all.hidden = true;
+      comparison.hidden = all.hidden = true;
       showUltimate(verdict, job.result, unitNames(job.request?.units));
       announce(verdict.textContent ?? "");
     } else if (job.result && job.result.controllers.length > 0) {
@@ -274,7 +274,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     heading: title.heading,
     dispose() {
       leave();
-      turned.dispose();
+      modified.dispose();
       for (const card of reports) card.dispose();
       own.dispose();
       range.dispose();

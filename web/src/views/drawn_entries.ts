@@ -1,7 +1,7 @@
 // The legend above the plots: which controllers are drawn, and whose settings and verdict are shown.
 import type { Entry, TuningRequest } from "../api/types.ts";
 import { bodeFrame } from "../charts/bode.ts";
-import { MOST_DRAWN } from "../charts/drawn.ts";
+import { MAX_DRAWN } from "../charts/drawn.ts";
 import type { Drawn } from "../charts/drawn.ts";
 import { nyquistFrame } from "../charts/nyquist.ts";
 import { responseFrame } from "../charts/responses.ts";
@@ -30,7 +30,7 @@ export function createLegend(store: Store): Legend {
     const box = h("input", {
       type: "checkbox",
       checked: shown,
-      disabled: nothing || (!shown && indices.length >= MOST_DRAWN),
+      disabled: nothing || (!shown && indices.length >= MAX_DRAWN),
       "aria-label": `Draw ${name}`,
     });
     box.addEventListener("change", () => {
@@ -76,7 +76,7 @@ export function createLegend(store: Store): Legend {
             ),
           ),
         ),
-        listed.length > MOST_DRAWN ? h("span", { class: "hint" }, `At most ${MOST_DRAWN} are drawn.`) : "",
+        listed.length > MAX_DRAWN ? h("span", { class: "hint" }, `At most ${MAX_DRAWN} are drawn.`) : "",
         entries.length > listed.length
           ? h("span", { class: "hint" }, `${entries.length - listed.length} more are in the comparison table.`)
           : "",

@@ -95,7 +95,7 @@ export function relayView(announce: (sentence: string) => void, events: RelayEve
     h("div", { class: "actions" }, h("button", { type: "submit", class: "primary" }, "Simulate")),
   );
   const slot = h("div", { class: "record-slot" });
-  const identify = h("button", { type: "button", class: "primary", onclick: () => hand() }, "Identify this record");
+  const identify = h("button", { type: "button", class: "primary", onclick: () => passOn() }, "Identify this record");
   const remarks = h("ul", { class: "notes" });
   const planTitle = h("h2", { id: uniqueId("plan") }, "Recommended test");
   const planText = h("div", { class: "stack" });
@@ -213,7 +213,7 @@ export function relayView(announce: (sentence: string) => void, events: RelayEve
     markStale(true);
   }
 
-  function hand(): void {
+  function passOn(): void {
     if (answer) events.onIdentify({ ...named(), record: { ...answer.record } });
   }
 

@@ -11,15 +11,15 @@ export interface TransferFunction {
 /** What is smaller than this beside what it was summed from is rounding. */
 const ROUNDING = 1e-11;
 /** More states than these make no formula to read. */
-const MOST_STATES = 5;
-const MOST_PASSES = 500;
+const MAX_STATES = 5;
+const MAX_PASSES = 500;
 /** Of a root's size: a double real root splits by the square root of rounding. */
 const NO_ANGLE = 1e-7;
 
 /** C (sI - A)^-1 B by Faddeev and LeVerrier's recursion; null for another plant or one of many states. */
 export function transferFunction(plant: Plant | undefined): TransferFunction | null {
   const A = plant?.["A"] as number[][] | undefined;
-  if (plant?.type !== "state_space" || !Array.isArray(A) || A.length === 0 || A.length > MOST_STATES) return null;
+  if (plant?.type !== "state_space" || !Array.isArray(A) || A.length === 0 || A.length > MAX_STATES) return null;
   const B = (plant["B"] as number[] | number[][]).flat();
   const C = (plant["C"] as number[] | number[][]).flat();
   const n = A.length;
@@ -58,7 +58,7 @@ export function rootsOf(coefficients: number[]): [number, number][] {
     const angle = (2 * Math.PI * k) / degree + 0.4;
     return [scale * Math.cos(angle), scale * Math.sin(angle)];
   });
-  for (let pass = 0; pass < MOST_PASSES; pass += 1) {
+  for (let pass = 0; pass < MAX_PASSES; pass += 1) {
     const next = roots.map((root, k) => minus(root, over(valueAt(monic, root), others(roots, k))));
     const moved = Math.max(0, ...next.map((root, k) => size(minus(root, roots[k]!)) / (size(root) || scale)));
     roots = next;

@@ -151,5 +151,5 @@ function inputWords(model: Model, units: UnitNames): string {
 }
 
 // Math.min(...list) overflows the stack with long lists.
-const minimum = (values: number[]): number => values.reduce((least, value) => (value < least ? value : least));
-const maximum = (values: number[]): number => values.reduce((most, value) => (value > most ? value : most));
+const minimum = (values: number[]): number => values.reduce((min, value) => (value < min ? value : min));
+const maximum = (values: number[]): number => values.reduce((max, value) => (value > max ? value : max));

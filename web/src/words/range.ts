@@ -44,7 +44,7 @@ export function settingWords(settings: Settings, units: UnitNames): string {
 }
 
 /** A schedule that was moved by hand has no verdict of the service: how it stands is said from what it answers. */
-export function handVerdict(schedule: Schedule): Finding {
+export function manualVerdict(schedule: Schedule): Finding {
   const rows = counted(schedule.rows.length, "row");
   const IAE = schedule.worst_relative_IAE;
   if (!schedule.holds_limits)
@@ -72,7 +72,7 @@ export function handVerdict(schedule: Schedule): Finding {
 
 export function verdictOf(content: RangeContent): Finding {
   if (content.verdict) return content.verdict;
-  if (content.schedule) return handVerdict(content.schedule);
+  if (content.schedule) return manualVerdict(content.schedule);
   return { code: "none", level: "bad", text: content.why_null?.["schedule"] ?? "There is no schedule for this range.", figures: {} };
 }
 

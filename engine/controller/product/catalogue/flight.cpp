@@ -13,13 +13,13 @@ Parameter switched_off(std::string_view name) {
     return {.name = name,
             .label = name,
             .unit = "Hz",
-            .role = Role::fixed,
+            .role = ParameterRole::fixed,
             .shape = Shape::constant,
             .standard = 0.0,
             .remark = "0: no filter"};
 }
 
-Parameter gain_of(std::string_view name, std::string_view label, std::string_view unit, Role role, Term term) {
+Parameter gain_of(std::string_view name, std::string_view label, std::string_view unit, ParameterRole role, Term term) {
     return {.name = name, .label = label, .unit = unit, .role = role, .term = term};
 }
 
@@ -33,13 +33,13 @@ Product ardupilot() {
         .form = Form::parallel,
         .law = "out = P e + (I/s) e + (D s/(Tf s + 1)) e, Tf = 1/(2 pi FLTD)",
         .gain_basis = "normalised output per rad/s",
-        .parameters = {gain_of("P", "P", "", Role::gain, kKp),
-                       gain_of("I", "I", "1/s", Role::integral, kKi),
-                       gain_of("D", "D", "s", Role::derivative, kKd),
+        .parameters = {gain_of("P", "P", "", ParameterRole::gain, kKp),
+                       gain_of("I", "I", "1/s", ParameterRole::integral, kKi),
+                       gain_of("D", "D", "s", ParameterRole::derivative, kKd),
                        {.name = "FLTD",
                         .label = "FLTD",
                         .unit = "Hz",
-                        .role = Role::filter,
+                        .role = ParameterRole::filter,
                         .term = kCutoff,
                         .range = {0, kUnbounded},
                         .standard = 20.0,
@@ -49,7 +49,7 @@ Product ardupilot() {
                        {.name = "IMAX",
                         .label = "IMAX",
                         .unit = "output",
-                        .role = Role::limit,
+                        .role = ParameterRole::limit,
                         .shape = Shape::constant,
                         .elsewhere = true}},
         .filter = {FilterKind::parameter, 0, "First order at FLTD; FLTE would filter the whole error."},
@@ -80,13 +80,13 @@ Product px4() {
         .form = Form::parallel,
         .law = "out = K [ P e + (I/s) e - D s y ] + FF r, e = r - y",
         .gain_basis = "normalised torque per rad/s",
-        .parameters = {gain_of("K", "MC_*RATE_K", "", Role::multiplier, kKp),
-                       gain_of("P", "MC_*RATE_P", "", Role::gain, {.Kp = 1, .K = -1}),
-                       gain_of("I", "MC_*RATE_I", "1/s", Role::integral, {.Kp = 1, .Ti = -1, .K = -1}),
-                       gain_of("D", "MC_*RATE_D", "s", Role::derivative, {.Kp = 1, .Td = 1, .K = -1}),
+        .parameters = {gain_of("K", "MC_*RATE_K", "", ParameterRole::multiplier, kKp),
+                       gain_of("P", "MC_*RATE_P", "", ParameterRole::gain, {.Kp = 1, .K = -1}),
+                       gain_of("I", "MC_*RATE_I", "1/s", ParameterRole::integral, {.Kp = 1, .Ti = -1, .K = -1}),
+                       gain_of("D", "MC_*RATE_D", "s", ParameterRole::derivative, {.Kp = 1, .Td = 1, .K = -1}),
                        {.name = "FF",
                         .label = "MC_*RATE_FF",
-                        .role = Role::weight_b,
+                        .role = ParameterRole::weight_b,
                         .shape = Shape::feedforward,
                         .range = {0, kUnbounded},
                         .standard = 0.0,
@@ -117,13 +117,13 @@ Product px4() {
 
 Product betaflight() {
     constexpr double kP = 0.032029, kI = 0.244381, kD = 0.000529;
-    const auto slider = [](std::string_view name, Role role, double low, Term term) {
+    const auto slider = [](std::string_view name, ParameterRole role, double low, Term term) {
         return Parameter{.name = name,
                          .label = name,
                          .role = role,
                          .term = term,
                          .range = {low, kUnbounded},
-                         .usual_most = 250,
+                         .usual_max = 250,
                          .resolution = kWholeNumber,
                          .remark = "Recent versions take up to 250."};
     };
@@ -134,13 +134,13 @@ Product betaflight() {
         .form = Form::parallel,
         .law = "sum = 0.032029 P e + (0.244381 I/s) e - (0.000529 D s/(Tf s + 1)) y, Tf = 1/(2 pi dterm_lpf1)",
         .gain_basis = "sum of the PID (limit 500, mixed by 1/1000) per deg/s",
-        .parameters = {slider("P", Role::gain, 1, times(1 / kP, kKp)),
-                       slider("I", Role::integral, 0, times(1 / kI, kKi)),
-                       slider("D", Role::derivative, 0, times(1 / kD, kKd)),
+        .parameters = {slider("P", ParameterRole::gain, 1, times(1 / kP, kKp)),
+                       slider("I", ParameterRole::integral, 0, times(1 / kI, kKi)),
+                       slider("D", ParameterRole::derivative, 0, times(1 / kD, kKd)),
                        {.name = "dterm_lpf1_hz",
                         .label = "dterm_lpf1",
                         .unit = "Hz",
-                        .role = Role::filter,
+                        .role = ParameterRole::filter,
                         .term = kCutoff,
                         .range = {1, kUnbounded},
                         .resolution = kWholeNumber}},

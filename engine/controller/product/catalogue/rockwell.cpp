@@ -7,10 +7,12 @@ namespace {
 constexpr std::string_view kSmoothing = "None; an optional smoothing exists whose constant could not be read.";
 
 Parameter gain(std::string_view name, std::string_view label, std::string_view unit) {
-    return {.name = name, .label = label, .unit = unit, .role = Role::gain, .term = kKn, .range = {0, kUnbounded}};
+    return {
+        .name = name, .label = label, .unit = unit, .role = ParameterRole::gain, .term = kKn, .range = {0, kUnbounded}};
 }
 
-Parameter action_of(std::string_view name, std::string_view label, std::string_view unit, Role role, Term term) {
+Parameter action_of(std::string_view name, std::string_view label, std::string_view unit, ParameterRole role,
+                    Term term) {
     return {.name = name, .label = label, .unit = unit, .role = role, .term = term, .range = {0, kUnbounded}};
 }
 
@@ -43,7 +45,7 @@ Product logix_pid() {
 Parameter derivative_of_error() {
     return {.name = "DOE",
             .label = ".DOE",
-            .role = Role::choice,
+            .role = ParameterRole::choice,
             .shape = Shape::option,
             .options = {{.value = 0.0, .c = 0}, {.value = 1.0, .c = 1}},
             .remark = "0: of the measurement; 1: of the error."};
@@ -55,8 +57,8 @@ Product pid_independent() {
     product.name = "Logix PID, independent gains (.PE 0)";
     product.form = Form::parallel;
     product.law = "CV = KP e + (KI/s) e + KD s (c SP - PV) + bias, e = SP - PV";
-    product.parameters = {gain("KP", ".KP", ""), action_of("KI", ".KI", "1/s", Role::integral, of_spans(kKi)),
-                          action_of("KD", ".KD", "s", Role::derivative, of_spans(kKd)),
+    product.parameters = {gain("KP", ".KP", ""), action_of("KI", ".KI", "1/s", ParameterRole::integral, of_spans(kKi)),
+                          action_of("KD", ".KD", "s", ParameterRole::derivative, of_spans(kKd)),
                           fixed_choice("PE", ".PE", 0.0, "0: independent gains"), derivative_of_error()};
     product.traps = {".KI holds 1/s here and minutes per repeat in dependent mode."};
     product.example = of_design_a({{"KP", 3.0}, {"KI", 0.025}, {"KD", 60.0}, {"PE", 0.0}, {"DOE", 0.0}});
@@ -69,8 +71,9 @@ Product pid_dependent() {
     product.name = "Logix PID, dependent gains (.PE 1)";
     product.form = Form::ideal;
     product.law = "CV = KP [ e + (1/(KI s)) e + KD s (c SP - PV) ] + bias, e = SP - PV";
-    product.parameters = {gain("KP", ".KP", ""), action_of("KI", ".KI", "min", Role::integral, times(kMinutes, kTi)),
-                          action_of("KD", ".KD", "min", Role::derivative, times(kMinutes, kTd)),
+    product.parameters = {gain("KP", ".KP", ""),
+                          action_of("KI", ".KI", "min", ParameterRole::integral, times(kMinutes, kTi)),
+                          action_of("KD", ".KD", "min", ParameterRole::derivative, times(kMinutes, kTd)),
                           fixed_choice("PE", ".PE", 1.0, "1: dependent gains"), derivative_of_error()};
     product.traps = {"Seconds typed for minutes are wrong by a factor of 60.",
                      "A larger .KI is slower here and faster with independent gains."};
@@ -94,25 +97,25 @@ Product slc() {
                 {.name = "KC_RG1",
                  .label = "KC",
                  .unit = "x 0.01",
-                 .role = Role::gain,
+                 .role = ParameterRole::gain,
                  .term = times(kTenths, kKn),
-                 .range = {1, kMostOfWord},
+                 .range = {1, kMaxSignedWord},
                  .resolution = kWholeNumber,
                  .remark = "with RG = 0 in steps of 0.1"},
                 {.name = "TI_RG1",
                  .label = "TI",
                  .unit = "x 0.01 min",
-                 .role = Role::integral,
+                 .role = ParameterRole::integral,
                  .term = times(kTenths / 60, kTi),
-                 .range = {1, kMostOfWord},
+                 .range = {1, kMaxSignedWord},
                  .resolution = kWholeNumber,
                  .remark = "with RG = 0 in steps of 0.1 min"},
                 {.name = "TD",
                  .label = "TD",
                  .unit = "x 0.01 min",
-                 .role = Role::derivative,
+                 .role = ParameterRole::derivative,
                  .term = times(kTenths / 60, kTd),
-                 .range = {0, kMostOfWord},
+                 .range = {0, kMaxSignedWord},
                  .resolution = kWholeNumber},
                 fixed_choice("RG", "RG", 1.0, "the range of KC and TI: 1 for steps of 0.01"),
             },
@@ -168,12 +171,12 @@ Product pide() {
 std::vector<Parameter> pide_switches() {
     return {{.name = "PVEProportional",
              .label = "PVEProportional",
-             .role = Role::choice,
+             .role = ParameterRole::choice,
              .shape = Shape::option,
              .options = {{.value = false, .b = 1}, {.value = true, .b = 0}}},
             {.name = "PVEDerivative",
              .label = "PVEDerivative",
-             .role = Role::choice,
+             .role = ParameterRole::choice,
              .shape = Shape::option,
              .options = {{.value = true, .c = 0}, {.value = false, .c = 1}}}};
 }
@@ -190,9 +193,10 @@ Product pide_of(Form form, std::vector<Parameter> parameters) {
 
 Product pide_independent() {
     Product product =
-        pide_of(Form::parallel, {gain("PGain", "PGain", "%/%"),
-                                 action_of("IGain", "IGain", "1/min", Role::integral, times(kPerMinute, of_spans(kKi))),
-                                 action_of("DGain", "DGain", "min", Role::derivative, times(kMinutes, of_spans(kKd)))});
+        pide_of(Form::parallel,
+                {gain("PGain", "PGain", "%/%"),
+                 action_of("IGain", "IGain", "1/min", ParameterRole::integral, times(kPerMinute, of_spans(kKi))),
+                 action_of("DGain", "DGain", "min", ParameterRole::derivative, times(kMinutes, of_spans(kKd)))});
     product.id = "rockwell_pide_independent";
     product.name = "Logix PIDE, independent gains";
     product.law = "CV = PGain (b SP - PV) + (IGain/(60 s)) (SP - PV) + 60 DGain s (c SP - PV)";
@@ -210,8 +214,8 @@ Product pide_independent() {
 Product pide_dependent() {
     Product product =
         pide_of(Form::ideal, {gain("PGain", "PGain", "%/%"),
-                              action_of("IGain", "IGain", "min", Role::integral, times(kMinutes, kTi)),
-                              action_of("DGain", "DGain", "min", Role::derivative, times(kMinutes, kTd))});
+                              action_of("IGain", "IGain", "min", ParameterRole::integral, times(kMinutes, kTi)),
+                              action_of("DGain", "DGain", "min", ParameterRole::derivative, times(kMinutes, kTd))});
     product.id = "rockwell_pide_dependent";
     product.name = "Logix PIDE, dependent gains";
     product.law = "CV = PGain [ (b SP - PV) + (1/(60 IGain s)) (SP - PV) + 60 DGain s (c SP - PV) ]";

@@ -10,12 +10,12 @@ Parameter gain() {
     return {.name = "kp",
             .label = "kp",
             .unit = "output per PV unit",
-            .role = Role::gain,
+            .role = ParameterRole::gain,
             .term = kKp,
             .range = {0, kUnbounded}};
 }
-Parameter time_of(std::string_view name, std::string_view label, Role role, Term term) {
-    const bool integral = role == Role::integral;
+Parameter time_of(std::string_view name, std::string_view label, ParameterRole role, Term term) {
+    const bool integral = role == ParameterRole::integral;
     return {.name = name,
             .label = label,
             .unit = "s",
@@ -29,7 +29,7 @@ Parameter time_of(std::string_view name, std::string_view label, Role role, Term
 Parameter filter_gain(Term term) {
     return {.name = "kd",
             .label = "kd",
-            .role = Role::filter,
+            .role = ParameterRole::filter,
             .term = term,
             .range = {0, kUnbounded},
             .remark = "the largest gain of the derivative (assumed)"};
@@ -37,7 +37,7 @@ Parameter filter_gain(Term term) {
 Parameter attenuation() {
     return {.name = "ovs_att",
             .label = "ovs_att",
-            .role = Role::weight_b,
+            .role = ParameterRole::weight_b,
             .shape = Shape::one_minus_b,
             .range = kShare,
             .standard = 0.0,
@@ -46,7 +46,7 @@ Parameter attenuation() {
 Parameter derivative_of() {
     return {.name = "pv_dev",
             .label = "pv_dev",
-            .role = Role::choice,
+            .role = ParameterRole::choice,
             .shape = Shape::option,
             .options = {{.value = std::string("PV"), .c = 0}, {.value = std::string("deviation"), .c = 1}},
             .remark = "0: of the measurement; 1: of the deviation"};
@@ -84,8 +84,8 @@ Product mixed() {
     product.law = "out = kp [ ((1 - ovs_att) SP - PV) + (1/(ti s)) (SP - PV) + (td s/((td/kd) s + 1)) (c SP - PV) ]";
     product.gain_basis = "output unit per unit of the measurement (assumed)";
     product.parameters = {gain(),
-                          time_of("ti_s", "ti", Role::integral, kTi),
-                          time_of("td_s", "td", Role::derivative, kTd),
+                          time_of("ti_s", "ti", ParameterRole::integral, kTi),
+                          time_of("td_s", "td", ParameterRole::derivative, kTd),
                           filter_gain(kFilterGain),
                           fixed_choice("mix_par", "mix_par", 0.0, "0: the mixed structure"),
                           attenuation(),
@@ -111,8 +111,8 @@ Product parallel() {
         "q = Su/Sy";
     product.gain_basis = "P in engineering units, I and D by the ratio of the ranges";
     product.parameters = {gain(),
-                          time_of("ti_s", "ti", Role::integral, {.Kp = -1, .Ti = 1, .Sy = -1, .Su = 1}),
-                          time_of("td_s", "td", Role::derivative, of_spans(kKd)),
+                          time_of("ti_s", "ti", ParameterRole::integral, {.Kp = -1, .Ti = 1, .Sy = -1, .Su = 1}),
+                          time_of("td_s", "td", ParameterRole::derivative, of_spans(kKd)),
                           filter_gain(of_spans({.Kp = 1, .Td = 1, .Tf = -1})),
                           fixed_choice("mix_par", "mix_par", 1.0, "1: the parallel structure"),
                           attenuation(),

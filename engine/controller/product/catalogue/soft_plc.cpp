@@ -6,13 +6,13 @@ namespace {
 
 constexpr double kInMilliseconds = 1000;
 
-Parameter ms_time_of(std::string_view name, std::string_view label, Role role, Term term) {
+Parameter ms_time_of(std::string_view name, std::string_view label, ParameterRole role, Term term) {
     return {.name = name,
             .label = label,
             .unit = "ms",
             .role = role,
             .term = times(kInMilliseconds, term),
-            .range = {role == Role::integral ? 1.0 : 0.0, kUnbounded},
+            .range = {role == ParameterRole::integral ? 1.0 : 0.0, kUnbounded},
             .resolution = kWholeNumber};
 }
 
@@ -26,18 +26,18 @@ Product beckhoff() {
         .gain_basis = "engineering units",
         .parameters =
             {
-                {.name = "fKp", .label = "fKp", .role = Role::gain, .term = kKp},
-                ms_time_of("tTn_ms", "tTn", Role::integral, kTi),
-                ms_time_of("tTv_ms", "tTv", Role::derivative, kTd),
-                ms_time_of("tTd_ms", "tTd", Role::filter, kTf),
+                {.name = "fKp", .label = "fKp", .role = ParameterRole::gain, .term = kKp},
+                ms_time_of("tTn_ms", "tTn", ParameterRole::integral, kTi),
+                ms_time_of("tTv_ms", "tTv", ParameterRole::derivative, kTd),
+                ms_time_of("tTd_ms", "tTd", ParameterRole::filter, kTf),
                 {.name = "bPInTheFeedbackPath",
                  .label = "bPInTheFeedbackPath",
-                 .role = Role::choice,
+                 .role = ParameterRole::choice,
                  .shape = Shape::option,
                  .options = {{.value = false, .b = 1}, {.value = true, .b = 0}}},
                 {.name = "bDInTheFeedbackPath",
                  .label = "bDInTheFeedbackPath",
-                 .role = Role::choice,
+                 .role = ParameterRole::choice,
                  .shape = Shape::option,
                  .options = {{.value = false, .c = 1}, {.value = true, .c = 0}}},
             },
@@ -74,17 +74,17 @@ Product codesys() {
         .gain_basis = "engineering units",
         .parameters =
             {
-                {.name = "KP", .label = "KP", .role = Role::gain, .term = kKp, .remark = "must not be 0"},
+                {.name = "KP", .label = "KP", .role = ParameterRole::gain, .term = kKp, .remark = "must not be 0"},
                 {.name = "TN",
                  .label = "TN",
                  .unit = "s",
-                 .role = Role::integral,
+                 .role = ParameterRole::integral,
                  .term = kTi,
                  .range = {0, kUnbounded}},
                 {.name = "TV",
                  .label = "TV",
                  .unit = "s",
-                 .role = Role::derivative,
+                 .role = ParameterRole::derivative,
                  .term = kTd,
                  .range = {0, kUnbounded}},
             },

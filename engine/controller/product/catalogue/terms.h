@@ -38,7 +38,7 @@ inline constexpr double kWholeNumber = 1;  ///< resolution
 
 inline constexpr Range kShare{0, 1};
 inline constexpr double kUnbounded = std::numeric_limits<double>::infinity();
-inline constexpr double kMostOfWord = 32767;  ///< 16 bits with a sign
+inline constexpr double kMaxSignedWord = 32767;  ///< 16 bits with a sign
 
 /// 1.5 %/degC, 120 s, 20 s, Tf 2 s on 0..200 degC and 0..100 %.
 inline constexpr IdealPid kDesignA{
@@ -53,7 +53,7 @@ inline Parameter fixed_choice(std::string_view name, std::string_view label, Val
                               std::string_view remark = "") {
     return {.name = name,
             .label = label,
-            .role = Role::fixed,
+            .role = ParameterRole::fixed,
             .shape = Shape::constant,
             .standard = std::move(value),
             .remark = remark};

@@ -8,7 +8,7 @@ constexpr double kPercent = 100;
 
 // Of a duty from 0 to `full`.
 std::vector<Parameter> gains(double full, std::string_view unit, std::string_view unit_I, std::string_view unit_D) {
-    const auto part = [&](std::string_view name, std::string_view of, Role role, Term term) {
+    const auto part = [&](std::string_view name, std::string_view of, ParameterRole role, Term term) {
         return Parameter{.name = name,
                          .label = name,
                          .unit = of,
@@ -16,15 +16,15 @@ std::vector<Parameter> gains(double full, std::string_view unit, std::string_vie
                          .term = times(full, of_output(term)),
                          .range = {0, kUnbounded}};
     };
-    return {part("kp", unit, Role::gain, kKp), part("ki", unit_I, Role::integral, kKi),
-            part("kd", unit_D, Role::derivative, kKd)};
+    return {part("kp", unit, ParameterRole::gain, kKp), part("ki", unit_I, ParameterRole::integral, kKi),
+            part("kd", unit_D, ParameterRole::derivative, kKd)};
 }
 
 Product esphome() {
     std::vector<Parameter> parameters = gains(1, "1/degC", "1/(degC s)", "s/degC");
     parameters.push_back({.name = "derivative_averaging_samples",
                           .label = "derivative_averaging_samples",
-                          .role = Role::filter,
+                          .role = ParameterRole::filter,
                           .shape = Shape::slope_samples,
                           .range = {1, kUnbounded},
                           .resolution = kWholeNumber,
@@ -100,13 +100,13 @@ Product versatile() {
                 {.name = "coef_int",
                  .label = "coef_int",
                  .unit = "1/degC",
-                 .role = Role::gain,
+                 .role = ParameterRole::gain,
                  .term = of_output(kKp),
                  .range = {0, kUnbounded}},
                 {.name = "coef_ext",
                  .label = "coef_ext",
                  .unit = "1/degC",
-                 .role = Role::limit,
+                 .role = ParameterRole::limit,
                  .shape = Shape::constant,
                  .elsewhere = true,
                  .remark = "feeds the outdoor temperature forward: 1/(degrees that full power holds)"},

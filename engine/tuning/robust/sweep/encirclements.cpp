@@ -11,7 +11,7 @@
 namespace tunewright::robust {
 namespace {
 
-constexpr double kOnAxis = 1e-9;  // of a pole's real part over its size: so near the axis it may lie on it
+constexpr double kMaxRelativeRealPart = 1e-9;  // of a pole's real part over its size: so near the axis it may lie on it
 
 }  // namespace
 
@@ -55,7 +55,7 @@ std::optional<double> phase_from_rest(const LinearPlant& plant, double omega) {
     // A root to the right turns P the other way round.
     for (const auto zero : plant.zeros()) phase += zero.real() > 0 ? -turned(zero) : turned(zero);
     for (const auto pole : plant.poles()) {
-        if (std::abs(pole.real()) < kOnAxis * std::abs(pole)) return std::nullopt;
+        if (std::abs(pole.real()) < kMaxRelativeRealPart * std::abs(pole)) return std::nullopt;
         phase -= pole.real() > 0 ? -turned(pole) : turned(pole);
     }
     return phase;

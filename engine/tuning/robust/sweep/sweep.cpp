@@ -17,24 +17,25 @@ constexpr int kPointsPerDecade = 40;
 constexpr double kDecades = 3;      // below and above the reference
 constexpr int kTurnsResolved = 24;  // of the dead time, one by one
 constexpr int kPointsPerTurn = 20;
-constexpr double kFilterDecade = 30;       // times 1/Tf: where a fixed filter has ended the loop
-constexpr double kTiedDecade = 10;         // times 1/(Tf of the least Td)
-constexpr double kFallen = 3;              // times the plant's fastest root: where it falls as steeply as it ever will
-constexpr double kHighest = 1e12;          // times the reference
-constexpr double kResonant = 0.3;          // damping below which a root gets points of its own
-constexpr double kLeastWidth = 1e-5;       // of a resonance, over its frequency
-constexpr int kResonancePoints = 12;       // to either side, ever wider apart
-constexpr double kResonanceGrowth = 1.17;  // of their distance beyond, until the grid's own points are as near
-constexpr double kPeakRoom = 0.05;         // ln: grid points so far below the threshold may lie beside a peak above it
-constexpr int kMaxParabolas = 6;           // around one peak; three are usual
-constexpr double kParabolaEdge = 0.02;     // of its interval, which a parabola's top stays away from
-constexpr double kSameFrequency = 1e-7;    // ln omega: an error of 1e-14 of ln M
-constexpr double kSameValue = 1e-10;       // ln M
-constexpr double kFarBelow = -0.05;        // ln M: below it a peak limits no step, and is known well enough sooner
-constexpr double kSameFarBelow = 1e-6;     // ln M
-constexpr double kParabolaRoom = 0.03;     // ln M: how much higher than the first parabola says a peak may be
-constexpr double kBeyondAll = 50;          // ln of a ratio that has no end
-constexpr double kMostChange =
+constexpr double kFilterDecade = 30;  // times 1/Tf: where a fixed filter has ended the loop
+constexpr double kTiedDecade = 10;    // times 1/(Tf of the least Td)
+constexpr double kMaxFrequencyOverFastestRoot =
+    3;  // times the plant's fastest root: where it falls as steeply as it ever will
+constexpr double kMaxFrequencyRatio = 1e12;  // times the reference
+constexpr double kMaxResonantDamping = 0.3;  // damping below which a root gets points of its own
+constexpr double kMinWidth = 1e-5;           // of a resonance, over its frequency
+constexpr int kResonancePoints = 12;         // to either side, ever wider apart
+constexpr double kResonanceGrowth = 1.17;    // of their distance beyond, until the grid's own points are as near
+constexpr double kLogPeakMargin = 0.05;  // ln: grid points so far below the threshold may lie beside a peak above it
+constexpr int kMaxParabolas = 6;         // around one peak; three are usual
+constexpr double kParabolaEdge = 0.02;   // of its interval, which a parabola's top stays away from
+constexpr double kLogFrequencyTolerance = 1e-7;  // ln omega: an error of 1e-14 of ln M
+constexpr double kLogPeakTolerance = 1e-10;      // ln M
+constexpr double kMinRelevantLogPeak = -0.05;  // ln M: below it a peak limits no step, and is known well enough sooner
+constexpr double kLogPeakToleranceBelow = 1e-6;  // ln M
+constexpr double kLogParabolaMargin = 0.03;      // ln M: how much higher than the first parabola says a peak may be
+constexpr double kUnboundedLogRatio = 50;        // ln of a ratio that has no end
+constexpr double kMaxChange =
     0.5;  // of L, over its distance from -1: far from what could hide between the grid's points
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -57,7 +58,8 @@ std::vector<double> frequencies(const DesignProblem& problem, const LinearPlant&
         ended = kTiedDecade * reference / (*problem.filter.Tf_over_Td * kMinTd);
     if (std::isfinite(ended) && (plant.pole_excess() == 0 || problem.limits.Mks)) high = std::max(high, ended);
     // And until its fastest lag it may not fall: a derivative without end makes L grow there.
-    high = std::max(high, std::min({ended, kFallen * fastest_root(plant), kHighest * reference}));
+    high = std::max(
+        high, std::min({ended, kMaxFrequencyOverFastestRoot * fastest_root(plant), kMaxFrequencyRatio * reference}));
     const double low = reference * std::pow(10, -kDecades), ratio = std::pow(10, 1.0 / kPointsPerDecade);
     const double spacing = L > 0 ? 2 * std::numbers::pi / (kPointsPerTurn * L) : kInfinity;
     std::vector<double> omega;
@@ -66,8 +68,8 @@ std::vector<double> frequencies(const DesignProblem& problem, const LinearPlant&
         w = w < resolved_to ? std::min(w * ratio, w + spacing) : w * ratio;
     }
     const auto add_resonance = [&](Complex root) {
-        if (root.imag() <= 0 || std::abs(root.real()) > kResonant * std::abs(root)) return;
-        const double centre = std::abs(root), width = std::max(std::abs(root.real()), kLeastWidth * centre);
+        if (root.imag() <= 0 || std::abs(root.real()) > kMaxResonantDamping * std::abs(root)) return;
+        const double centre = std::abs(root), width = std::max(std::abs(root.real()), kMinWidth * centre);
         const auto add = [&](double w) {
             if (w > low && w < std::min(high, resolved_to)) omega.push_back(w);
         };
@@ -89,7 +91,8 @@ std::vector<double> frequencies(const DesignProblem& problem, const LinearPlant&
 }
 
 /// ln of the ratio at a frequency, from L and C.
-double constraint_value(ConstraintKind kind, Complex L, Complex C, const Limits& limits, double centre, double radius) {
+double constraint_value(ConstraintKind kind, Complex L, Complex C, const RobustnessLimits& limits, double centre,
+                        double radius) {
     switch (kind) {
         case ConstraintKind::S: return -std::log(limits.Ms * magnitude(1.0 + L));
         case ConstraintKind::T: return std::log(magnitude(L) / (magnitude(1.0 + L) * limits.Mt));
@@ -183,7 +186,7 @@ double Sweep::value(const Curve& curve, ConstraintKind kind, const LoopGains& c,
 
 Complex Sweep::worst_phase(const Curve& curve, Complex L, double omega) const {
     if (omega < curve.resolved_to) return L;
-    return -std::min(std::abs(L), 1 - kLeastDistance);  // reached within a turn of the dead time
+    return -std::min(std::abs(L), 1 - kMinDistance);  // reached within a turn of the dead time
 }
 
 std::array<double, 3> Sweep::gradient(const Curve& curve, ConstraintKind kind, const LoopGains& c, double omega) const {
@@ -222,8 +225,8 @@ std::optional<Sweep::Top> Sweep::top_near(const Curve& curve, std::size_t i, con
         const double log_omega = std::clamp(middle, left.log_omega + kParabolaEdge * (best.log_omega - left.log_omega),
                                             right.log_omega - kParabolaEdge * (right.log_omega - best.log_omega));
         const double step = log_omega - best.log_omega;
-        if (k == 0 && best.value - bend * step * step < threshold - kParabolaRoom) return std::nullopt;
-        if (std::abs(step) < kSameFrequency) break;
+        if (k == 0 && best.value - bend * step * step < threshold - kLogParabolaMargin) return std::nullopt;
+        if (std::abs(step) < kLogFrequencyTolerance) break;
         const Top here{log_omega, value(curve, kind, c, std::exp(log_omega))};
         const double gain = here.value - best.value;
         if (gain >= 0) {
@@ -232,7 +235,7 @@ std::optional<Sweep::Top> Sweep::top_near(const Curve& curve, std::size_t i, con
         } else {
             (step > 0 ? right : left) = here;
         }
-        if (std::abs(gain) < (best.value < kFarBelow ? kSameFarBelow : kSameValue)) break;
+        if (std::abs(gain) < (best.value < kMinRelevantLogPeak ? kLogPeakToleranceBelow : kLogPeakTolerance)) break;
     }
     return best;
 }
@@ -241,7 +244,7 @@ std::optional<Sweep::Top> Sweep::top_near(const Curve& curve, std::size_t i, con
 void Sweep::add_peaks(const Curve& curve, ConstraintKind kind, const std::vector<double>& level, const LoopGains& c,
                       double threshold, std::vector<ActivePeak>& found) const {
     const std::size_t n = level.size();
-    tops_of(level, std::exp(2 * (threshold - kPeakRoom)), tops_);
+    local_maxima(level, std::exp(2 * (threshold - kLogPeakMargin)), tops_);
     for (const std::size_t i : tops_) {
         const bool first = i == 0, last = i + 1 == n;
         ActivePeak peak{.kind = kind, .plant = curve.index, .omega = curve.omega[i], .value = 0.5 * std::log(level[i])};
@@ -268,21 +271,22 @@ void Sweep::add_limits(const Curve& curve, const LoopGains& c, double threshold,
     const std::size_t gain_index = problem_.pid ? 2 : 0;
     const auto add = [&](ConstraintKind kind, double value, double slope) {
         if (!(value >= threshold)) return;
-        ActivePeak peak{.kind = kind, .plant = curve.index, .omega = kInfinity, .value = std::min(value, kBeyondAll)};
+        ActivePeak peak{
+            .kind = kind, .plant = curve.index, .omega = kInfinity, .value = std::min(value, kUnboundedLogRatio)};
         peak.gradient[0] = slope;
         if (gain_index == 2) peak.gradient[2] = slope;
         found.push_back(peak);
     };
     const double size = std::abs(q);
-    add(ConstraintKind::S, nearest > 0 ? -std::log(problem_.limits.Ms * nearest) : kBeyondAll,
-        nearest > 0 ? size / nearest : kBeyondAll);
-    add(ConstraintKind::T, nearest > 0 ? std::log(size / nearest / problem_.limits.Mt) : kBeyondAll,
-        nearest > 0 ? 1 / nearest : kBeyondAll);
+    add(ConstraintKind::S, nearest > 0 ? -std::log(problem_.limits.Ms * nearest) : kUnboundedLogRatio,
+        nearest > 0 ? size / nearest : kUnboundedLogRatio);
+    add(ConstraintKind::T, nearest > 0 ? std::log(size / nearest / problem_.limits.Mt) : kUnboundedLogRatio,
+        nearest > 0 ? 1 / nearest : kUnboundedLogRatio);
 }
 
 /// Squared ratios to the limits at every frequency of the grid.
 void Sweep::fill_levels(Curve& curve, const LoopGains& c) const {
-    const Limits& limits = problem_.limits;
+    const RobustnessLimits& limits = problem_.limits;
     const InverseLimits inverse{.S = 1 / (limits.Ms * limits.Ms),
                                 .T = 1 / (limits.Mt * limits.Mt),
                                 .CS = limits.Mks ? 1 / (*limits.Mks * *limits.Mks) : 0};
@@ -299,7 +303,7 @@ void Sweep::fill_levels(Curve& curve, const LoopGains& c) const {
         const double size = magnitude(C) * magnitude({curve.P_re[i], curve.P_im[i]});
         const double to_circle = std::abs(circle_.centre) - size;
         curve.circle[i] =
-            circle_.radius * circle_.radius / std::max(to_circle * to_circle, kLeastDistance * kLeastDistance);
+            circle_.radius * circle_.radius / std::max(to_circle * to_circle, kMinDistance * kMinDistance);
     }
 }
 
@@ -323,16 +327,16 @@ std::vector<ActivePeak> Sweep::peaks(const DesignPoint& x, double threshold) con
 
 bool Sweep::stays_stable(const DesignPoint& from, const DesignPoint& to) const {
     const LoopGains a = gains(from), b = gains(to);
-    if (!(std::abs(b.Ki / a.Ki - 1) < kMostChange)) return false;  // at rest, with the integral
+    if (!(std::abs(b.Ki / a.Ki - 1) < kMaxChange)) return false;  // at rest, with the integral
     return std::ranges::all_of(curves_, [&](const Curve& curve) {
-        return curve.plant != nullptr && moves_less(curve.followed(), a, b, kMostChange, Phase::as_it_is) &&
-               moves_less(curve.turning(), a, b, kMostChange, Phase::worst);
+        return curve.plant != nullptr && moves_less(curve.followed(), a, b, kMaxChange, Phase::as_it_is) &&
+               moves_less(curve.turning(), a, b, kMaxChange, Phase::worst);
     });
 }
 
 namespace {
 
-constexpr double kFarOutside = 2;            // |L| where a loop enters the grid: it has not been near -1 before
+constexpr double kMinEntranceModulus = 2;    // |L| where a loop enters the grid: it has not been near -1 before
 constexpr std::size_t kUsualIntervals = 64;  // of one plant: room for them is taken at once
 
 /// Adds the intervals of positive numbers; those of neighbouring frequencies, which nearly always overlap, are joined
@@ -345,12 +349,12 @@ void add_joined(const Intervals& intervals, std::vector<GainGap>& out) {
             ++i;
             continue;
         }
-        double least = lower[i], most = upper[i];
-        for (++i; i < n && lower[i] <= most && upper[i] >= least && upper[i] > 0; ++i) {
-            least = lower[i] < least ? lower[i] : least;
-            most = upper[i] > most ? upper[i] : most;
+        double min = lower[i], max = upper[i];
+        for (++i; i < n && lower[i] <= max && upper[i] >= min && upper[i] > 0; ++i) {
+            min = lower[i] < min ? lower[i] : min;
+            max = upper[i] > max ? upper[i] : max;
         }
-        out.push_back({.lower = std::max(0.0, least), .upper = most});
+        out.push_back({.lower = std::max(0.0, min), .upper = max});
     }
 }
 
@@ -380,7 +384,7 @@ void Sweep::fill_open_loop(Curve& curve, const LoopGains& c) const {
 
 /// Adds the intervals of |Kp| that the circles forbid on one plant.
 void Sweep::forbid(Curve& curve, std::vector<GainGap>& forbidden) const {
-    const Limits& limits = problem_.limits;
+    const RobustnessLimits& limits = problem_.limits;
     const double Mt2 = limits.Mt * limits.Mt;
     const Circle of_S{.centre = -1, .radius = 1 / limits.Ms},
         of_T{.centre = -Mt2 / (Mt2 - 1), .radius = limits.Mt / (Mt2 - 1)};
@@ -422,7 +426,7 @@ Sweep::Entrance Sweep::entrance(const Curve& curve, const LoopGains& c) const {
 std::optional<int> Sweep::crossed_below(const Entrance& in, double k) {
     using std::numbers::pi;
     if (std::abs(in.phase) < pi) return in.from_left ? 1 : 0;
-    if (std::abs(in.phase) > 3 * pi || k * in.size < kFarOutside) return std::nullopt;
+    if (std::abs(in.phase) > 3 * pi || k * in.size < kMinEntranceModulus) return std::nullopt;
     return (in.from_left ? 1 : 0) + (in.phase < 0 ? 2 : -2);
 }
 
@@ -436,7 +440,7 @@ void Sweep::forbid_below(const Curve& curve, const LoopGains& c, std::vector<Gai
 }
 
 /// A curve from rest on, and what it says of the loop's stability with the gain k.
-struct Sweep::Course {
+struct Sweep::GainCourse {
     int unstable_poles;
     Entrance in;
     AxisCrossings crossings;
@@ -458,11 +462,11 @@ bool Sweep::stable_at_low_gain() const {
 
 void Sweep::tell_stability(const LoopGains& c, std::vector<GainGap>& gaps) const {
     if (!std::ranges::all_of(curves_, [](const Curve& curve) { return curve.phase_at_low.has_value(); })) return;
-    std::vector<Course> courses;  // of every curve, worked out once they are asked for
+    std::vector<GainCourse> courses;  // of every curve, worked out once they are asked for
     for (GainGap& gap : gaps) {
         if (gap.upper == kInfinity) continue;
-        gap.stable = gap.proved = gap.lower == 0 && stable_at_low_gain();
-        if (gap.proved) continue;
+        gap.stable = gap.verified = gap.lower == 0 && stable_at_low_gain();
+        if (gap.verified) continue;
         if (courses.empty())
             for (const Curve& curve : curves_)
                 courses.push_back({curve.unstable_poles, entrance(curve, c), {curve.L_re, curve.L_im}});

@@ -35,7 +35,7 @@ struct GainGap {
     /// does not tell.
     std::optional<bool> stable = std::nullopt;
     /// It is, for certain: a stable plant at low gain.
-    bool proved = false;
+    bool verified = false;
 
     /// A gain inside; finite gaps only.
     double middle() const;
@@ -111,7 +111,7 @@ private:
     Entrance entrance(const Curve& curve, const LoopGains& c) const;
     static std::optional<int> crossed_below(const Entrance& in, double k);
     void forbid_below(const Curve& curve, const LoopGains& c, std::vector<GainGap>& forbidden) const;
-    struct Course;
+    struct GainCourse;
     bool stable_at_low_gain() const;
     void tell_stability(const LoopGains& c, std::vector<GainGap>& gaps) const;
     std::complex<double> worst_phase(const Curve& curve, std::complex<double> L, double omega) const;

@@ -58,7 +58,7 @@ TUNEWRIGHT_INLINED void turning_loop(const CurveGrid& grid, const LoopGains& gai
     const std::size_t n = grid.size();
     for (std::size_t i = 0; i < n; ++i) {
         const double C = squared(response_of(c, w[i])), L = C * squared({pr[i], pi[i]}), apart = 1 - std::sqrt(L);
-        const double nearest = apart > kLeastDistance ? apart : kLeastDistance, distance = 1 / (nearest * nearest);
+        const double nearest = apart > kMinDistance ? apart : kMinDistance, distance = 1 / (nearest * nearest);
         S[i] = distance * limit.S;
         T[i] = L * distance * limit.T;
         if constexpr (with_CS) CS[i] = C * distance * limit.CS;
@@ -111,48 +111,48 @@ TUNEWRIGHT_INLINED void factor_loop(const double* re, const double* im, std::siz
         // Where only one is there it stands for both.
         const double low0 = a_high > 0 ? a_low : b_low, high0 = a_high > 0 ? a_high : b_high;
         const double low1 = b_high > 0 ? b_low : a_low, high1 = b_high > 0 ? b_high : a_high;
-        const double least = low0 < low1 ? low0 : low1, most = high0 > high1 ? high0 : high1;
+        const double min = low0 < low1 ? low0 : low1, max = high0 > high1 ? high0 : high1;
         const double between = (low0 > low1 ? low0 : low1) - (high0 < high1 ? high0 : high1);
-        lower[i] = between > 0 ? low0 : least;
-        upper[i] = between > 0 ? high0 : most;
+        lower[i] = between > 0 ? low0 : min;
+        upper[i] = between > 0 ? high0 : max;
         other_lower[i] = low1;
         other_upper[i] = between > 0 ? high1 : -1.0;
     }
 }
 
-constexpr std::size_t kPart = 64;
+constexpr std::size_t kBlockSize = 64;
 
-/// By how much |L_to - L_from|^2 exceeds most^2 |1 + L_from|^2, at kPart frequencies at most: a maximum over them would
-/// keep the loop from filling registers.
+/// By how much |L_to - L_from|^2 exceeds most^2 |1 + L_from|^2, at kBlockSize frequencies at most: a maximum over them
+/// would keep the loop from filling registers.
 template <bool worst>
-TUNEWRIGHT_INLINED void change_loop(const CurveGrid& grid, const LoopGains& from, const LoopGains& to, double most,
+TUNEWRIGHT_INLINED void change_loop(const CurveGrid& grid, const LoopGains& from, const LoopGains& to, double max,
                                     double* __restrict excess) {
     const LoopGains a = from, b = to;
     const double *w = grid.omega.data(), *pr = grid.P_re.data(), *pi = grid.P_im.data();
     const std::size_t n = grid.size();
-    const double most2 = most * most;
+    const double max2 = max * max;
     for (std::size_t i = 0; i < n; ++i) {
         const Response P{pr[i], pi[i]}, before = response_of(a, w[i]), after = response_of(b, w[i]);
         const Response L = product(P, before);
         const double change = squared(P) * squared({after.re - before.re, after.im - before.im});
         if constexpr (worst) {
-            const double nearest = 1 - std::sqrt(squared(L)), at_worst = change - most2 * nearest * nearest;
+            const double nearest = 1 - std::sqrt(squared(L)), at_worst = change - max2 * nearest * nearest;
             excess[i] = nearest > 0 ? at_worst : 1.0;
         } else {
-            excess[i] = change - most2 * squared({1 + L.re, L.im});
+            excess[i] = change - max2 * squared({1 + L.re, L.im});
         }
     }
 }
 
-TUNEWRIGHT_INLINED bool change_within(const CurveGrid& grid, const LoopGains& from, const LoopGains& to, double most,
+TUNEWRIGHT_INLINED bool change_within(const CurveGrid& grid, const LoopGains& from, const LoopGains& to, double max,
                                       Phase phase) {
-    std::array<double, kPart> excess;
-    for (std::size_t at = 0; at < grid.size(); at += kPart) {
-        const CurveGrid part = grid.part(at, std::min(at + kPart, grid.size()));
+    std::array<double, kBlockSize> excess;
+    for (std::size_t at = 0; at < grid.size(); at += kBlockSize) {
+        const CurveGrid part = grid.part(at, std::min(at + kBlockSize, grid.size()));
         if (phase == Phase::worst)
-            change_loop<true>(part, from, to, most, excess.data());
+            change_loop<true>(part, from, to, max, excess.data());
         else
-            change_loop<false>(part, from, to, most, excess.data());
+            change_loop<false>(part, from, to, max, excess.data());
         if (!std::all_of(excess.begin(), excess.begin() + part.size(), [](double x) { return x < 0; })) return false;
     }
     return true;
@@ -224,8 +224,8 @@ TUNEWRIGHT_FOR_AVX2 void factor_loop_avx2(const double* re, const double* im, st
 }
 
 TUNEWRIGHT_FOR_AVX2 bool change_within_avx2(const CurveGrid& grid, const LoopGains& from, const LoopGains& to,
-                                            double most, Phase phase) {
-    return change_within(grid, from, to, most, phase);
+                                            double max, Phase phase) {
+    return change_within(grid, from, to, max, phase);
 }
 
 }  // namespace
@@ -247,7 +247,7 @@ void turning_levels(const CurveGrid& grid, const LoopGains& gains, const Inverse
     turning_loop(grid, gains, limits, S, T, CS);
 }
 
-void tops_of(std::span<const double> level, double from, std::vector<std::size_t>& found, Registers registers) {
+void local_maxima(std::span<const double> level, double from, std::vector<std::size_t>& found, Registers registers) {
     if (registers == Registers::avx2) return find_tops_avx2(level, from, found);
     find_tops<Pair>(level, from, found);
 }
@@ -278,10 +278,10 @@ void forbidden_factors(std::span<const double> L_re, std::span<const double> L_i
                 second.upper.data());
 }
 
-bool moves_less(const CurveGrid& grid, const LoopGains& from, const LoopGains& to, double most, Phase phase,
+bool moves_less(const CurveGrid& grid, const LoopGains& from, const LoopGains& to, double max, Phase phase,
                 Registers registers) {
-    if (registers == Registers::avx2) return change_within_avx2(grid, from, to, most, phase);
-    return change_within(grid, from, to, most, phase);
+    if (registers == Registers::avx2) return change_within_avx2(grid, from, to, max, phase);
+    return change_within(grid, from, to, max, phase);
 }
 
 }  // namespace tunewright::robust

@@ -47,15 +47,15 @@ void peak_levels(const CurveGrid& grid, const LoopGains& gains, const InverseLim
                  double* CS, Registers registers = widest_registers());
 
 /// Of L from -1 where the dead time takes every phase and |L| >= 1: far beyond any limit.
-constexpr double kLeastDistance = 1e-6;
+constexpr double kMinDistance = 1e-6;
 
 /// The same at the worst phase: 1 - |L| takes the place of |1 + L|.
 void turning_levels(const CurveGrid& grid, const LoopGains& gains, const InverseLimits& limits, double* S, double* T,
                     double* CS, Registers registers = widest_registers());
 
 /// Where the levels reach `from` and are no lower than before and higher than after, in ascending order.
-void tops_of(std::span<const double> level, double from, std::vector<std::size_t>& found,
-             Registers registers = widest_registers());
+void local_maxima(std::span<const double> level, double from, std::vector<std::size_t>& found,
+                  Registers registers = widest_registers());
 
 /// radius^2/|L - centre|^2.
 void circle_levels(const CurveGrid& grid, const LoopGains& gains, const Circle& circle, double* level,
@@ -77,7 +77,7 @@ void forbidden_factors(std::span<const double> L_re, std::span<const double> L_i
 
 /// Whether |L_to - L_from| < most |1 + L_from| at every frequency. At the worst phase 1 - |L_from| takes the place of
 /// |1 + L_from|, and must be positive.
-bool moves_less(const CurveGrid& grid, const LoopGains& from, const LoopGains& to, double most, Phase phase,
+bool moves_less(const CurveGrid& grid, const LoopGains& from, const LoopGains& to, double max, Phase phase,
                 Registers registers = widest_registers());
 
 }  // namespace tunewright::robust

@@ -232,7 +232,7 @@ TEST(ProductConversions, TextsAreWrittenInTheBlocksResolution) {
 TEST(ProductConversions, ASearchSeesGainTimesAndFilterWithTheirRanges) {
     const auto tunable = tunable_parameters(product_of("emerson_deltav_series"));
     ASSERT_EQ(tunable.size(), 4U);
-    EXPECT_EQ(tunable[0].role, Role::gain);
+    EXPECT_EQ(tunable[0].role, ParameterRole::gain);
     EXPECT_EQ(tunable[3].name, "ALPHA");
     EXPECT_EQ(tunable[3].range.low, 0.05);
     EXPECT_EQ(tunable[3].range.high, 1);

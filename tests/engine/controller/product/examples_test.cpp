@@ -68,7 +68,7 @@ TEST_P(Examples, EveryTextIsThere) {
         EXPECT_TRUE(parameter.elsewhere || !formula_text(product, parameter).empty()) << parameter.name;
     }
     EXPECT_TRUE(product.evidence.level == EvidenceLevel::read || !product.evidence.unverified.empty());
-    EXPECT_NE(parameter_of(product, Role::gain), nullptr);
+    EXPECT_NE(parameter_of(product, ParameterRole::gain), nullptr);
     EXPECT_EQ(find(product.id), &product);
 }
 

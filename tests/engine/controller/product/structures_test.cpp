@@ -31,7 +31,7 @@ TEST_P(Structures, EveryChoiceIsAmongWhatIsTyped) {
         const auto converted = to_settings(product, design, kContext, true);
         ASSERT_TRUE(converted) << converted.error().message;
         for (const Parameter& parameter : product.parameters) {
-            if (parameter.options.empty() && parameter.role != Role::fixed) continue;
+            if (parameter.options.empty() && parameter.role != ParameterRole::fixed) continue;
             EXPECT_NE(named(converted->settings, parameter.name), "") << parameter.name;
         }
     }
@@ -44,7 +44,7 @@ TEST_P(Structures, AWeightIsTypedOnlyWhereItCounts) {
         for (const Setting& setting : converted->settings) {
             const Parameter* parameter = parameter_named(product, setting.name);
             if (parameter == nullptr) continue;  // the switch of the direction
-            if (parameter->role != Role::weight_b && parameter->role != Role::weight_c) continue;
+            if (parameter->role != ParameterRole::weight_b && parameter->role != ParameterRole::weight_c) continue;
             if (!depends_on_choice(product, *parameter)) continue;
             EXPECT_TRUE(counts(product, *parameter, converted->settings)) << setting.name;
         }

@@ -59,7 +59,7 @@ INSTANTIATE_TEST_SUITE_P(Each, SqliteFaults,
 
 /// The machine loses power after any one of its calls: of what was not made durable any part may be left.
 TEST(SqlitePowerLoss, LosesNothingThatWasReported) {
-    constexpr int jobs = 40, most = 500;
+    constexpr int jobs = 40, max = 500;
     struct Moment {
         std::filesystem::path folder;
         std::map<std::string, JobStatus> there;
@@ -75,7 +75,7 @@ TEST(SqlitePowerLoss, LosesNothingThatWasReported) {
         store->recover(1, 10, "{}");
         disk.after_each([&] {
             const std::lock_guard lock(mutex);
-            if (moments.size() == most) return;
+            if (moments.size() == max) return;
             Moment moment{left.path() / std::to_string(moments.size()), reported};
             std::filesystem::create_directory(moment.folder);
             const unsigned share = static_cast<unsigned>(moments.size() % 3);  // none, some, or nearly all of it
@@ -90,7 +90,7 @@ TEST(SqlitePowerLoss, LosesNothingThatWasReported) {
         }
         disk.after_each({});
     }
-    EXPECT_EQ(moments.size(), most);
+    EXPECT_EQ(moments.size(), max);
     for (const Moment& moment : moments)
         expect_kept_in((moment.folder / "jobs.db").string(), moment.there, "in " + moment.folder.string());
 }

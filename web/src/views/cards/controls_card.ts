@@ -5,8 +5,8 @@ import { h, passFocus, uniqueId } from "../../dom.ts";
 import { FormErrors } from "../../form/errors.ts";
 import { slider } from "../../form/slider.ts";
 import type { Slider } from "../../form/slider.ts";
-import { HAND, handKnobs, handValue, optionKnobs, withHand, withOption, wrongValue } from "../../live/knobs.ts";
-import type { HandName, Knob } from "../../live/knobs.ts";
+import { MANUAL, manualSliders, manualValue, optionSliders, withManual, withOption, wrongValue } from "../../live/sliders.ts";
+import type { ManualName, SliderSpec } from "../../live/sliders.ts";
 import type { Live } from "../../live/live.ts";
 import { tiedAt } from "../../live/point.ts";
 import type { Point } from "../../live/point.ts";
@@ -17,7 +17,7 @@ import type { UnitNames } from "../../words/numbers.ts";
 export interface ControlsCard {
   element: HTMLElement;
   /** Sliders for an entry of a job, at its own values; answers them. */
-  show(point: Point, entry: Entry, method: Method | undefined, units: UnitNames): Knob[];
+  show(point: Point, entry: Entry, method: Method | undefined, units: UnitNames): SliderSpec[];
   /** No limit on Ms below this is met. */
   setLowest(Ms: number | null): void;
   /** Moves the limit on Ms, as its slider would. */
@@ -32,17 +32,17 @@ const RELATIVE_STEP = 0.01;
 /** Positions to both sides that are worth knowing before a slider moves. */
 const AT_TOUCH = 12;
 
-type Turn = (knob: Knob, value: number) => Point;
+type Modify = (spec: SliderSpec, value: number) => Point;
 
-interface Turned {
-  knob: Knob;
+interface SliderControl {
+  spec: SliderSpec;
   slider: Slider;
 }
 
 export function controlsCard(live: Live): ControlsCard {
   const errors = new FormErrors();
-  let options: Turned[] = [];
-  let hands: Turned[] = [];
+  let options: SliderControl[] = [];
+  let manuals: SliderControl[] = [];
   let shown: { point: Point; entry: Entry; method: Method | undefined; units: UnitNames } | null = null;
   let tied = true;
   let lowest: number | null = null;
@@ -58,76 +58,76 @@ export function controlsCard(live: Live): ControlsCard {
   const tie = h("input", { type: "checkbox", checked: true });
   const tieText = h("span", {});
   const tieLabel = h("label", { class: "tie" }, tie, tieText);
-  const optionRows = h("div", { class: "knobs" });
-  const handTitle = h("h3", {}, "By hand");
-  const handRows = h("div", { class: "knobs tight" });
+  const optionRows = h("div", { class: "sliders" });
+  const manualTitle = h("h3", {}, "By hand");
+  const manualRows = h("div", { class: "sliders tight" });
   const element = h(
     "section",
     { class: "card controls", "aria-labelledby": title.id },
     title,
     h("div", { class: "steps" }, undo, redo, back),
     optionRows,
-    handTitle,
-    handRows,
+    manualTitle,
+    manualRows,
   );
 
   const now = (): Point => live.point.peek() ?? shown!.point;
   const controllerNow = () => followed?.controller ?? shown!.entry.controller!;
 
-  function turnOption(knob: Knob, value: number): Point {
+  function modifyOption(spec: SliderSpec, value: number): Point {
     const point = now();
-    return { tune: withOption(point.tune!, knob.id, value, tied ? knob.along : []), hand: null };
+    return { tune: withOption(point.tune!, spec.id, value, tied ? spec.along : []), manual: null };
   }
 
-  function turnHand(knob: Knob, value: number): Point {
+  function modifyManual(spec: SliderSpec, value: number): Point {
     const point = now();
-    return { tune: point.tune, hand: withHand(point.hand ?? controllerNow(), knob.id as HandName, value) };
+    return { tune: point.tune, manual: withManual(point.manual ?? controllerNow(), spec.id as ManualName, value) };
   }
 
-  function* points(values: Iterable<number>, knob: Knob, turn: Turn): Generator<Point> {
-    for (const value of values) yield turn(knob, value);
+  function* points(values: Iterable<number>, spec: SliderSpec, modify: Modify): Generator<Point> {
+    for (const value of values) yield modify(spec, value);
   }
 
-  function move(made: Slider, knob: Knob, value: number, turn: Turn): void {
-    live.move(turn(knob, value));
-    live.expect(points(made.near(), knob, turn));
+  function move(made: Slider, spec: SliderSpec, value: number, modify: Modify): void {
+    live.move(modify(spec, value));
+    live.expect(points(made.near(), spec, modify));
   }
 
-  function make(knob: Knob, turn: Turn, home: (knob: Knob) => void): Turned {
+  function make(spec: SliderSpec, modify: Modify, home: (spec: SliderSpec) => void): SliderControl {
     const made = slider(
       {
-        label: knob.label,
-        unit: knob.unit,
-        log: knob.log,
-        ...(knob.step || knob.log ? { step: knob.step ?? RELATIVE_STEP } : {}),
-        ...(knob.ends ? { ends: knob.ends } : {}),
+        label: spec.label,
+        unit: spec.unit,
+        log: spec.log,
+        ...(spec.step || spec.log ? { step: spec.step ?? RELATIVE_STEP } : {}),
+        ...(spec.ends ? { ends: spec.ends } : {}),
         pointer: () => null,
-        wrong: (value) => wrongValue(knob, value),
-        spoken: (value) => spoken(knob, value),
-        onMove: (value) => move(made, knob, value, turn),
-        onTouch: () => live.held.peek() || live.expect(points(made.near(AT_TOUCH), knob, turn)),
-        onRelease: (value) => live.settle(turn(knob, value)),
-        onHome: () => home(knob),
+        wrong: (value) => wrongValue(spec, value),
+        spoken: (value) => spoken(spec, value),
+        onMove: (value) => move(made, spec, value, modify),
+        onTouch: () => live.held.peek() || live.expect(points(made.near(AT_TOUCH), spec, modify)),
+        onRelease: (value) => live.settle(modify(spec, value)),
+        onHome: () => home(spec),
       },
       errors,
     );
-    made.setLimits(knob.lo, knob.hi);
-    made.set(knob.value);
-    return { knob, slider: made };
+    made.setLimits(spec.lo, spec.hi);
+    made.set(spec.value);
+    return { spec, slider: made };
   }
 
   /** "Ms 1.60, load IAE 8.4". */
-  function spoken(knob: Knob, value: number): string {
+  function spoken(spec: SliderSpec, value: number): string {
     const IAE = (followed ?? shown?.entry)?.performance?.load?.["IAE"];
-    const name = knob.label.replace(/^(Robustness|Noise filter|Noise limit|Set-point) /, "");
-    const unit = knob.unit ? ` ${knob.unit}` : "";
+    const name = spec.label.replace(/^(Robustness|Noise filter|Noise limit|Set-point) /, "");
+    const unit = spec.unit ? ` ${spec.unit}` : "";
     const load = typeof IAE === "number" ? `, load IAE ${formatNumber(IAE)}` : "";
-    const reached = reachedText(knob, value);
+    const reached = reachedText(spec, value);
     return `${name} ${formatNumber(value)}${unit}${reached ? `, ${reached}` : ""}${load}`;
   }
 
   /** "reached 12.5 %" where the design on the screen has another value than is asked for; else "". */
-  function reachedText({ reached, unit }: Knob, asked: number | null): string {
+  function reachedText({ reached, unit }: SliderSpec, asked: number | null): string {
     const entry = followed ?? shown?.entry;
     if (!reached || !entry) return "";
     const text = formatNumber(reached(entry));
@@ -137,64 +137,64 @@ export function controlsCard(live: Live): ControlsCard {
   /** The value asked of every option, and beside it that of the design on the screen. */
   function sayReached(): void {
     const entry = followed ?? shown?.entry;
-    for (const { knob, slider: made } of options) {
-      const missed = knob.figure === "overshoot_percent" && entry !== undefined && missesOvershoot(entry);
-      made.setReached(reachedText(knob, askedOf(knob, now())), missed);
+    for (const { spec, slider: made } of options) {
+      const missed = spec.figure === "overshoot_percent" && entry !== undefined && missesOvershoot(entry);
+      made.setReached(reachedText(spec, askedOf(spec, now())), missed);
       made.speak();
     }
   }
 
   /** Null: nobody asked, and the method does not tell its choice. */
-  function askedOf(knob: Knob, { tune }: Point): number | null {
-    const value = knob.id.split(".").reduce<unknown>((at, part) => (at as Record<string, unknown> | undefined)?.[part], tune ?? {});
-    return typeof value === "number" ? value : knob.value;
+  function askedOf(spec: SliderSpec, { tune }: Point): number | null {
+    const value = spec.id.split(".").reduce<unknown>((at, part) => (at as Record<string, unknown> | undefined)?.[part], tune ?? {});
+    return typeof value === "number" ? value : spec.value;
   }
 
-  function homeOption(knob: Knob): void {
-    if (knob.value !== null) live.settle(turnOption(knob, knob.value));
+  function homeOption(spec: SliderSpec): void {
+    if (spec.value !== null) live.settle(modifyOption(spec, spec.value));
   }
 
-  function homeHand(knob: Knob): void {
-    if (knob.value !== null) live.settle(turnHand(knob, knob.value));
+  function homeManual(spec: SliderSpec): void {
+    if (spec.value !== null) live.settle(modifyManual(spec, spec.value));
   }
 
   function makeOptions(): void {
     if (!shown) return;
     const { entry, method, units } = shown;
     const tune = now().tune;
-    options = tune ? optionKnobs(tune, entry, method, units, tied).map((knob) => make(knob, turnOption, homeOption)) : [];
+    options = tune ? optionSliders(tune, entry, method, units, tied).map((spec) => make(spec, modifyOption, homeOption)) : [];
     optionRows.replaceChildren(...options.map((item) => item.slider.element));
     const leader = leading();
-    if (leader) tieText.textContent = `${leader.knob.along!.join(", ")} = ${leader.knob.id}`;
+    if (leader) tieText.textContent = `${leader.spec.along!.join(", ")} = ${leader.spec.id}`;
     leader?.slider.element.append(tieLabel);
     limitMs();
     sayReached();
   }
 
   function limitMs(): void {
-    for (const { knob, slider: made } of options) {
-      if (knob.id !== "Ms") continue;
-      made.setLimits(Math.max(knob.lo, lowest === null ? 0 : Math.ceil(lowest * 100) / 100), knob.hi);
+    for (const { spec, slider: made } of options) {
+      if (spec.id !== "Ms") continue;
+      made.setLimits(Math.max(spec.lo, lowest === null ? 0 : Math.ceil(lowest * 100) / 100), spec.hi);
     }
   }
 
   /** The slider with which others move. */
-  const leading = (): Turned | undefined => options.find(({ knob }) => knob.along?.length);
+  const leading = (): SliderControl | undefined => options.find(({ spec }) => spec.along?.length);
 
   tie.addEventListener("change", () => {
     tied = tie.checked;
     const point = now();
     const leader = leading();
-    const value = leader && askedOf(leader.knob, point);
-    if (tied && leader && point.tune && typeof value === "number") live.settle({ tune: turnOption(leader.knob, value).tune, hand: null });
+    const value = leader && askedOf(leader.spec, point);
+    if (tied && leader && point.tune && typeof value === "number") live.settle({ tune: modifyOption(leader.spec, value).tune, manual: null });
     makeOptions();
     place(now());
   });
 
   /** Sliders where the point is; the one that is being moved stands there already. */
   function place(point: Point): void {
-    for (const { knob, slider: made } of options) {
-      const at = askedOf(knob, point);
+    for (const { spec, slider: made } of options) {
+      const at = askedOf(spec, point);
       if (at !== made.value()) made.set(at);
     }
     sayReached();
@@ -236,33 +236,33 @@ export function controlsCard(live: Live): ControlsCard {
       const focused = element.contains(document.activeElement);
       tied = tie.checked = tiedAt(point, method);
       makeOptions();
-      const hand = entry.controller && entry.method !== "emulation" ? handKnobs(entry.controller, units) : [];
-      hands = hand.map((knob) => make(knob, turnHand, homeHand));
-      handRows.replaceChildren(...hands.map((item) => item.slider.element));
-      handTitle.hidden = hands.length === 0;
-      element.hidden = options.length === 0 && hands.length === 0;
+      const manual = entry.controller && entry.method !== "emulation" ? manualSliders(entry.controller, units) : [];
+      manuals = manual.map((spec) => make(spec, modifyManual, homeManual));
+      manualRows.replaceChildren(...manuals.map((item) => item.slider.element));
+      manualTitle.hidden = manuals.length === 0;
+      element.hidden = options.length === 0 && manuals.length === 0;
       if (focused && !element.contains(document.activeElement)) firstSlider()?.focus();
-      return [...options.map((item) => item.knob)];
+      return [...options.map((item) => item.spec)];
     },
     setLowest(Ms) {
       lowest = Ms;
       limitMs();
     },
     turnMs(Ms, released) {
-      const item = options.find(({ knob }) => knob.id === "Ms");
+      const item = options.find(({ spec }) => spec.id === "Ms");
       if (!item) return;
-      const value = Math.round(100 * Math.min(item.knob.hi, Math.max(item.knob.lo, lowest ?? 0, Ms))) / 100;
-      if (released) return live.settle(turnOption(item.knob, value));
+      const value = Math.round(100 * Math.min(item.spec.hi, Math.max(item.spec.lo, lowest ?? 0, Ms))) / 100;
+      if (released) return live.settle(modifyOption(item.spec, value));
       item.slider.set(value);
-      move(item.slider, item.knob, value, turnOption);
+      move(item.slider, item.spec, value, modifyOption);
     },
     follow(entry) {
       followed = entry;
       const moved = document.activeElement;
-      for (const { knob, slider: made } of hands) {
+      for (const { spec, slider: made } of manuals) {
         if (made.element.contains(moved) && live.held.peek()) continue;
-        const value = entry.controller ? handValue(entry.controller, knob.id as HandName) : null;
-        if (value !== null && HAND.includes(knob.id as HandName)) made.set(value);
+        const value = entry.controller ? manualValue(entry.controller, spec.id as ManualName) : null;
+        if (value !== null && MANUAL.includes(spec.id as ManualName)) made.set(value);
       }
       sayReached();
     },

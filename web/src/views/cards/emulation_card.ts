@@ -18,7 +18,7 @@ import {
 import type { LevelRow } from "../../words/emulation.ts";
 import { DASH, formatNumber, formatSetting, withUnit } from "../../words/numbers.ts";
 import type { UnitNames } from "../../words/numbers.ts";
-import { handSettings } from "../hand_settings.ts";
+import { manualSettings } from "../manual_settings.ts";
 
 const formatBound = (value: number): string => formatSetting(Number(value.toPrecision(3)));
 
@@ -45,7 +45,7 @@ export function emulationCard(
   const note = h("p", { class: "hint", hidden: true });
   const charts = plotGrid(announce);
   const scenario = choiceField({ label: "Scenario", choices: [], pointer: () => null }, new FormErrors());
-  const hand = handSettings({
+  const manual = manualSettings({
     onRun(run) {
       own = run;
       sayCost();
@@ -53,11 +53,11 @@ export function emulationCard(
     },
     onTry,
   });
-  scenario.input.addEventListener("change", () => hand.setScenario(scenarioShown()));
+  scenario.input.addEventListener("change", () => manual.setScenario(scenarioShown()));
   const element = h(
     "section",
     { class: "card emulation", "aria-labelledby": title.id, hidden: true },
-    h("div", { class: "emulation-head" }, title, judgement, table, facts, scenario.element, note, hand.element),
+    h("div", { class: "emulation-head" }, title, judgement, table, facts, scenario.element, note, manual.element),
     charts.element,
   );
 
@@ -68,9 +68,9 @@ export function emulationCard(
   function sayCost(): void {
     const emulation = shown?.entry.emulation;
     const at = scenarioShown();
-    if (!own || !emulation || !at?.t || !at.y || !at.u) return hand.say("");
+    if (!own || !emulation || !at?.t || !at.y || !at.u) return manual.say("");
     const [tried, best] = [costOf(emulation, at, own), costOf(emulation, at, { t: at.t, y: at.y, u: at.u })];
-    hand.say(tried === null ? "" : `J of this scenario ${formatNumber(tried)}; of the optimum ${formatNumber(best)}`);
+    manual.say(tried === null ? "" : `J of this scenario ${formatNumber(tried)}; of the optimum ${formatNumber(best)}`);
   }
 
   function draw(): void {
@@ -94,7 +94,7 @@ export function emulationCard(
     // Only the first scenario is run with them.
     if (scenario.input.value !== "0" && draws) {
       scenario.input.value = "0";
-      hand.setScenario(scenarioShown());
+      manual.setScenario(scenarioShown());
     }
     draw();
   }
@@ -205,13 +205,13 @@ export function emulationCard(
         scenario.input.replaceChildren(
           ...scenarios.map((item, index) => h("option", { value: index }, scenarioWords(item))),
         );
-        hand.show(entry, plant, units);
-        hand.setScenario(scenarios[0]);
+        manual.show(entry, plant, units);
+        manual.setScenario(scenarios[0]);
       }
       draw();
     },
     dispose() {
-      hand.dispose();
+      manual.dispose();
       charts.dispose();
     },
   };

@@ -31,7 +31,7 @@ export interface PartCard {
   faults(): FieldError[];
 }
 
-const MOST_STEPS = 12;
+const MAX_STEPS = 12;
 
 export function partCard(errors: FormErrors, onMove: () => void, onRelease: () => void): PartCard {
   let extent: Part | null = null;
@@ -77,7 +77,7 @@ export function partCard(errors: FormErrors, onMove: () => void, onRelease: () =
     element,
     setSteps(list) {
       // One step needs no choice, and very many are another kind of test.
-      steps.hidden = list.length < 2 || list.length > MOST_STEPS;
+      steps.hidden = list.length < 2 || list.length > MAX_STEPS;
       steps.replaceChildren(
         ...list.map((step) =>
           h(

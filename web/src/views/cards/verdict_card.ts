@@ -1,7 +1,7 @@
 // The verdict of the chosen controller, or why a job has none.
 import type { Finding, Job, Result } from "../../api/types.ts";
 import { h } from "../../dom.ts";
-import { reasonOf } from "../../words/league.ts";
+import { reasonOf } from "../../words/comparison.ts";
 import { withMinus } from "../../words/numbers.ts";
 import { timeUnitDoubt } from "../../words/quality.ts";
 

@@ -1,0 +1,52 @@
+// The user's own controller: in a request which product, with which spans, or a program of the ideal form; in an answer
+// the loop that it makes.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "api/describe/description.h"
+#include "engine/request/device_entry.h"
+
+namespace tunewright::api {
+
+/// As sent.
+struct GivenDevice {
+    std::optional<std::string> product;
+    std::optional<std::vector<double>> y_span, u_span;
+    std::optional<double> sample_time;
+    std::optional<IntegralRule> integral;
+    enum class Derivative { difference, filtered };
+    std::optional<Derivative> derivative;
+    std::optional<bool> velocity;
+    double computation_delay = 0;
+    double u_resolution = 0, y_resolution = 0, dead_band = 0;
+};
+
+const Description<GivenDevice>& implement_contract();
+
+/// Today's settings as they stand in a product.
+struct GivenBaseline {
+    std::string product;
+    product::Settings settings;
+    std::optional<std::vector<double>> y_span, u_span;
+    std::optional<double> sample_time;
+
+    /// The same as a controller that is asked for; spans and sample time that are not given are those of `others`.
+    GivenDevice device(const std::optional<GivenDevice>& others) const;
+};
+
+const Description<GivenBaseline>& baseline_settings_contract();
+
+/// Faults at the reader's place where the product needs a span or a sample time that is not given.
+void check_needs(const device::DeviceModel& device, Reader& reader);
+
+/// Times of the request are in `time_label` (units.time). Faults at the reader's place: an unknown product, a label
+/// that is no unit of time.
+std::optional<device::DeviceModel> device_of(const GivenDevice& given, const std::string& time_label, Reader& reader);
+
+/// {"sample_time", "robustness", "performance", "responses", "difference"}.
+const Description<DeviceEntry>& implemented_contract();
+
+}  // namespace tunewright::api

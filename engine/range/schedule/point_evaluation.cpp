@@ -1,0 +1,186 @@
+#include "engine/range/schedule/point_evaluation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <optional>
+#include "engine/tuning/limits.h"
+
+#include "engine/tuning/robust/sqp.h"
+
+namespace tunewright::range {
+namespace {
+
+constexpr double kMinLogRatioOfAll = -5;       // of ln of a limit's ratio: every peak counts
+constexpr double kMinLogRatioOfHigh = -0.05;   // of it: only what may exceed the limit somewhere near
+constexpr double kEvaluationTolerance = 3e-4;  // of the simulations
+constexpr double kFineTolerance = 1e-5;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+void add_setting(PointEvaluation& look, const PointDesign& place, const robust::DesignPoint& x, double log_own_IAE,
+                 double above) {
+    const robust::RobustnessLimits& limits = place.problem().limits;
+    for (const auto& peak : place.sweep().peaks(x, above)) {
+        look.excess = std::max(look.excess, peak.value);
+        if (peak.kind == robust::ConstraintKind::S) look.Ms = std::max(look.Ms, limits.Ms * std::exp(peak.value));
+        if (peak.kind == robust::ConstraintKind::T) look.Mt = std::max(look.Mt, limits.Mt * std::exp(peak.value));
+    }
+    look.stable = look.stable && robust::is_stable(place.problem(), x);
+    double log_IAE = look.stable ? robust::log_cost(place.problem(), x, kEvaluationTolerance) : kInfinity;
+    // A run that is coarse may miss that a slow tail has settled.
+    if (look.stable && !std::isfinite(log_IAE)) log_IAE = robust::log_cost(place.problem(), x, kFineTolerance);
+    look.log_cost_ratio = std::max(look.log_cost_ratio, log_IAE - log_own_IAE);
+}
+
+}  // namespace
+
+robust::DesignPoint point_of(const IdealPid& pid) {
+    return {std::log(std::abs(pid.Kp)), std::log(pid.Ti), pid.Td > 0 ? std::log(pid.Td) : -kInfinity};
+}
+
+std::vector<IdealPid> in_use(const Schedule& schedule, double at) {
+    if (schedule.interpolation != Interpolation::steps) return {settings_at(schedule, at)};
+    std::vector<IdealPid> result;
+    const double half = 0.5 * schedule.hysteresis;
+    for (std::size_t k = 0; k < schedule.rows.size(); ++k) {
+        const bool above = k == 0 || at >= schedule.rows[k].at - half;
+        const bool below = k + 1 == schedule.rows.size() || at <= schedule.rows[k + 1].at + half;
+        if (above && below) result.push_back(controller_of(schedule.rows[k]));
+    }
+    return result;
+}
+
+PointEvaluation evaluate_at(const PointDesign& place, const std::vector<IdealPid>& settings, double log_own_IAE,
+                            bool all_peaks) {
+    const double above = all_peaks ? kMinLogRatioOfAll : kMinLogRatioOfHigh;
+    PointEvaluation look{
+        .at = place.at(), .stable = true, .Ms = 1, .Mt = 0, .excess = above, .log_cost_ratio = -kInfinity};
+    for (const IdealPid& pid : settings) add_setting(look, place, point_of(pid), log_own_IAE, above);
+    if (!look.stable) look.excess = look.log_cost_ratio = kInfinity;
+    return look;
+}
+
+Expected<PointEvaluation> evaluate_between(const PointDesigns& places, const OwnOptima& own,
+                                           const std::vector<IdealPid>& settings, double at, bool all_peaks) {
+    auto model = places.model().at(at);
+    if (!model) return model.error();
+    const PointDesign place(std::move(*model), places.rules());
+    return evaluate_at(place, settings, own.log_IAE(at), all_peaks);
+}
+
+namespace {
+
+constexpr int kRangeEvaluations = 48;            // places over the range at which a schedule is verified first
+constexpr int kPartEvaluations = 9;              // and between two places where plant or settings bend
+constexpr double kMaxSmallLogExcess = 5e-4;      // of it: all limits are tightened by it, rather than a place added
+constexpr double kMinLogRatioNearLimit = -5e-3;  // of it: tops above it are looked at more closely
+constexpr double kMaxLogCostGap = 0.01;          // of ln of the cost, below what is allowed: the same
+constexpr std::size_t kMaxPointsPerRound = 6;    // places a round
+
+std::vector<double> looked_at(const PointDesigns& places, const Schedule& schedule) {
+    const double low = places.model().low(), high = places.model().high();
+    std::vector<double> at;
+    for (int i = 0; i <= kRangeEvaluations; ++i) at.push_back(low + (high - low) * i / kRangeEvaluations);
+    const std::vector<double> bends = bends_of(places.model(), schedule);
+    at.insert(at.end(), bends.begin(), bends.end());
+    for (std::size_t k = 1; k < bends.size(); ++k) {
+        const double from = bends[k - 1], width = bends[k] - from;
+        for (int i = 0; i < kPartEvaluations; ++i) at.push_back(from + width * (i + 0.5) / kPartEvaluations);
+    }
+    std::ranges::sort(at);
+    at.erase(std::ranges::unique(at).begin(), at.end());
+    return at;
+}
+
+/// Looks over the range, ascending, and more of them where they are near a limit or the cost allowed.
+class Looks {
+public:
+    Looks(const PointDesigns& places, const OwnOptima& own, const Schedule& schedule)
+        : places_(places), own_(own), schedule_(schedule) {}
+
+    std::optional<Error> take(double at) {
+        const auto look = evaluate_between(places_, own_, in_use(schedule_, at), at, false);
+        if (!look) return look.error();
+        const auto after = std::ranges::upper_bound(looks_, at, {}, &PointEvaluation::at);
+        looks_.insert(after, *look);
+        return std::nullopt;
+    }
+
+    /// One more look at the top of the parabola through each local maximum above the threshold and its neighbours.
+    std::optional<Error> refine(double PointEvaluation::*value, double threshold) {
+        std::vector<double> wanted;
+        for (std::size_t i = 1; i + 1 < looks_.size(); ++i) {
+            const PointEvaluation &a = looks_[i - 1], &b = looks_[i], &c = looks_[i + 1];
+            if (!is_top(i, value) || !(b.*value > threshold) || !std::isfinite(a.*value + b.*value + c.*value))
+                continue;
+            const double left = (b.*value - a.*value) / (b.at - a.at), right = (c.*value - b.*value) / (c.at - b.at);
+            const double bend = (right - left) / (c.at - a.at);
+            if (!(bend < 0)) continue;
+            const double top = 0.5 * (a.at + b.at) - 0.5 * left / bend;
+            if (top > a.at && top < c.at && top != b.at) wanted.push_back(top);
+        }
+        for (const double at : wanted)
+            if (auto error = take(at)) return error;
+        return std::nullopt;
+    }
+
+    double largest(double PointEvaluation::*value) const {
+        return (*std::ranges::max_element(looks_, {}, value)).*value;
+    }
+
+    /// Local maxima above the threshold, the largest first.
+    std::vector<double> tops(double PointEvaluation::*value, double threshold) const {
+        std::vector<std::size_t> found;
+        for (std::size_t i = 0; i < looks_.size(); ++i)
+            if (looks_[i].*value > threshold && (is_top(i, value) || !std::isfinite(looks_[i].*value)))
+                found.push_back(i);
+        std::ranges::stable_sort(found, std::greater{}, [&](std::size_t i) { return looks_[i].*value; });
+        found.resize(std::min(found.size(), kMaxPointsPerRound));
+        std::vector<double> at;
+        for (const std::size_t i : found) at.push_back(looks_[i].at);
+        return at;
+    }
+
+private:
+    bool is_top(std::size_t i, double PointEvaluation::*value) const {
+        const double here = looks_[i].*value;
+        return (i == 0 || looks_[i - 1].*value <= here) && (i + 1 == looks_.size() || looks_[i + 1].*value < here);
+    }
+
+    const PointDesigns& places_;
+    const OwnOptima& own_;
+    const Schedule& schedule_;
+    std::vector<PointEvaluation> looks_;
+};
+
+}  // namespace
+
+std::vector<double> bends_of(const RangeModel& model, const Schedule& schedule) {
+    std::vector<double> bends = model.points();
+    for (const ScheduleRow& row : schedule.rows)
+        if (row.at >= model.low() && row.at <= model.high()) bends.push_back(row.at);
+    std::ranges::sort(bends);
+    bends.erase(std::ranges::unique(bends).begin(), bends.end());
+    return bends;
+}
+
+Expected<Verified> verify(const PointDesigns& places, const OwnOptima& own, const Schedule& schedule, double allowed) {
+    Looks looks(places, own, schedule);
+    for (const double at : looked_at(places, schedule))
+        if (auto error = looks.take(at)) return *error;
+    for (int round = 0; round < 2; ++round) {
+        if (auto error = looks.refine(&PointEvaluation::excess, kMinLogRatioNearLimit)) return *error;
+        if (auto error = looks.refine(&PointEvaluation::log_cost_ratio, allowed - kMaxLogCostGap)) return *error;
+    }
+    Verified result{.excess = looks.largest(&PointEvaluation::excess),
+                    .log_cost_ratio = looks.largest(&PointEvaluation::log_cost_ratio),
+                    .worst = {}};
+    const bool little = result.excess <= kMaxSmallLogExcess && result.log_cost_ratio <= allowed;
+    if (!little) result.worst = looks.tops(&PointEvaluation::excess, limits::kMaxRelativeExcessVerified);
+    const auto over_allowance = looks.tops(&PointEvaluation::log_cost_ratio, allowed);
+    result.worst.insert(result.worst.end(), over_allowance.begin(), over_allowance.end());
+    return result;
+}
+
+}  // namespace tunewright::range

@@ -1,0 +1,81 @@
+// One place of a range as the searches see it: its plants, the limits over frequency, and its own optimum.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "engine/expected.h"
+#include "engine/range/model/range_model.h"
+#include "engine/range/problem.h"
+#include "engine/tuning/robust/cost.h"
+#include "engine/tuning/robust/sweep/sweep.h"
+
+namespace tunewright::range {
+
+/// What all places share.
+struct DesignRules {
+    bool pid = true;
+    robust::FilterRule filter;
+    robust::RobustnessLimits limits;
+    double sign = 1;          ///< of Kp
+    bool integrated = false;  ///< Ti/Kp in place of the IAE, also where a response could be computed
+};
+
+/// Neither copied nor moved: the design problem points into it.
+class PointDesign {
+public:
+    PointDesign(PointModel model, const DesignRules& rules);
+    PointDesign(const PointDesign&) = delete;
+    PointDesign& operator=(const PointDesign&) = delete;
+
+    double at() const { return model_.at; }
+    const PointModel& model() const { return model_; }
+    const robust::DesignProblem& problem() const { return problem_; }
+    const robust::Sweep& sweep() const { return *sweep_; }
+
+    /// The design with the least IAE here within the limits, on every member. `before`: the optimum of a neighbour,
+    /// from which it is searched. Regions of uncertainty are held inside. Errors: as robust::verified_search.
+    std::optional<Error> find_optimum(const RunControl& control, const robust::DesignPoint* before);
+
+    /// Where searches begin: of a PI that does better than any PID with the least Td, at which the limits need not
+    /// hold.
+    const robust::DesignPoint& optimum() const { return optimum_; }
+    /// The optimum itself: ln Td is -infinity where it is a PI.
+    robust::DesignPoint own_design() const;
+    bool optimum_is_PI() const { return optimum_is_PI_; }
+    double optimum_log_cost() const { return optimum_log_cost_; }
+
+    /// ln of IAE over that of the own optimum; infinite where it does not settle. The loop must be stable.
+    double log_cost_ratio(const robust::DesignPoint& x, double tolerance) const;
+    double log_cost_ratio(const robust::EvaluatedDesign& design) const { return design.log_cost() - optimum_log_cost_; }
+    /// The runs behind a cost, from which its gradient follows.
+    robust::EvaluatedDesign evaluated(const robust::DesignPoint& x, double tolerance) const {
+        return {problem_, x, tolerance};
+    }
+
+    /// The largest relative excess over a limit, on grids that no search sees; infinite where the loop is unstable.
+    double excess(const robust::DesignPoint& x) const;
+
+    /// The plants inside the region of uncertainty on which x exceeds a limit join the members: true if there are any.
+    bool add_worst_inside(const robust::DesignPoint& x, const std::stop_token& stop);
+    /// The same of the members that were set aside.
+    bool take_back_exceeded(const robust::DesignPoint& x);
+
+    /// Members that were far from every limit at the optimum: the searches leave them out, judgements do not.
+    const std::vector<LinearPlant>& set_aside() const { return set_aside_; }
+
+private:
+    void pose();
+    void look_about(double reference);
+    void keep_active_members();
+
+    PointModel model_;
+    std::vector<LinearPlant> set_aside_;
+    robust::DesignProblem problem_;
+    std::optional<robust::Sweep> sweep_;
+    robust::DesignPoint optimum_{};
+    bool optimum_is_PI_ = false;  // although a PID was asked for
+    double optimum_log_cost_ = 0;
+};
+
+}  // namespace tunewright::range

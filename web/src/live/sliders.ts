@@ -1,0 +1,173 @@
+// What can be moved on a design: the options that its method describes with sliders, and the settings themselves.
+import type { Controller, Entry, Method, OptionSlider, Schema, TuneEntry } from "../api/types.ts";
+import type { UnitNames } from "../words/numbers.ts";
+import { namedUnit, quotient } from "../words/numbers.ts";
+
+export interface SliderSpec {
+  /** Its option with dots between the parts, or the setting's name; stands in the address too. */
+  id: string;
+  label: string;
+  unit: string;
+  lo: number;
+  hi: number;
+  /** Even steps of the logarithm. */
+  log: boolean;
+  /** What one press of an arrow key is worth; 1 % where it is logarithmic. */
+  step?: number;
+  /** What its ends mean. */
+  ends?: [string, string];
+  /** Null: the method's own choice, which it does not tell. */
+  value: number | null;
+  /** What the method says of the option's values. */
+  schema?: Schema;
+  /** Options that have the same value as long as they are tied to it. */
+  along?: readonly string[];
+  /** The value of the same quantity that a design came to: less or more than was asked for. */
+  reached?(entry: Entry): number | null;
+  /** Its name. */
+  figure?: OptionSlider["value_of"];
+}
+
+export type ManualName = "Kp" | "Ti" | "Td" | "Tf";
+export const MANUAL: readonly ManualName[] = ["Kp", "Ti", "Td", "Tf"];
+
+/** A setting by hand is moved between these parts and multiples of it. */
+const SPREAD = 5;
+
+/** Why a typed value cannot be asked for; "" where it can. */
+export function wrongValue({ label, schema }: SliderSpec, value: number): string {
+  const { minimum, exclusiveMinimum, maximum, exclusiveMaximum } = schema ?? {};
+  const rules = [
+    minimum !== undefined && value < minimum ? `at least ${minimum}` : "",
+    exclusiveMinimum !== undefined && value <= exclusiveMinimum ? `above ${exclusiveMinimum}` : "",
+    maximum !== undefined && value > maximum ? `at most ${maximum}` : "",
+    exclusiveMaximum !== undefined && value >= exclusiveMaximum ? `below ${exclusiveMaximum}` : "",
+  ].filter(Boolean);
+  return rules.length > 0 ? `${label} is ${value}; it must be ${rules.join(" and ")}.` : "";
+}
+
+const at = (whole: unknown, id: string): number | null => {
+  const value = id.split(".").reduce<unknown>((part, name) => (part as Record<string, unknown> | undefined)?.[name], whole);
+  return typeof value === "number" ? value : null;
+};
+
+interface Movable {
+  id: string;
+  schema: Schema;
+  slider: OptionSlider;
+}
+
+/** The options that the method says are moved, parts of an option included. */
+const movable = (properties: Record<string, Schema> | undefined, prefix = ""): Movable[] =>
+  Object.entries(properties ?? {}).flatMap(([name, schema]) => [
+    ...(schema["x-slider"] ? [{ id: prefix + name, schema, slider: schema["x-slider"] }] : []),
+    ...movable(schema.properties, `${prefix}${name}.`),
+  ]);
+
+/** What was asked for, else the method's default. */
+const askedOf = (tune: TuneEntry, { id, schema }: Movable): number | null => at(tune, id) ?? given(schema.default);
+
+/** Whether the options that may move with another one have its value. */
+export function isTied(tune: TuneEntry, method: Method | undefined): boolean {
+  const options = movable(method?.options?.properties);
+  return options.every((option) => {
+    const other = options.find(({ id }) => id === option.slider.moves_with);
+    return !other || askedOf(tune, option) === askedOf(tune, other);
+  });
+}
+
+/** The same options with one of them changed, and with it those that go `along`; parts of an option that exclude each
+ * other are replaced by it. */
+export function withOption(tune: TuneEntry, id: string, value: number, along: readonly string[] = []): TuneEntry {
+  const [name = id, part] = id.split(".");
+  const next: TuneEntry = { ...tune, [name]: part ? { [part]: value } : value };
+  return along.reduce((made, other) => ({ ...made, [other]: value }), next);
+}
+
+const filterTime = ({ controller }: Entry): number | null => controller?.filter?.Tf ?? null;
+
+/** Where a design's figures stand. The overshoot is that of the loop that runs: in the user's own controller where the
+ * request names one. */
+const FIGURES: Record<NonNullable<OptionSlider["value_of"]>, (entry: Entry) => number | null> = {
+  Mks: ({ robustness }) => robustness?.Mks ?? null,
+  Tf: filterTime,
+  Tf_over_Td: (entry) => (entry.controller?.Td ? quotientOf(filterTime(entry), entry.controller.Td) : null),
+  overshoot_percent: ({ implemented, performance }) =>
+    given((implemented?.performance ?? performance)?.setpoint?.["overshoot_percent"]),
+};
+
+const quotientOf = (a: number | null, b: number): number | null => (a === null ? null : a / b);
+
+/** `tied`: without those that move with another one. */
+export function optionSliders(tune: TuneEntry, entry: Entry, method: Method | undefined, units: UnitNames, tied = isTied(tune, method)): SliderSpec[] {
+  const options = movable(method?.options?.properties);
+  const valueOf = (option: Movable): number | null =>
+    at(tune, option.id) ??
+    at(entry.options, option.id) ??
+    given(option.schema.default) ??
+    (option.slider.value_of ? FIGURES[option.slider.value_of](entry) : null);
+  const chosen = (option: Movable): boolean => {
+    const group = options.filter(({ slider }) => slider.group === option.slider.group);
+    const one = group.find(({ id }) => at(tune, id) !== null) ?? [...group].reverse().find((other) => valueOf(other) !== null) ?? group.at(-1);
+    return !option.slider.group || option === one;
+  };
+  return options.filter((option) => chosen(option) && !(tied && option.slider.moves_with)).flatMap((option) => {
+    const { id, schema, slider } = option;
+    const value = valueOf(option);
+    const ends = endsOf(schema, slider, value, entry);
+    const along = options.flatMap((other) => (other.slider.moves_with === id ? [other.id] : []));
+    const { label, low, high, step, reached } = slider;
+    return ends
+      ? [
+          {
+            id,
+            label: label ?? nameOf(id),
+            unit: namedUnit(schema["x-unit"] ?? "", units),
+            ...ends,
+            log: slider.logarithmic ?? false,
+            ...(step === undefined ? {} : { step }),
+            ...(low && high ? { ends: [low, high] as [string, string] } : {}),
+            value,
+            schema: numberSchema(schema),
+            along,
+            ...(reached ? { reached: FIGURES[reached], figure: reached } : {}),
+          },
+        ]
+      : [];
+  });
+}
+
+const given = (value: unknown): number | null => (typeof value === "number" ? value : null);
+/** Words in full, symbols as they are written. */
+const nameOf = (name: string): string => (name.length < SYMBOL_LENGTH ? name : name.replaceAll("_", " ").replace(/ deg$/, ""));
+const SYMBOL_LENGTH = 7;
+
+/** The schema of the number that an option may be. */
+const numberSchema = (schema: Schema): Schema => schema.oneOf?.find((item) => item.type === "number") ?? schema;
+
+/** Relative ones about the value, else about the loop's own time. */
+function endsOf(schema: Schema, { from, to, relative }: OptionSlider, value: number | null, entry: Entry): Pick<SliderSpec, "lo" | "hi"> | null {
+  if (!relative) return { lo: from, hi: to };
+  const crossover = entry.robustness?.gain_crossover;
+  const about = value ?? (schema["x-unit"] === "time" && crossover ? 1 / crossover : null);
+  return about ? { lo: about * from, hi: about * to } : null;
+}
+
+export const manualValue = (controller: Controller, name: ManualName): number | null =>
+  (name === "Tf" ? controller.filter?.Tf : controller[name]) ?? null;
+
+export function withManual(controller: Controller, name: ManualName, value: number): Controller {
+  return name === "Tf"
+    ? { ...controller, filter: { type: controller.filter?.type ?? "none", Tf: value } }
+    : { ...controller, [name]: value };
+}
+
+/** The settings that a controller has, each about the proposal's. */
+export function manualSliders(controller: Controller, units: UnitNames): SliderSpec[] {
+  return MANUAL.flatMap((name) => {
+    const value = manualValue(controller, name);
+    if (value === null || value === 0) return [];
+    const unit = name === "Kp" ? quotient(units.u, units.y) : units.time;
+    return [{ id: name, label: name, unit, lo: value / SPREAD, hi: value * SPREAD, log: true, value }];
+  });
+}

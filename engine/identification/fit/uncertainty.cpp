@@ -461,7 +461,7 @@ std::optional<PlantShape> shape_of(const CleanRecord& r, const Fit& fit, const P
 /// The sum of squares that a plant leaves, what else moved y fitted anew.
 class Misfit {
 public:
-    Misfit(const CleanRecord& record, const Fit& fit) : fit_(fit), stride_(std::max(1, record.samples() / kRows)) {
+    Misfit(const CleanRecord& record, const Fit& fit) : fit_(fit), stride_(std::max(1, record.samples() / kMaxRows)) {
         for (int i = 0; i < record.samples(); i += stride_) {
             t_.push_back(record.t[static_cast<std::size_t>(i)]);
             rest_.push_back(fit.residual[static_cast<std::size_t>(i)]);

@@ -128,7 +128,7 @@ export async function openPage(browser, { scheme = "light", width = 1440, height
   const viewport = { width, height };
   const context = await browser.newContext({ viewport, colorScheme: scheme, acceptDownloads: true, hasTouch });
   const page = await context.newPage();
-  page.setDefaultTimeout(30_000);
+  page.setDefaultTimeout(60_000);
   const faults = [];
   await page.addInitScript(() => {
     globalThis.policyViolations = [];

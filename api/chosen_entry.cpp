@@ -16,7 +16,7 @@ std::string count_of(const Json& controllers) {
            std::to_string(controllers.size() - 1) + ".";
 }
 
-// The best where none is named.
+// The best controller if none is named.
 std::variant<std::size_t, Problem> index_of(const Json& result, std::string_view index) {
     const Json& controllers = result.at("controllers");
     std::size_t number = 0;

@@ -12,17 +12,18 @@ struct JobOutcome {
     Status status = Status::failed;
     std::string result_json;        ///< of succeeded; of cancelled with a feasible design ("partial": true); else empty
     std::string error_json;         ///< problem object of failed; else empty
-    std::string method = {};        ///< the method asked for; "several" of more than one; "none" of a request with none
-    std::string outline_json = {};  ///< of a result: what a list shows of it (JobOutline in the document)
+    std::string method = {};        ///< the method asked for; "several" for more than one; "none" for a request without
+                                    ///< one
+    std::string outline_json = {};  ///< of a result: the fields for a list (JobOutline in the document)
 };
 
-/// Status and body of a synchronous call; the media type is problem+json from 400 on.
+/// Status and body of a synchronous call; the media type is problem+json for a status of 400 or more.
 struct Answer {
     int status = 200;
     std::string body;
 };
 
-/// The answer to a call that cannot be done.
+/// The answer to a call that is refused.
 inline Answer refusal(const Problem& problem) { return {problem.status, to_json(problem)}; }
 
 }  // namespace tunewright::api

@@ -11,7 +11,7 @@
 namespace tunewright::api {
 namespace {
 
-/// A longer plant is named by its type alone.
+/// A longer plant is shown by its type alone.
 constexpr std::size_t kLongestPlant = 300;
 constexpr std::size_t kLongestError = 400;
 
@@ -26,7 +26,7 @@ std::string short_plant(const Contract& contract, const Value& plant) {
 
 bool is_todays(const TuningEntry& entry) { return entry.method == "baseline"; }
 
-/// The best one that was tuned; null where there is none.
+/// The best controller that was tuned; null if there is none.
 const TuningEntry* first_ranked(const TuningResult& result) {
     for (const int index : result.ranking) {
         const TuningEntry& entry = result.controllers.at(static_cast<std::size_t>(index));
@@ -45,7 +45,7 @@ void write_figures(const TuningEntry& entry, Writer& out) {
     write_figure("load_IAE", verdict::performance_of(entry).load.IAE, out);
 }
 
-/// Writes what to enter: the controller, and the texts to type where it is for a product.
+/// Writes the settings to enter: the controller, and the texts to type if it is for a product.
 void write_settings(const TuningEntry& best, Writer& out) {
     out.key("controller");
     controller_contract().write(best.evaluation->controller, out);

@@ -11,7 +11,7 @@
 namespace tunewright::api {
 namespace {
 
-/// The engine's answer, with what reading the records has found.
+/// The engine's answer, with the findings of reading the records.
 Expected<RangeResult> answered_range(const RangeRequest& request, const RunControl& control) {
     auto result = ask_range(request.question, control);
     if (!result) return result;
@@ -24,7 +24,7 @@ Expected<RangeResult> answered_range(const RangeRequest& request, const RunContr
     return result;
 }
 
-/// The record of the point that an error is about, as samples that show what was read.
+/// The problem with samples of the record to which the error refers, which show what was read.
 Problem problem_of(const Error& error, const RangeRequest& request) {
     Problem problem = to_problem(error);
     for (std::size_t k = 0; k < request.question.points.size(); ++k) {
@@ -35,7 +35,8 @@ Problem problem_of(const Error& error, const RangeRequest& request) {
     return problem;
 }
 
-/// JobOutline of the document. Ms: the largest over the range with the schedule, or with one setting without one.
+/// JobOutline of the document. Ms: the largest over the range, with the schedule if there is one, else with one
+/// setting.
 std::string outline_of(const RangeContent& content, const std::optional<Units>& units) {
     Writer out;
     out.begin_object();
@@ -90,7 +91,7 @@ Answer range_call(std::string_view body, const RunControl& control) {
     const auto& request = std::get<RangeRequest>(decoded);
     auto result = answered_range(request, control);
     if (!result) return refusal(problem_of(result.error(), request));
-    // Nobody keeps half a search that was stopped.
+    // The partial result of a search that was stopped is not kept.
     if (result->design.partial) return refusal(to_problem(Error{ErrorKind::timeout, "", "The design was stopped."}));
     Writer out;
     range_answer_contract().write({RangeContent(std::move(*result)), {}, {}}, out);

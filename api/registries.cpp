@@ -61,7 +61,8 @@ Answer no_such_controller(std::string_view id) {
     return refusal(problem);
 }
 
-/// The ideal form of a request's controller; of the nonlinear one its linear part, where the nearest is asked for.
+/// The ideal form of a request's controller; for the nonlinear form its linear part, if the nearest settings are asked
+/// for.
 Expected<IdealPid> ideal_of(const SettingsRequest& request) {
     if (std::holds_alternative<Npid>(*request.controller) && !request.nearest)
         return Error{ErrorKind::not_representable, "controller/form",
@@ -75,7 +76,7 @@ Expected<IdealPid> ideal_of(const SettingsRequest& request) {
     return ideal;
 }
 
-/// Names that the product does not know, each with what may have been meant.
+/// Names that the product does not have, each with a suggestion.
 std::optional<Problem> unknown_names(const Product& product, const product::Settings& settings) {
     std::vector<std::string> names;
     for (const product::Parameter& parameter : product.parameters) names.emplace_back(parameter.name);

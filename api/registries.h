@@ -8,10 +8,10 @@
 
 namespace tunewright::api {
 
-std::string controllers_json();               ///< GET /v1/controllers: products that settings can be converted for
+std::string controllers_json();               ///< GET /v1/controllers: products for which settings can be converted
 Answer controller_json(std::string_view id);  ///< GET /v1/controllers/{id}; 404 for none
-/// POST /v1/controllers/{id}/settings, .../schedule and .../controller: what is typed for a controller and for the rows
-/// of a schedule, and what settings are.
+/// POST /v1/controllers/{id}/settings, .../schedule and .../controller: the settings to type for a controller and for
+/// the rows of a schedule, and the controller that typed settings make.
 Answer controller_settings_call(std::string_view id, std::string_view body);
 Answer controller_schedule_call(std::string_view id, std::string_view body);
 Answer controller_twin_call(std::string_view id, std::string_view body);

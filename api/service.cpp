@@ -46,7 +46,7 @@ Problem timeout_too_long(double timeout_s, const JobLimits& limits) {
     return *reader.problem();
 }
 
-/// Whether a plant is a text, alone or among several.
+/// True if a plant is a text, alone or among several.
 bool is_typed(const Json& plant) {
     if (plant.is_string()) return true;
     const auto several = plant.is_object() ? plant.find("plants") : plant.end();
@@ -60,8 +60,8 @@ Json plant_json(const PlantModel& plant) {
     return Json::parse(out.view());
 }
 
-/// A typed plant is kept as what it means: whoever reads the job finds a plant, and every spelling of it is the same
-/// request. False where there is none.
+/// A typed plant is stored as its object: readers of the job find a plant, and all spellings of it are the same
+/// request. False if there is none.
 bool canonicalise_plants(Json& value, const JobRequest& request) {
     if (!request.plant || !is_typed(value["plant"])) return false;
     value["plant"] = plant_json(*request.plant);
@@ -87,7 +87,7 @@ void keep_decoded(PreparedJob& job, RangeRequest&& request) {
     job.range = std::make_shared<const RangeRequest>(std::move(request));
 }
 
-/// `text` spells the request that is kept, unless a plant in it is typed.
+/// `text` is the stored request unless it has a typed plant.
 template <class Request, class Spelling>
 std::variant<PreparedJob, Problem> prepared_as(const Description<Request>& contract, Json& value,
                                                const JobLimits& limits, const Spelling& text) {
@@ -118,7 +118,7 @@ std::variant<PreparedJob, Problem> prepared(Json& value, const JobLimits& limits
                                    : prepared_as(job_contract(), value, limits, text);
 }
 
-/// What a batch's request leaves open about traces; one of the wrong kind is left to the contract.
+/// Sets the default of a batch's entry, no traces; a value of the wrong type is left for the contract to refuse.
 void ask_for_no_traces(Json& request) {
     if (!request.is_object()) return;
     if (is_range_request(request)) {
@@ -141,7 +141,7 @@ std::string method_label(const JobRequest& request) {
     return request.tune.size() == 1 ? request.tune.front().method : "several";
 }
 
-/// The result of a request, with what reading its record has found.
+/// The result of a request, with the findings of reading its record.
 Expected<TuningResult> tuned(JobRequest request, const RunControl& control) {
     ReadRecord read = request.read;
     read.record = {};
@@ -153,7 +153,7 @@ Expected<TuningResult> tuned(JobRequest request, const RunControl& control) {
         add_reading(read, *result->model);
         leave_out_traces(question, *result->model);
     } else {
-        // Who sent it has it.
+        // The client that sent the model already has it.
         result->model.reset();
     }
     return result;
@@ -199,7 +199,7 @@ std::variant<PreparedJob, Problem> prepare_entry(std::string_view body, const Jo
     if (auto problem = refuse_terms_of_entry(value)) return *std::move(problem);
     ask_for_no_traces(value);
     auto job = prepared(value, limits, [&] { return value.dump(); });
-    // Entries wait for the store in groups, as text alone.
+    // Entries wait for the store in groups, as text only.
     if (auto* ready = std::get_if<PreparedJob>(&job)) {
         ready->request.reset();
         ready->range.reset();
@@ -290,7 +290,7 @@ Answer design_call(std::string_view body, const RunControl& control) {
     if (const auto* problem = std::get_if<Problem>(&decoded)) return refusal(*problem);
     auto result = tuned(std::get<DesignRequest>(std::move(decoded)), control);
     if (!result) return refusal(to_problem(result.error()));
-    // Nobody keeps half a search that was stopped.
+    // The partial result of a search that was stopped is not kept.
     if (result->partial) return refusal(to_problem(Error{ErrorKind::timeout, "", "The design was stopped."}));
     Writer out;
     design_answer_contract().write(*result, out);

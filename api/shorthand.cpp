@@ -17,7 +17,7 @@ Problem unclear(std::string detail) {
     return {422, "invalid-request", "The request is not valid", std::move(detail), {}, {}};
 }
 
-/// The number that a word spells; a word that spells none stays one, for the contract to refuse.
+/// The number that a word stands for; any other word stays a text, for the contract to refuse.
 Json number_or_word(const std::string& word) {
     Json value = Json::parse(word, nullptr, false);
     return value.is_number() ? value : Json(word);
@@ -33,7 +33,7 @@ std::vector<std::string> words_of(std::string_view text) {
     return words;
 }
 
-/// What says how a CSV file is read, and stands beside anything else.
+/// Refuses options for reading a CSV file if the input is not one.
 std::optional<Problem> without_csv(const CsvRequest& question) {
     const std::pair<const char*, bool> given[] = {
         {"--t", !question.t.empty()},           {"--u", !question.u.empty()},
@@ -95,8 +95,8 @@ void put_methods(const TuneWords& words, Json& request) {
     }
 }
 
-/// True if the text is an object that is about a plant, a record, an ultimate point or a model, also in each of its
-/// `points`, and whose arrays are members of a request: a record may name its plant, too.
+/// True if the text is an object about a plant, a record, an ultimate point or a model, also in each of its `points`,
+/// and if its arrays are members of a request: a record may have a member that names its plant.
 bool holds_request(std::string_view text) {
     const auto parsed = parse(text);
     const Json* value = std::get_if<Json>(&parsed);
@@ -144,7 +144,7 @@ std::optional<std::string> request_text(const std::string& file) {
     const std::string_view text = utf8_text(file, storage);
     const std::size_t first = text.find_first_not_of(kBlank);
     if (first == text.npos || text[first] != '{') return std::nullopt;
-    // A record may be one JSON object, too: of samples, or of columns.
+    // A record may also be one JSON object: of samples, or of columns.
     if (!holds_request(text) && json_rows(text)) return std::nullopt;
     const std::size_t end = text.find('\n', first);
     if (end == text.npos) return std::string(text);
@@ -164,7 +164,7 @@ std::variant<std::string, Problem> tuning_request(const TuneWords& words, std::o
             return unclear("--model chooses the model of a recorded test, and there is none. Leave it out.");
         if (request.value("identify", Json::object()).is_object()) request["identify"]["model"] = words.record.model;
     }
-    // --time-unit is the file's where a record is read as text; else it is that of the whole request.
+    // --time-unit is the file's if a record is read as text; otherwise it is that of the whole request.
     const std::string& unit = !words.record.answer_unit.empty() ? words.record.answer_unit
                               : as_csv                          ? std::string()
                                                                 : words.record.time_unit;

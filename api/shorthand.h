@@ -1,4 +1,4 @@
-// The tuning request that a few words of a command line stand for, with a file or without one.
+// Builds a tuning request from the options of a command line, with or without a file.
 #pragma once
 
 #include <optional>
@@ -12,7 +12,7 @@
 
 namespace tunewright::api {
 
-/// What a CSV file leaves open, in words: members of the request's record, units and identify; "" where not given.
+/// Options for reading a CSV file: members of the request's record, units and identify; "" if not given.
 struct CsvRequest {
     std::string t, u, y, r;  ///< headings, or numbers from 1
     std::string dt, time_unit, kind, model;
@@ -25,23 +25,24 @@ struct CsvRequest {
 };
 
 struct TuneWords {
-    std::string plant;                 ///< as `tunewright plant` reads it; "": the file has it
+    std::string plant;                 ///< the plant as `tunewright plant` reads it; "": it is in the file
     std::vector<std::string> methods;  ///< empty: those of the file, or the default
-    std::string Ms;  ///< limit of Ms and Mt for robust and all; where neither is asked for, Ms of each; "": not given
+    std::string Ms;         ///< limit of Ms and Mt for robust and all; without either method, Ms of each; "": not given
     std::string baseline;   ///< today's settings, "Kp Ti Td"; "": those of the file, or none
-    std::string Ku, Pu, K;  ///< in place of a plant and a file: the ultimate point, perhaps the static gain
-    CsvRequest record;      ///< where the file is a recorded test; for a plant, its time_unit is that of all times
+    std::string Ku, Pu, K;  ///< instead of a plant and a file: the ultimate point, and optionally the static gain
+    CsvRequest record;      ///< if the file is a recorded test; for a plant, its time_unit is that of all times
 };
 
 /// The member `record` of a request, with that text.
 Json record_of(const CsvRequest& question, std::string csv);
 
-/// A text in any encoding that is one JSON object, which a log with one in each line is not, as UTF-8; else nothing.
+/// The text as UTF-8 if it is one JSON object in any encoding; a log with an object in each line is not. Otherwise
+/// empty.
 std::optional<std::string> request_text(const std::string& text);
 
-/// The request as JSON. `file`: a request, a recorded test as CSV or as JSON lines in any encoding; none where the
-/// words have a plant. Words stand above what the file says. Problems: 400 for a request that is not JSON; 422 where
-/// there is neither plant nor file, or both; whatever else is wrong prepare_job() finds.
+/// The request as JSON. `file`: a request, a recorded test as CSV or as JSON lines in any encoding; none if the options
+/// have a plant. Options override the file. Problems: 400 for a request that is not JSON; 422 if there is neither plant
+/// nor file, or both; prepare_job() finds all other faults.
 std::variant<std::string, Problem> tuning_request(const TuneWords& words, std::optional<std::string> file);
 
 }  // namespace tunewright::api

@@ -9,7 +9,7 @@ namespace tunewright::api {
 namespace {
 
 constexpr std::size_t kDeepest = 1000;  // nested brackets that are distinguished; a request may have 32
-constexpr std::size_t kMaxQuoteLength = 6 * kMaxNameLength;  // as escapes
+constexpr std::size_t kMaxQuoteLength = 6 * kMaxNameLength;  // each character as a six-byte escape
 constexpr std::string_view kCure = "Send {\"jobs\": [request, request, ...]}.";
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
@@ -21,7 +21,7 @@ std::string shown_byte(char c) {
     return std::string("the byte 0x") + kHex[byte >> 4] + kHex[byte & 15];
 }
 
-/// The text that the inside of a JSON string spells; nothing where it is none.
+/// The text that the inside of a JSON string stands for; empty if it is not valid.
 std::optional<std::string> spelled(const std::string& inside) {
     const Json value = Json::parse("\"" + inside + "\"", nullptr, false);
     if (!value.is_string()) return std::nullopt;
@@ -61,7 +61,7 @@ std::optional<Problem> JobsArray::feed(std::string_view bytes, std::vector<RawEn
     return std::nullopt;
 }
 
-// Bytes inside a request that mean nothing here: kept at once. How many.
+// Keeps bytes inside a request that do not affect its structure in one piece. Returns their number.
 std::size_t JobsArray::inside(std::string_view bytes) {
     if ((at_ != At::structure && at_ != At::quoted) || escaped_) return 0;
     const std::string_view telling = at_ == At::quoted ? "\"\\\n" : "{}[]\"\n";

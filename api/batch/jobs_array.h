@@ -1,6 +1,5 @@
-// Finds the requests in {"jobs": [...]}, and what else is said of the batch, while the text arrives, without a document
-// of it in memory: only brackets, quotes and commas are looked at. What stands between them is each request's own
-// matter.
+// Finds the requests in {"jobs": [...]} and the other members of the batch while the text arrives, without a document
+// of it in memory: only brackets, quotes and commas are examined. The text of each request is checked later, by itself.
 #pragma once
 
 #include <string>
@@ -13,13 +12,13 @@ namespace tunewright::api {
 
 class JobsArray {
 public:
-    /// A request of more bytes than `longest` is a fault of its own, however long it goes on.
+    /// A request of more than `longest` bytes gets a fault of its own, however long it is.
     explicit JobsArray(std::size_t longest) : longest_(longest) {}
 
-    /// The next bytes. Requests that end in them are appended. 400 or 422 where the text around the requests is broken
-    /// or says something else; nothing may be fed after that.
+    /// Reads the next bytes and appends the requests that end in them. 400 or 422 if the text around the requests is
+    /// broken or not allowed; nothing may be fed after that.
     std::optional<Problem> feed(std::string_view bytes, std::vector<RawEntry>& entries);
-    /// 400 where the text ends too early, 422 without jobs.
+    /// 400 if the text ends too early, 422 if it has no jobs.
     std::optional<Problem> finish() const;
 
     bool found_jobs() const { return found_jobs_; }
@@ -36,7 +35,7 @@ private:
         colon,          ///< :
         name_value,     ///< the quote of the batch's name
         name_text,      ///< inside its quotes
-        notify_value,   ///< the bracket of whom to tell, from where on it is read as a request is
+        notify_value,   ///< the bracket of `notify`; from there on it is read like a request
         array,          ///< [
         first_element,  ///< a request or ]
         element,        ///< a request
@@ -64,9 +63,9 @@ private:
     At at_ = At::start;
     bool escaped_ = false;
     bool found_jobs_ = false, found_name_ = false, found_notify_ = false;
-    bool in_notify_ = false;  ///< what is being read is no request
-    std::string brackets_;    ///< the closing ones that are awaited, outermost first
-    std::string text_;        ///< of a member's name or of the batch's
+    bool in_notify_ = false;  ///< the object being read is `notify`, not a request
+    std::string brackets_;    ///< the closing brackets that are still expected, outermost first
+    std::string text_;        ///< of a member's name or of the batch's name
     std::string name_, notify_;
     RawEntry entry_;
     std::size_t entry_bytes_ = 0;

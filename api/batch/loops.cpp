@@ -19,7 +19,7 @@ constexpr std::size_t kMissing = static_cast<std::size_t>(-1);
 constexpr std::string_view kImplement = "implement/";  ///< of parameters of the call
 constexpr std::array<const char*, 4> kTitles = {"name", "K", "T", "L"};
 
-/// Headings in lower case, without their unit.
+/// Finds a column by its heading in lower case, without its unit.
 std::optional<std::size_t> column_named(const std::string& name) {
     static const std::array<std::vector<std::string>, 4> kNames = {{
         {"name", "tag", "loop", "loop name", "tag name", "tagname"},
@@ -50,7 +50,7 @@ std::string in_quotes(std::string_view text) {
     return "\"" + std::string(text.substr(0, end)) + (end < text.size() ? "...\"" : "\"");
 }
 
-/// "filter/Tf" opens an object.
+/// Sets the value at a path: "filter/Tf" opens an object.
 void place(Json& object, std::string_view path, Json value) {
     const std::size_t slash = path.find('/');
     Json& member = object[std::string(path.substr(0, slash))];
@@ -62,7 +62,7 @@ void place(Json& object, std::string_view path, Json value) {
     }
 }
 
-/// 1.6, true and [1, 2] are what they are in JSON; everything else is a text.
+/// Numbers, true, false and arrays such as [1, 2] are read as JSON; everything else is a text.
 Json value_of(const std::string& text) {
     auto parsed = parse(text);
     if (auto* value = std::get_if<Json>(&parsed)) return std::move(*value);
@@ -176,7 +176,7 @@ std::optional<Problem> Loops::feed(long number, std::string_view line, std::vect
     return std::nullopt;
 }
 
-/// Whether a cell that begins with quotes goes on in the next line. Quotes within a cell are inches.
+/// True if a cell that begins with quotes continues in the next line. Quotes within a cell are inches.
 bool Loops::stays_open(std::string_view text) const {
     if (separator_ == ' ') return false;
     bool quoted = false, begins = true;
@@ -205,7 +205,7 @@ void Loops::gather(long number, std::string_view line, std::vector<RawEntry>& en
     }
 }
 
-/// The first of the lines is a row of its own, which cannot be read; the others are looked at anew.
+/// The first of the lines becomes a row of its own, which cannot be read; the others are read again.
 void Loops::give_up(std::vector<RawEntry>& entries) {
     std::vector<Held> lines = std::exchange(open_, {});
     lines.front().unclosed = true;
@@ -237,7 +237,7 @@ std::optional<Problem> Loops::read_headings(long number, std::string_view line) 
         separator_given_ = true;
         return std::nullopt;
     }
-    // The separator that shows the most columns we know.
+    // The separator with which the most known columns are found.
     std::size_t max = 0;
     char best = separator_given_ ? separator_ : ',';
     for (const char separator : {';', '\t', ',', '|', ' '}) {

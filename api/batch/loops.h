@@ -16,8 +16,8 @@
 
 namespace tunewright::api {
 
-/// What is asked for every loop: parameters of the call by name. `method` is the method, `timeout_s` the request's own,
-/// "implement/product" and its kin the user's controller, everything else an option of the method ("Ms" 1.6;
+/// Settings for every loop: parameters of the call by name. `method` is the method, `timeout_s` the request's own,
+/// "implement/product" and similar ones the user's controller, everything else an option of the method ("Ms" 1.6;
 /// "filter/Tf_over_Td" 0.1 goes into the object filter).
 using LoopOptions = std::vector<std::pair<std::string, std::string>>;
 
@@ -25,12 +25,12 @@ class Loops {
 public:
     explicit Loops(const LoopOptions& options);
 
-    /// What is wrong with the options, whatever the loops: 422, with the parameters' names as pointers.
+    /// Faults of the options, independent of the loops: 422, with the parameters' names as pointers.
     std::optional<Problem> check_options() const;
 
-    /// The next line as UTF-8, its line end apart. A cell in quotes may go on over several lines. Requests are appended
-    /// once the file's first lines have shown what . and , mean in its numbers. 422 where the headings leave open which
-    /// column is which.
+    /// Reads the next line as UTF-8, without its line end. A cell in quotes may continue over several lines. Requests
+    /// are appended once the file's first lines have shown the meaning of . and , in its numbers. 422 if the headings
+    /// do not show which column is which.
     std::optional<Problem> feed(long number, std::string_view line, std::vector<RawEntry>& entries);
     void finish(std::vector<RawEntry>& entries);
 
@@ -39,7 +39,7 @@ private:
     struct Held {
         long number;
         std::string text;
-        bool unclosed = false;  ///< a cell in quotes begins there and does not end soon
+        bool unclosed = false;  ///< a cell in quotes begins in this line and does not end within the next few
     };
 
     std::optional<Problem> read_headings(long number, std::string_view line);
@@ -52,7 +52,7 @@ private:
     void find_sign();
     void read_row(const Held& row, std::vector<RawEntry>& entries);
     double read_number(std::string_view cell, const char* name, std::vector<FieldError>& faults) const;
-    /// `today`: the baseline; null for none.
+    /// `today`: the baseline; null if there is none.
     std::string request(std::string_view name, const std::array<double, 3>& plant, const Json& today) const;
     std::optional<Problem> find_unit(const std::string& where, const std::array<std::string, kColumns>& units);
     std::string_view cell(Column column) const;
@@ -65,16 +65,16 @@ private:
     std::vector<std::string> names_given_twice_;
 
     char separator_ = 0;            ///< 0: not known yet
-    bool separator_given_ = false;  ///< by a line such as sep=;
+    bool separator_given_ = false;  ///< given by a line such as sep=;
     bool headed_ = false;
     std::array<std::size_t, kColumns> at_{};
     std::vector<TodaysColumn> todays_;
-    std::string todays_product_;  ///< of rows that name none; "" for controllers by their form
+    std::string todays_product_;  ///< for rows that name no product; "" for controllers by their form
     std::size_t width_ = 0;
     std::string time_unit_;
 
     std::vector<Held> open_;  ///< lines of a row with a cell whose quotes have not ended
-    std::vector<Held> held_;  ///< the first lines, until the sign is known
+    std::vector<Held> held_;  ///< the first lines, kept until the decimal sign is known
     std::size_t held_bytes_ = 0;
     bool sign_known_ = false;
     DecimalSign sign_ = DecimalSign::either;

@@ -11,18 +11,18 @@
 
 namespace tunewright::api {
 
-/// One request of a batch, cut out of what was sent.
+/// One request of a batch, cut out of the body.
 struct RawEntry {
-    long line = 0;                 ///< of the body, from 1, where it begins
-    std::string text;              ///< a tuning request, if it is one
-    std::optional<Problem> fault;  ///< why it is none, known before it is read
-    std::string name;              ///< of one with a fault, where it is known
+    long line = 0;                 ///< the line of the body, from 1, where it begins
+    std::string text;              ///< a tuning request, unless `fault` is set
+    std::optional<Problem> fault;  ///< why it is not a request, if that is known before it is parsed
+    std::string name;              ///< name of a request with a fault, if it is known
 };
 
 /// The fault of a request that has `bytes` bytes where `max` are accepted.
 Problem too_long(std::size_t bytes, std::size_t max);
 
-/// 422: the batch says something that it cannot mean.
+/// 422: a member of the batch that is not allowed.
 Problem not_valid(std::string pointer, std::string detail);
 
 /// Lines of a text that arrives piece by piece.
@@ -33,16 +33,18 @@ public:
         any,      ///< \n, \r\n and \r, as in exports
     };
 
-    /// What a line is: its number from 1, its text as UTF-8, and how many bytes it has. A line of more than `longest`
-    /// bytes comes with an empty text. The text is valid during the call; where it returns false, nothing follows.
+    /// Receives a line: its number from 1, its text as UTF-8, and its length in bytes. A line of more than `longest`
+    /// bytes comes with an empty text. The text is valid during the call; after the function returns false, no line
+    /// follows.
     using Take = std::function<bool(long number, std::string_view text, std::size_t bytes)>;
 
     Lines(Ends ends, std::size_t longest) : ends_(ends), longest_(longest) {}
 
-    /// The next bytes; `take` gets each line that ends in them. A byte order mark at the start means UTF-16, and is no
-    /// part of the first line; lines that are not UTF-8 are taken for Windows-1252 (api/csv/text.h) with Ends::any.
+    /// Reads the next bytes; `take` gets each line that ends in them. A byte order mark at the start means UTF-16 and
+    /// is not part of the first line; with Ends::any, lines that are not valid UTF-8 are read as Windows-1252
+    /// (api/csv/text.h).
     bool feed(std::string_view bytes, const Take& take);
-    /// The line that no line end follows, if there is one.
+    /// Passes on the last line if it has no line end.
     bool finish(const Take& take);
 
 private:
@@ -58,7 +60,7 @@ private:
     std::string head_;  ///< the first bytes, until they show the encoding
     std::string line_;
     std::size_t bytes_ = 0;
-    std::string half_;  ///< of a UTF-16 unit
+    std::string half_;  ///< the first byte of a UTF-16 unit
     bool after_return_ = false;
     long number_ = 1;
 };

@@ -14,7 +14,7 @@ constexpr std::size_t kMaxLoop = 64 * 1024;
 
 bool is_white(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
-/// Of a request that is not valid, so that its owner knows it.
+/// Name of a request that is not valid, so that its owner recognises it.
 std::string name_in(const std::string& text) {
     const auto parsed = parse(text);
     const auto* value = std::get_if<Json>(&parsed);
@@ -32,11 +32,11 @@ public:
     virtual ~Cutter() = default;
     virtual std::optional<Problem> feed(std::string_view bytes, std::vector<RawEntry>& entries) = 0;
     virtual std::optional<Problem> finish(std::vector<RawEntry>& entries) = 0;
-    /// The name that stands in the body.
+    /// The name given in the body.
     virtual std::string name() const { return {}; }
-    /// The text of whom to tell that stands there.
+    /// The text of `notify` in the body.
     virtual std::string notify() const { return {}; }
-    /// False where each request says itself what is asked for.
+    /// False if each request states its own method and options.
     virtual bool takes_options() const { return false; }
 };
 
@@ -120,7 +120,7 @@ private:
     bool checked_ = false;
 };
 
-/// Finds out which form a body has: one that begins with { is {"jobs": ...} or the first of many lines.
+/// Finds the form of a body: one that begins with { is {"jobs": ...} or the first of many lines.
 class BatchReader::Finder : public Cutter {
 public:
     explicit Finder(const BatchQuestion& question)
@@ -128,7 +128,7 @@ public:
 
     std::optional<Problem> feed(std::string_view bytes, std::vector<RawEntry>& entries) override {
         if (chosen_) return chosen_->feed(bytes, entries);
-        // What is decided depends on the text alone, not on how it was cut.
+        // The decision depends on the text alone, not on how it was cut.
         const std::size_t looked = std::min(bytes.size(), kMaxHeadLength - head_.size());
         head_ += bytes.substr(0, looked);
         if (auto problem = find(bytes.substr(0, looked), entries)) return problem;
@@ -156,7 +156,7 @@ private:
     std::optional<Problem> find(std::string_view fresh, std::vector<RawEntry>& entries) {
         constexpr std::string_view kMark = "\xEF\xBB\xBF";
         if (head_.size() < kMark.size() && kMark.starts_with(head_)) {
-            // Perhaps a byte order mark: the first character is still to come.
+            // A byte order mark is possible: the first character is still to come.
         } else if (!first_) {
             if (first_at_ == 0 && head_.starts_with(kMark)) first_at_ = kMark.size();
             while (first_at_ < head_.size() && is_white(head_[first_at_])) ++first_at_;
@@ -184,7 +184,7 @@ private:
     std::unique_ptr<Cutter> chosen_;
     std::string head_;
     std::size_t first_at_ = 0;
-    std::optional<char> first_;  ///< that is no white space
+    std::optional<char> first_;  ///< the first character that is not white space
 };
 
 BatchReader::BatchReader(BatchQuestion question) : question_(std::move(question)), name_(question_.name) {
@@ -214,7 +214,7 @@ std::optional<Problem> BatchReader::finish(std::vector<BatchEntry>& entries) {
     return std::nullopt;
 }
 
-// The first fault is reported, however the bytes were cut.
+// Reports the first fault, however the bytes were cut.
 std::optional<Problem> BatchReader::judge(std::optional<Problem> found, std::vector<RawEntry> raw,
                                           std::vector<BatchEntry>& entries) {
     if (auto problem = refuse_options()) return problem;

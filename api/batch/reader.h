@@ -1,4 +1,4 @@
-// Requests of a batch out of its body, while it arrives: JSON {"jobs": [...]}, NDJSON, or a CSV of loops.
+// Reads the requests of a batch from its body while it arrives: JSON {"jobs": [...]}, NDJSON, or a CSV of loops.
 #pragma once
 
 #include <functional>
@@ -16,22 +16,22 @@ namespace tunewright::api {
 
 enum class BatchForm { json, ndjson, csv };
 
-/// What a call says beside its body.
+/// Parameters of a call that posts a batch.
 struct BatchQuestion {
-    std::optional<BatchForm> form;  ///< nothing: its first bytes show it
+    std::optional<BatchForm> form;  ///< empty: the first bytes show it
     std::string name;               ///< of the batch; "" if none
-    std::optional<Notify> notify;   ///< whom to tell of its end
-    /// Whether whom the body names may be told; nothing where he may. Empty: everybody may.
+    std::optional<Notify> notify;   ///< webhook that is notified of its end
+    /// Returns a problem if the `notify` of the body is not allowed. Empty function: every one is allowed.
     std::function<std::optional<Problem>(const Notify& notify)> judge_notify = {};
-    LoopOptions options;  ///< for a CSV of loops; the other forms know none
+    LoopOptions options;  ///< for a CSV of loops; the other forms have none
     JobLimits limits;
     std::size_t longest_entry = std::size_t{8} << 20;
     std::size_t max_entries = 100'000;
 };
 
-/// A request that may become a job, or why it cannot.
+/// A request that may become a job, or the reason why it cannot.
 struct BatchEntry {
-    std::string name;  ///< "" if none, or not readable
+    std::string name;  ///< "" if it has none or it cannot be read
     std::variant<PreparedJob, Problem> job;
 };
 
@@ -40,16 +40,17 @@ public:
     explicit BatchReader(BatchQuestion question);
     ~BatchReader();
 
-    /// The next bytes, cut anywhere. Entries that end in them are appended, in order. A bad entry is one of them; its
-    /// problem says in which line it stands. What is wrong with the whole is returned, and nothing may follow: 400 not
-    /// JSON, 422 another shape, too many entries, a name too long, options that no loop can have.
+    /// Reads the next bytes, cut anywhere. Entries that end in them are appended, in order. A bad entry is an entry
+    /// with a problem, which names its line. A fault of the whole batch is returned, and nothing may follow: 400 for
+    /// text that is not JSON; 422 for another shape, too many entries, a name that is too long, or options that no loop
+    /// can have.
     std::optional<Problem> feed(std::string_view bytes, std::vector<BatchEntry>& entries);
-    /// 422 without any entry.
+    /// 422 if the batch has no entry.
     std::optional<Problem> finish(std::vector<BatchEntry>& entries);
 
-    /// Of the batch, from the call or, so far, from its body.
+    /// Name of the batch, from the call or from the part of the body read so far.
     const std::string& name() const { return name_; }
-    /// Whom to tell, likewise.
+    /// Webhook of the batch, from the call or from the part of the body read so far.
     const std::optional<Notify>& notify() const { return question_.notify; }
     /// Entries so far.
     std::size_t count() const { return count_; }
@@ -70,7 +71,7 @@ private:
     BatchQuestion question_;
     std::unique_ptr<Cutter> cutter_;
     std::string name_;
-    bool notify_taken_ = false;  ///< from the body
+    bool notify_taken_ = false;  ///< `notify` came from the body
     std::size_t count_ = 0;
 };
 

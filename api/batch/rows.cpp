@@ -12,7 +12,7 @@ namespace {
 
 struct Column {
     const char* heading;
-    const char* pointer;  ///< of a number in an entry of the result
+    const char* pointer;  ///< pointer of a number in an entry of the result
 };
 
 constexpr std::array kFigures = {
@@ -44,11 +44,11 @@ void add_text(const Json& value, const char* pointer, CsvWriter& out) {
     found != nullptr && found->is_string() ? out.text(found->get_ref<const std::string&>()) : out.empty();
 }
 
-/// Columns that came later stand at the end, where no position of an earlier one moves.
+/// Columns that were added later stand at the end, so that the earlier ones keep their positions.
 constexpr std::array kLater = {"time_unit",        "filter",         "setpoint_filter_T",
                                "settings_to_type", "today_load_IAE", "gain_over_today_percent"};
 
-/// "GAIN 2.328 %/%; RESET 93.12 s": what is to be typed into the user's own controller.
+/// The settings for the user's own controller as text: "GAIN 2.328 %/%; RESET 93.12 s".
 std::string to_type(const Json& entry) {
     const Json* texts = at(entry, "/as_entered/as_typed");
     const Json* units = at(entry, "/as_entered/units");
@@ -61,12 +61,12 @@ std::string to_type(const Json& entry) {
     return out;
 }
 
-/// The load IAE of the loop that runs, which is what verdicts compare: as implemented where that is known.
+/// The load IAE of the loop, which verdicts compare: as implemented if that is known.
 const Json* load_of(const Json& entry) {
     return at(entry, entry.contains("implemented") ? "/implemented/performance/load/IAE" : "/performance/load/IAE");
 }
 
-/// The same of today's settings; null where the result has none.
+/// The load IAE of today's settings; null if the result has none.
 const Json* todays_load(const Json& result) {
     const Json* entries = at(result, "/controllers");
     if (entries == nullptr) return nullptr;
@@ -98,7 +98,7 @@ void add_later(const Json& result, const Json& entry, CsvWriter& out) {
     compared ? out.number(100 * (1 - load->get<double>() / today->get<double>())) : out.empty();
 }
 
-/// `entry` of a result; an empty object where there is none.
+/// `entry` of a result; an empty object if there is none.
 void add_line(const ResultRow& row, const Json& result, const Json& entry, const Json& error, CsvWriter& out) {
     out.integer(row.index).text(row.id).text(row.name).text(row.status);
     add_text(entry, "/method", out);

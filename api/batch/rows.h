@@ -7,11 +7,11 @@
 
 namespace tunewright::api {
 
-/// One job of a batch as it stands. `index` is its place in the batch, from 0; the texts must outlive the call that
-/// appends them.
+/// One job of a batch in its current state. `index` is its position in the batch, from 0; the texts must outlive the
+/// call that appends them.
 struct ResultRow {
     std::int64_t index = 0;
-    std::string_view id, name, status;  ///< "" where it has no name
+    std::string_view id, name, status;  ///< "" if it has no name
     std::string_view result, error;     ///< JSON; "" if none
 };
 
@@ -19,12 +19,12 @@ struct ResultRow {
 /// error is copied as it is.
 void append_ndjson(const ResultRow& row, std::string& out);
 
-/// The line of the CSV's headings, with its end of line: index, id, name, status, method, form, then the controller's
-/// settings and its figures, warnings and error.
+/// The headings of the CSV with their line end: index, id, name, status, method, form, then the controller's settings
+/// and its figures, warnings and error.
 std::string csv_headings();
 
-/// One line for each controller of the result; one where there is none: an error, or a job that has not ended. What
-/// is missing, infinite or of another form is an empty cell; numbers are in full.
+/// One line for each controller of the result; one line if there is none: an error, or a job that has not ended. A
+/// value that is missing, infinite or of another form is an empty cell; numbers are in full precision.
 void append_csv(const ResultRow& row, std::string& out);
 
 }  // namespace tunewright::api

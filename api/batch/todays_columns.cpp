@@ -9,7 +9,7 @@
 namespace tunewright::api {
 namespace {
 
-/// Headings in lower case, and what they are in `baseline`.
+/// Headings in lower case, and their members in `baseline`.
 using Member = std::pair<std::string_view, const char*>;
 constexpr std::array<Member, 14> kMembers = {{{"kp", "Kp"},
                                               {"ki", "Ki"},
@@ -26,7 +26,7 @@ constexpr std::array<Member, 14> kMembers = {{{"kp", "Kp"},
                                               {"u low", "u_span/0"},
                                               {"u high", "u_span/1"}}};
 
-/// Length of "today", "today's" or "today:" with the blanks after it; 0: there is none.
+/// Length of "today", "today's" or "today:" with the blanks after it; 0 if there is none.
 std::size_t length_of_mark(std::string_view name) {
     for (const std::string_view mark : {"today's", "today:", "today"})
         if (name.starts_with(mark)) return std::min(name.size(), name.find_first_not_of(" _", mark.size()));
@@ -75,7 +75,7 @@ std::optional<TodaysColumn> todays_column(const Heading& heading) {
     std::ranges::replace(name, '_', ' ');
     const auto known = std::ranges::find(kMembers, std::string_view(name), &Member::first);
     if (known == kMembers.end() && (mark == 0 || name.empty())) return std::nullopt;
-    // Names of settings are the product's own: with capitals, and with what looks like a unit ("Td_min").
+    // Names of settings are the product's own, with capitals and endings that look like a unit ("Td_min").
     std::string written = heading.text.substr(mark);
     if (const std::size_t unit = written.find_last_of("[(");
         unit != written.npos && (written.ends_with(']') || written.ends_with(')')))

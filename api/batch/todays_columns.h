@@ -17,18 +17,19 @@ namespace tunewright::api {
 /// its ranges, or a setting by the product's own name.
 struct TodaysColumn {
     std::string name;    ///< as written, without "today" in front and without its unit
-    std::string member;  ///< path in `baseline` of a controller, "filter/Tf"; "" for a product's own setting
+    std::string member;  ///< path in `baseline` of a controller, "filter/Tf"; "" for a setting of a product
     std::string unit;
     std::size_t cell = 0;
 
     bool is_time() const { return member == "Ti" || member == "Td" || member == "filter/Tf"; }
 };
 
-/// "Kp", "Ti [min]", "today Kp", "product", "y low", "today GAIN"; none for another heading.
+/// Recognises "Kp", "Ti [min]", "today Kp", "product", "y low", "today GAIN"; empty for another heading.
 std::optional<TodaysColumn> todays_column(const Heading& heading);
 
-/// `baseline` of one loop; null where all of its cells are empty. `product`: of those who name none. With a product
-/// every column but its id and ranges is one of its settings. A cell that should hold a number and does not is a fault.
+/// `baseline` of one loop; null if all of its cells are empty. `product`: for rows that name none. With a product every
+/// column other than its id and ranges is one of its settings. A cell that should hold a number and does not is a
+/// fault.
 Json todays_settings(const std::vector<TodaysColumn>& columns, const std::vector<std::string_view>& cells,
                      DecimalSign sign, const std::string& product, std::vector<FieldError>& faults);
 

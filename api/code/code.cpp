@@ -26,7 +26,7 @@ ControllerCode printed(const code::Program& program, code::Language language, co
     return file_of(language, code::print(program, language, rows));
 }
 
-/// The controller of the entry; a nonlinear one says for which errors it was made.
+/// The controller of the entry; a nonlinear one with the range of errors for which it was designed.
 Controller controller_of(const Json& entry, Reader& reader) {
     const Reader::At at(reader, "controller");
     Controller controller;
@@ -59,7 +59,7 @@ std::variant<ControllerCode, Problem> written_entry(const ChosenEntry& found, co
     return written(found, asked, controller);
 }
 
-/// With its times in seconds, as programs count.
+/// The schedule with its times in seconds, the unit of programs.
 Schedule schedule_of(const Json& schedule, double unit, Reader& reader) {
     Schedule read;
     read.hysteresis = schedule.value("hysteresis", 0.0);
@@ -81,7 +81,7 @@ std::string named(const Json& scheduling) {
     return scheduling.value("name", "") + (unit.empty() ? "" : " in " + unit);
 }
 
-/// The program of the schedule in an answer about a range. May throw Json::exception, as choose_entry.
+/// The program of the schedule in an answer about a range. May throw Json::exception, like choose_entry.
 std::variant<ControllerCode, Problem> written_schedule(const ChosenEntry& found, const CodeWords& words) {
     Reader reader;
     const AskedCode asked = read_asked(words, found, reader);
@@ -89,7 +89,7 @@ std::variant<ControllerCode, Problem> written_schedule(const ChosenEntry& found,
     const Schedule schedule = schedule_of(answer.at("schedule"), asked.unit, reader);
     if (auto problem = reader.problem()) return *std::move(problem);
     SampledPid law = law_of(asked, {});
-    law.gains = to_parallel(controller_of(code::leading_row(schedule)));  // which are in seconds already
+    law.gains = to_parallel(controller_of(code::leading_row(schedule)));  // its times are in seconds already
     const auto sample_time = sample_time_of(asked, found.request, law.gains, answer.at("schedule"));
     if (const auto* problem = std::get_if<Problem>(&sample_time)) return *problem;
     law.Ts = std::get<SampleTime>(sample_time).seconds;
@@ -120,7 +120,7 @@ std::variant<ControllerCode, Problem> controller_code(const ResultSource& source
         if (index.empty() && has_schedule(found.result)) return written_schedule(found, words);
         if (auto problem = find_entry(index, found)) return *std::move(problem);
         return written_entry(found, words);
-    } catch (const Json::exception&) {  // a file that only looks like a result: its members are of other kinds
+    } catch (const Json::exception&) {  // a file that only resembles a result: its members have other types
         return not_a_result();
     }
 }

@@ -1,4 +1,4 @@
-// A controller of a result, or the schedule of a range, as source text: what the calls and the command `code` answer.
+// Source text of a controller of a result, or of the schedule of a range, for the calls and the command `code`.
 #pragma once
 
 #include <string>
@@ -19,13 +19,13 @@ struct ControllerCode {
     std::string media_type, file_name, text;
 };
 
-/// The controller number `index` (a decimal, from 0; "": the best of the result's ranking, or the schedule of a range).
-/// Problems: 400 not JSON; 404 no result, no such controller, or an entry without one; 422 parameters with every fault,
-/// a time unit that has no seconds, no sample time to propose.
+/// The program of the controller number `index` (a decimal, from 0; "": the best of the result's ranking, or the
+/// schedule of a range). Problems: 400 not JSON; 404 no result, no such controller, or an entry without one; 422 with
+/// every fault of the parameters, a time unit that cannot be converted to seconds, or no sample time.
 std::variant<ControllerCode, Problem> controller_code(const ResultSource& source, const std::string& index,
                                                       const CodeWords& words);
 
-/// The schedule of an answer about an operating range: a program with one more input, the scheduling variable.
+/// The program of the schedule in an answer about an operating range, with the scheduling variable as a further input.
 /// Problems: as above; 404 no such answer or one without a schedule; 422 rows that one program cannot follow.
 std::variant<ControllerCode, Problem> schedule_code(const ResultSource& source, const CodeWords& words);
 

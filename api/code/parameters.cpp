@@ -87,7 +87,8 @@ const Description<CodeQuestion>& code_contract() {
 
 namespace {
 
-/// Words that spell numbers become numbers; what the contract does not take stays as it was typed, for its sentence.
+/// Texts that are numbers become numbers; a text that the contract refuses stays as typed, so that its error can quote
+/// it.
 void read_words(const CodeWords& words, CodeQuestion& question, Reader& reader) {
     Json given = Json::object();
     for (const auto& [name, word] : words) {
@@ -100,7 +101,7 @@ void read_words(const CodeWords& words, CodeQuestion& question, Reader& reader) 
     code_contract().read(given, question, reader);
 }
 
-/// The rules by which the request has judged its program, where the words name no others.
+/// Takes the rules with which the request evaluated the program, for those that the parameters do not name.
 void take_implemented(const CodeWords& words, const Json& request, CodeQuestion& question) {
     if (!request.is_object() || !request.contains("implement")) return;
     GivenDevice given;

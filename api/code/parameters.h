@@ -1,4 +1,4 @@
-// The parameters of a program: options of the call and of the command, read with what the result and its request say.
+// The parameters of a program: options of the call and of the command, combined with the result and its request.
 #pragma once
 
 #include <optional>
@@ -13,23 +13,23 @@
 
 namespace tunewright::api {
 
-/// Times are in the result's own unit (units.time), u and y in theirs.
+/// Times are in the result's own unit (units.time), u and y in the result's units.
 struct CodeQuestion {
     code::Language language = code::Language::structured_text;
     std::optional<double> sample_time;
     IntegralRule integral = IntegralRule::backward;
     DerivativeRule derivative = DerivativeRule::filtered_backward;
-    std::optional<int> slope_samples;  ///< of the rule slope, which needs it
+    std::optional<int> slope_samples;  ///< of the rule `slope`, which needs it
     bool velocity = false;
     std::optional<code::AntiWindup> anti_windup;
     std::optional<double> tracking_time, u_min, u_max, rate_limit, bias, y0;
 };
 
-/// Read from an object of the parameters as they were typed, numbers as numbers.
+/// Read from an object of the parameters as typed, with numbers as numbers.
 const Description<CodeQuestion>& code_contract();
 
-/// The parameters as they were typed, rules that are not among them from the request's `implement`, and what the result
-/// says of units: all read before anything is computed.
+/// The parameters as typed, rules that they leave out from the request's `implement`, and the units of the result: all
+/// read before anything is computed.
 struct AskedCode {
     CodeQuestion question;
     double unit = 1;  ///< seconds in the result's unit of time
@@ -41,13 +41,13 @@ struct SampleTime {
     std::string origin;  ///< for the head comment
 };
 
-/// As asked for, else as the request says how the controller runs, else from the controller's own times (gains with
-/// their times in seconds) and the `longest_sample_time` of the design, an entry or a schedule, where that says one. A
-/// fault of `sample_time` where there is none.
+/// The sample time: as asked for, else as in the request's `implement`, else from the controller's own times (gains
+/// with their times in seconds) and the design's `longest_sample_time`, of an entry or a schedule, if it has one. A
+/// fault of `sample_time` if there is none.
 std::variant<SampleTime, Problem> sample_time_of(const AskedCode& asked, const Json& request, const ParallelPid& gains,
                                                  const Json& design);
 
-/// In seconds; the sample time is still to be set.
+/// The law with times in seconds; its sample time is still to be set.
 SampledPid law_of(const AskedCode& asked, const ParallelPid& gains);
 code::CodeOptions options_of(const AskedCode& asked, const Json& result);
 

@@ -6,7 +6,7 @@
 namespace tunewright::api {
 namespace {
 
-constexpr std::size_t kMaxNumbers = 8;  // of a list that is shown
+constexpr std::size_t kMaxNumbers = 8;  // numbers of a list that are shown
 
 std::string word_at(const Json& value, const char* place) {
     const Json::json_pointer pointer(place);
@@ -14,7 +14,7 @@ std::string word_at(const Json& value, const char* place) {
     return value.at(pointer).get<std::string>();
 }
 
-// "1.4", or why there is none.
+// The figure as text, "1.4", or the reason why there is none.
 std::string figure_at(const Json& entry, const char* group, const char* name) {
     const Json::json_pointer pointer(std::string(group) + "/" + name);
     if (entry.contains(pointer) && entry.at(pointer).is_number())
@@ -32,7 +32,7 @@ std::string value_text(const Json& value) {
     return "[" + list + "]";
 }
 
-// "fopdt, K 2, T 10, L 3"; equations and long lists are left to the request.
+// The plant as text, "fopdt, K 2, T 10, L 3"; equations and long lists are left out.
 std::string plant_text(const Json& plant) {
     std::string out = plant.value("type", "");
     for (const auto& [name, value] : plant.items()) {

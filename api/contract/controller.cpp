@@ -12,7 +12,7 @@ Codec<FilterType> filter_type() {
                                {"measurement_second_order", FilterType::measurement_second_order}});
 }
 
-// As sent: Tf itself, or N = Td/Tf of a derivative filter.
+// The filter as sent: Tf itself, or N = Td/Tf of a derivative filter.
 struct GivenFilter {
     FilterType type = FilterType::none;
     std::optional<double> Tf, N;
@@ -78,7 +78,7 @@ void read_filter(const Json& value, Form& pid, Reader& reader) {
     pid.filter.Tf = derivative_time(pid) / *given.N;
     if (pid.filter.Tf > 0) return;
     pid.filter = {};
-    // Without a derivative there is nothing to filter; any other Td/N is no time constant.
+    // Without a derivative there is nothing to filter; any other Td/N is not a valid time constant.
     if (derivative_acts(pid)) reader.fault_at("N", "N gives Tf = Td/N <= 0 here; give Tf > 0 itself.");
 }
 
@@ -114,7 +114,7 @@ Description<Form>& with_filter_and_action(Description<Form>& description) {
             {.answer_only = true});
 }
 
-// As sent and answered: {"T": 4}.
+// In requests and answers: {"T": 4}.
 struct SetpointFilter {
     double T = 0;
 };

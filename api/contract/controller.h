@@ -8,7 +8,7 @@
 
 namespace tunewright::api {
 
-/// By `form`; ideal if it is not given.
+/// Chosen by `form`; ideal if it is not given.
 const Union<Controller>& controller_contract();
 
 const Description<Equivalents>& equivalents_contract();

@@ -22,7 +22,7 @@ std::vector<std::string> names_of(const std::vector<OptionDescription>& options)
 void read_fields(const Json& value, const std::vector<OptionDescription>& described, const std::string& prefix,
                  const std::string& owner, MethodOptions& target, Reader& reader);
 
-// Through a codec of the contract; kept where it found no fault.
+// Reads through a codec of the contract; keeps the value if there was no fault.
 template <class T>
 void read_through(const Codec<T>& codec, const Json& value, const std::string& path, MethodOptions& target,
                   Reader& reader) {
@@ -41,7 +41,7 @@ void read_plain_number(const Json& value, const OptionDescription& option, const
     target.set(path, *number);
 }
 
-// A word from the option's list.
+// Reads one of the words that the option allows.
 void read_word(const Json& value, const OptionDescription& option, const std::string& path, MethodOptions& target,
                Reader& reader) {
     std::vector<std::pair<std::string, std::string>> words;
@@ -65,7 +65,7 @@ void read_number_or_word(const Json& value, const OptionDescription& option, con
                  (meant.empty() ? "" : " Did you mean " + meant + "?"));
 }
 
-// Two numbers, at the indices 0 and 1.
+// Reads two numbers, at the indices 0 and 1.
 void read_pair(const Json& value, const OptionDescription& option, const std::string& path, const std::string& wanted,
                MethodOptions& target, Reader& reader) {
     if (!value.is_array() || value.size() != 2) {

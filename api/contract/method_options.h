@@ -9,19 +9,19 @@
 
 namespace tunewright::api {
 
-/// The value of one option, stored at `path`; faults at the reader's place.
+/// Reads the value of one option and stores it at `path`; faults at the reader's place.
 void read_option(const Json& value, const OptionDescription& option, const std::string& path, MethodOptions& target,
                  Reader& reader);
 
-/// Every member of the object `value` except "method". `owner` is named by the fault of a member that none describes.
+/// Reads every member of the object `value` except "method". `owner` is the name in the fault of an unknown member.
 void read_options(const Json& value, const std::vector<OptionDescription>& described, const std::string& owner,
                   MethodOptions& target, Reader& reader);
 
-/// "x is not an option of simc; did you mean ...?"
+/// The fault of an unknown option: "x is not an option of simc; did you mean ...?"
 std::string unknown_option(const std::string& name, const std::string& owner, const std::vector<std::string>& names);
 
-/// Puts a value at its path: "reduction/method" opens an object, "bounds/Kp/1" an array, whose elements before it are
-/// null until they are placed.
+/// Puts a value at its path: "reduction/method" opens an object, "bounds/Kp/1" an array, whose earlier elements are
+/// null until they are set.
 void place_option(Json& object, const std::string& path, const OptionValue& value);
 
 /// The options of a method as a JSON Schema: an object that allows no other members.

@@ -25,8 +25,8 @@ std::vector<std::string> names_of_all() {
     return names;
 }
 
-// The description of an option by the first method that takes this value for it; null if none does, but `named` if one
-// knows the option.
+// The description of an option by the first method that accepts this value for it; null if none does. `named` becomes
+// true if a method has the option.
 const OptionDescription* taking(const std::string& name, const Json& value, const Reader& reader,
                                 const OptionDescription*& named) {
     for (const TuningMethod& method : method_registry()) {
@@ -42,8 +42,8 @@ const OptionDescription* taking(const std::string& name, const Json& value, cons
     return nullptr;
 }
 
-// Of "all", each method takes the options that it knows. A value must suit one of them; the others will say why it does
-// not suit them.
+// With "all", each method takes the options that it has. A value must suit one of them; the other methods then report
+// why it does not suit them.
 void read_options_of_all(const Json& value, MethodOptions& target, Reader& reader) {
     for (const auto& [name, member] : value.items()) {
         if (name == "method") continue;
@@ -102,7 +102,7 @@ Json methods_schema(SchemaBook& book) {
         }
         add(method.id, method_schema(method.id, method.title, method.formula + " Source: " + method.source, options));
     }
-    // A choice of one is that one: generators of clients stumble over it.
+    // A choice among one is written as that one: generators of clients fail on it.
     for (auto& [name, option] : of_all.items())
         if (option["anyOf"].size() == 1) option = Json(option["anyOf"][0]);
     add(kAll,

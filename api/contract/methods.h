@@ -13,7 +13,7 @@ namespace tunewright::api {
 /// options.
 Codec<MethodRequest> method_request();
 
-/// An array of those, or "all".
+/// An array of methods, or "all".
 Codec<std::vector<MethodRequest>> tune_list();
 
 /// `options` of an entry of this method: those with a default first, in the order in which the method describes them.

@@ -36,7 +36,7 @@ Codec<ColumnChoice> column_choice() {
         }};
 }
 
-// Two numbers; `example` shows them, `check` says what is wrong with them, or nothing.
+// The codec of two numbers; `example` is for the schema; `check` returns a fault or nothing.
 Codec<std::array<double, 2>> two_numbers(std::string example, const char* (*check)(const std::array<double, 2>&)) {
     return {[example, check](const Json& value, std::array<double, 2>& target, Reader& reader) {
                 if (!value.is_array() || value.size() != 2)
@@ -332,7 +332,7 @@ ReadRecord resolve(GivenRecord given, const Units& units, Reader& reader) {
 
 namespace {
 
-// `rows` ascend. A column that the record does not have stays empty.
+// Keeps the `rows`, which ascend. A column that the record does not have stays empty.
 template <class T>
 void keep(const std::vector<std::size_t>& rows, std::vector<T>& column) {
     if (column.empty()) return;
@@ -340,7 +340,7 @@ void keep(const std::vector<std::size_t>& rows, std::vector<T>& column) {
     column.resize(rows.size());
 }
 
-// The row whose value of `column` holds at the time `from`; empty where none before it has a number.
+// The row whose value of `column` holds at the time `from`; empty if no row before it has a number.
 std::optional<std::size_t> row_held(const std::vector<double>& t, const std::vector<double>& column, double from) {
     std::optional<std::size_t> last;
     for (std::size_t i = 0; i < column.size(); ++i)
@@ -348,7 +348,7 @@ std::optional<std::size_t> row_held(const std::vector<double>& t, const std::vec
     return last;
 }
 
-// u and the disturbances hold where a cell is blank, also from rows that are left out.
+// u and the disturbances keep their values over blank cells, also from rows that are left out.
 void hold_from_before(double from, std::size_t first, Record& record) {
     std::vector<std::vector<double>*> columns = {&record.u};
     for (FurtherInput& input : record.d) columns.push_back(&input.values);
@@ -358,7 +358,7 @@ void hold_from_before(double from, std::size_t first, Record& record) {
     }
 }
 
-// u_step and u0 speak of the time before the file's first sample, which `from` leaves out. True if that is reported.
+// u_step and u0 describe the time before the file's first sample, which `from` leaves out. True if that is reported.
 bool left_out_by_from(const GivenRecord& given, const ReadRecord& read, double from, Reader& reader) {
     const auto held = row_held(read.record.t, read.record.u, from);
     if (!held) return false;
@@ -439,7 +439,7 @@ bool moves_as(const std::vector<double>& d, const std::vector<double>& x) {
     });
 }
 
-/// "u", "y" or the name of an earlier disturbance that moves as number `k` does; "" for none.
+/// "u", "y" or the name of an earlier disturbance that is an affine function of number `k`; "" if there is none.
 std::string twin_of(const Record& record, std::size_t k) {
     const std::vector<double>& d = record.d[k].values;
     if (moves_as(d, record.u)) return "u";
@@ -465,8 +465,8 @@ void check_disturbances(const Record& record, bool from_csv, Reader& reader) {
 
 namespace {
 
-/// Seconds that nothing names, and a plant that takes more than a day, as of milliseconds, or less than a thousandth of
-/// a second, as of days.
+/// Asks for the unit if the times are in assumed seconds and the plant takes more than a day (the times may be
+/// milliseconds) or less than a thousandth of a second (they may be days).
 void ask_for_unit(IdentifiedModel& model) {
     constexpr double kDay = 86400, kShort = 1e-3;
     const auto plant = LinearPlant::make(model.plant);

@@ -17,7 +17,7 @@ struct Units {
     std::string time_or_default() const { return time.value_or("s"); }
 };
 
-/// In which sentences of an answer speak.
+/// The labels for sentences of an answer.
 inline verdict::Labels labels_of(const std::optional<Units>& units) {
     if (!units) return {};
     return {units->time_or_default(), units->u.value_or(""), units->y.value_or("")};
@@ -34,47 +34,48 @@ struct GivenRecord {
     RecordKind kind = RecordKind::automatic;
     std::optional<double> u0, y0;
     std::optional<std::array<double, 2>> u_limits;
-    std::optional<std::array<double, 2>> u_step;  ///< in place of u
-    std::optional<int> run;                       ///< of a csv with several, from 1
-    std::optional<double> from, to;               ///< the part that counts
+    std::optional<std::array<double, 2>> u_step;  ///< instead of u
+    std::optional<int> run;                       ///< of a csv with several runs, from 1
+    std::optional<double> from, to;               ///< the part that is used
 };
 
-/// How a record becomes a model, and how much of that is answered.
+/// Options of the identification and of its answer.
 struct IdentifyQuestion : IdentifyOptions {
     bool traces = false;  ///< the record and the free runs of the models, for a plot
 };
 
-/// A record as the engine takes it, and what reading it has found.
+/// A record as the engine takes it, and the findings of reading it.
 struct ReadRecord {
     Record record;
     int dropped = 0;
     std::vector<std::string> notes;
     std::string unread = {}, unread_column = {};  ///< as in CsvRecord
-    bool time_unit_known = true;  ///< else the file does not say in which unit its times are, nor does the request
+    bool time_unit_known = true;  ///< false: neither the file nor the request states the unit of the times
 };
 
 const Description<ColumnChoices>& columns_contract();
 Codec<std::array<double, 2>> u_step();  ///< [from, to], two values
 Codec<int> run_number();                ///< from 1
-Codec<std::string> file_time_unit();    ///< one that times can be converted from
+Codec<std::string> file_time_unit();    ///< A unit from which times can be converted.
 const Description<Units>& units_contract();
 const Description<GivenRecord>& record_contract();
 const Description<IdentifyQuestion>& identify_contract();
 
-/// Reports to the reader, which stands at the record.
+/// Converts the record as sent; faults go to the reader, which is at the record.
 ReadRecord resolve(GivenRecord given, const Units& units, Reader& reader);
 
-/// Keeps the samples from `from` to `to`; all of them where neither is given. u and the disturbances hold from the rows
-/// before. Reports where fewer than 2 are left, and where `from` leaves out the row before which u_step or u0 is meant.
+/// Keeps the samples from `from` to `to`; all of them if neither is given. u and the disturbances keep their values
+/// from the rows before. Reports if fewer than 2 samples are left, and if `from` leaves out the row to which u_step or
+/// u0 refers.
 void choose_part(const GivenRecord& given, ReadRecord& read, Reader& reader);
 
-/// Reports at d, or at columns/d, each measured disturbance that moves only as u, y or another one does.
+/// Reports each measured disturbance that moves only as u, y or another one does, at d or at columns/d.
 void check_disturbances(const Record& record, bool from_csv, Reader& reader);
 
-/// What reading the CSV has found belongs to the data's quality too.
+/// Adds the findings of reading the CSV to the data's quality.
 void add_reading(const ReadRecord& read, IdentifiedModel& model);
 
-/// Traces are answered only where they were asked for.
+/// Removes the traces unless the request asks for them.
 void leave_out_traces(const IdentifyQuestion& question, IdentifiedModel& model);
 
 }  // namespace tunewright::api

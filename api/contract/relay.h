@@ -1,5 +1,5 @@
-// Relay tests of the contract: a plant and a relay in; record, steady limit cycle and plan out. A record of a relay
-// test shows the same limit cycle.
+// Relay tests of the contract: a plant and a relay in the request; record, steady limit cycle and plan in the answer. A
+// record of a relay test shows the same limit cycle.
 #pragma once
 
 #include <string>
@@ -13,7 +13,8 @@
 namespace tunewright::api {
 
 const Description<UltimatePoint>& ultimate_point_contract();
-/// In place of a plant or a record: Ku != 0 [u/y], Pu > 0 [time], and the static gain K != 0 [y/u] where it is known.
+/// A subject instead of a plant or a record: Ku != 0 [u/y], Pu > 0 [time], and the static gain K != 0 [y/u] if it is
+/// known.
 const Description<UltimateTest>& ultimate_contract();
 const Description<LimitCycle>& limit_cycle_contract();
 const Description<FrequencyPoint>& frequency_point_contract();
@@ -25,7 +26,8 @@ struct RelayRequest {
     RelaySettings relay;
 };
 
-/// Reading checks plant and relay as the engine would; each of its errors becomes a fault of the member that it names.
+/// Reading applies the engine's checks of plant and relay; each of its errors becomes a fault of the member that it
+/// names.
 const Description<RelayRequest>& relay_request_contract();
 /// The whole answer of POST /v1/experiments/relay; times in the plant's unit of time.
 const Description<RelayExperiment>& relay_answer_contract();

@@ -17,7 +17,7 @@
 namespace tunewright::api {
 namespace {
 
-// Whether every plant forms a loop with the controller, at which the reader stands.
+// Checks that every plant forms a loop with the controller at the reader's place.
 void check_loops(const AnalysedPlant& subject, const Controller& controller, Reader& reader) {
     if (const auto fault = loop_fault(subject, controller)) reader.fault_below(fault->where, 1, fault->message);
 }
@@ -29,7 +29,7 @@ void resolve_record(const Json&, Request& request, Reader& reader) {
     request.read = resolve(std::move(*request.record), request.units.value_or(Units{}), reader);
 }
 
-// Ku and Pu alone: no loop is judged, so nothing that belongs to one may be asked for.
+// A request with Ku and Pu alone evaluates no loop, so members about a loop are not allowed.
 void check_ultimate(const Json& value, JobRequest& request, Reader& reader) {
     if (!value.contains("ultimate")) return;
     for (const char* judged : {"baseline", "implement", "evaluate", "identify", "uncertainty"})
@@ -47,8 +47,8 @@ verdict::GivenSteps given_steps(const Json& request) {
     return {evaluate->contains("setpoint_step"), evaluate->contains("load_step")};
 }
 
-/// A request is about one of `sources`, members that exclude each other; `others`: how those beside a plant are asked
-/// for.
+/// Checks that the request has exactly one of `sources`, members that exclude each other; `others`: how to ask for
+/// those that may accompany a plant.
 void check_source(const Json& value, const std::vector<std::string>& sources, const std::string& others,
                   Reader& reader) {
     std::vector<std::string> given;
@@ -80,7 +80,7 @@ Json baseline_schema(SchemaBook& book) {
                  Json::array({one_of(controller_contract()).schema(book), baseline_settings_contract().schema(book)})}};
 }
 
-// Settings that are typed become their ideal twin, which is the baseline then.
+// Converts settings that are typed into a product to the ideal form, which is then the baseline.
 void check_baseline(JobRequest& request, const std::string& time, Reader& reader) {
     if (!seconds_per_time(time, reader)) return;
     const Reader::At at(reader, "baseline");
@@ -130,7 +130,7 @@ void check_job(const Json& value, JobRequest& request, Reader& reader) {
     check_loops(*request.subject, *request.baseline, reader);
 }
 
-/// For a model that was read without a fault.
+/// The analysed plant of a model that was read without a fault.
 std::optional<AnalysedPlant> made_of(const IdentifiedModel& model, Reader& reader) {
     auto made = subject_of(model);
     if (made) return std::move(*made);
@@ -149,7 +149,7 @@ void check_controllers(const Json& value, EvaluateRequest& request, Reader& read
     }
 }
 
-// What a job and a design know beside the plant and the methods.
+// The common members of a job and a design, other than the plant and the methods.
 template <class Request>
 void add_judged(Description<Request>& d) {
     d.field(
@@ -165,7 +165,7 @@ void add_judged(Description<Request>& d) {
 constexpr const char* kModelSentence =
     "What an answer has as `model` for a record, sent back in the record's place: the record is not identified again.";
 
-// The requests of a job and of a design at once.
+// Checks that apply to the requests of a job and of a design.
 template <class Request>
 void add_question(Description<Request>& d) {
     d.field("identify", &Request::identify, object(identify_contract()), "How the record becomes a model.")

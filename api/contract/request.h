@@ -14,14 +14,14 @@ struct JobRequest : JobTerms {
     std::optional<std::string> name;
     std::optional<Units> units;
     std::optional<PlantModel> plant;
-    std::optional<AnalysedPlant> subject;  ///< that `plant` describes
+    std::optional<AnalysedPlant> subject;  ///< the analysed `plant`
     std::optional<GivenRecord> record;
     std::optional<UltimateTest> ultimate;
-    std::optional<IdentifiedModel> model;  ///< of a record, sent back; of a design alone
+    std::optional<IdentifiedModel> model;  ///< of a record, sent back by the client; of a design only
     IdentifyQuestion identify;
     std::vector<MethodRequest> tune = {MethodRequest{}};
     std::optional<Controller> baseline;
-    std::optional<GivenBaseline> baseline_settings;  ///< in its place: as typed on a product
+    std::optional<GivenBaseline> baseline_settings;  ///< instead of `baseline`: as typed into a product
     std::optional<GivenDevice> implement;
     EvaluateOptions evaluate;
     verdict::GivenSteps given_steps;  ///< of `evaluate`
@@ -33,15 +33,15 @@ struct JobRequest : JobTerms {
 
 /// A tuning request, answered while the client waits.
 struct DesignRequest : JobRequest {
-    std::optional<Controller> start;  ///< a design nearby; a hint
+    std::optional<Controller> start;  ///< an initial design nearby; a hint
 };
 
 struct EvaluateRequest {
     std::optional<std::string> name;
     std::optional<Units> units;
     std::optional<PlantModel> plant;
-    std::optional<IdentifiedModel> model;  ///< in the place of a plant: of a record, sent back
-    std::optional<AnalysedPlant> subject;  ///< that they describe
+    std::optional<IdentifiedModel> model;  ///< instead of a plant: the model of a record, sent back by the client
+    std::optional<AnalysedPlant> subject;  ///< the analysed plant
     std::vector<Controller> controllers;
     std::optional<GivenDevice> implement;
     EvaluateOptions evaluate;
@@ -57,7 +57,7 @@ struct IdentifyRequest {
     ReadRecord read;
 };
 
-/// Their checks include what the engine says about plant and controllers at once.
+/// Their checks include those of the engine for plant and controllers.
 const Description<JobRequest>& job_contract();
 const Description<DesignRequest>& design_request_contract();
 const Description<EvaluateRequest>& evaluate_request_contract();
@@ -65,12 +65,12 @@ const Description<IdentifyRequest>& identify_request_contract();
 
 const Description<EvaluateOptions>& evaluate_options_contract();
 
-/// The members that say what a request is about, one of them in each.
+/// The members that name the subject of a request; each request has one of them.
 const std::vector<std::string>& request_sources();
 /// True if a request of any kind has a member of that name.
 bool is_request_member(std::string_view name);
 
-/// The plant in the form in which it is computed with; empty after a fault, which the reader then has.
+/// The analysed plant; empty after a fault, which the reader then has.
 std::optional<AnalysedPlant> subject_of(const PlantModel& plant, Reader& reader);
 
 /// The members that every request may carry.

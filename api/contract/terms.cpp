@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kMaxUrl = 2000;
 constexpr std::size_t kMaxSecretName = 64;
 constexpr double kLongestTimeout = 3600;  // s
-constexpr int kMaxDaysAhead = 30;         // that a job may wait for its time
+constexpr int kMaxDaysAhead = 30;         // for which a job may wait for its time
 
 }  // namespace
 
@@ -36,14 +36,14 @@ const Description<Notify>& notify_contract() {
 
 namespace {
 
-/// A date and a time of day with its zone, ISO 8601, as milliseconds since 1970, UTC.
+/// The codec of a date and a time of day with its zone, ISO 8601, as milliseconds since 1970, UTC.
 Codec<std::int64_t> moment() {
     Codec<std::int64_t> codec;
     codec.read = [](const Json& value, std::int64_t& target, Reader& reader) {
         const auto rule = "a time such as \"2026-05-04T06:00:00Z\"";
         if (!value.is_string()) return reader.fault(wrong_kind(value, rule, reader));
         const auto& text = value.get_ref<const std::string&>();
-        // Year first: of other dates the order is a guess.
+        // Only dates that begin with the year: the order of others is ambiguous.
         const bool iso = text.size() > 4 && text.find_first_not_of("0123456789") >= 4;
         const auto stamp = iso ? read_time_stamp(text) : std::nullopt;
         if (stamp && stamp->has_date && stamp->has_clock && stamp->has_zone) {

@@ -1,5 +1,6 @@
-// The terms on which a job is run, beside what it computes: whom to tell of its end, when its turn comes, and whether
-// an earlier job will do. They change no figure, so they are no part of the hash that names a request.
+// The terms on which a job is run, other than its computation: the webhook at its end, its start time, and whether an
+// earlier job of the same request may answer. They change no figure, so they are not part of the hash that identifies a
+// request.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +19,7 @@ class Description;
 
 constexpr std::size_t kMaxNameLength = 200;  ///< bytes of the name of a job or a batch
 
-/// Whom to tell when a job or a batch has ended. What a url may be is the operator's business.
+/// The webhook that is called when a job or a batch has ended. The operator decides which URLs are allowed.
 struct Notify {
     std::string url;
     std::string secret_id;  ///< "": the operator's first secret
@@ -39,16 +40,16 @@ struct JobTerms {
 template <class Request>
 void add_terms(Description<Request>& description);
 
-/// 422 for a job that is to wait longer for its time than the contract allows.
+/// 422 for a job whose start time is later than the contract allows.
 std::optional<Problem> refuse_far(const std::optional<std::int64_t>& not_before);
 
-/// What the text of a batch's `notify` says; 422 with pointers below /notify.
+/// Parses the `notify` of a batch; 422 with pointers below /notify.
 std::variant<Notify, Problem> read_notify(std::string_view json);
 
-/// Takes the terms out of a request, of which what is computed is left.
+/// Removes the terms from a request, which leaves the members that are computed.
 void leave_out_terms(nlohmann::ordered_json& request);
 
-/// 422 for a request that carries terms which an entry of a batch cannot have of its own.
+/// 422 for a request with terms that only a whole batch can have.
 std::optional<Problem> refuse_terms_of_entry(const nlohmann::ordered_json& request);
 
 }  // namespace tunewright::api

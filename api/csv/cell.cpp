@@ -15,7 +15,7 @@ constexpr std::size_t kMaxNumberLength = 64;
 
 constexpr std::string_view kMinusSign = "\xE2\x88\x92", kEnDash = "\xE2\x80\x93";
 
-/// The length of a minus as type setters write it.
+/// The length of a minus sign as in typeset text.
 std::size_t typeset_minus(std::string_view cell) {
     return cell.starts_with(kMinusSign) || cell.starts_with(kEnDash) ? kMinusSign.size() : 0;
 }
@@ -26,7 +26,7 @@ std::string_view without_sign(std::string_view cell) {
     return cell;
 }
 
-// "1,234", "12.345.678": one to three digits, then groups of three; not "0,123".
+// True for "1,234" and "12.345.678": one to three digits, then groups of three; false for "0,123".
 bool is_grouped(std::string_view cell, char group) {
     cell = without_sign(cell);
     const std::size_t first = cell.find(group);
@@ -44,7 +44,7 @@ bool parse(std::string_view text, double& value) {
     return error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
 }
 
-// Thousands apart by a blank, a no-break space (also the narrow one) or an apostrophe.
+// Removes a blank, a no-break space (also the narrow one) or an apostrophe between thousands.
 std::string without_blanks_between_digits(std::string_view cell) {
     std::string out;
     for (std::size_t i = 0; i < cell.size(); ++i) {
@@ -66,7 +66,7 @@ std::string without_blanks_between_digits(std::string_view cell) {
     return out;
 }
 
-// `text` has a comma or several points: the decimal sign becomes a point and the other sign goes.
+// For a `text` with a comma or several points: the decimal sign becomes a point and the other sign is removed.
 bool parse_signs(std::string text, DecimalSign sign, double& value) {
     const auto points = std::count(text.begin(), text.end(), '.'), commas = std::count(text.begin(), text.end(), ',');
     char decimal = commas > 0 ? ',' : '.';
@@ -119,7 +119,7 @@ void DecimalSignFinder::look_at(std::string_view cell, std::size_t column) {
 DecimalSign DecimalSignFinder::found() const {
     if (point_ != comma_) return point_ ? DecimalSign::point : DecimalSign::comma;
     if (point_) return DecimalSign::either;
-    // Who writes 950 without decimals would write 1 so: 1.050 is a thousand.
+    // A writer of 950 without decimals would write 1 so: 1.050 is a thousand.
     const auto groups = [](bool points) {
         return [points](const Column& column) { return column.of_groups() && column.points == points; };
     };

@@ -1,4 +1,4 @@
-// One cell of an export as a number, or as the mark of a value that is not there.
+// One cell of an export, read as a number or as the mark of a missing value.
 #pragma once
 
 #include <optional>
@@ -8,27 +8,27 @@
 
 namespace tunewright::api {
 
-/// What . and , mean in a file's numbers.
+/// The meaning of . and , in a file's numbers.
 enum class DecimalSign {
     point,   ///< 1,234.5
     comma,   ///< 1.234,5
-    either,  ///< a lone . or , is the decimal sign: the file shows both, or neither plainly
+    either,  ///< a single . or , is the decimal sign: the file shows both, or neither clearly
 };
 
-/// Reads the evidence of the cells: "20,25" needs a decimal comma, "0.5" a point, "1,234" may be either; in a column of
-/// whole numbers up to 999 it is a thousand.
+/// Finds the decimal sign from the cells: "20,25" needs a decimal comma, "0.5" a point, "1,234" may be either; in a
+/// column of whole numbers up to 999 it is a thousand.
 class DecimalSignFinder {
 public:
     void look_at(std::string_view cell, std::size_t column);
     DecimalSign found() const;
-    /// Whether a cell showed it; what columns show is seen at the end.
+    /// True if a cell is unambiguous; evidence from whole columns is used only at the end.
     bool certain() const { return point_ || comma_; }
-    /// The first cell that may be either, where no cell is certain; "" if there is none.
+    /// The first ambiguous cell, if no cell is certain; "" if there is none.
     std::string open_example() const { return certain() ? "" : open_; }
 
 private:
     struct Column {
-        bool points = false, commas = false;       ///< cells that may be either
+        bool points = false, commas = false;       ///< cells that are ambiguous
         bool hundreds = false, thousands = false;  ///< whole numbers without a sign: 100 to 999, and beyond
         bool of_groups() const { return points != commas && hundreds && !thousands; }
     };
@@ -38,19 +38,19 @@ private:
     std::string open_;
 };
 
-/// A number with decimal sign, grouped thousands (by . , ' or a blank) and the unit `suffix` behind it, if that is not
-/// empty; false for any other text: blank, NaN and Infinity included.
+/// Reads a number with decimal sign, grouped thousands (by . , ' or a blank) and, if `suffix` is not empty, that unit
+/// behind it; false for any other text, including blank, NaN and Infinity.
 bool read_cell_number(std::string_view cell, double& value, DecimalSign sign = DecimalSign::either,
                       std::string_view suffix = {});
 
-/// What follows the number in "25.3 degC": "degC"; "" where it is a plain number or none.
+/// The text behind the number: "degC" of "25.3 degC"; "" for a plain number or another text.
 std::string_view unit_suffix(std::string_view cell);
 
-/// Blank, NaN, NA, null, -, the errors of spreadsheets and what historians write for a value that they do not have
+/// True for a blank cell, NaN, NA, null, -, the errors of spreadsheets and the marks of historians for a missing value
 /// ("Bad Input", "No Data", "I/O Timeout").
 bool is_missing(std::string_view cell);
 
-/// ON, open, true, running: 1; off, closed, false, stopped: 0, in several languages. Empty for any other text.
+/// 1 for ON, open, true, running; 0 for off, closed, false, stopped; in several languages. Empty for any other text.
 std::optional<double> switch_word(std::string_view cell);
 
 std::string_view trimmed(std::string_view text);

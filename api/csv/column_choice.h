@@ -1,4 +1,4 @@
-// Which columns of a file a request names.
+// The columns of a file that a request names.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace tunewright::api {
 
-/// The most columns of a file; wider files are refused.
+/// The maximum number of columns of a file; wider files are refused.
 inline constexpr std::size_t kMaxColumns = 4000;
 
 /// A heading, or the column's number from 1.
@@ -20,7 +20,7 @@ struct ColumnChoices {
     std::vector<ColumnChoice> d = {};  ///< measured disturbances, at most kMaxFurtherInputs
 };
 
-/// Those that are chosen by their headings.
+/// The choices that are headings.
 inline std::vector<std::string> chosen_names(const ColumnChoices& chosen) {
     std::vector<std::string> names;
     for (const auto* choice : {&chosen.t, &chosen.u, &chosen.y, &chosen.r})

@@ -23,7 +23,7 @@ constexpr std::size_t kMaxFaults = 10;
 constexpr double kMaxNumber = 1e30;  // as in every number of the contract
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
-// Lines that cannot be read are left out where they are this rare: a total at the end, half a line of a serial port.
+// Lines that cannot be read are left out if they are this rare: a total at the end, half a line of a serial port.
 constexpr std::size_t kMinReadRows = 20, kMinRowsPerUnread = 50;
 
 class RecordReader {
@@ -109,7 +109,7 @@ private:
         write_notes(times);
     }
 
-    // A logger that was started again writes them again.
+    // A logger that was restarted writes the headings again.
     bool are_headings(const CsvLine& line) const {
         if (layout_.headings.empty() || layout_.pairs || line.cells.front().empty()) return false;
         return std::equal(line.cells.begin(), line.cells.end(), layout_.headings.begin(), layout_.headings.end());
@@ -119,7 +119,7 @@ private:
         if (record_.skipped.size() < kMaxSkips) record_.skipped.push_back({line, std::move(reason)});
     }
 
-    // The lines before the first row that are not its headings.
+    // Skips the lines before the first row that are not its headings.
     void skip_head() {
         if (!layout_.source_lines.empty()) return;
         std::size_t at = 0;
@@ -135,8 +135,8 @@ private:
         }
     }
 
-    // A line that does not belong to the table, for `reason`; `joint` joins that to the line's name. Many of them are
-    // no accident.
+    // Records a line that does not belong to the table, for `reason`; `joint` joins that to the line's name. Many such
+    // lines are a fault.
     void unread(const CsvLine& line, const char* joint, std::string reason, const std::string& cure) {
         const std::string sentence = "Line " + std::to_string(line.number) + joint + reason;
         if (++unread_ == 1) first_unread_ = sentence;
@@ -189,7 +189,7 @@ private:
         if (options_.u_step) u = (*options_.u_step)[1];
         if ((columns_.at[kInputRole] && !read_value(line, kInputRole, u)) || !read_value(line, kOutputRole, y)) return;
         const bool others = read_others(line);
-        // The step of a file without u is at its first row, whatever y is there.
+        // The step of a file without u is at its first row, even if y is missing there.
         const bool stepped = options_.u_step && (layout_.pivoted || !record_.t.empty());
         if (std::isnan(y) && (std::isnan(u) || stepped)) {
             if (!others && !layout_.pivoted) {
@@ -216,7 +216,7 @@ private:
         record_.lines.push_back(line);
     }
 
-    // Set point and disturbances, which stay until the next row that counts: a line may hold one of them alone.
+    // Reads set point and disturbances, which hold until the next row that counts: a line may have one of them only.
     bool read_others(const CsvLine& line) {
         bool any = false;
         const auto take = [&](std::size_t column, double& target) {
@@ -236,13 +236,13 @@ private:
         return false;
     }
 
-    // u of words such as ON and OFF.
+    // True if u consists of words such as ON and OFF.
     bool of_words(ColumnRole role) const {
         const ColumnProfile& held = profiles_[*columns_.at[role]];
         return role == kInputRole && held.switches > held.numbers;
     }
 
-    // NaN where the cell is there but holds no value.
+    // Gives NaN if the cell is there but holds no value.
     bool read_value(const CsvLine& line, ColumnRole role, double& value) {
         const std::string_view text = cell(line, *columns_.at[role]);
         const ColumnProfile& held = profiles_[*columns_.at[role]];
@@ -261,14 +261,14 @@ private:
         return true;
     }
 
-    // Whatever stands for "none" in a set point or a disturbance: the value before holds.
+    // Any mark for "none" in a set point or a disturbance: the previous value holds.
     double read_optional(const CsvLine& line, std::size_t column) const {
         double value = 0;
         const bool number = read_cell_number(cell(line, column), value, layout_.sign, profiles_[column].suffix);
         return number && std::abs(value) <= kMaxNumber ? value : kNoNumber;
     }
 
-    // Words of u are its two levels; numbers among them are damaged cells.
+    // The words of u are its two levels; numbers among them are damaged cells.
     bool read_switch(std::string_view text, double& value) {
         const auto level = switch_word(text);
         if (!level) return false;
@@ -283,7 +283,7 @@ private:
                                                                                      : without;
     }
 
-    // Headings may be missing, or there twice.
+    // Headings may be missing or occur twice.
     std::string disturbance_name(std::size_t column) const {
         const std::string name = heading_of(column, "d");
         const auto same =
@@ -304,7 +304,7 @@ private:
                                                      : "a number.");
         const char* cure = other_separator ? " The line is not separated like the others."
                                            : " Mend the line, or leave the cell blank to drop it.";
-        // ON and OFF among numbers mean something, which is not known.
+        // ON and OFF among numbers have a meaning that is not known.
         if (role == kInputRole && switch_word(text))
             return fault("csv", "Line " + std::to_string(line.number) + ", " + reason + cure);
         unread(line, ", ", reason, cure);
@@ -371,7 +371,7 @@ private:
     std::vector<CsvFault> unread_faults_;
     std::string first_unread_;
     double spacing_ = 1;
-    double r_ = kNoNumber, last_u_ = kNoNumber;  // r_, d_: read, and not yet in a row of the record
+    double r_ = kNoNumber, last_u_ = kNoNumber;  // r_, d_: read, but not yet in a row of the record
     std::vector<double> d_, last_d_;
     std::string missing_word_, low_word_, high_word_;
     CsvRecord record_;

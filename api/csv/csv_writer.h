@@ -1,4 +1,4 @@
-// CSV text as spreadsheets and programs read it alike (RFC 4180).
+// CSV text that spreadsheets and programs read in the same way (RFC 4180).
 #pragma once
 
 #include <string>
@@ -6,8 +6,8 @@
 
 namespace tunewright::api {
 
-/// Cells are set side by side with commas; a cell is quoted where it must be, and \r\n ends a line. A text that a
-/// spreadsheet would take for a formula (it begins with = + - @, a tab or \r) gets an apostrophe in front:
+/// Cells are separated by commas, quoted if necessary, and \r\n ends a line. A text that a spreadsheet would read as a
+/// formula (it begins with = + - @, a tab or \r) gets an apostrophe in front:
 ///
 ///     CsvWriter out;
 ///     out.text("Kp, Ti").text("=1").number(0.25).end_line();  // "Kp, Ti","'=1",0.25

@@ -22,7 +22,7 @@ void skip_blanks(std::string_view text, std::size_t& at) {
     while (at < text.size() && is_blank(text[at])) ++at;
 }
 
-/// "-12.5e-3" at `at`; empty where no number stands there.
+/// The number "-12.5e-3" at `at`; empty if there is none.
 std::string_view number_at(std::string_view text, std::size_t at) {
     std::size_t end = at;
     const auto digits = [&] {
@@ -37,7 +37,7 @@ std::string_view number_at(std::string_view text, std::size_t at) {
         any = digits() || any;
     }
     if (!any) return {};
-    // A decimal comma: behind a comma that parts pairs stands a name.
+    // A decimal comma: behind a comma that separates pairs there is a name.
     const bool point = text.substr(at, end - at).find('.') != std::string_view::npos;
     if (end + 1 < text.size() && text[end] == ',' && !point && is_digit(text[end + 1])) {
         ++end;
@@ -57,7 +57,7 @@ std::string_view word_at(std::string_view text, std::size_t at) {
     return text.substr(at, end - at);
 }
 
-/// What stands behind a sign of a pair: a number, a word that switches, or either of them or a time in quotes.
+/// The value behind the sign of a pair: a number, a word that switches, or either of them or a time in quotes.
 std::string_view value_at(std::string_view text, std::size_t& at) {
     skip_blanks(text, at);
     if (at < text.size() && (text[at] == '"' || text[at] == '\'')) {
@@ -70,7 +70,7 @@ std::string_view value_at(std::string_view text, std::size_t& at) {
         return inner;
     }
     std::string_view value = number_at(text, at);
-    // "12:05" and "1.2.3" are no numbers; nor is "20ab4".
+    // "12:05" and "1.2.3" are not numbers, and neither is "20ab4".
     if (!value.empty() && at + value.size() < text.size()) {
         const char next = text[at + value.size()];
         if (is_digit(next) || next == ':' || next == '.' || next == '_') value = {};
@@ -94,7 +94,7 @@ bool is_unit(std::string_view word) {
     return std::find(std::begin(kUnits), std::end(kUnits), word) != std::end(kUnits) || word == "%";
 }
 
-/// The name in front of a sign: what stands behind the last value, separators, brackets and quotes.
+/// The name in front of a sign: the text behind the last value, without separators, brackets and quotes.
 std::string key_of(std::string_view between) {
     const std::size_t cut = between.find_last_of(",;|\t{[(>&");
     if (cut != between.npos) between.remove_prefix(cut + 1);
@@ -107,7 +107,7 @@ std::string key_of(std::string_view between) {
         const std::size_t blank = between.find_last_of(' ');
         between = blank == between.npos ? std::string_view() : between.substr(blank + 1);
     }
-    // What a printer says before it reports.
+    // A printer's word in front of its report.
     if (constexpr std::string_view kDone = "ok "; between.substr(0, kDone.size()) == kDone)
         between = trimmed(between.substr(kDone.size()));
     while (!between.empty() && is_digit(between.front())) {
@@ -118,7 +118,8 @@ std::string key_of(std::string_view between) {
     return std::string(between);
 }
 
-/// "[14:05:06.25] ", "2026-11-21 14:05:06,123 - ", "14:05:06 -> ", "Stats 123.4: ", "[12.5]", "0.5 ".
+/// Takes a time in front of a line: "[14:05:06.25] ", "2026-11-21 14:05:06,123 - ", "14:05:06 -> ", "Stats 123.4: ",
+/// "[12.5]", "0.5 ".
 std::size_t take_time(std::string_view line, std::vector<Pair>& out) {
     std::size_t at = 0;
     skip_blanks(line, at);
@@ -162,7 +163,7 @@ std::size_t take_time(std::string_view line, std::vector<Pair>& out) {
     return 0;
 }
 
-// The time at the end of InfluxDB's lines, ns since 1970.
+// Takes the time at the end of an InfluxDB line, in ns since 1970.
 void take_time_behind(std::string_view rest, std::vector<Pair>& out) {
     constexpr std::size_t kShortest = 10;
     rest = trimmed(rest);
@@ -170,7 +171,7 @@ void take_time_behind(std::string_view rest, std::vector<Pair>& out) {
     if (std::all_of(rest.begin(), rest.end(), is_digit)) out.push_back({"time", rest});
 }
 
-/// "T", "T0", "B@", "@", "@0": what a printer's letters stand for, beside their set points.
+/// Writes words for a printer's letters "T", "T0", "B@", "@", "@0" and for their set points.
 void tell_printer_words(std::vector<Pair>& out) {
     const auto target = [&](const std::string& key) {
         return std::any_of(out.begin(), out.end(), [&](const Pair& pair) { return pair.key == key + ".target"; });
@@ -201,7 +202,7 @@ void split_pairs(std::string_view line, std::vector<Pair>& out) {
         std::size_t value_from = sign + 1;
         const std::string_view value = value_at(line, value_from);
         if (key.empty() || value.empty()) {
-            // "heater_bed: target=60": what stands before a colon and a blank leads the pairs that follow.
+            // "heater_bed: target=60": a word before a colon and a blank is part of the names of the following pairs.
             if (!key.empty() && line[sign] == ':' && sign + 1 < line.size() && is_blank(line[sign + 1])) {
                 group = key;
                 consumed = sign + 1;
@@ -237,7 +238,7 @@ bool is_pair_line(const std::vector<Pair>& pairs, const std::vector<std::string>
 
 namespace {
 
-/// Lines of one kind: those with the same keys.
+/// Lines with the same keys.
 struct PairFamily {
     std::vector<std::string> keys;
     int lines = 0;
@@ -249,7 +250,7 @@ struct PairFamily {
         });
     }
 
-    /// Names a controller output and a measurement.
+    /// True if it names a controller output and a measurement.
     bool is_process() const {
         bool u = false, y = false;
         for (const std::string& key : keys) {
@@ -281,7 +282,7 @@ public:
         ++families_[std::move(keys)];
     }
 
-    /// True if lines of pairs are as many as those of a log.
+    /// True if there are enough lines of pairs for a log.
     bool may_be_log() const {
         constexpr int kFewStats = 3;
         return with_pairs_ > 1 && (2 * with_pairs_ >= lines_ || stats_ >= kFewStats);
@@ -289,7 +290,7 @@ public:
 
     int stats() const { return stats_; }
 
-    /// The best family of all; its lines are fewer than 2 where there is none.
+    /// The best family of all; it has fewer than 2 lines if there is none.
     PairFamily best(const std::vector<std::string>& wanted) const {
         constexpr int kFewRows = 8;
         PairFamily best;
@@ -314,10 +315,10 @@ private:
 }  // namespace
 
 std::vector<std::string> pair_keys(std::string_view text, const std::vector<std::string>& wanted) {
-    constexpr int kProbedLines = 400, kProbeInterval = 16;  // lines looked at, and then one of so many
+    constexpr int kProbedLines = 400, kProbeInterval = 16;  // lines examined, and then one line in every kProbeInterval
     constexpr std::size_t kLookedBytes = 4 << 20;
     PairFamilies families;
-    // A line that may have the wanted columns holds the last parts of their names.
+    // A line that may have the wanted columns contains the last parts of their names.
     const auto may_be_wanted = [&](std::string_view content) {
         return !wanted.empty() && std::ranges::all_of(wanted, [&](const std::string& name) {
             return name == "time" || content.find(name.substr(name.rfind('.') + 1)) != content.npos;
@@ -328,7 +329,7 @@ std::vector<std::string> pair_keys(std::string_view text, const std::vector<std:
     for (int number = 0; const auto line = next_line(text, at);) {
         const std::string_view content = trimmed(*line);
         if (content.empty()) continue;
-        // A printer's log may begin with a dump; its reports come later.
+        // The log of a printer may begin with a dump; its reports come later.
         const bool report = content.starts_with("Stats ") && families.stats() < kProbedLines;
         if (++number <= kProbedLines || report || number % kProbeInterval == 0 || may_be_wanted(content))
             families.look_at(content);

@@ -13,17 +13,17 @@ struct Pair {
     std::string_view value;  ///< a number, a quoted time stamp or a word such as ON
 };
 
-/// The pairs of one line, in its order; a time in front of them, in brackets or not, or behind them is "time". What
-/// printers write gets words: "T:200.1 /200.0 @:64" becomes "T.temp", "T.target" and "T.pwm". At most 200.
+/// Splits one line into pairs, in its order; a time in front of them, in brackets or not, or behind them is "time". A
+/// printer's letters become words: "T:200.1 /200.0 @:64" becomes "T.temp", "T.target" and "T.pwm". At most 200 pairs.
 void split_pairs(std::string_view line, std::vector<Pair>& out);
 
-/// The keys of a log of pairs, in the order in which they come; empty where the lines are no such log, and a table may
-/// be. Where lines of several kinds have pairs, those are taken whose keys hold the `wanted` names; else those that
-/// name a controller output and a measurement; else the most. Lines between them that hold fewer than half of these
-/// keys count for nothing.
+/// The keys of a log of pairs, in the order in which they appear; empty if the lines are not such a log and may be a
+/// table. If lines of several kinds have pairs, the kind whose keys hold the `wanted` names is taken; else one that
+/// names a controller output and a measurement; else the most frequent one. Lines with fewer than half of these keys do
+/// not count.
 std::vector<std::string> pair_keys(std::string_view text, const std::vector<std::string>& wanted = {});
 
-/// Whether a line belongs to the log: it holds at least half of the keys. `pairs` are those of the line, `keys` those
+/// True if a line belongs to the log: it holds at least half of the keys. `pairs` are those of the line, `keys` those
 /// of the whole log:
 ///
 ///     std::vector<Pair> pairs;

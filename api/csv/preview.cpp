@@ -12,7 +12,7 @@
 namespace tunewright::api {
 namespace {
 
-/// Least and largest of stretches that double in length whenever there are too many of them.
+/// Minimum and maximum of stretches that double in length whenever there are too many of them.
 class Thumbnail {
 public:
     void add(double value) {
@@ -83,7 +83,7 @@ bool passed_over(const std::vector<CsvSkip>& skipped, int line) {
     return std::any_of(skipped.begin(), skipped.end(), [&](const CsvSkip& skip) { return skip.line == line; });
 }
 
-/// Every row once: how many there are, and what each column holds in those that are not passed over.
+/// Reads every row once: counts them, and profiles each column over the rows that are not skipped.
 void look_through(std::string_view text, const CsvLayout& layout, const std::vector<ColumnProfile>& held,
                   CsvPreview& preview) {
     std::vector<Thumbnail> thumbnails(preview.columns.size());
@@ -107,7 +107,7 @@ void look_through(std::string_view text, const CsvLayout& layout, const std::vec
 }
 
 PreviewTime times_of(const CsvRecord& record, const CsvOptions& options) {
-    constexpr double kMinGapInSpacings = 5;  // usual spacings, as in the record's quality
+    constexpr double kMinGapInSpacings = 5;  // in median spacings, as in the record's quality
     PreviewTime time;
     time.unit = options.time_unit;
     time.assumed = !record.time_unit_known;

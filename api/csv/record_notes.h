@@ -1,4 +1,4 @@
-// Sentences about a file that the reader of records says.
+// Sentences of the record reader about a file.
 #pragma once
 
 #include <string>
@@ -9,22 +9,22 @@
 
 namespace tunewright::api {
 
-/// Why a file without a line of data cannot be read: it is empty, it has headings alone, or its lines are no rows;
-/// `first_line` is the file's, which is shown then.
+/// The reason why a file without a line of data cannot be read: it is empty, it has only headings, or its lines are not
+/// rows; `first_line` is the file's, which is then quoted.
 std::string no_data_sentence(const CsvLayout& layout, std::string_view first_line);
 
-/// That the decimal sign is a comma, or how numbers that may have three decimals or be thousands are read; "" where
-/// neither needs saying.
+/// A note that the decimal sign is a comma, or how ambiguous numbers (three decimals or thousands) are read; "" if
+/// neither is needed.
 std::string sign_note(const CsvLayout& layout);
 
 /// Unit of a column as the file has it: in the heading, in the line below it or behind the numbers; "" if it has none.
 std::string unit_of(const CsvLayout& layout, const ColumnProfile& profile, std::size_t column);
 
-/// True if heading, a line below it or the numbers say percent: 0 to 100, never 0 to 1.
+/// True if heading, a line below it or the numbers state percent: 0 to 100, never 0 to 1.
 bool is_percent(const CsvLayout& layout, const ColumnProfile& profile, std::size_t column);
 
-/// Which words of u are its two levels, "OFF" 0 and "ON" 1; "" where it has none. Either word may be "", where the file
-/// shows one of them alone.
+/// A note on the two words that are the levels of u, "OFF" 0 and "ON" 1; "" if there are none. Either word may be "" if
+/// the file has only one of them.
 std::string switch_note(const std::string& low_word, const std::string& high_word);
 
 }  // namespace tunewright::api

@@ -6,12 +6,12 @@
 namespace tunewright::api {
 namespace {
 
-constexpr double kMaxRepeated = 120;          // seconds of the hour that may be missing where the clock goes back
-constexpr double kLongestStep = 1200;         // between rows, for a missing hour to be told from a pause
-constexpr double kMaxHourErrorInSteps = 0.5;  // by which the hour may be missed
-constexpr int kFirstHour = 1, kLastHour = 3;  // the hours of the day that are left out somewhere
+constexpr double kMaxRepeated = 120;          // seconds of the hour that may be missing when the clock goes back
+constexpr double kLongestStep = 1200;         // between rows, to distinguish a missing hour from a pause
+constexpr double kMaxHourErrorInSteps = 0.5;  // tolerance of the hour, in steps
+constexpr int kFirstHour = 1, kLastHour = 3;  // the hours of the day at which some country changes its clock
 
-/// A Sunday of March, April, September or October: all countries that change do it on one.
+/// True on a Sunday of March, April, September or October: every country that changes its clock does so on one.
 bool may_begin_summer_time(double seconds) {
     const std::chrono::sys_days day(std::chrono::days(static_cast<long>(std::floor(seconds / kDay))));
     const auto month = static_cast<unsigned>(std::chrono::year_month_day(day).month());

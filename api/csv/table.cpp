@@ -26,7 +26,7 @@ std::string_view unquote(std::string_view cell, std::deque<std::string>& storage
     std::string single;
     for (std::size_t i = 0; i < inner.size(); ++i) {
         single += inner[i];
-        // Only a doubled quote is one; a single one in the middle is a mistake of the writer's and hides nothing.
+        // Only a doubled quote stands for a quote; a single one in the middle is an error of the writer and is kept.
         if (inner[i] == '"' && inner.substr(i + 1, 1) == "\"") ++i;
     }
     storage.push_back(std::move(single));
@@ -47,7 +47,7 @@ void split_at_blanks(std::string_view line, std::vector<std::string_view>& cells
     }
 }
 
-/// A line above or among the first of the data, with its place in the text.
+/// A line above the data or among its first ones, with its place in the text.
 struct Head {
     int number = 0;
     std::size_t at = 0;
@@ -55,7 +55,7 @@ struct Head {
     bool comment = false;
 };
 
-/// Whether a quote that begins a cell of this line is not closed in it.
+/// True if a quote that begins a cell of this line is not closed in it.
 bool opens_cell(std::string_view line) {
     const auto quotes = std::count(line.begin(), line.end(), '"');
     if (quotes % 2 == 0) return false;
@@ -63,8 +63,8 @@ bool opens_cell(std::string_view line) {
     return last == 0 || std::string_view(",;\t| ").find(line[last - 1]) != std::string_view::npos;
 }
 
-/// A cell such as "Time<line break>(min)", as spreadsheets write headings: `content`, which begins at `start`, takes in
-/// the lines up to the quote that closes it. Returns their number; 0 where none of the next few closes it.
+/// Completes a cell such as "Time<line break>(min)", a heading of a spreadsheet: `content`, which begins at `start`, is
+/// extended to the quote that closes it. Returns the number of added lines; 0 if none of the next few closes it.
 int take_rest_of_cell(std::string_view text, std::size_t start, std::size_t& at, std::string_view& content) {
     constexpr int kMaxFurtherLines = 6;
     std::size_t next = at;
@@ -96,7 +96,7 @@ std::vector<Head> first_lines(std::string_view text) {
     return lines;
 }
 
-// The share of cells that look like numbers, with a decimal point or comma.
+// The share of cells that look like numbers with a decimal point or comma.
 double share_of_numbers(const std::vector<Head>& lines, char separator) {
     std::deque<std::string> storage;
     std::vector<std::string_view> cells;
@@ -113,9 +113,9 @@ double share_of_numbers(const std::vector<Head>& lines, char separator) {
     return all > 0 ? static_cast<double>(numbers) / static_cast<double>(all) : 0;
 }
 
-// The separator that splits most lines into equally many cells, more than one; those that are never there by chance
-// come first, unless only another splits the first line so, too, and leaves more numbers: "ns=2;s=Tank" holds one that
-// separates nothing, and "Tank 5, heater, test" has as many commas as "0;0,00;20,00".
+// The separator that splits most lines into the same number of cells, more than one. Separators that hardly occur by
+// chance come first, unless only another one also splits the first line in that way and leaves more numbers:
+// "ns=2;s=Tank" holds one that separates nothing, and "Tank 5, heater, test" has as many commas as "0;0,00;20,00".
 char find_separator(const std::vector<Head>& lines) {
     char best = ',';
     double best_share = 0;
@@ -167,7 +167,7 @@ CsvLayout pairs_layout(std::string_view text, const ColumnChoices& chosen) {
     return layout;
 }
 
-// The separator of a first line such as sep=;, which is then taken off.
+// The separator in a first line such as sep=;, which is then removed.
 std::optional<char> take_separator(std::vector<Head>& heads) {
     if (heads.empty()) return std::nullopt;
     const auto separator = named_separator(heads.front().content);
@@ -175,7 +175,7 @@ std::optional<char> take_separator(std::vector<Head>& heads) {
     return separator;
 }
 
-// LabVIEW's files end their head with this line.
+// The head of LabVIEW files ends with this line.
 void drop_labview_head(std::vector<Head>& heads) {
     for (std::size_t i = heads.size(); i-- > 0;) {
         if (heads[i].content.rfind("***End_of_Header***", 0) != 0) continue;
@@ -184,7 +184,7 @@ void drop_labview_head(std::vector<Head>& heads) {
     }
 }
 
-// The headings in the comments right above the data, where there are no others.
+// The headings in the comments right above the data, if there are no others.
 void find_commented_headings(const std::vector<Head>& heads, std::vector<Head>::const_iterator data,
                              CsvLayout& layout) {
     constexpr int kMaxComments = 3;
@@ -198,7 +198,7 @@ void find_commented_headings(const std::vector<Head>& heads, std::vector<Head>::
     }
 }
 
-// Of a file whose first lines hold whole numbers alone, the rest is looked at too.
+// If the first lines of a file hold only whole numbers, the rest is examined too.
 void find_sign(std::string_view text, const std::vector<CsvLine>& rows, const std::vector<Head>& heads,
                CsvLayout& layout) {
     DecimalSignFinder finder;
@@ -257,7 +257,7 @@ CsvLayout table_layout(std::string_view text) {
     return layout;
 }
 
-// "+------+-----+" and "|---|---|".
+// True for "+------+-----+" and "|---|---|".
 bool is_rule(std::string_view content) {
     constexpr std::size_t kShortest = 5;
     return content.size() >= kShortest && content.find_first_not_of("-+=|: ") == content.npos &&
@@ -271,7 +271,7 @@ std::optional<char> named_separator(std::string_view line) {
     const std::string_view content = trimmed(line);
     if (lower_case(content.substr(0, prefix.size())) != prefix) return std::nullopt;
     const std::size_t sign = line.find('=') + 1;
-    // A letter of several bytes separates nothing: half of it would be left in every cell.
+    // A letter of several bytes cannot be a separator: half of it would stay in every cell.
     const bool plain = sign < line.size() && line[sign] != '"' && static_cast<unsigned char>(line[sign]) < 0x80;
     return plain ? line[sign] : ',';
 }
@@ -301,7 +301,7 @@ CsvLayout find_layout(std::string_view text, const ColumnChoices& chosen) {
     CsvLayout table = table_layout(text);
     if (table.width > kMaxColumns) return table;
     const std::vector<std::string_view> headings(table.headings.begin(), table.headings.end());
-    // A remark such as "Kp=1 Ki=2" in the rows of a table makes them no log of pairs.
+    // A remark such as "Kp=1 Ki=2" in the rows of a table does not make them a log of pairs.
     if (table.data_line > 0 && roles_named(headings) > 1) return table;
     CsvLayout pairs = pairs_layout(text, chosen);
     return pairs.pairs ? pairs : table;

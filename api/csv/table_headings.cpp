@@ -15,7 +15,7 @@ bool holds_data(std::string_view cell) {
     return read_cell_number(cell, number, DecimalSign::either, unit_suffix(cell)) || read_time_stamp(cell).has_value();
 }
 
-// A heading for each column but the first, which counts the rows: what R writes.
+// True if there is a heading for each column other than the first, which numbers the rows: the format of R.
 bool counts_rows(const std::vector<CsvLine>& data) {
     constexpr std::size_t kProbedRows = 5;
     double before = 0;
@@ -27,8 +27,8 @@ bool counts_rows(const std::vector<CsvLine>& data) {
     return data.size() > 1;
 }
 
-// Which of the lines of text, as wide as the data and right above it, holds the headings: the others are a title, units
-// or descriptions.
+// The index of the headings among the lines of text right above the data with the same width: the others are a title,
+// units or descriptions.
 std::size_t heading_among(const std::vector<CsvLine>& above, std::size_t first) {
     std::size_t best = first, max = 0;
     int named = 0;
@@ -43,7 +43,8 @@ std::size_t heading_among(const std::vector<CsvLine>& above, std::size_t first) 
     return best;
 }
 
-/// Tags in one line and descriptions in another: what the headings' line leaves empty stands in the other one.
+/// Tags in one line and descriptions in another: cells that are empty in the line of headings are filled from the other
+/// one.
 void fill_from(const std::vector<CsvLine>& above, std::size_t first, std::size_t at, CsvLayout& layout) {
     for (std::size_t column = 0; column < layout.headings.size(); ++column) {
         if (!layout.headings[column].empty()) continue;

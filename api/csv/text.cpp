@@ -47,7 +47,7 @@ std::string from_utf16(std::string_view bytes, bool big_endian) {
     return out;
 }
 
-// What Windows-1252 has where Latin-1 has control characters.
+// Windows-1252 characters in place of the control characters of Latin-1.
 constexpr std::array<std::uint16_t, 32> kWindows = {0x20AC, 0xFFFD, 0x201A, 0x0192, 0x201E, 0x2026, 0x2020, 0x2021,
                                                     0x02C6, 0x2030, 0x0160, 0x2039, 0x0152, 0xFFFD, 0x017D, 0xFFFD,
                                                     0xFFFD, 0x2018, 0x2019, 0x201C, 0x201D, 0x2022, 0x2013, 0x2014,
@@ -63,7 +63,7 @@ std::string from_windows(std::string_view bytes) {
     return out;
 }
 
-// Texts of a record are mostly ASCII: as UTF-16, half their bytes are zero.
+// True if half of the bytes are zero: texts of a record are mostly ASCII, and so are their UTF-16 forms.
 bool zeros_at(std::string_view bytes, std::size_t parity) {
     const std::size_t looked = std::min<std::size_t>(bytes.size() & ~std::size_t{1}, 200);
     std::size_t zeros = 0;

@@ -10,16 +10,16 @@ namespace {
 
 constexpr double kMinute = 60;
 
-/// Whether it is "12:05", of which the two numbers may be hours and minutes or minutes and seconds.
+/// True for "12:05", whose two numbers may be hours and minutes or minutes and seconds.
 bool is_short(const TimeStamp& stamp, std::string_view cell) {
     return !stamp.has_date && !stamp.minutes && std::ranges::count(cell, ':') == 1;
 }
 
-/// Whether a number is a day of the years 1954 to 2119 as spreadsheets count them, or from 1916 to 2190 by MATLAB's
+/// True if a number is a day of the years 1954 to 2119 in spreadsheets' counting, or of 1916 to 2190 in MATLAB's
 /// datenum.
 bool is_day(double value) { return (value > 20000 && value < 80000) || (value > 700000 && value < 800000); }
 
-/// Whether steps are as long as those of logs, counted in days: seconds that divide a minute, or minutes.
+/// True if steps, in days, are as long as those of logs: seconds that divide a minute, or minutes.
 bool steps_of_a_log(double days) {
     constexpr double kMaxSecondsOff = 0.02;  // seconds
     const double seconds = days * kDay, whole = std::round(seconds);
@@ -27,8 +27,8 @@ bool steps_of_a_log(double days) {
     return std::fmod(whole < kMinute ? kMinute : whole, whole < kMinute ? whole : kMinute) == 0;
 }
 
-/// Whether steps are whole seconds, or whole minutes where they are longer, counted in days: their decimals do not end,
-/// as those of a sample time in seconds do.
+/// True if steps, in days, are whole seconds, or whole minutes if they are longer. Their decimals do not end, unlike
+/// those of a sample time in seconds.
 bool steps_of_a_clock(double days) {
     constexpr double kMaxSecondsOff = 0.1, kShort = 90, kLong = 1801;  // seconds
     constexpr double kLastDecimal = 1e-7, kEnds = 0.02;
@@ -57,7 +57,7 @@ TimeColumn::TimeColumn(std::string_view text, const CsvLayout& layout, const Det
     find_order(text, layout, columns);
 }
 
-// "00:05" may also be minutes and seconds: it is where one of them counts beyond the hours of a day.
+// "00:05" may also be minutes and seconds: it is, if one of the cells exceeds the hours of a day.
 void TimeColumn::read_short_clock(std::string_view text, const CsvLayout& layout, std::size_t column) {
     CsvLines lines(text, layout);
     CsvLine line;
@@ -81,7 +81,7 @@ void TimeColumn::read_short_clock(std::string_view text, const CsvLayout& layout
                      " for minutes and seconds.");
 }
 
-// Of the two readings of 03/04/2026 the one is right in which time runs on: the other jumps by months.
+// 03/04/2026 has two readings: the right one is that in which time increases; the other jumps by months.
 void TimeColumn::find_order(std::string_view text, const CsvLayout& layout, const DetectedColumns& columns) {
     CsvLines lines(text, layout);
     CsvLine line;
@@ -109,7 +109,7 @@ void TimeColumn::find_order(std::string_view text, const CsvLayout& layout, cons
     }
 }
 
-// Counters since 1970 in milliseconds or less are far beyond any other use of numbers; spreadsheets count days.
+// Counters since 1970 in milliseconds or smaller units are far larger than other numbers; spreadsheets count days.
 std::optional<std::string> TimeColumn::unit_by_size(std::string_view text, const CsvLayout& layout,
                                                     std::size_t column) const {
     CsvLines lines(text, layout);
@@ -135,13 +135,14 @@ std::optional<std::string> TimeColumn::unit_by_size(std::string_view text, const
                        name.find("datum") != name.npos || name.find("zeitstempel") != name.npos;
     const double mean_step = std::abs(*last - *first) / steps;
     if (is_day(*first) && mean_step > 0 && mean_step < 0.05 && (dated || steps_of_a_clock(mean_step))) return "d";
-    // A time of day alone, as spreadsheets hold it; a record in seconds begins at 0 or near it.
+    // A time of day alone, as spreadsheets store it; a record in seconds begins at or near 0.
     const bool of_day = *first > kFromMidnight * mean_step && *last < 1 && *last > *first;
     if (of_day && steps_of_a_clock(mean_step) && steps_of_a_log(mean_step)) return "d";
     return std::nullopt;
 }
 
-// A log with a clock of its own, as of a serial monitor, beside a counter: how fast the one runs by the other.
+// A log with its own clock, such as that of a serial monitor, next to a counter: the clock gives the rate of the
+// counter.
 std::optional<std::string> TimeColumn::unit_by_clock(std::string_view text, const CsvLayout& layout,
                                                      std::size_t column) const {
     constexpr int kProbedLines = 2000, kMaxLinesWithoutClock = 20;
@@ -183,7 +184,7 @@ void TimeColumn::find_unit(std::string_view text, const CsvLayout& layout, const
     }
     if (!seconds_per(unit) && column < layout.headings.size()) {
         const std::string name = split_heading(layout.headings[column]).name;
-        constexpr std::size_t kMinWordLength = 5;  // letters from which on a name is no symbol
+        constexpr std::size_t kMinWordLength = 5;  // from this number of letters on, a name is not a symbol
         const bool of_time = name.size() >= kMinWordLength || match(split_heading(layout.headings[column]), kTimeRole);
         if (seconds_per(name) && of_time && name != "m" && name != "d") unit = name;
         if (name == "millis" || name == "millis()") unit = "ms";
@@ -220,8 +221,8 @@ void TimeColumn::find_unit(std::string_view text, const CsvLayout& layout, const
     notes_.push_back("Times are converted from " + unit + " to " + options.time_unit + ".");
 }
 
-// A number of milliseconds, or of days, is read as seconds where nothing names its unit; a usual spacing of seconds is
-// no reason to ask.
+// Asks for the unit if the numbers may be milliseconds or days but would be read as seconds; a usual spacing of seconds
+// needs no question.
 void TimeColumn::note_unknown_unit(const ColumnProfile& profile, const CsvOptions& options) {
     constexpr double kUsual = 5, kFast = 1e-3;
     if (profile.changes < 1 || !profile.rises || (profile.min_step < kUsual && profile.min_step >= kFast)) return;

@@ -15,16 +15,16 @@ namespace tunewright::api {
 /// Reads one cell after another, in the order of the file.
 class TimeColumn {
 public:
-    /// Looks through the file for what a single cell leaves open: stamps or numbers, unit, day or month first. Adds
-    /// its faults; notes say what was assumed.
+    /// Searches the file for facts that a single cell does not show: stamps or numbers, unit, day or month first. Adds
+    /// its faults; notes state the assumptions.
     TimeColumn(std::string_view text, const CsvLayout& layout, const DetectedColumns& columns,
                const ColumnProfile& profile, const CsvOptions& options, std::vector<CsvFault>& faults);
 
-    /// False where the cell is no time. `clock` is the cell of the second column, where there is one.
+    /// False if the cell is not a time. `clock` is the cell of the second column, if there is one.
     bool read(std::string_view cell, std::string_view clock, int line, double& time);
 
     bool stamps() const { return stamps_; }
-    /// The file, or the one who asks, says in which unit its times are.
+    /// True if the file or the request states the unit of the times.
     bool unit_known() const { return stamps_ || unit_known_; }
     std::vector<std::string> take_notes();
 

@@ -35,13 +35,13 @@ bool take(std::string_view& text, std::string_view any_of) {
 void take_blanks(std::string_view& text) {
     while (take(text, " ")) {
     }
-    // The narrow no-break space that some systems put before AM and PM.
+    // The narrow no-break space in front of AM and PM on some systems.
     if (text.substr(0, 3) == "\xE2\x80\xAF") text.remove_prefix(3);
     if (text.substr(0, 2) == "\xC2\xA0") text.remove_prefix(2);
 }
 
 std::optional<double> take_fraction(std::string_view& text) {
-    // Some historians write milliseconds behind another colon.
+    // Some historians write milliseconds after another colon.
     if (!take(text, ".,:")) return 0.0;
     double value = 0, weight = 0.1;
     bool any = false;
@@ -57,7 +57,7 @@ std::optional<double> take_fraction(std::string_view& text) {
 
 char lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
 
-// AM, PM, a.m., p.m.: the hours to add; empty for none.
+// The hours to add for AM, PM, a.m., p.m.; empty for none.
 std::optional<bool> take_half_of_day(std::string_view& text) {
     std::string_view rest = text;
     take_blanks(rest);
@@ -72,7 +72,7 @@ std::optional<bool> take_half_of_day(std::string_view& text) {
     return half == 'p';
 }
 
-/// 07:20.5, as spreadsheets show times below an hour; the rest after it must be nothing.
+/// Reads 07:20.5, a spreadsheet's time below an hour; nothing may follow.
 std::optional<double> take_minutes(std::string_view& text) {
     std::string_view rest = text;
     const auto minute = take_digits(rest, 1, 2);
@@ -130,7 +130,7 @@ std::optional<Zone> take_zone(std::string_view& text) {
     return Zone{sign * (3600.0 * *hour + 60.0 * *minute), true};
 }
 
-// The first three or four letters of the months in the languages of the header.
+// The first three or four letters of the months in the languages that the header lists.
 constexpr std::array<std::string_view, 12> kMonths = {"jan gen ene",
                                                       "feb f\xC3\xA9v fev",
                                                       "mar mrz m\xC3\xA4r mrt",
@@ -202,7 +202,7 @@ std::optional<Date> take_compact_date(std::string_view& text) {
     return dated(seconds);
 }
 
-// 2024-03-01, 2024/3/1, 2024.03.01, 20240301
+// Reads 2024-03-01, 2024/3/1, 2024.03.01, 20240301.
 std::optional<Date> take_year_first(std::string_view& text) {
     std::string_view rest = text;
     const auto year = take_digits(rest, 4, 4);
@@ -216,7 +216,7 @@ std::optional<Date> take_year_first(std::string_view& text) {
     return dated(days_as_seconds(*year, *month, *day));
 }
 
-// 01-Mar-24, 1 March 2024, Mar 1, 2024
+// Reads 01-Mar-24, 1 March 2024, Mar 1, 2024.
 std::optional<Date> take_named_month(std::string_view& text) {
     std::string_view rest = text;
     auto month = take_month_name(rest);
@@ -239,7 +239,7 @@ std::optional<Date> take_named_month(std::string_view& text) {
     return dated(days_as_seconds(*year, *month, *day));
 }
 
-// 1.3.2024, 01/03/24, 3-1-2024
+// Reads 1.3.2024, 01/03/24, 3-1-2024.
 std::optional<Date> take_year_last(std::string_view& text, DateOrder order) {
     std::string_view rest = text;
     const auto first = take_digits(rest, 1, 2);
@@ -271,7 +271,7 @@ void skip_weekday(std::string_view& text) {
     text = rest;
 }
 
-/// "03/09/2024;23:55:00;7", date, clock and milliseconds, as "03/09/2024 23:55:00.007"; "" where it is no such text.
+/// Converts "03/09/2024;23:55:00;7", date, clock and milliseconds, to "03/09/2024 23:55:00.007"; "" for another text.
 std::string joined_stamp(std::string_view text) {
     constexpr std::size_t kMillisecondDigits = 3;
     const std::size_t clock = text.find(';'), millis = std::min(text.find(';', clock + 1), text.size());

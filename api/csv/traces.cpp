@@ -17,7 +17,7 @@ struct Trace {
 
 /// Traces over the same points.
 struct Block {
-    std::string label;  ///< of the entry that came first
+    std::string label;  ///< of the first entry with these points
     const Json* points;
     std::vector<Trace> traces;
 };
@@ -31,7 +31,7 @@ class Table {
 public:
     explicit Table(const Json& result) : units_(result.value("units", Json::object())) {}
 
-    /// Does nothing where one of the two is missing.
+    /// Adds a trace; does nothing if one of the two is missing.
     void add(const std::string& label, const Json* points, const std::string& heading, const Json* values) {
         if (points == nullptr || values == nullptr) return;
         auto block =
@@ -40,7 +40,7 @@ public:
         block->traces.push_back({label.empty() ? heading : label + " " + heading, values});
     }
 
-    /// "y" -> "y [degC]", where the request names the unit.
+    /// The quantity with its unit, "y" -> "y [degC]", if the request names the unit.
     std::string with_unit(const std::string& quantity, const char* unit, const std::string& fallback = {}) const {
         const std::string name = units_.value(unit, fallback);
         return name.empty() ? quantity : quantity + " [" + name + "]";
@@ -71,7 +71,7 @@ private:
         i < values.size() && values[i].is_number() ? out.trace_number(values[i].get<double>()) : out.empty();
     }
 
-    /// As they stand in the result: times may have more than six digits.
+    /// Writes the numbers unchanged: times may have more than six digits.
     static void add_point(const Json& points, std::size_t i, CsvWriter& out) {
         i < points.size() && points[i].is_number() ? out.number(points[i].get<double>()) : out.empty();
     }
@@ -80,7 +80,7 @@ private:
     std::vector<Block> blocks_;
 };
 
-/// "robust", "robust (2)": each entry's own.
+/// Distinct labels of the entries: "robust", "robust (2)".
 std::vector<std::string> labels(const Json& controllers) {
     std::vector<std::string> out;
     std::map<std::string, int> seen;

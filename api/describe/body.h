@@ -1,4 +1,4 @@
-// A body's text by its description: every fault at once.
+// Decoding of a request body by its description: every fault at once.
 #pragma once
 
 #include <string_view>
@@ -19,7 +19,7 @@ std::variant<Request, Problem> decode(const Json& value, const Description<Reque
     return request;
 }
 
-/// The same from the text of a body; 400 for one that is not JSON.
+/// Decodes from the text of a body; 400 if it is not JSON.
 template <class Request>
 std::variant<Request, Problem> read_body(std::string_view body, const Description<Request>& contract) {
     const auto parsed = parse(body);

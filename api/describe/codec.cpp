@@ -7,7 +7,7 @@
 namespace tunewright::api {
 namespace {
 
-// A text that is a number in quotes tells its own cure; so do the words for "no number".
+// The cure for a number in quotes or for a word that means "no number".
 std::string cure_for(const Json& value) {
     if (!value.is_string()) return {};
     const auto& content = value.get_ref<const std::string&>();
@@ -25,7 +25,7 @@ std::string cure_for(const Json& value) {
     return {};
 }
 
-// So that quotients stay finite too, and no time or frequency lies out of reach.
+// Keeps quotients finite and every time or frequency within reach.
 constexpr double kSmallestNumber = 1e-30;
 
 std::string broken_rule(double value, const NumberRule& rule) {
@@ -179,7 +179,7 @@ Codec<std::vector<double>> numbers(std::size_t min, std::size_t max, const Numbe
                     const Json& element = value[i];
                     if (element.is_number()) {
                         const double read = element.get<double>();
-                        // Among numbers of a matrix or a record one that small is the rounding of 0.
+                        // Among numbers of a matrix or a record, one that small is a rounding error of 0.
                         if (std::abs(read) < kSmallestNumber && !rule.exclusive_minimum) continue;
                         if (broken_rule(read, rule).empty()) {
                             target[i] = read;

@@ -1,4 +1,4 @@
-// How one JSON value of the contract is read, written and described: small codecs, put together by descriptions.
+// Codecs that read, write and describe one JSON value of the contract; descriptions combine them.
 #pragma once
 
 #include <limits>
@@ -16,75 +16,76 @@
 
 namespace tunewright::api {
 
-/// Collects the schemas of named types while the document is put together.
+/// Collects the schemas of named types while the document is built.
 struct SchemaBook {
     Json components = Json::object();
 };
 
 using SchemaOf = Callable<Json(SchemaBook&)>;
 
-/// One kind of value. Reading leaves the target alone and reports to the reader where the value is not valid.
+/// One kind of value. If the value is not valid, reading leaves the target unchanged and reports to the reader.
 template <class T>
 struct Codec {
-    Callable<void(const Json&, T&, Reader&)> read;  ///< empty: only in answers
+    Callable<void(const Json&, T&, Reader&)> read;  ///< empty: for answers only
     Callable<void(const T&, Writer&)> write;
     SchemaOf schema;
     Callable<bool(const T&)> skip = {};       ///< true: the member is left out when written; empty: never
-    Callable<bool(const T&)> undefined = {};  ///< true: written as null, which `why_null` has to explain
-    /// The reason of an undefined value; empty, or "": the description's own for all.
+    Callable<bool(const T&)> undefined = {};  ///< true: written as null, which `why_null` must explain
+    /// The reason of an undefined value; empty, or "": the description's general reason.
     Callable<std::string(const T&)> why = {};
 };
 
-/// What a number must keep. Every number is finite and at most 1e30 in size, so that products of a few stay finite.
+/// The range of a number. Every number is finite and at most 1e30 in absolute value, so that products of a few stay
+/// finite.
 struct NumberRule {
     std::optional<double> minimum = {}, exclusive_minimum = {}, maximum = {}, exclusive_maximum = {};
     bool not_zero = false;
-    std::string cure = {};  ///< a sentence that is added when the rule is broken
+    std::string cure = {};  ///< a sentence that is added if the rule is broken
 };
 
 constexpr double kLargestNumber = 1e30;
 
-/// Reads a number or reports why it is none; the rule included. The one place of these sentences.
+/// Reads a number or reports why it is not valid, rule included. These sentences are only here.
 std::optional<double> read_number(const Json& value, const NumberRule& rule, Reader& reader);
 Json number_schema(const NumberRule& rule);
 
-/// The sentence for a value of the wrong kind: "K is "2", a text; it must be a number. Write 2 without quotes."
+/// The sentence for a value of the wrong type: "K is "2", a text; it must be a number. Write 2 without quotes."
 std::string wrong_kind(const Json& value, const std::string& wanted, const Reader& reader);
 
 Codec<double> number(const NumberRule& rule = {});
 
-/// A number whose rule the engine holds, with its own sentence: the schema shows the rule, reading takes any number.
+/// A number whose rule the engine checks, with its own sentence: the schema shows the rule, reading accepts any number.
 Codec<double> engine_ruled(const NumberRule& rule);
 Codec<int> integer(int minimum, int maximum);
 Codec<bool> boolean();
 Codec<std::string> text(std::size_t longest);
 
-/// Only in answers: a text of any length.
+/// For answers only: a text of any length.
 Codec<std::string> words();
 
-/// A number or null for "infinite", as with Ti.
+/// A number, or null for "infinite", as with Ti.
 Codec<double> number_or_infinite(const NumberRule& rule, const std::string& meaning_of_null);
 
 /// An array of numbers, `min` to `max` of them. The first five faults are listed.
 Codec<std::vector<double>> numbers(std::size_t min, std::size_t max, const NumberRule& rule = {});
 
-/// Only in answers: six significant digits each.
+/// For answers only: six significant digits each.
 Codec<std::vector<double>> trace();
 
-/// Only in answers: six significant digits, or as many as neighbours differ by.
+/// For answers only: six significant digits, or more if neighbours would be equal.
 Codec<std::vector<double>> times_trace();
 
-/// Only in answers: null where undefined or infinite, with the figure's reason.
+/// For answers only: null if undefined or infinite, with the figure's reason.
 Codec<Figure> figure();
 
-/// The same of values that state no reason of their own.
+/// A figure without a reason of its own.
 Codec<std::optional<double>> nullable_number();
 Codec<std::optional<bool>> nullable_bool();
 
 /// The schema of a value that may be null.
 SchemaOf or_null(SchemaOf inner);
 
-/// Only in answers: the value as `inner` writes it, or null with its reason.
+/// For answers only: the value as `inner` writes it, or null with its reason.
 template <class T>
 Codec<OrReason<T>> or_reason(const Codec<T>& inner) {
     Codec<OrReason<T>> codec;
@@ -97,10 +98,10 @@ Codec<OrReason<T>> or_reason(const Codec<T>& inner) {
     return codec;
 }
 
-/// Only in answers: numbers by name.
+/// For answers only: numbers by name.
 Codec<std::map<std::string, double>> numbers_by_name(std::string keys);
 
-/// The member may be missing; it is then left out when written too.
+/// The member may be missing; an empty value is left out when written.
 template <class T>
 Codec<std::optional<T>> maybe(Codec<T> inner) {
     Codec<std::optional<T>> codec;
@@ -117,30 +118,30 @@ Codec<std::optional<T>> maybe(Codec<T> inner) {
     return codec;
 }
 
-/// The same value where only answers carry it.
+/// An optional member of answers only.
 template <class T>
 Codec<T> only_answered(Codec<T> codec) {
     codec.read = {};
     return codec;
 }
 
-/// The member is left out where `empty` holds.
+/// The member is left out if `empty` is true.
 template <class T>
 Codec<T> unless(Codec<T> codec, Callable<bool(const T&)> empty) {
     codec.skip = std::move(empty);
     return codec;
 }
 
-/// The words of a choice.
+/// The allowed words of a choice.
 struct ChoiceWords {
     std::vector<std::string> names;
 
-    /// The place of the word that the value is; reports to the reader where it is none of them.
+    /// The index of the word that the value is; reports to the reader if it is none of them.
     std::optional<std::size_t> read(const Json& value, Reader& reader) const;
     SchemaOf schema() const;
 };
 
-/// Words of the contract for the values of an enumeration, the first written for each value.
+/// Words of the contract for the values of an enumeration; if a value has several, the first is written.
 template <class E>
 Codec<E> choice(const std::vector<std::pair<std::string, E>>& words) {
     ChoiceWords known;
@@ -163,13 +164,13 @@ Codec<E> choice(const std::vector<std::pair<std::string, E>>& words) {
     return codec;
 }
 
-/// The lengths of an array.
+/// The allowed lengths of an array.
 struct ArrayLengths {
     std::size_t min, max;
 
-    /// False: the value is no array of such a length, which is reported.
+    /// False: the value is not an array of an allowed length, which is reported.
     bool hold(const Json& value, Reader& reader) const;
-    /// `stated`: with its lengths.
+    /// `stated`: with the allowed lengths.
     SchemaOf schema(SchemaOf items, bool stated) const;
 };
 

@@ -1,4 +1,4 @@
-// A type of the contract, described once: from it follow reading (every fault at once), writing and the JSON Schema.
+// Description of a type of the contract; reading (every fault at once), writing and the JSON Schema follow from it.
 #pragma once
 
 #include <string_view>
@@ -10,7 +10,7 @@
 
 namespace tunewright::api {
 
-/// `T` default-constructed holds the contract's defaults.
+/// A default-constructed `T` holds the contract's defaults.
 template <class T>
 class Description {
 public:
@@ -18,14 +18,14 @@ public:
 
     Description(std::string_view name, std::string_view sentence) : members_(name, sentence) {}
 
-    /// A member with a fixed value that tells the type: "type": "fopdt". Not `required`: it is what a missing word
-    /// stands for.
+    /// A member with a fixed value that identifies the type: "type": "fopdt". Not `required`: a missing word means this
+    /// type.
     Description& tag(std::string_view field, std::string_view value, bool required = true) {
         members_.tag(field, value, required);
         return *this;
     }
 
-    /// `Owner` is T or what it extends.
+    /// `Owner` is T or one of its base types.
     template <class M, class Owner>
     requires std::is_base_of_v<Owner, T> Description& field(std::string_view name, M Owner::*member, Codec<M> codec,
                                                             std::string_view sentence,
@@ -37,7 +37,7 @@ public:
         return *this;
     }
 
-    /// A member whose meaning depends on its neighbours. `read` may be empty (answers), `write` too (requests).
+    /// A member whose meaning depends on other members. `read` may be empty (answers), and so may `write` (requests).
     Description& field(std::string_view name, Check read, Callable<void(const T&, Writer&)> write, SchemaOf schema,
                        std::string_view sentence, const FieldOptions& options = {},
                        Callable<bool(const T&)> skip = {}) {
@@ -46,31 +46,31 @@ public:
         return *this;
     }
 
-    /// A rule over several members; runs when each of them could be read.
+    /// A rule over several members; checked if each of them could be read.
     Description& check(Check rule) {
         checks_.push_back(std::move(rule));
         return *this;
     }
 
-    /// A rule over the members' presence: runs always.
+    /// A rule over the presence of members: always checked.
     Description& check_presence(Check rule) {
         presence_.push_back(std::move(rule));
         return *this;
     }
 
-    /// A name that is refused with its own sentence instead of "unknown".
+    /// A name that is refused with a sentence of its own instead of "unknown".
     Description& refuse(std::string_view name, std::string_view sentence) {
         members_.refuse(name, sentence);
         return *this;
     }
 
-    /// Every null figure gets a reason: its own, or the sentence `otherwise`.
+    /// Every null figure has a reason: its own, or the sentence `otherwise`.
     Description& why_null(std::string_view otherwise) {
         members_.why_null(otherwise);
         return *this;
     }
 
-    /// Sample of the whole value for the schema.
+    /// An example of the whole value for the schema.
     Description& example(Json value) {
         members_.example(std::move(value));
         return *this;
@@ -78,7 +78,7 @@ public:
 
     const std::string& name() const { return members_.name(); }
     const std::string& tag_value() const { return members_.tag_value(); }
-    bool has(std::string_view name) const { return members_.has(name); }  ///< a member of that name
+    bool has(std::string_view name) const { return members_.has(name); }  ///< a member has that name
 
     void read(const Json& value, T& target, Reader& reader) const {
         const std::size_t before = reader.count();
@@ -90,7 +90,7 @@ public:
 
     void write(const T& value, Writer& out) const { members_.write(&value, out); }
 
-    /// A reference to the component, which is put into the book.
+    /// A reference to the component, which is added to the book.
     Json schema(SchemaBook& book) const { return members_.schema(book); }
 
 private:
@@ -112,7 +112,7 @@ Codec<T> object(const Description<T>& description) {
             [what](SchemaBook& book) { return what->schema(book); }};
 }
 
-/// The same for types that only answers carry.
+/// The codec of a described type for answers only.
 template <class T>
 Codec<T> answer(const Description<T>& description) {
     Codec<T> codec = object(description);

@@ -8,8 +8,8 @@
 namespace tunewright::api {
 namespace {
 
-/// "it is required: " and the first sentence of what the member is, which begins with a small letter unless with a
-/// symbol.
+/// The sentence "it is required: " with the first sentence of the member's description, whose first letter becomes
+/// small unless it begins a symbol.
 std::string why_required(const std::string& sentence) {
     const std::size_t end = sentence.find('.');
     std::string first = end == sentence.npos ? sentence + "." : sentence.substr(0, end + 1);

@@ -1,5 +1,5 @@
-// The members of a described type, seen without the type: what reading, writing and the schema have in common for all
-// types is compiled once.
+// The members of a described type, without the type itself: the parts of reading, writing and the schema that are
+// common to all types are compiled once.
 #pragma once
 
 #include <algorithm>
@@ -18,16 +18,16 @@ struct FieldOptions {
     bool required = false;
     std::string_view unit = {};  ///< "time", "1/time", "u/y", ... in the user's units
     bool answer_only = false;    ///< accepted and ignored in requests, so that an answer can be sent back
-    bool no_default = false;     ///< the sentence states the default; the member's initial value is not it
+    bool no_default = false;     ///< the description states the default; the member's initial value is a different one
 };
 
-/// A codec behind the address of its value.
+/// A codec that takes the address of its value.
 class AnyCodec {
 public:
     virtual ~AnyCodec();
     virtual bool reads() const = 0;
     virtual bool writes() const = 0;
-    virtual bool skips() const = 0;  ///< whether there are values that are left out
+    virtual bool skips() const = 0;  ///< some values are left out
     virtual void read(const Json& value, void* target, Reader& reader) const = 0;
     virtual void write(const void* value, Writer& out) const = 0;
     virtual Json schema(SchemaBook& book) const = 0;
@@ -73,10 +73,10 @@ public:
     ~Members();
 
     void tag(std::string_view field, std::string_view value, bool required);
-    /// A member at this distance, in bytes, from the start of the object; `initial` is the value of a new object.
+    /// Adds a member at this distance, in bytes, from the start of the object; `initial` is the value in a new object.
     void add(std::string_view name, std::string_view sentence, const FieldOptions& options, std::ptrdiff_t offset,
              std::unique_ptr<const AnyCodec> codec, const void* initial);
-    /// A member that the codec of the whole object reads and writes.
+    /// Adds a member that the codec of the whole object reads and writes.
     void add(std::string_view name, std::string_view sentence, const FieldOptions& options,
              std::unique_ptr<const AnyCodec> codec);
     void refuse(std::string_view name, std::string_view sentence);
@@ -87,10 +87,10 @@ public:
     const std::string& tag_value() const { return tag_value_; }
     bool has(std::string_view name) const { return std::ranges::find(names_, name) != names_.end(); }
 
-    /// Reads what is given of the members; false: the value is no object, which is reported.
+    /// Reads the given members; false: the value is not an object, which is reported.
     bool read(const Json& value, void* object, Reader& reader) const;
     void write(const void* object, Writer& out) const;
-    /// A reference to the component, which is put into the book.
+    /// A reference to the component, which is added to the book.
     Json schema(SchemaBook& book) const;
 
 private:
@@ -106,7 +106,7 @@ private:
     std::vector<std::string> names_;
     std::vector<Member> members_;
     std::vector<std::pair<std::string, std::string>> refused_;
-    std::string otherwise_;  ///< of null figures; empty: the type has none
+    std::string otherwise_;  ///< reason of null figures; empty: the type has none
     Json example_;
 };
 

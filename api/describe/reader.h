@@ -1,4 +1,4 @@
-// What decoding carries along: where it is in the request, and every fault found so far.
+// State of decoding: the place in the request, and every fault found so far.
 #pragma once
 
 #include <optional>
@@ -13,7 +13,7 @@ namespace tunewright::api {
 
 class Reader {
 public:
-    /// Enters a member or an element for its own lifetime. `name` must outlive it.
+    /// Enters a member or an element for the lifetime of the object. `name` must outlive it.
     class At {
     public:
         At(Reader& reader, std::string_view name) : reader_(reader) { reader.path_.push_back({name, 0}); }
@@ -26,28 +26,28 @@ public:
         Reader& reader_;
     };
 
-    /// A fault at the place where the reader is.
+    /// A fault at the reader's place.
     void fault(std::string detail);
-    /// A fault at the member `name` of that place.
+    /// A fault at the member `name` of the reader's place.
     void fault_at(std::string_view name, std::string detail);
     /// A fault that the engine found: `where` is its slash path, whose first `skipped` names are left out.
     void fault_below(std::string_view where, int skipped, std::string detail);
 
-    /// The JSON Pointer of the place; the last name of it, with indices: "num[2]"; "the request" at the top.
+    /// The JSON Pointer of the place.
     std::string pointer() const;
     std::string name() const;
 
-    /// Whether nothing was found at or below the member `name` of this place.
+    /// True if no fault was found at or below the member `name` of this place.
     bool clean_at(std::string_view name) const;
 
-    /// The label of the request's unit of time, once its units are read: texts may hold times in units of their own.
+    /// The label of the request's unit of time, once its units are read: a typed plant may use other units.
     const std::string& time_unit() const { return time_unit_; }
     void set_time_unit(std::string label) { time_unit_ = std::move(label); }
 
     std::size_t count() const { return count_; }
     bool clean_since(std::size_t count) const { return count_ == count; }
 
-    /// 422 with everything found; empty if there is none.
+    /// 422 with all faults; empty if there is none.
     std::optional<Problem> problem() const;
 
 private:
@@ -61,10 +61,10 @@ private:
     std::string time_unit_ = "s";
 };
 
-/// The value as a sentence quotes it: its JSON, cut after 40 characters.
+/// The value as quoted in sentences: its JSON, cut after 40 characters.
 std::string shown(const Json& value);
 
-/// What kind of JSON value this is, with its article: "a text", "an object", "null".
+/// The type of a JSON value with its article: "a text", "an object", "null".
 std::string kind_of(const Json& value);
 
 }  // namespace tunewright::api

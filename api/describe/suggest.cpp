@@ -16,7 +16,7 @@ std::string folded(std::string_view text) {
     return out;
 }
 
-// Edit distance with neighbours swapped as one step (optimal string alignment).
+// Edit distance in which swapping neighbours is one step (optimal string alignment).
 std::size_t distance(std::string_view a, std::string_view b) {
     std::vector<std::size_t> before(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
     for (std::size_t j = 0; j <= b.size(); ++j) last[j] = j;

@@ -1,4 +1,4 @@
-// The name that somebody meant.
+// Suggests the name that the user meant.
 #pragma once
 
 #include <span>
@@ -8,8 +8,8 @@
 
 namespace tunewright::api {
 
-/// The candidate nearest to `name` (other case, one or two letters changed, or a common synonym such as "dead_time" for
-/// L); empty if none is near.
+/// The candidate nearest to `name` (another case, one or two letters changed, or a common synonym such as "dead_time"
+/// for L); empty if none is near.
 std::string nearest(std::string_view name, std::span<const std::string> candidates);
 
 /// "a, b or c".

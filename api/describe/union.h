@@ -12,14 +12,14 @@ namespace tunewright::api {
 template <class V>
 class Union {
 public:
-    /// `otherwise` is the word that a missing tag stands for; empty: the tag is required.
+    /// `otherwise` is the word assumed for a missing tag; empty: the tag is required.
     Union(std::string name, std::string sentence, std::string tag, std::string otherwise = {})
         : name_(std::move(name)),
           sentence_(std::move(sentence)),
           tag_(std::move(tag)),
           otherwise_(std::move(otherwise)) {}
 
-    /// Alternatives of one word are tried in order: the first whose `matches` holds (empty: always) is taken.
+    /// Alternatives with the same word are tried in order: the first whose `matches` is true (empty: always) is taken.
     template <class T>
     Union& alternative(const Description<T>& description, Callable<bool(const Json&)> matches = {}) {
         const Description<T>* what = &description;
@@ -57,7 +57,7 @@ public:
     /// The words of the tag.
     const std::vector<std::string>& words() const { return words_; }
 
-    /// A word of the contract's future: refused with its own sentence.
+    /// A word that is planned for the contract: refused with a sentence of its own.
     Union& refuse(std::string word, std::string sentence) {
         refused_.emplace_back(std::move(word), std::move(sentence));
         return *this;

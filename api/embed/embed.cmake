@@ -1,4 +1,4 @@
-# Writes FILES (paths below the folder it runs in) as string literals into the C++ source OUTPUT; files.h reads them.
+# Writes FILES (paths below the current folder) as string literals into the C++ source OUTPUT; files.h reads them.
 set(content "#include \"api/embed/files.h\"\n\nnamespace tunewright::api {\n\nconst std::vector<EmbeddedFile>& embedded_files() {\n    static const std::vector<EmbeddedFile> files = {\n")
 foreach(file ${FILES})
   file(READ ${file} text)

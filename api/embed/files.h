@@ -14,12 +14,12 @@ struct EmbeddedFile {
     std::string_view text;
 };
 
-/// All of them, in the order of their names. The build writes this function (embed.cmake), so that the binary serves
-/// them wherever it runs.
+/// All of them, sorted by name. The build generates this function (embed.cmake), so that the binary can serve them
+/// anywhere.
 const std::vector<EmbeddedFile>& embedded_files();
 
 /// The text of one file, such as embedded_file("openapi/paths.json"); it lasts as long as the process. Throws
-/// std::logic_error where it is missing, which is a fault of the build.
+/// std::logic_error if it is missing, which is a fault of the build.
 inline std::string_view embedded_file(std::string_view name) {
     const auto& files = embedded_files();
     const auto found = std::ranges::find(files, name, &EmbeddedFile::name);

@@ -16,14 +16,14 @@ bool is_example(std::string_view name) {
            name.substr(name.size() - kEnd.size()) == kEnd;
 }
 
-// A record's csv names a file of the folder here and holds its text in the answer.
+// Replaces the name of a file in a record's csv by the text of that file.
 void insert_record(Json& request) {
     if (!request.contains("record")) return;
     Json& csv = request["record"]["csv"];
     csv = std::string(embedded_file("examples/" + csv.get<std::string>()));
 }
 
-/// Those about one loop, or those about a range: what shows requests of one kind need not know the other.
+/// The examples about one loop, or those about a range: a client that shows one kind does not need the other.
 Json examples_of(bool ranges) {
     Json examples = Json::array();
     for (const EmbeddedFile& file : embedded_files()) {

@@ -1,5 +1,5 @@
-// The elements of Presentation MathML that everybody writes with: plants' formulas and methods'. What stands inside is
-// MathML already: a bare &, < or > has been spelt out by the caller.
+// The elements of Presentation MathML for the formulas of plants and methods. The content is MathML already: the caller
+// has escaped &, < and >.
 #pragma once
 
 #include <string>

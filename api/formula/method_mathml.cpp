@@ -24,7 +24,7 @@ std::string letter(std::string_view name) {
     return mi(std::string(greek.empty() ? name : greek));
 }
 
-/// A symbol's letter and its index: Kp, T1, tau_c. What is not an index of anything has an empty second part.
+/// A symbol's letter and its index: Kp, T1, tau_c. Without an index the second part is empty.
 struct Name {
     std::string base, index;
 };
@@ -58,7 +58,7 @@ std::string sign(const std::string& text) {
     return mo(text.c_str());
 }
 
-/// Above the line fractions would be too small to read: they keep the slash there, and their brackets with it.
+/// Fractions in an exponent or index would be too small to read: they keep the slash there, and its brackets.
 enum class ScriptLevel { line, script };
 
 std::string written(const Node& node, ScriptLevel place);
@@ -69,7 +69,7 @@ std::string all(const std::vector<Node>& nodes, ScriptLevel place, const std::st
     return out;
 }
 
-/// Above or below a fraction's line, which holds together what the brackets did.
+/// The content of brackets that the line of a fraction makes unnecessary.
 std::string bare(const Node& node, ScriptLevel place) {
     return written(node.part == Part::brackets ? node.parts.front() : node, place);
 }
@@ -82,7 +82,7 @@ std::string fraction_of(const Node& node, ScriptLevel place) {
 
 bool is_high(const Node& node) { return node.part == Part::fraction || std::ranges::any_of(node.parts, is_high); }
 
-/// Brackets grow with a fraction inside them, and with nothing else: powers and indices would blow them up.
+/// Brackets stretch only around a fraction: around powers and indices they would be too large.
 std::string in_brackets(const Node& node, ScriptLevel place) {
     const Node& inside = node.parts.front();
     const bool grows = place == ScriptLevel::line && is_high(inside), square = node.text == "[";
@@ -138,7 +138,7 @@ std::string written(const Node& node, ScriptLevel place) {
     return {};
 }
 
-/// Between words and formulas stands a space, but none before the colon that ends a label.
+/// Puts a space between words and formulas, but none before the colon that ends a label.
 std::string cell(const notation::Cell& parts) {
     std::string out;
     for (std::size_t i = 0; i < parts.size(); ++i) {

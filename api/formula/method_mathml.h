@@ -9,8 +9,8 @@
 namespace tunewright::api {
 
 /// One `math` element without white space around it: a table with a row for each line of the text. A row's first cell
-/// is the line's label (empty where it has none), the others are its formulas; words stand in `mtext`. No attributes
-/// but those of `math` and stretchy="false" of brackets, no entities but &lt; and &gt;. Errors: as
+/// is the line's label (empty where it has none), the others are its formulas; words are in `mtext`. The only
+/// attributes are those of `math` and stretchy="false" of brackets, the only entities &lt; and &gt;. Errors: as
 /// notation::read_formula.
 Expected<std::string> method_mathml(std::string_view formula);
 

@@ -14,13 +14,13 @@ using Tokens = std::span<const FormulaToken>;
 
 std::string closing_of(const std::string& opening) { return opening == "(" ? ")" : "]"; }
 
-/// Several things in a row, or the one.
+/// The parts as a row, or the only part itself.
 Node together(Part part, std::vector<Node> parts) {
     if (parts.size() == 1) return std::move(parts.front());
     return {part, "", std::move(parts)};
 }
 
-/// Recursive descent over the tokens of one formula. After the first error everything returns at once.
+/// Recursive descent over the tokens of one formula. After the first error every function returns at once.
 class FormulaReader {
 public:
     FormulaReader(Tokens tokens, std::size_t end) : tokens_(tokens), end_(end) {}
@@ -51,7 +51,7 @@ private:
         return {};
     }
 
-    /// Sums with relations and commas between them.
+    /// Reads sums with relations and commas between them.
     Node list(bool may_end_with_comma) {
         std::vector<Node> parts = sum();
         while (here() && (here()->is(",") || here()->is_relation())) {
@@ -76,7 +76,7 @@ private:
         return parts;
     }
 
-    /// Factors; each slash divides all that stands before it by the one factor behind it.
+    /// Reads factors; each slash divides the product before it by the next factor.
     Node term() {
         std::vector<Node> factors{factor()};
         while (here() && !error_) {
@@ -107,7 +107,7 @@ private:
         return {Part::power, "", {std::move(base), exponent()}};
     }
 
-    /// Brackets that only hold an exponent together are gone where it stands above the line.
+    /// Brackets that only group an exponent are not shown above the line.
     Node exponent() {
         const bool negative = skip("-");
         Node value = atom();
@@ -164,7 +164,7 @@ private:
     std::optional<Error> error_;
 };
 
-/// Formulas and the words between them. A comma after a word is part of the words.
+/// Reads formulas and the words between them. A comma after a word is part of the words.
 Expected<Cell> read_cell(Tokens tokens, std::size_t end) {
     Cell cell;
     while (!tokens.empty()) {
@@ -188,7 +188,7 @@ Expected<Cell> read_cell(Tokens tokens, std::size_t end) {
     return cell;
 }
 
-/// Has a relation with no words before it.
+/// True if it has a relation with no words before it.
 bool is_equation(Tokens piece) {
     for (const FormulaToken& token : piece) {
         if (token.kind == NotationToken::word) return false;
@@ -213,7 +213,7 @@ std::vector<Tokens> pieces_of(Tokens line) {
     return pieces;
 }
 
-/// Words that follow words are one text.
+/// Adjacent words become one text.
 void add(Cell& cell, Node node) {
     if (node.part == Part::words && !cell.empty() && cell.back().part == Part::words)
         cell.back().text += " " + node.text;
@@ -233,7 +233,7 @@ Expected<Line> read_line(Tokens tokens, std::size_t end) {
     std::size_t length = tokens.size();
     while (length > 0 && tokens[length - 1].kind != NotationToken::label_end) --length;
     if (length-- > 0) {
-        // A label in a label: "Regulation, 0 %: P:".
+        // A label within a label: "Regulation, 0 %: P:".
         Tokens rest = tokens.first(length);
         for (bool more = true; more;) {
             const auto colon = std::ranges::find(rest, NotationToken::label_end, &FormulaToken::kind);

@@ -2,12 +2,11 @@
 // MathML.
 //
 //     PI: Kp = 2 T/(3 K L), Ti = T; PID: Kp = 2 (T1 + T2)/(3 K L), Ti = T1 + T2
-//
-// "; " and ". " end a line. What stands before the last ": " of a line is its label. ", " ends a cell where an equation
-// stands on either side of it. Products are written side by side and bind as a slash does, from left to right: a b/c d
-// is (a b/c) d. Powers have ^, magnitudes |x|, indices _ or digits; min, max, exp and sqrt are functions where a
-// bracket follows, int and sum signs with limits (int_0^H). A single letter, a Greek name or one of the field's pairs
-// of letters (Kp, Ti, Ku, ...) is a symbol; other names are words.
+//  "; " and ". " end a line. The text before the last ": " of a line is its label. ", " ends a cell if there is an
+// equation on either side of it. Products are written without a sign and have the precedence of a slash, from left to
+// right: a b/c d is (a b/c) d. Powers have ^, magnitudes |x|, indices _ or digits; min, max, exp and sqrt are functions
+// if a bracket follows; int and sum are signs with limits (int_0^H). A single letter, a Greek name or one of the
+// field's pairs of letters (Kp, Ti, Ku, ...) is a symbol; other names are words.
 #pragma once
 
 #include <string>
@@ -39,14 +38,14 @@ struct Node {
     std::vector<Node> parts = {};
 };
 
-using Cell = std::vector<Node>;  ///< formulas and words as they follow each other
+using Cell = std::vector<Node>;  ///< formulas and words in their order
 
 struct Line {
     Cell label;  ///< empty: none
     std::vector<Cell> cells;
 };
 
-/// Errors: invalid_argument with the character (from 1) at which the text leaves the notation.
+/// Errors: invalid_argument with the position (from 1) of the first character that is not valid.
 Expected<std::vector<Line>> read_formula(std::string_view text);
 
 }  // namespace tunewright::api::notation

@@ -22,11 +22,11 @@ bool is_part_of_name(char c) { return is_letter_of_name(c) || is_digit_of_name(c
 bool is_symbol(std::string_view name) {
     std::string_view base = name.substr(0, name.find('_'));
     while (base.size() > 1 && is_digit_of_name(base.back())) base.remove_suffix(1);
-    if (base.size() == 1) return base != "P";  // the controller P, as PI and PID
+    if (base.size() == 1) return base != "P";  // the controller P, as in PI and PID
     return !greek_letter(base).empty() || std::ranges::find(kPairs, base) != std::end(kPairs);
 }
 
-/// Reads from the left; each function takes one token off.
+/// Reads from the left; each function consumes one token.
 class Lexer {
 public:
     explicit Lexer(std::string_view text) : text_(text) {}
@@ -39,7 +39,7 @@ public:
                 return Error{ErrorKind::invalid_argument, "",
                              "character " + std::to_string(at_ + 1) + " has no meaning in a formula."};
             at_ += token.text.size();
-            // "a" is the article where a word follows it.
+            // "a" is the article if a word follows it.
             if (token.kind == NotationToken::word && !tokens.empty() && tokens.back().text == "a")
                 tokens.back().kind = NotationToken::word;
             tokens.push_back(std::move(token));
@@ -85,7 +85,7 @@ private:
         for (const std::string_view function : {"min", "max", "exp", "sqrt"})
             if (found == function && opens(end)) return token(NotationToken::function, end - at_);
         if (is_symbol(found)) return token(NotationToken::symbol, end - at_);
-        // Words may hang together: docs/methods.md, half-rule.
+        // Words may contain these signs: docs/methods.md, half-rule.
         while (end + 1 < text_.size() && std::string_view("-./").find(text_[end]) != std::string_view::npos &&
                is_letter_of_name(text_[end + 1]))
             for (++end; end < text_.size() && is_part_of_name(text_[end]);) ++end;

@@ -1,4 +1,4 @@
-// The words and signs of the notation, told apart.
+// The tokens of the notation: words and signs.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ namespace tunewright::api::notation {
 enum class NotationToken {
     number,
     symbol,
-    function,  ///< min, max, exp, sqrt, with a bracket behind it
+    function,  ///< min, max, exp, sqrt, with a bracket after it
     big,       ///< int, sum, with its lower limit: sum_k
     word,
     sign,
@@ -29,10 +29,10 @@ struct FormulaToken {
     bool is_relation() const { return is("=") || is("<") || is(">") || is("<=") || is(">="); }
 };
 
-/// Lower-case names of Greek letters that formulas use, each with its letter; "" where `name` is none.
+/// The letter for a lower-case name of a Greek letter that formulas use; "" if `name` is none.
 std::string_view greek_letter(std::string_view name);
 
-/// Errors: a character that the notation has no use for.
+/// Errors: a character that the notation does not have.
 Expected<std::vector<FormulaToken>> formula_tokens(std::string_view text);
 
 }  // namespace tunewright::api::notation

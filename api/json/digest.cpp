@@ -9,7 +9,7 @@
 namespace tunewright::api {
 namespace {
 
-// OpenSSL fails here for want of memory alone.
+// OpenSSL fails here only for lack of memory.
 void must(int ok) {
     if (ok != 1) throw std::runtime_error("OpenSSL cannot compute a SHA-256 digest.");
 }
@@ -62,7 +62,7 @@ std::optional<std::string> base64_bytes(std::string_view text) {
         EVP_DecodeBlock(reinterpret_cast<unsigned char*>(out.data()),
                         reinterpret_cast<const unsigned char*>(text.data()), static_cast<int>(text.size()));
     if (length < 0) return std::nullopt;
-    // The padding counts as bytes there.
+    // The decoder counts the padding as bytes.
     for (std::size_t back = 0; back < 2 && text.size() > back && text[text.size() - 1 - back] == '='; back++)
         out.pop_back();
     if (base64(out) != text) return std::nullopt;

@@ -1,4 +1,5 @@
-// SHA-256 (FIPS 180-4) of a text, which names a request in results, and what signs with it. By OpenSSL.
+// SHA-256 (FIPS 180-4) of a text, which identifies a request in results, and the encodings and signatures that use it.
+// By OpenSSL.
 #pragma once
 
 #include <memory>
@@ -10,7 +11,7 @@ struct evp_md_ctx_st;
 
 namespace tunewright::api {
 
-/// Of a text that comes in pieces.
+/// Hash of a text that comes in pieces.
 class Sha256 {
 public:
     Sha256();
@@ -33,7 +34,7 @@ std::string sha256_hex(std::string_view text);
 /// Base64 with padding (RFC 4648, section 4): of any bytes, and of the digest, as policies of pages name a stylesheet.
 std::string base64(std::string_view bytes);
 std::string sha256_base64(std::string_view text);
-/// What such a text stands for; nothing where it is none, or not spelled as base64() spells it.
+/// Decodes Base64; empty if the text is not exactly as base64() writes it.
 std::optional<std::string> base64_bytes(std::string_view text);
 
 /// HMAC-SHA256 (RFC 2104), its 32 bytes.

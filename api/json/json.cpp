@@ -71,7 +71,7 @@ std::size_t after_string(std::string_view json, std::size_t at) {
     return at + 1;
 }
 
-/// Whether the bracket at `at` encloses another one. The next of any kind tells.
+/// True if the bracket at `at` encloses another one. The next bracket of any kind decides.
 bool encloses(std::string_view json, std::size_t at) {
     for (++at; at < json.size();) {
         const char c = json[at];
@@ -91,7 +91,7 @@ bool encloses(std::string_view json, std::size_t at) {
 std::string indented(std::string_view text) {
     const std::string json = compact(text);
     std::string out;
-    std::vector<bool> parted;  // of each open bracket: one line for each member
+    std::vector<bool> parted;  // for each open bracket: one line for each member
     const auto new_line = [&] { out.append("\n").append(2 * parted.size(), ' '); };
     for (std::size_t at = 0; at < json.size();) {
         const char c = json[at];
@@ -154,12 +154,12 @@ std::optional<Integer> whole_number(std::string_view token) {
     return value;
 }
 
-// Infinity for what no double holds; what is too small is 0, or the nearest that there is.
+// Infinity for a number beyond double; one that is too small is 0, or the nearest double.
 double nearest_double(std::string_view token) {
     double value = 0;
     const auto [end, fault] = std::from_chars(token.data(), token.data() + token.size(), value);
     if (fault == std::errc{}) return value;
-    // That function does not say on which side a number leaves the range.
+    // from_chars does not report on which side a number leaves the range.
     return std::strtod(std::string(token).c_str(), nullptr);
 }
 
@@ -170,7 +170,7 @@ std::string place(std::string_view text, std::size_t position) {
     return "line " + std::to_string(line) + ", column " + std::to_string(before.size() - start + 1);
 }
 
-// Builds the tree from the reader's events. The names of its functions are the reader's.
+// Builds the tree from the reader's events. The reader determines the names of the functions.
 class TreeBuilder : public rapidjson::BaseReaderHandler<rapidjson::UTF8<>, TreeBuilder> {
 public:
     explicit TreeBuilder(std::string_view text) : text_(text) {}
@@ -216,7 +216,7 @@ public:
     }
 
     void fault(rapidjson::ParseErrorCode code, std::size_t position) {
-        if (code == rapidjson::kParseErrorTermination) return;  // the builder's own, and already told
+        if (code == rapidjson::kParseErrorTermination) return;  // the builder's own error, already reported
         if (code == rapidjson::kParseErrorNumberTooBig) {
             too_large(text_.substr(position, text_.find_first_of(" \t\r\n,]}", position) - position));
         } else if (code == rapidjson::kParseErrorDocumentEmpty && position == text_.size()) {
@@ -239,15 +239,15 @@ private:
         return false;
     }
 
-    // The text is UTF-8: what is not has come from an escape. The reader refuses the first half of a surrogate pair
-    // that stands alone, and takes the second.
+    // The text is valid UTF-8: an invalid surrogate can only come from an escape. The reader refuses a high surrogate
+    // alone and accepts a low one.
     bool is_paired(std::string_view value) {
         if (is_utf8(value)) return true;
         problem_ = not_json("The body is not JSON: a text has \\udc00 to \\udfff without the first half of the pair.");
         return false;
     }
 
-    // The spellings that other languages write and JSON does not have.
+    // A hint for spellings of other languages that JSON does not have.
     std::string hint(std::size_t position) const {
         const std::size_t from = position > 12 ? position - 12 : 0;
         const std::string_view around = text_.substr(from, 24);
@@ -272,12 +272,12 @@ private:
         if (parent.is_array()) return &parent.get_ref<Json::array_t&>().emplace_back(std::forward<Value>(value));
         auto& members = parent.get_ref<Json::object_t&>();
         if (members.size() == members.capacity()) grow(members);
-        // The name is known to be new: appending spares the library's search.
+        // The name is known to be new: appending avoids the library's search.
         members.Container::emplace_back(names_.back(), std::forward<Value>(value));
         return &members.back().second;
     }
 
-    // Left to itself the library copies all members: pairs with a constant name cannot be moved.
+    // By itself the library copies all members: pairs with a constant name cannot be moved.
     static void grow(Json::object_t& members) {
         Json::object_t larger;
         larger.reserve(2 * members.size() + 1);
@@ -318,7 +318,7 @@ private:
         return stack_.empty() ? "" : pointer() + "/" + segment(stack_.size() - 1, 0);
     }
 
-    // `placed` 1: the element that is open now is already the array's last.
+    // `placed` 1: the element that is open is already the last of the array.
     std::string segment(std::size_t level, std::size_t placed) const {
         if (stack_[level]->is_array()) return std::to_string(stack_[level]->size() - placed);
         return pointer_segment(names_[level]);
@@ -333,8 +333,8 @@ private:
 
 }  // namespace
 
-/// Measured: what an element, a member (beside its name), a container and a text of nlohmann::ordered_json take, with
-/// room to grow and what the system's allocator adds.
+/// Measured sizes of an element, a member (without its name), a container and a text of nlohmann::ordered_json,
+/// including spare capacity and the overhead of the system's allocator.
 std::size_t tree_size(std::string_view text) {
     constexpr std::size_t element = 32, member = 32, container = 64, string = 64;
     std::size_t size = 0;
@@ -369,12 +369,12 @@ std::variant<Json, Problem> parse(std::string_view text) {
             {},
             {}};
     TreeBuilder builder(text);
-    // The reader's own check reads on behind the end of a text that breaks off within a character.
+    // The reader's own check reads beyond the end of a text that ends within a character.
     if (const std::size_t valid = valid_utf8(text); valid < text.size()) {
         builder.fault(rapidjson::kParseErrorStringInvalidEncoding, valid);
         return *builder.problem();
     }
-    // The reader takes a zero for the end of its text, and writes strings without their escapes over it.
+    // The reader takes a zero byte as the end of its text, and writes unescaped strings over it.
     std::string copy(text);
     rapidjson::InsituStringStream stream(copy.data());
     rapidjson::Reader reader;
@@ -390,7 +390,8 @@ std::variant<Json, Problem> parse(std::string_view text) {
 
 namespace {
 
-/// Walks over text that is known to be JSON without white space between its tokens. Of other text it makes something.
+/// Walks over text that is known to be JSON without white space between its tokens. The output for other text is
+/// undefined.
 class Walk {
 public:
     Walk(std::string_view json, std::initializer_list<std::string_view> names) : json_(json), names_(names) {}
@@ -404,7 +405,7 @@ public:
 private:
     bool at(char c) const { return at_ < json_.size() && json_[at_] == c; }
 
-    /// The token from `from` to here is passed on, or not.
+    /// Copies the token from `from` to here, or leaves it out.
     void pass(std::size_t from, bool kept) {
         if (kept) out_ += json_.substr(from, at_ - from);
     }

@@ -41,7 +41,7 @@ std::string to_pointer(const std::string& where) {
     return pointer;
 }
 
-/// "Use Ms = Mt = 1.603": options of one value are named together.
+/// The text of a cure, "Use Ms = Mt = 1.603": options with the same value are named together.
 Cure cure_of(const std::map<std::string, double>& options) {
     Cure cure{"Use", {options.begin(), options.end()}};
     for (std::size_t i = 0; i < cure.options.size(); ++i) {
@@ -87,7 +87,7 @@ RecordSamples samples_of(const Record& record, std::size_t max) {
     return samples;
 }
 
-// An excerpt is written in full: it is looked at digit by digit.
+// An excerpt is written in full precision: users check it digit by digit.
 static void write_record(const RecordSamples& samples, Writer& out) {
     const bool excerpt = samples.t.size() <= kExcerptRows;
     const auto write = [&](const char* name, const std::vector<double>& values) {

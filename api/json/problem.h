@@ -1,4 +1,4 @@
-// application/problem+json (RFC 9457): what a client gets when something cannot be done.
+// application/problem+json (RFC 9457): the answer to a request that is refused or fails.
 #pragma once
 
 #include <optional>
@@ -16,16 +16,16 @@ struct FieldError {
     std::string detail;   ///< value, rule, cure
 };
 
-/// Rows of a record as it was read: what a reader needs to see why it determines no model.
+/// Rows of a record as read, which show why it determines no model.
 struct RecordSamples {
     std::size_t samples = 0;  ///< of the whole record
     std::vector<double> t, u, y;
     std::vector<double> r = {};  ///< empty: the record has none
 };
 
-/// What would make the request possible: options of its method, for a program to send it again with.
+/// Options of the method with which the request is feasible; a program can send it again with them.
 struct Cure {
-    std::string text;  ///< what a button that does it says, e.g. "Use Ms = Mt = 1.603"
+    std::string text;  ///< text of the button that applies it, e.g. "Use Ms = Mt = 1.603"
     std::vector<std::pair<std::string, double>> options;
 };
 
@@ -36,18 +36,17 @@ struct Problem {
     std::string detail;
     std::vector<FieldError> errors;
     std::string instance;                      ///< optional
-    std::optional<RecordSamples> record = {};  ///< of a record that was read, but not identified
-    std::optional<Cure> cure = {};             ///< where the detail names values
+    std::optional<RecordSamples> record = {};  ///< of a record that was read but not identified
+    std::optional<Cure> cure = {};             ///< set if the detail names values
 };
 
-/// The one table from the engine's error kinds to status, type and title.
+/// The only table from the engine's error kinds to status, type and title.
 Problem to_problem(const Error& error);
 
-/// Of a record that could not be identified: three rows tell whether columns and times are what they should be, more
-/// are for a plot.
+/// For a record that could not be identified: three rows show whether columns and times are right, more are for a plot.
 constexpr std::size_t kExcerptRows = 3, kPlotRows = 2000;
 
-/// At most so many rows, evenly chosen, the first and the last among them; rows in which t, u or y is no number are
+/// At most `max` rows, evenly chosen, including the first and the last; rows in which t, u or y is not a number are
 /// left out.
 RecordSamples samples_of(const Record& record, std::size_t max = kExcerptRows);
 

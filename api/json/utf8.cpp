@@ -6,7 +6,7 @@
 namespace tunewright::api {
 namespace {
 
-// The length of the UTF-8 sequence at `at`; 0 if it is none.
+// The length of the UTF-8 sequence at `at`; 0 if it is not valid.
 std::size_t sequence(std::string_view text, std::size_t at) {
     const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
     const unsigned char lead = byte(at);
@@ -22,7 +22,7 @@ std::size_t sequence(std::string_view text, std::size_t at) {
     return length;
 }
 
-// Whether the eight bytes from `at` on are ASCII, as nearly all of a record are.
+// True if the eight bytes from `at` on are ASCII, as nearly all of a record are.
 bool eight_plain(std::string_view text, std::size_t at) {
     std::uint64_t bytes = 0;
     if (at + sizeof bytes > text.size()) return false;

@@ -35,8 +35,8 @@ struct PowersOfTen {
     double operator()(int exponent) const { return value[static_cast<std::size_t>(exponent + kMaxExponent)]; }
 };
 
-// The six digits as an integer in [100000, 999999] and the decimal exponent of the first one. The scaling rounds once
-// more, so a value within 1e-15 relative of a tie may go to either side.
+// The six digits as an integer in [100000, 999999] and the decimal exponent of the first one. The scaling rounds a
+// second time, so a value within 1e-15 relative of a tie may be rounded either way.
 struct SixDigits {
     std::uint32_t digits;
     int exponent;
@@ -45,7 +45,8 @@ struct SixDigits {
 const PowersOfTen kPowerOfTen;
 
 SixDigits split(double magnitude) {
-    // The binary exponent gives the decimal one, or one less: (e * 78913) >> 18 is floor(e log10 2) for every double.
+    // The binary exponent determines the decimal one, or one less: (e * 78913) >> 18 is floor(e log10 2) for every
+    // double.
     const int binary = static_cast<int>(std::bit_cast<std::uint64_t>(magnitude) >> 52) - 1023;
     int exponent = (binary * 78913) >> 18;
     double scaled = magnitude * kPowerOfTen(5 - exponent);
@@ -53,7 +54,8 @@ SixDigits split(double magnitude) {
         ++exponent;
         scaled = magnitude * kPowerOfTen(5 - exponent);
     }
-    // NOLINTNEXTLINE(bugprone-incorrect-roundings): between 1e5 and 1e6 it is right, and lround() is a call a number
+    // NOLINTNEXTLINE(bugprone-incorrect-roundings): between 1e5 and 1e6 it is exact, and lround() would be a call per
+    // number
     auto digits = static_cast<std::uint32_t>(scaled + 0.5);
     if (digits > 999999) {
         digits = 100000;
@@ -180,7 +182,7 @@ void Writer::numbers(std::span<const double> values) {
     end_array();
 }
 
-// Seconds since 1970 have more than six digits before they differ.
+// Seconds since 1970 differ only after more than six digits.
 void Writer::times(std::span<const double> values) {
     double largest = 0, min = 0;
     for (std::size_t i = 0; i < values.size(); ++i) {

@@ -1,4 +1,4 @@
-// Writes JSON text straight into a string: answers carry thousands of numbers, so nothing is built in between.
+// Writes JSON text directly into a string: answers carry thousands of numbers, so nothing is built in between.
 #pragma once
 
 #include <span>
@@ -7,7 +7,7 @@
 
 namespace tunewright::api {
 
-/// Commas are set by themselves. The caller keeps begin and end in pairs and writes a key before each member.
+/// Commas are inserted automatically. The caller keeps begin and end in pairs and writes a key before each member.
 class Writer {
 public:
     Writer() { out_.reserve(4096); }
@@ -26,8 +26,9 @@ public:
     void trace_number(double value);             ///< six significant digits; not finite: null
     void trace(std::span<const double> values);  ///< an array of trace_number
     void numbers(std::span<const double> values);  ///< an array of number
-    void times(std::span<const double> values);    ///< as trace; in full where six digits would make neighbours equal
-    void raw(std::string_view json);               ///< JSON text as it is
+    void times(std::span<const double> values);    ///< like trace; in full precision if six digits would make
+                                                   ///< neighbours equal
+    void raw(std::string_view json);               ///< JSON text, unchanged
 
     const std::string& view() const { return out_; }
     std::string take() { return std::move(out_); }
@@ -45,7 +46,7 @@ private:
     std::string out_;
 };
 
-/// `value` with six significant digits, as in traces, or in full, as elsewhere: for sentences.
+/// `value` with six significant digits, as in traces, or in full precision: for sentences.
 std::string six_digits(double value);
 std::string full_digits(double value);
 

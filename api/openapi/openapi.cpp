@@ -22,7 +22,7 @@
 namespace tunewright::api {
 namespace {
 
-/// What the port may answer to any call, whatever the operation: added where the operation says nothing of its own.
+/// Adds the answers that any call may have, such as refusals of the port, unless the operation describes its own.
 void add_refusals(Json& operation, bool changes) {
     const auto add = [&](const char* status, const char* name) {
         Json& responses = operation["responses"];
@@ -53,8 +53,8 @@ void collect_references(const Json& part, const Json& schemas, std::set<std::str
     for (const auto& inner : part) collect_references(inner, schemas, names);
 }
 
-/// A type that only answers have has all members that answers always write, and no defaults; one that requests may have
-/// too keeps the mark.
+/// A type of answers only requires all members that are always written, and has no defaults; a type that requests may
+/// have too keeps the mark.
 void require_what_is_written(Json& document) {
     Json& schemas = document["components"]["schemas"];
     std::set<std::string> asked;
@@ -72,8 +72,8 @@ void require_what_is_written(Json& document) {
 
 }  // namespace
 
-// paths.json holds what belongs to HTTP: paths, parameters, the job around a request. The types of the contract come
-// from their descriptions.
+// paths.json describes the HTTP side: paths, parameters, the job around a request. The types of the contract come from
+// their descriptions.
 std::string openapi_json() {
     static const std::string text = [] {
         Json document = Json::parse(embedded_file("openapi/paths.json"));

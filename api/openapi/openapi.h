@@ -1,4 +1,4 @@
-// The description of the whole interface, made from the contract and from paths.json.
+// The description of the whole interface, built from the contract and from paths.json.
 #pragma once
 
 #include <string>

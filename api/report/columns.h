@@ -1,4 +1,4 @@
-// Tables of a terminal.
+// Tables for a terminal.
 #pragma once
 
 #include <algorithm>
@@ -10,13 +10,14 @@
 
 namespace tunewright::api {
 
-/// Letters of UTF-8, however many bytes each has.
+/// Number of letters in UTF-8 text, whatever their number of bytes.
 inline std::size_t letters(std::string_view text) {
     return static_cast<std::size_t>(
         std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
-/// Columns as wide as their widest cell; the first `left` of them begin at the left, the others are numbers.
+/// Columns as wide as their widest cell; the first `left` of them are aligned left, the others are numbers, aligned
+/// right.
 class Columns {
 public:
     Columns(std::vector<std::string> heads, std::size_t left) : left_(left) { row(std::move(heads)); }

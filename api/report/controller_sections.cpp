@@ -1,4 +1,4 @@
-// Sections about what the settings do, and how they were found.
+// Sections about the effect of the settings, and the search that found them.
 #include <algorithm>
 #include <array>
 
@@ -91,8 +91,8 @@ bool same_finding(const Json& a, const Json& b) {
     return a.value("code", "") == b.value("code", "") && a.value("figures", Json()) == b.value("figures", Json());
 }
 
-/// Whether the entry's own verdict holds what this finding about all entries tells: one of its own, the choice of this
-/// entry, or that the only design is not to be entered.
+/// True if the entry's own verdict already says what this finding about all entries says: the same finding, the choice
+/// of this entry, or that the only design must not be entered.
 bool is_own(const Json& finding, const Json& own, const ReportInput& s) {
     const std::string code = finding.value("code", "");
     if (std::ranges::any_of(own, [&](const Json& one) { return same_finding(one, finding); })) return true;

@@ -16,7 +16,7 @@ struct Source {
     JsonLocation place;
 };
 
-/// Whose traces are drawn.
+/// The entries whose traces are drawn.
 std::vector<Source> sources_of(const ReportInput& s) {
     std::vector<Source> out = {{"Proposal", Line::proposal, s.entry}};
     if (s.entry.at("implemented").at("responses").exists())
@@ -25,7 +25,7 @@ std::vector<Source> sources_of(const ReportInput& s) {
     return out;
 }
 
-/// y or u of a response; of a linear model's too where the plant is nonlinear.
+/// Adds y or u of a response; also that of the linear model if the plant is nonlinear.
 void add_responses(Plot& plot, const ReportInput& s, const char* step, const char* signal) {
     for (const Source& source : sources_of(s)) {
         const JsonLocation response = source.place.at("responses").at(step);
@@ -54,7 +54,7 @@ void add_setpoint(Plot& plot, const ReportInput& s) {
     plot.traces.push_back({.name = "Set point", .line = Line::setpoint, .x = {0, 0, end}, .y = {0, step, step}});
 }
 
-/// To the longest horizon; the request's limits of u where it has them.
+/// Up to the longest horizon; with the request's limits of u, if any.
 Plot response(const ReportInput& s, const char* title, const char* step, const char* signal, const std::string& unit) {
     Plot plot{.title = title, .x_label = with_unit("t", s.time), .y_label = with_unit(signal, unit), .traces = {}};
     add_responses(plot, s, step, signal);
@@ -72,7 +72,7 @@ double limit_of(const ReportInput& s, const char* name) {
     return value.is_number() ? value.get<double>() : 0;
 }
 
-/// Far beyond the crossover a dead time turns round and round the origin; that part decides nothing and would print as
+/// Far beyond the crossover a dead time turns around the origin many times; that part is irrelevant and would print as
 /// a blot.
 void cut_turns(Trace& trace, const JsonLocation& entry) {
     constexpr double kMaxFrequencyOverCrossover = 10;
@@ -97,14 +97,14 @@ Html nyquist(const ReportInput& s) {
     const double Ms = limit_of(s, "Ms"), Mt = limit_of(s, "Mt");
     if (Ms > 1) plot.circles.push_back({"Ms " + number_text(Ms), -1, 0, 1 / Ms});
     if (Mt > 1) plot.circles.push_back({"Mt " + number_text(Mt), -Mt * Mt / (Mt * Mt - 1), 0, Mt / (Mt * Mt - 1)});
-    // The point -1 and what is around it decide; the curve's ends lie where they like.
+    // Only the point -1 and its neighbourhood matter; the ends of the curve may lie outside.
     plot.equal = true;
     plot.x_range = {-2.6, 1.2};
     plot.y_range = {-1.8, 1.0};
     return drawn(plot);
 }
 
-/// From where L is large to where it is small: two decades on both sides of the gain crossover, or all.
+/// The frequencies from large to small L: two decades on both sides of the gain crossover, or all.
 std::optional<std::pair<double, double>> band(const ReportInput& s) {
     const Json& crossover = s.entry.at("robustness").at("gain_crossover").value();
     const std::vector<double> omega = numbers_at(s.entry.at("frequency").at("omega"));

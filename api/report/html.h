@@ -1,4 +1,4 @@
-// Markup as a type of its own, so that text can only get into it escaped.
+// Markup as a type of its own, so that text can only enter it escaped.
 //
 //   element("td", "a < b", {{"class", "name"}})     <td class="name">a &lt; b</td>
 #pragma once
@@ -13,12 +13,12 @@ namespace tunewright::api {
 class Html {
 public:
     Html() = default;
-    /// Text, escaped. What XML has no place for (control characters) is left out.
+    /// Text, escaped. Characters that XML does not allow (control characters) are left out.
     Html(std::string_view text);                                     // NOLINT(google-explicit-constructor)
     Html(const char* text) : Html(std::string_view(text)) {}         // NOLINT(google-explicit-constructor)
     Html(const std::string& text) : Html(std::string_view(text)) {}  // NOLINT(google-explicit-constructor)
 
-    /// Markup that this program wrote, such as a formula.
+    /// Markup that this program has made, such as a formula.
     static Html trusted(std::string markup);
 
     Html& operator+=(const Html& more) {
@@ -36,9 +36,9 @@ private:
 
 using Attributes = std::initializer_list<std::pair<const char*, std::string>>;
 
-/// Attributes' values are escaped; one that is empty is left out.
+/// Attributes' values are escaped; an empty one is left out.
 Html element(const char* tag, const Html& inside, Attributes attributes = {});
-/// Of SVG, and of HTML what never holds anything: <path .../>, <br/>.
+/// An element without content, of SVG or HTML: <path .../>, <br/>.
 Html empty_element(const char* tag, Attributes attributes = {});
 
 }  // namespace tunewright::api

@@ -33,7 +33,7 @@ const Style& style_of(Line line) {
 std::string px(double value) { return fmt::format("{:.2f}", value); }
 
 struct Axis {
-    double low = 0, high = 1;  ///< log10 of them where `log`
+    double low = 0, high = 1;  ///< limits of the axis; log10 of them if `log`
     bool log = false;
     double from = 0, to = 1;  ///< px
 
@@ -57,7 +57,7 @@ Range range_of(const Plot& plot, bool of_x) {
     return range;
 }
 
-/// A little room above and below; a constant has some on both sides.
+/// The range with some room above and below; a constant has some on both sides.
 Range with_room(Range range) {
     const double size = std::max(std::abs(range.first), std::abs(range.second));
     const double room = range.second - range.first > 1e-9 * size ? 0.06 * (range.second - range.first)
@@ -72,7 +72,7 @@ Axis axis_of(Range range, bool log, double from, double to) {
     return {range.first, range.second, log, from, to};
 }
 
-/// Equal units: the axis that would be drawn larger shows more.
+/// Makes the units of both axes equal: the axis with the larger scale shows more.
 void make_equal(Axis& x, Axis& y) {
     const double unit_x = std::abs(x.to - x.from) / (x.high - x.low),
                  unit_y = std::abs(y.to - y.from) / (y.high - y.low);
@@ -124,7 +124,7 @@ Html axes(const Plot& plot, const Axis& x, const Axis& y) {
                           {"text-anchor", "middle"}});
 }
 
-/// The line in px; what lies far outside is cut to the frame's neighbourhood, where numbers stay small.
+/// The line in px; points far outside are moved close to the frame, so that numbers stay small.
 std::string path_of(const Trace& trace, const Axis& x, const Axis& y) {
     constexpr double kMaxPixel = 5000;
     std::string out;
@@ -228,7 +228,7 @@ Html picture_of(const Plot& plot, const Frame& given) {
     Axis x = axis_of(given.x, plot.log_x, kLeft, kWidth - kRight);
     Axis y = axis_of(given.y, false, kHeight - kBottom, kTop);
     if (plot.equal) make_equal(x, y);
-    // A picture of its own inside the frame cuts off what lies outside.
+    // A nested SVG inside the frame cuts off everything outside.
     const Html frame = element("svg", inside_of(plot, x, y),
                                {{"x", px(kLeft)},
                                 {"y", px(kTop)},

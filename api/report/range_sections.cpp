@@ -9,10 +9,10 @@
 namespace tunewright::api {
 namespace {
 
-/// In full: a setting is typed as it stands here.
+/// In full: the setting is typed as printed here.
 constexpr int kTyped = 6;
 
-/// "load (%)"
+/// The label of the scheduling variable: "load (%)".
 std::string scheduling_label(const ReportInput& s) {
     const JsonLocation scheduling = s.entry.at("scheduling");
     return with_unit(text_at(scheduling.at("name")), text_at(scheduling.at("unit")));
@@ -72,7 +72,7 @@ Html settings_of(const ReportInput& s) {
                                              "1/(1 + s Tf + (s Tf)²/2), set-point weight b."));
 }
 
-/// The worst place of each figure, by the two that exist.
+/// The worst place of each figure, with one setting and with the schedule if both exist.
 Html worst_of(const ReportInput& s) {
     std::vector<Row> rows;
     for (const auto& [member, name] : {std::pair{"schedule", "Schedule"}, {"one", "One setting"}}) {

@@ -20,7 +20,7 @@ std::string about_of(const ReportInput& subject) {
            ", by: " + (title.empty() ? text_at(subject.entry.at("method")) : title);
 }
 
-/// "2024-05-01 12:00 UTC" of "2024-05-01T12:00:00Z"; another text as it is.
+/// The date in words: "2024-05-01 12:00 UTC" for "2024-05-01T12:00:00Z"; another text unchanged.
 std::string date_words(const std::string& date) {
     constexpr std::size_t kDateLength = 10, kMinuteLength = 16;
     if (date.size() <= kMinuteLength || date[kDateLength] != 'T' || date.back() != 'Z') return date;
@@ -59,7 +59,7 @@ std::string page(const std::string& title, const Html& body) {
            "\n";
 }
 
-/// What a whole job in the source says counts where the caller says nothing.
+/// Uses the facts of a whole job in the source if the caller gives none.
 ReportWords said_of(const ChosenEntry& found, const ReportWords& words) {
     return {.job = words.job.empty() ? found.job : words.job,
             .name = words.name.empty() ? found.name : words.name,
@@ -107,7 +107,7 @@ std::variant<std::string, Problem> report_html(const ResultSource& source, std::
                            robustness_section(subject) + plant_section(subject) + method_section(subject) +
                            assumptions_section(subject) + signatures() + forms_section(subject) +
                            request_section(document.at("request"), said.origin));
-} catch (const Json::exception&) {  // a file that only looks like a result: its members are of other kinds
+} catch (const Json::exception&) {  // a file that only resembles a result: its members have other types
     return not_a_result();
 }
 

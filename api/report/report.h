@@ -13,7 +13,7 @@
 
 namespace tunewright::api {
 
-/// What a report says beside the result: each may be "", and what a whole job in the source says then counts.
+/// Facts for a report other than the result: each may be "", and is then taken from a whole job in the source.
 struct ReportWords {
     std::string job;     ///< id
     std::string name;    ///< of the job
@@ -21,14 +21,13 @@ struct ReportWords {
     std::string origin;  ///< where the service answers, "http://host:8080"
 };
 
-/// Of a controller, or of an operating range where the source answers about one and `index` is "".
-/// HTML without scripts, well formed as XML. `index`: number of the controller in the result; "" for the first of the
-/// ranking that is not today's. 404 where there is no such controller, or it has none; 400 and 422 for texts that are
-/// no JSON.
+/// The report of a controller, or of an operating range if the source is about one and `index` is "". HTML without
+/// scripts, well-formed XML. `index`: number of the controller in the result; "" for the first of the ranking that is
+/// not today's. 404 if there is no such controller, or it has none; 400 and 422 for texts that are not JSON.
 std::variant<std::string, Problem> report_html(const ResultSource& source, std::string_view index,
                                                const ReportWords& words);
 
-/// The content security policy under which the report is shown: nothing but the stylesheet inside it, by its hash.
+/// The content security policy of the report: it allows only the stylesheet inside it, by its hash.
 std::string report_policy();
 
 }  // namespace tunewright::api

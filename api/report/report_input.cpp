@@ -91,7 +91,7 @@ std::size_t best_proposal(const ChosenEntry& found) {
 Json document_of(ChosenEntry& found) {
     Json document = Json::object();
     document["result"] = std::move(found.result);
-    // Whoever runs a printed request again is not to be announced to somebody else by it.
+    // A printed request that is run again must not notify the webhook of its first sender.
     if (found.request.is_object()) leave_out_terms(found.request);
     document["request"] = std::move(found.request);
     return document;

@@ -1,4 +1,4 @@
-// What a report, a summary and a plot are about: one controller of a result, found by its places in the document.
+// The subject of a report, a summary and a plot: one controller of a result, by its places in the document.
 #pragma once
 
 #include <optional>
@@ -17,7 +17,7 @@ struct JsonLocation {
     const Json& root;
     std::string pointer;
 
-    /// Null where there is none.
+    /// Null if there is none.
     const Json& value() const;
     JsonLocation at(std::string_view name) const;
     JsonLocation at(std::size_t index) const;
@@ -27,27 +27,27 @@ struct JsonLocation {
 /// A text at the place; "" for none.
 std::string text_at(const JsonLocation& place);
 
-/// The list at the place, not a number where an element is none; empty for no list.
+/// The list at the place, with NaN for an element that is not a number; empty if it is not a list.
 std::vector<double> numbers_at(const JsonLocation& place);
 
-/// What a section is about: places in one document {result, request}.
+/// The subject of a section: places in one document {result, request}.
 struct ReportInput {
     JsonLocation result, request, entry;
     std::size_t index = 0;              ///< of the entry among the result's controllers
-    std::optional<JsonLocation> today;  ///< the baseline's entry, where there is one beside the entry
-    std::string time, u, y;             ///< labels of the units; "" where not given, but for time
+    std::optional<JsonLocation> today;  ///< the baseline's entry, if there is one other than the entry
+    std::string time, u, y;             ///< labels of the units; "" if not given, except for time
 };
 
-/// Of the document's controller number `index`.
+/// The subject for the document's controller number `index`.
 ReportInput subject_of(const Json& document, std::size_t index);
 
-/// Of the document's operating range, which is the entry then.
+/// The subject for the document's operating range, which takes the place of the entry.
 ReportInput subject_of_range(const Json& document);
 
-/// The first of the ranking that is not what runs today; that, where it stands alone.
+/// The first of the ranking that is not today's; today's if it is the only one.
 std::size_t best_proposal(const ChosenEntry& found);
 
-/// {"result", "request"} of what was chosen, which is taken out of it.
+/// {"result", "request"} of the chosen entry, moved out of it.
 Json document_of(ChosenEntry& found);
 
 }  // namespace tunewright::api

@@ -1,4 +1,4 @@
-// The whole request, so that it can be run again.
+// The whole request, which can be run again from the print.
 #include <algorithm>
 
 #include "api/json/digest.h"
@@ -10,10 +10,10 @@
 namespace tunewright::api {
 namespace {
 
-constexpr std::size_t kMaxPrinted = 12'000;  ///< bytes; a longer request prints with its long values cut
+constexpr std::size_t kMaxPrinted = 12'000;  ///< bytes; long values of a longer request are cut in print
 constexpr std::size_t kMaxItems = 20, kMaxTextLength = 400;
 
-/// Long lists and texts cut, with what was left out in words.
+/// Cuts long lists and texts; words state how much was cut.
 Json shortened(const Json& value) {
     if (value.is_string() && value.get_ref<const std::string&>().size() > kMaxTextLength) {
         const auto& text = value.get_ref<const std::string&>();
@@ -31,7 +31,7 @@ Json shortened(const Json& value) {
     return out;
 }
 
-/// For a POSIX shell.
+/// The text in quotes for a POSIX shell.
 std::string quoted(const std::string& text) {
     std::string out = "'";
     for (const char c : text) out += c == '\'' ? "'\\''" : std::string(1, c);

@@ -1,4 +1,4 @@
-// The sections of the report, each in a source of its own.
+// The sections of the report, each in its own source.
 #pragma once
 
 #include <string>
@@ -13,11 +13,12 @@
 namespace tunewright::api {
 
 Html verdict_section(const ReportInput& subject);
-/// "Emerson DeltaV PID, FORM Series"; a maker after whom the product is named is not said twice.
+/// The title of a product, "Emerson DeltaV PID, FORM Series"; a maker whose name is part of the product's is not
+/// repeated.
 std::string product_title(const product::Product& product);
-/// The same of the user's own controller, as the request names it; "" where it does not.
+/// The user's own controller in words, as the request names it; "" if it names none.
 std::string controller_words(const ReportInput& subject);
-/// From today's settings to the new ones, with the ranges that they rest on.
+/// Today's settings and the new ones, with the ranges for which they are valid.
 Html settings_section(const ReportInput& subject);
 /// New and today's settings in the ideal, parallel and series forms.
 Html forms_section(const ReportInput& subject);
@@ -29,9 +30,9 @@ Html robustness_section(const ReportInput& subject);
 Html plant_section(const ReportInput& subject);
 Html method_section(const ReportInput& subject);
 Html assumptions_section(const ReportInput& subject);
-/// All that a report says of an operating range but its head and its request.
+/// The report of an operating range without its head and its request.
 Html range_sections(const ReportInput& subject);
-/// The request whole, as a file to take out, as text and as a command. `origin`: of the service.
+/// The whole request, as a file to save, as text and as a command. `origin`: of the service.
 Html request_section(const Json& request, const std::string& origin);
 
 }  // namespace tunewright::api

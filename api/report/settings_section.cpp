@@ -1,5 +1,5 @@
-// Settings to enter: from today's settings to the new ones, by the names of the user's own controller where it is
-// known, and the generic forms.
+// Settings to enter: today's settings and the new ones, by the names of the user's own controller if it is known, and
+// the generic forms.
 #include <algorithm>
 #include <array>
 #include <tuple>
@@ -11,7 +11,7 @@
 namespace tunewright::api {
 namespace {
 
-/// Members of a controller in the order in which they are read.
+/// Members of a controller in the order in which they are shown.
 constexpr std::array kSettings = {"Kp", "Ki", "Kd", "Ti", "Td", "b", "c", "delta_r"};
 
 std::string setting_unit(const std::string& name, const ReportInput& s) {
@@ -23,7 +23,7 @@ std::string setting_unit(const std::string& name, const ReportInput& s) {
     return name == "delta_r" ? s.y : "";
 }
 
-/// In full: a setting is typed as it stands here.
+/// In full: the setting is typed as printed here.
 constexpr int kFull = 6;
 
 Row setting_row(const std::string& name, const std::string& unit, const std::vector<JsonLocation>& controllers) {
@@ -39,7 +39,7 @@ Row setting_row(const std::string& name, const std::string& unit, const std::vec
     return row;
 }
 
-/// A form of the controller in a column of its own, under its head.
+/// A form of the controller in a column with its head.
 struct Column {
     std::string head;
     JsonLocation controller;
@@ -114,7 +114,7 @@ Html from_to(const JsonLocation& low, const JsonLocation& high) {
     return figure(low, kFull) + " to " + figure(high, kFull);
 }
 
-/// Spans and sample time, on which the typed values rest, and the limits of u that were counted with.
+/// Spans and sample time for which the typed values are valid, and the limits of u used in the computation.
 Html ranges_table(const ReportInput& s) {
     const JsonLocation implement = s.request.at("implement"), actuator = s.request.at("evaluate").at("actuator");
     std::vector<Row> rows;

@@ -1,4 +1,4 @@
-// What is controlled: the plant, or the record with the model that was found in it.
+// The controlled process: the plant, or the record with the model identified from it.
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +11,7 @@
 namespace tunewright::api {
 namespace {
 
-/// The formula of a linear plant; nothing of another.
+/// The formula of a linear plant; empty for another.
 Html formula(const Json& plant) {
     Reader reader;
     Plant read;
@@ -26,7 +26,7 @@ std::string plain(const Json& value) {
                                : value.dump();
 }
 
-/// "K 0.8 to 1.2, L 0.9 to 1.2 times the value"
+/// The uncertainty in words: "K 0.8 to 1.2, L 0.9 to 1.2 times the value".
 Html uncertainty_of(const Json& plant) {
     if (!plant.is_object() || !plant.contains("uncertainty")) return {};
     std::string words;

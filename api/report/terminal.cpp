@@ -43,14 +43,14 @@ std::string sentences(const Json& list, const char* member) {
     return out;
 }
 
-/// "5.93 0.695"
+/// Coefficients as text: "5.93 0.695".
 std::string coefficients(const Json& values) {
     std::string out;
     for (const Json& value : values) out += (out.empty() ? "" : " ") + number(value);
     return out;
 }
 
-/// "K 0.6954 +- 0.0086, T1 141.4 +- 5.9", with the standard errors behind the signs; "num [5.93 0.695], den [..]".
+/// The parameters with their standard errors, "K 0.6954 +- 0.0086, T1 141.4 +- 5.9"; else "num [5.93 0.695], den [..]".
 std::string parameters(const Json& model) {
     const Json errors = model.value("standard_errors", Json::object());
     const Json plant = model.value("plant", Json::object());
@@ -222,7 +222,7 @@ std::string word_at(const Json& value, const char* member) {
     return value.contains(member) && value.at(member).is_string() ? value.at(member).get<std::string>() : "";
 }
 
-/// The value of a curve at the place of it that lies nearest.
+/// The value of a curve at the nearest of its places.
 Json curve_at(const Json& places, const Json& curve, double at) {
     std::size_t nearest = 0;
     for (std::size_t i = 1; i < places.size(); ++i)

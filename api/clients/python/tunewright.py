@@ -1,13 +1,12 @@
-"""Tunes PID controllers with a Tunewright service. Python's standard library is all that it needs.
+"""Tunes PID controllers with a Tunewright service. It needs only Python's standard library.
 
     from tunewright import Client
 
     result = Client().tune(plant="2 e^(-3s)/(10s+1)", tune=[{"method": "robust", "Ms": 1.4, "Mt": 1.4}])
     print(result.best["controller"])
-
-Requests and answers are those of the service's own description, GET /openapi.json, as dictionaries: names, units and
-sentences of every field stand there and are not repeated here. What a call does not name goes into its request as it
-is given, so that a newer service needs no newer client.
+ Requests and answers are those of the service's own description, GET /openapi.json, as dictionaries: that description
+has the names, units and meanings of all fields, and they are not repeated here. Further keyword arguments of a call go
+into its request unchanged, so that a newer service needs no newer client.
 """
 
 import json
@@ -29,13 +28,13 @@ Json = Dict[str, Any]
 Methods = Sequence[Union[str, Mapping[str, Any]]]
 Progress = Callable[[int, int], None]
 
-_LONGEST_WAIT = 20  # seconds that one call waits for a job: below what proxies cut off
+_LONGEST_WAIT = 20  # seconds that one call waits for a job: less than the timeouts of proxies
 _LONGEST_PAUSE = 30.0  # seconds between two tries
-_MOST_LOST = 6  # connections lost in a row: half a minute, enough for a service that is started anew
+_MOST_LOST = 6  # connections lost in a row: half a minute, enough for a service that is restarted
 
 
 class Fault(NamedTuple):
-    """One thing that is wrong in a request."""
+    """One fault in a request."""
 
     pointer: str  #: JSON Pointer into the request, such as /plant/L
     detail: str
@@ -51,7 +50,7 @@ class Problem(Exception):
         self.title: str = body.get("title", "Problem")
         self.detail: str = body.get("detail", "")
         self.errors: List[Fault] = [Fault(each["pointer"], each["detail"]) for each in body.get("errors", [])]
-        self.result = result  #: the best design of a job that was stopped while it searched, if it had one
+        self.result = result  # the best design of a job that was stopped during its search, if it had one
         super().__init__(str(self))
 
     def __str__(self) -> str:
@@ -61,7 +60,7 @@ class Problem(Exception):
 
 
 class Result(Dict[str, Any]):
-    """The result of a job (TuningResult), and the job itself without it."""
+    """The result of a job (TuningResult); `job` holds the job without its result."""
 
     def __init__(self, job: Mapping[str, Any]) -> None:
         super().__init__(job["result"])
@@ -69,7 +68,7 @@ class Result(Dict[str, Any]):
 
     @property
     def best(self) -> Json:
-        """The entry that ranks first. An operating range has none: its answer stands in result["range"]."""
+        """The entry that ranks first. An operating range has no ranking: its answer is in result["range"]."""
         if "ranking" not in self:
             raise LookupError('This result has no ranking: an operating range is answered in result["range"], with '
                               'its one setting ("one") and its rows ("schedule").')
@@ -78,10 +77,9 @@ class Result(Dict[str, Any]):
 
 
 def record(source: Any, **fields: Any) -> Json:
-    """A recorded test as a request takes it.
-
-    `source` is a dict of lists or arrays (t or dt, u, y), the path of a CSV, its text (known by its line ends), or a
-    pandas DataFrame, whose index is a column too where it has a name or holds dates. Further `fields` stand beside it:
+    """A recorded test in the form that a request takes.
+     `source` is a dict of lists or arrays (t or dt, u, y), the path of a CSV, its text (known by its line ends), or a
+    pandas DataFrame, whose index is a column too if it has a name or holds dates. Further `fields` are added:
     columns={"u": "FIC101.OP"}, time_unit="min", kind="step", u_limits=[0, 100], ...
     """
     if isinstance(source, Mapping):
@@ -97,10 +95,9 @@ def record(source: Any, **fields: Any) -> Json:
 
 
 class Client:
-    """A service, the key to it where it asks for one, and how long a call may take.
-
-    `timeout` is in seconds and covers a whole call: waiting for the job, and trying again where the service has no room
-    just now or is being started anew. A job that takes longer than that goes on; TimeoutError names it.
+    """A service, its API key if it needs one, and the timeout of calls.
+     `timeout` is in seconds and covers a whole call: waiting for the job, and retries while the service is full or
+    restarting. A job that takes longer continues; the TimeoutError names it.
     """
 
     def __init__(self, base_url: str = "http://127.0.0.1:8080", key: Optional[str] = None,
@@ -110,25 +107,24 @@ class Client:
         self.timeout = timeout
         self._reached = False
 
-    # Jobs: kept by the service, found again by their id.
+    # Jobs: stored by the service, available by their id.
 
     def tune(self, plant: Any = None, record: Any = None, tune: Optional[Methods] = None,
              baseline: Optional[Mapping[str, Any]] = None, evaluate: Optional[Mapping[str, Any]] = None,
              **rest: Any) -> Result:
         """Tunes for a plant or a recorded test, waits for the end, and returns the result.
-
-        `plant` is an object or a text such as "2 e^(-3s)/(10s+1)"; `record` all that record() takes; `tune` a list of
-        methods, by name or with their options. An interrupt from the keyboard cancels the job.
+         `plant` is an object or a text such as "2 e^(-3s)/(10s+1)"; `record` anything that record() takes; `tune` a
+        list of methods, by name or with options. A KeyboardInterrupt cancels the job.
         """
         return self.run(_request(plant=plant, record=record, tune=_methods(tune), baseline=baseline, evaluate=evaluate,
                                  **rest))
 
     def compare(self, plant: Any = None, record: Any = None, methods: Methods = ("all",), **rest: Any) -> Result:
-        """As tune(), with every method that applies, or those named. `ranking` has the order."""
+        """Like tune(), with every method that applies, or with those named. `ranking` has the order."""
         return self.tune(plant=plant, record=record, tune=methods, **rest)
 
     def run(self, request: Mapping[str, Any]) -> Result:
-        """Runs a tuning request as it stands, such as one of GET /v1/examples, and returns the result."""
+        """Runs a complete tuning request, such as one of GET /v1/examples, and returns the result."""
         end = time.monotonic() + self.timeout
         key = {} if request.get("unique") else {"Idempotency-Key": str(uuid.uuid4())}
         wait = max(1, min(_LONGEST_WAIT, int(self.timeout)))
@@ -139,7 +135,8 @@ class Client:
         except KeyboardInterrupt:
             with suppress(Problem, OSError):
                 soon = time.monotonic() + 5
-                # Interrupted before the answer came: the same body with its key, or unique, gives the same job, and so its id.
+                # Interrupted before the answer came: the same body with the same key, or with unique, gives the same
+                # job and so its id.
                 job = job or self._json("POST", "/v1/jobs", request, key, soon)
                 self._json("POST", _job(job["id"]) + "/cancel", end=soon)
             raise
@@ -150,11 +147,11 @@ class Client:
         return self._ended(self._json("GET", _job(job), end=end), end)
 
     def job(self, job: Union[str, Result]) -> Json:
-        """A job as it stands, with its request, and its result or error once it has ended."""
+        """A job in its current state, with its request, and its result or error once it has ended."""
         return self._json("GET", _job(job))
 
     def jobs(self, **query: Any) -> Iterator[Json]:
-        """The jobs kept, newest first, without requests and results: jobs(q="TIC-101"), jobs(status="failed"), ..."""
+        """The stored jobs, newest first, without requests and results: jobs(q="TIC-101"), jobs(status="failed"), ..."""
         page: Optional[str] = "/v1/jobs" + _query(query)
         while page:
             answer = self._json("GET", page)
@@ -162,7 +159,7 @@ class Client:
             page = answer.get("next")
 
     def cancel(self, job: Union[str, Result]) -> Json:
-        """Stops a job, within a second as a rule."""
+        """Stops a job, usually within a second."""
         return self._json("POST", _job(job) + "/cancel")
 
     def delete(self, job: Union[str, Result]) -> None:
@@ -170,27 +167,26 @@ class Client:
         self._open("DELETE", _job(job)).close()
 
     def report_html(self, job: Union[str, Result], controller: Optional[int] = None) -> str:
-        """A controller of a job as a page to print, sign and keep; by default the first of the ranking."""
+        """A report of a job's controller, as a page to print, sign and keep; by default of the first of the ranking."""
         return self._body(_job(job) + "/report.html" + _query({"controller": controller}))
 
     def code(self, job: Union[str, Result], language: str, controller: Optional[int] = None, **options: Any) -> str:
-        """A controller of a job as a program: language "st", "c" or "python"; options such as sample_time=0.5. Of an
-        operating range it is the schedule's."""
+        """A controller of a job as a program: language "st", "c" or "python"; options such as sample_time=0.5. For
+        an operating range, the program of the schedule."""
         place = "controllers/%s" % controller
         if controller is None:
             result = job if isinstance(job, Result) else self.job(job)["result"]
             place = "controllers/%d" % result["ranking"][0] if "ranking" in result else "schedule"
         return self._body("%s/%s/code%s" % (_job(job), place, _query({"language": language, **options})))
 
-    # Many at once.
+    # Many loops at once.
 
     def batch(self, requests: Iterable[Mapping[str, Any]], progress: Optional[Progress] = None,
               name: Optional[str] = None) -> Iterator[Json]:
         """Tunes thousands of loops: yields {index, id, name, status, result or error} in the order of the requests,
         each as soon as it has ended. A request that is not valid fails alone.
-
-        The batch is posted at once; `progress(done, total)` is called with each row. Leaving the loop over the rows
-        early, by an interrupt too, cancels what is left. `timeout` bounds the silence between two rows.
+         The batch is posted at once; `progress(done, total)` is called with each row. Leaving the loop over the rows
+        early, also by an interrupt, cancels the remaining jobs. `timeout` is the longest wait for the next row.
         """
         lines = b"".join(_encoded(request) + b"\n" for request in requests)
         headers = {"Content-Type": "application/x-ndjson", "Idempotency-Key": str(uuid.uuid4())}
@@ -216,24 +212,24 @@ class Client:
             raise
 
     def _stream(self, path: str) -> Iterator[Json]:
-        """The lines of an answer as they come. Ends where the answer is cut off, be it within a line."""
+        """The lines of an answer as they arrive. Ends if the connection is lost, also within a line."""
         with self._open("GET", path) as lines:
             with suppress(ConnectionError, HTTPException, ValueError):
                 for line in lines:
                     yield json.loads(line)
 
-    # Answered at once, and not kept.
+    # Calls that are answered at once and store nothing.
 
     def identify(self, record: Any, identify: Optional[Mapping[str, Any]] = None, **rest: Any) -> Json:
         """Finds the plant in a recorded test: {"model": {"plant", "fit_percent", ...}}."""
         return self._post("/v1/identify", record=record, identify=identify, **rest)
 
     def evaluate(self, plant: Any, controllers: Sequence[Mapping[str, Any]], **rest: Any) -> Json:
-        """Judges given controllers on a plant: {"controllers": [an entry for each]}."""
+        """Evaluates given controllers on a plant: {"controllers": [an entry for each]}."""
         return self._post("/v1/evaluate", plant=plant, controllers=list(controllers), **rest)
 
     def design(self, plant: Any, method: Union[str, Mapping[str, Any]] = "robust", **rest: Any) -> Json:
-        """Designs with one method: {"controllers": [its entry, and that of `baseline` where one is given]}."""
+        """Designs with one method: {"controllers": [its entry, and that of `baseline` if one is given]}."""
         return self._post("/v1/design", plant=plant, tune=_methods([method]), **rest)
 
     def frontier(self, plant: Any, **rest: Any) -> Json:
@@ -241,18 +237,19 @@ class Client:
         return self._post("/v1/frontier", plant=plant, **rest)
 
     def relay_test(self, plant: Any, relay: Optional[Mapping[str, Any]] = None, **rest: Any) -> Json:
-        """Simulates a relay test, and plans one: {"record", "limit_cycle", "plan", ...}."""
+        """Simulates and plans a relay test: {"record", "limit_cycle", "plan", ...}."""
         return self._post("/v1/experiments/relay", plant=plant, relay=relay, **rest)
 
     def settings(self, product: str, controller: Mapping[str, Any], **rest: Any) -> Json:
-        """What to type into a product for a controller: {"settings", "units", "as_typed", "realised", "notes"}."""
+        """The settings to type into a product for a controller: {"settings", "units", "as_typed", "realised",
+        "notes"}."""
         return self._post("/v1/controllers/%s/settings" % quote(product, safe=""), controller=controller, **rest)
 
     def get(self, path: str) -> Json:
-        """Anything else that is only read, such as get("/v1/methods"), get("/v1/controllers"), get("/v1/examples")."""
+        """Any other GET, such as get("/v1/methods"), get("/v1/controllers"), get("/v1/examples")."""
         return self._json("GET", path)
 
-    # The calls themselves.
+    # HTTP calls.
 
     def _post(self, path: str, **fields: Any) -> Json:
         return self._json("POST", path, _request(**fields))
@@ -269,7 +266,7 @@ class Client:
 
     def _open(self, method: str, path: str, body: Any = None, headers: Optional[Mapping[str, str]] = None,
               end: Optional[float] = None) -> HTTPResponse:
-        """The answer, once there is one; tried again while that is safe and there is time."""
+        """Sends the request and returns the answer; retries while that is safe and there is time."""
         end = end or time.monotonic() + self.timeout
         data = body if body is None or isinstance(body, bytes) else _encoded(body)
         fields = {"Content-Type": "application/json", **(headers or {})}
@@ -293,7 +290,7 @@ class Client:
                 if isinstance(reason, socket.timeout):
                     raise TimeoutError("%s%s did not answer within %g s." % (self.base_url, path, left)) from error
                 lost += 1
-                # A service that was there before may be back in a moment; one that never answered is not there.
+                # A service that has answered before may be back in a moment; one that never answered is not running.
                 if not self._reached or lost > _MOST_LOST or not _pause(tries, end):
                     raise ConnectionError("No answer from %s (%s). Is the service running there?"
                                           % (self.base_url, reason)) from error
@@ -329,7 +326,7 @@ def _methods(methods: Optional[Methods]) -> Optional[List[Any]]:
 
 
 def _encoded(value: Any) -> bytes:
-    """JSON; NumPy's arrays and numbers and pandas' columns as the lists and numbers that they hold."""
+    """JSON of a value; NumPy arrays and numbers and pandas columns become lists and numbers."""
 
     def plain(other: Any) -> Any:
         if hasattr(other, "tolist"):
@@ -340,7 +337,7 @@ def _encoded(value: Any) -> bytes:
 
 
 def _text(data: bytes) -> str:
-    """A file's text: UTF-16 by its mark, else UTF-8, else what Windows wrote."""
+    """The text of a file: UTF-16 if it begins with that mark, else UTF-8, else Windows-1252."""
     if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
         return data.decode("utf-16")
     try:
@@ -362,12 +359,12 @@ def _problem(error: HTTPError) -> Problem:
     with error:
         try:
             return Problem({"status": error.code, **json.load(error)})
-        except (ValueError, TypeError):  # not from the service: a proxy's page
+        except (ValueError, TypeError):  # not from the service: the page of a proxy
             return Problem({"status": error.code, "title": str(error.reason), "detail": error.url})
 
 
 def _pause(tries: int, end: float = float("inf"), least: float = 0) -> bool:
-    """Sleeps longer with each try, and never in step with others. False: `end` comes before."""
+    """Sleeps longer with each attempt, by a random time. False if `end` comes before."""
     pause = max(least, min(0.5 * 2 ** tries, _LONGEST_PAUSE)) * random.uniform(1, 1.2)
     if time.monotonic() + pause > end:
         return False

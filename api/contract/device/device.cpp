@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kLongestId = 80;
 
-// Rules of the program belong to one that is not a product's own.
+// The rules of the program are not allowed with a product.
 void check_rules(const Json& value, GivenDevice& given, Reader& reader) {
     check_span("y_span", given.y_span, reader);
     check_span("u_span", given.u_span, reader);
@@ -75,7 +75,7 @@ const Description<GivenDevice>& implement_contract() {
 
 namespace {
 
-// Empty where the id is unknown, which the reader then has.
+// Null if the id is unknown; the reader then has the fault.
 const product::Product* product_of(const std::string& id, Reader& reader) {
     if (const auto* product = product::find(id)) return product;
     std::vector<std::string> ids;
@@ -100,7 +100,7 @@ std::optional<device::DeviceModel> device_of(const GivenDevice& given, const std
         device.product = product_of(*given.product, reader);
         if (device.product == nullptr) return std::nullopt;
         const auto seconds = seconds_per(time_label);
-        if (!seconds) return std::nullopt;  // which resolving the request's units has said
+        if (!seconds) return std::nullopt;  // reported when the units of the request were resolved
         device.context = context_of(given.y_span, given.u_span, *seconds);
         product::Context& context = device.context;
         auto period = product::default_sample_time_s(*device.product);
@@ -120,7 +120,7 @@ std::optional<device::DeviceModel> device_of(const GivenDevice& given, const std
 
 void check_needs(const device::DeviceModel& device, Reader& reader) {
     if (device.product == nullptr) return;
-    // Any law shows what the formulas need.
+    // The needs of the formulas do not depend on the settings: any will do.
     const auto any = product::to_settings(*device.product, IdealPid{.Kp = 1, .Ti = 10}, device.context, true);
     if (!any && any.error().kind == ErrorKind::invalid_argument)
         reader.fault_at(any.error().where, any.error().message);
@@ -177,7 +177,7 @@ const Description<DeviceEntry>& difference_contract() {
     return description;
 }
 
-// A member of the loop, which the answer has side by side with its difference.
+// A member of the implemented loop, next to its difference in the answer.
 template <class M>
 void loop_field(Description<DeviceEntry>& d, const char* name, M DeviceLoop::*member, const Codec<M>& codec,
                 const char* sentence) {

@@ -1,5 +1,5 @@
-// The user's own controller: in a request which product, with which spans, or a program of the ideal form; in an answer
-// the loop that it makes.
+// The user's own controller: in a request a product with its spans, or a program of the ideal form; in an answer the
+// implemented loop.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,7 @@
 
 namespace tunewright::api {
 
-/// As sent.
+/// The device as sent.
 struct GivenDevice {
     std::optional<std::string> product;
     std::optional<std::vector<double>> y_span, u_span;
@@ -26,24 +26,24 @@ struct GivenDevice {
 
 const Description<GivenDevice>& implement_contract();
 
-/// Today's settings as they stand in a product.
+/// Today's settings as typed into a product.
 struct GivenBaseline {
     std::string product;
     product::Settings settings;
     std::optional<std::vector<double>> y_span, u_span;
     std::optional<double> sample_time;
 
-    /// The same as a controller that is asked for; spans and sample time that are not given are those of `others`.
+    /// The device that holds these settings; spans and sample time that are not given are those of `others`.
     GivenDevice device(const std::optional<GivenDevice>& others) const;
 };
 
 const Description<GivenBaseline>& baseline_settings_contract();
 
-/// Faults at the reader's place where the product needs a span or a sample time that is not given.
+/// Reports at the reader's place if the product needs a span or a sample time that is not given.
 void check_needs(const device::DeviceModel& device, Reader& reader);
 
-/// Times of the request are in `time_label` (units.time). Faults at the reader's place: an unknown product, a label
-/// that is no unit of time.
+/// The device of a request whose times are in `time_label` (units.time). Faults at the reader's place: an unknown
+/// product, a label that is not a unit of time.
 std::optional<device::DeviceModel> device_of(const GivenDevice& given, const std::string& time_label, Reader& reader);
 
 /// {"sample_time", "robustness", "performance", "responses", "difference"}.

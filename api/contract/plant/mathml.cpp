@@ -14,7 +14,8 @@ using namespace mathml_elements;
 using typed::Formula;
 using typed::Polynomial;
 
-/// The size of a number as it is shown; its sign is an operator of its own. 1.2e-07 is a product with a power of ten.
+/// The absolute value of a number as shown; its sign is an operator of its own. 1.2e-07 becomes a product with a power
+/// of ten.
 std::string mn(double value) {
     const std::string text = six_digits(std::abs(value));
     const std::size_t e = text.find('e');
@@ -32,7 +33,7 @@ std::string power_of_s(std::size_t n) {
     return n == 0 ? "" : n == 1 ? mi("s") : power(mi("s"), element("mn", std::to_string(n)));
 }
 
-/// A sum of falling powers of s.
+/// A sum of terms in descending powers of s.
 std::string polynomial(const Polynomial& p) {
     std::string out;
     for (std::size_t i = 0; i < p.size(); ++i) {
@@ -47,7 +48,7 @@ std::string polynomial(const Polynomial& p) {
 
 bool is_s(const Polynomial& p) { return p.size() == 2 && p[0] == 1 && p[1] == 0; }
 
-/// Equal factors stand once, with their power. A lone one needs no brackets.
+/// Equal factors are written once, with their power. A single one needs no brackets.
 std::string factors(const std::vector<Polynomial>& list, bool alone) {
     std::string out;
     std::vector<bool> done(list.size());
@@ -95,7 +96,7 @@ std::string matrix(const std::vector<std::vector<double>>& rows) {
     return row(mo("[") + element("mtable", inside) + mo("]"));
 }
 
-/// C (s I - A)^-1 B + D.
+/// The formula C (s I - A)^-1 B + D.
 std::string right_side(const StateSpace& p) {
     std::vector<std::vector<double>> column;
     for (const double b : p.B) column.push_back({b});

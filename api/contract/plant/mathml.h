@@ -1,4 +1,4 @@
-// A plant as a formula that is shown.
+// The formula of a plant for display.
 #pragma once
 
 #include <string>
@@ -8,9 +8,8 @@
 
 namespace tunewright::api {
 
-/// P(s) = ... as Presentation MathML without white space, in the factors that the formula has; numbers with six
-/// significant digits. Elements: math, mrow, mfrac, msup, mi, mn, mo; of a state space mtable, mtr, mtd. None has an
-/// attribute but math.
+/// P(s) = ... as Presentation MathML without white space, factored as the formula is; numbers with six significant
+/// digits. Elements: math, mrow, mfrac, msup, mi, mn, mo; of a state space mtable, mtr, mtd. Only math has attributes.
 ///
 ///   mathml(Fopdt{.K = 2, .T = 10, .L = 3})
 ///     <math xmlns="http://www.w3.org/1998/Math/MathML" display="block"><mrow><mi>P</mi><mrow><mo>(</mo><mi>s</mi>

@@ -12,13 +12,13 @@ namespace {
 
 constexpr std::size_t kMaxOrder = 50;
 
-// What numbers must keep (plant_rules.h), as the schema shows it.
+// The range of the number (plant_rules.h), as the schema shows it.
 Codec<double> gain() { return engine_ruled({.not_zero = true}); }
 Codec<double> dead_time() { return engine_ruled({.minimum = 0}); }
 
 using Range = std::optional<FactorRange>;
 
-// [low, high] around 1.
+// An interval [low, high] around 1.
 Codec<Range> factors() {
     return {[](const Json& value, Range& target, Reader& reader) {
                 if (!value.is_array() || value.size() != 2)
@@ -45,7 +45,7 @@ Codec<Range> factors() {
             [](const Range& range) { return !range; }};
 }
 
-// Only the parameters that the plant type has.
+// The codec of the parameters that the plant type has.
 template <class T>
 const Description<Uncertainty>& uncertainty_contract(const std::string& type) {
     static const auto description = [&] {
@@ -71,7 +71,7 @@ Codec<Uncertainty> uncertainty(const std::string& type) {
                                [](const Uncertainty& given) { return given.empty(); });
 }
 
-// What the engine says of the members that could be read. Of B and C it speaks beside A.
+// Reports the engine's faults of the members that could be read. Faults of B and C refer to A too.
 template <class T>
 void report_faults(const Json& value, T& plant, Reader& reader) {
     const auto read = [&](const std::string& name) { return value.contains(name) && reader.clean_at(name); };
@@ -169,7 +169,7 @@ const Description<TransferFunction>& transfer_function() {
     return description;
 }
 
-// A number for a real one, [re, im] for a complex one.
+// The codec of roots: a number for a real one, [re, im] for a complex one.
 Codec<std::vector<std::complex<double>>> roots() {
     using Roots = std::vector<std::complex<double>>;
     return {[](const Json& value, Roots& target, Reader& reader) {
@@ -233,7 +233,7 @@ const Description<Zpk>& zpk() {
     return description;
 }
 
-// Also [[1], [0]] for a column and [[1, 0]] for a row, as matrix programs write them.
+// Also reads [[1], [0]] for a column and [[1, 0]] for a row, the notation of matrix programs.
 void read_vector(const Json& value, std::vector<double>& target, Reader& reader) {
     if (value.is_array() && !value.empty() && value.size() <= kMaxOrder &&
         std::all_of(value.begin(), value.end(), [](const Json& v) { return v.is_array(); })) {
@@ -330,7 +330,7 @@ std::string count_fault(const Json& value, std::size_t min, std::size_t max, con
            " to " + std::to_string(max) + ".";
 }
 
-// An object whose members have names of the user's own; `read_member` returns nothing after a fault.
+// The codec of an object whose members have names chosen by the user; `read_member` returns nothing after a fault.
 template <class Member, class ReadMember>
 auto members_by_name(std::size_t min, std::size_t max, const char* sample, ReadMember read_member) {
     return [=](const Json& value, std::vector<Member>& target, Reader& reader) {
@@ -466,7 +466,7 @@ const Description<PlantSet>& plant_set() {
     return description;
 }
 
-// The parts of the points that belong together.
+// Checks that the arrays of the points match.
 void check_points(const Json&, FrequencyResponse& points, Reader& reader) {
     if (const auto fault = points_fault(points)) reader.fault_below(fault->where, 1, fault->message);
 }

@@ -6,10 +6,10 @@
 
 namespace tunewright::api {
 
-/// One linear plant by its object; answers carry only these. What a request takes is plant_or_text (typed.h).
+/// One linear plant by its object; answers have only these. Requests take plant_or_text (typed.h).
 const Union<Plant>& plant_contract();
 
-/// What a request may be about, as objects: a linear plant, several, measured points of one, or differential equations.
+/// The subject of a request, as objects: a linear plant, several, measured points of one, or differential equations.
 const Union<PlantModel>& plant_model_contract();
 
 }  // namespace tunewright::api

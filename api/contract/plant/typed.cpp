@@ -1,4 +1,4 @@
-// A text in place of a plant, and the question what a text or a plant means.
+// A text in place of a plant, and the call that parses it.
 #include "api/contract/plant/typed.h"
 
 #include "api/contract/plant/mathml.h"

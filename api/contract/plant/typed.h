@@ -1,4 +1,4 @@
-// A plant given as a text, wherever a plant is expected, and the call that says what such a text means.
+// A plant given as a text, wherever a plant is expected, and the call that parses it.
 #pragma once
 
 #include "api/contract/plant/plant.h"
@@ -8,19 +8,20 @@
 
 namespace tunewright::api {
 
-/// A text as a plant in the request's unit of time, which the reader knows; nothing after a fault, which it then has.
+/// Reads a text as a plant in the request's unit of time, which the reader knows; empty after a fault, which the reader
+/// then has.
 std::optional<TypedPlant> read_typed_plant(const std::string& text, Reader& reader);
 
-/// What a request takes as a plant: its object, or a text of a linear one. Written as objects.
+/// A plant in a request: its object, or a text of a linear one. Written as objects.
 Codec<Plant> plant_or_text();
 Codec<PlantModel> plant_model_or_text();
 
-/// POST /v1/plants/parse, both ways.
+/// The request and the answer of POST /v1/plants/parse.
 struct PlantQuestion {
     std::optional<Units> units = {};
     std::optional<Plant> plant = {};
-    std::optional<typed::Formula> formula = {};  ///< of a text, in the factors in which it was written
-    bool unfinished = false;                     ///< somebody is typing: a fault is an answer
+    std::optional<typed::Formula> formula = {};  ///< of a text, factored as it was written
+    bool unfinished = false;                     ///< the user is still typing: a fault is a normal answer
     std::optional<std::string> fault = {};       ///< in place of the plant
 };
 

@@ -12,12 +12,12 @@
 
 namespace tunewright::api {
 
-/// The members that both conversions take as well as controller or settings.
+/// The members that both conversions take in addition to controller or settings.
 struct BlockContext {
     std::optional<Units> units;
     std::optional<std::vector<double>> y_span, u_span;
     std::optional<double> sample_time;  ///< in units.time
-    product::Context context;           ///< of these, set in every request that was read without a fault
+    product::Context context;           ///< made of these; set in every request that was read without a fault
 };
 
 struct SettingsRequest : BlockContext {
@@ -51,7 +51,7 @@ struct ScheduleSettingsAnswer {
 const Description<ScheduleSettingsAnswer>& schedule_settings_answer_contract();
 
 struct TwinRequest : BlockContext {
-    product::Settings settings;  ///< as sent: names and values are the product's to judge
+    product::Settings settings;  ///< as sent: the product checks names and values
 };
 const Description<TwinRequest>& twin_request_contract();
 

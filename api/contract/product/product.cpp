@@ -26,7 +26,7 @@ void write_texts(const List& texts, Writer& out) {
     out.end_array();
 }
 
-/// Members that only answers carry, from any part of T.
+/// The codec of members that only answers have, from any part of T.
 template <class T>
 class AnswerDescription {
 public:
@@ -39,7 +39,7 @@ public:
             std::move(sentence));
         return *this;
     }
-    /// Left out where it is empty.
+    /// Left out if it is empty.
     template <class Get>
     AnswerDescription& maybe_text(std::string name, Get get, std::string sentence) {
         description.field(
@@ -54,7 +54,7 @@ public:
             std::move(sentence));
         return *this;
     }
-    /// null where there is none.
+    /// null if there is none.
     template <class Get>
     AnswerDescription& number(std::string name, Get get, std::string sentence, std::string unit = "") {
         description.field(std::move(name), {},
@@ -111,7 +111,7 @@ Json choices_schema(SchemaBook&) {
               {"additionalProperties", false}}}};
 }
 
-/// What a parameter needs of its product is put beside it for writing.
+/// A row for writing: a parameter with the data of its product.
 struct Row {
     const Product* product = nullptr;
     const Parameter* parameter = nullptr;

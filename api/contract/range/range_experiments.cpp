@@ -26,7 +26,7 @@ const Description<range::ExperimentOptions>& range_experiment_contract() {
     return description;
 }
 
-/// The record of a test, whatever its kind.
+/// The record of a test of any kind.
 struct TestRecord {
     const char* kind;
     const std::vector<double>*t, *u, *y;

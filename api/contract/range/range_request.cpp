@@ -200,7 +200,7 @@ void check_range_source(const Json& value, RangeRequest&, Reader& reader) {
         reader.fault_at("range", "range belongs to equations; points say themselves where they lie. Remove it.");
 }
 
-/// The plant of a point as a family; nothing after a fault.
+/// The plant of a point as a family; empty after a fault.
 std::optional<PlantFamily> family_at(const PlantModel& plant, Reader& reader) {
     const std::size_t before = reader.count();
     const auto subject = subject_of(plant, reader);
@@ -234,7 +234,8 @@ void take_points(RangeRequest& request, Reader& reader) {
     }
 }
 
-/// What the engine says of the points together: of places always, of plants where no record has to be identified.
+/// Checks that the engine makes of all points: always of their places, of plants only if no record has to be
+/// identified.
 void check_points_together(RangeRequest& request, bool plants_are_clean, Reader& reader) {
     std::vector<double> places;
     for (const GivenRangePoint& point : *request.points) places.push_back(point.at);

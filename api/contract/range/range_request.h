@@ -1,4 +1,4 @@
-// Requests about a whole operating range: points or equations, and how the user's controller can follow.
+// Requests about a whole operating range: points or equations, and the abilities of the user's controller.
 #pragma once
 
 #include <memory>
@@ -25,7 +25,7 @@ struct GivenRangePoint {
     std::optional<GivenRecord> record;
 };
 
-/// The way of equations through their steady states.
+/// The path of the equations through their steady states.
 struct GivenWay {
     range::Along along = range::Along::output;
     std::optional<std::string> parameter;
@@ -33,7 +33,7 @@ struct GivenWay {
     bool hold_output = true;
 };
 
-/// A row as sent; without a Tf it is 0.1 Td.
+/// A row as sent; without a Tf it gets 0.1 Td.
 struct GivenRow {
     double at = 0, Kp = 0, Ti = 0, Td = 0;
     std::optional<double> Tf;
@@ -54,7 +54,7 @@ struct ScheduleWish {
     std::optional<std::vector<GivenRow>> given;
 };
 
-/// What every request about a range says of the range itself.
+/// The members that describe the range in every request about one.
 struct RangeSubject {
     std::optional<std::string> name;
     std::optional<Units> units;
@@ -70,24 +70,24 @@ struct RangeRequest : RangeSubject, JobTerms {
     std::optional<bool> over_region;
     ScheduleWish schedule;
     bool runs = true;
-    RangeQuestion question;         ///< the whole of it for the engine
-    std::vector<ReadRecord> reads;  ///< of the points, in their order; the records themselves are in the question
+    RangeQuestion question;         ///< the whole question for the engine
+    std::vector<ReadRecord> reads;  ///< of the points, in their order; the records themselves are in `question`
 };
 
-/// A request about a range as a job has it, with the terms on which it is run; its checks include what the engine says
-/// of points and equations at once.
+/// A job's request about a range, with the terms on which it is run; its checks include those of the engine for points
+/// and equations.
 const Description<RangeRequest>& range_request_contract();
 
-/// Whether a request of POST /v1/jobs is about a range.
+/// True if a request of POST /v1/jobs is about a range.
 bool is_range_request(const Json& request);
 
-/// Follows the steady states of `plant` along `way`; the reader has the faults.
+/// Follows the steady states of `plant` along `way`; faults go to the reader.
 void follow_way(RangeSubject& subject, Reader& reader);
 
 const Description<GivenWay>& way_contract();
 
 const Description<GivenRow>& given_row_contract();
-/// Rows ascend, and all have a Kp of one sign; faults at the row.
+/// Checks that the rows ascend and that all Kp have one sign; faults at the row.
 void check_given_rows(const std::vector<GivenRow>& rows, Reader& reader);
 std::vector<ScheduleRow> rows_of(const std::vector<GivenRow>& given);
 
@@ -95,7 +95,7 @@ const Description<ScheduleWish>& schedule_wish_contract();
 range::RangeOptions options_of(const ScheduleWish& wish);
 /// The rows that were given, if any.
 std::vector<ScheduleRow> rows_of(const ScheduleWish& wish);
-/// The word that a schedule is written with too.
+/// The codec of the interpolation; schedules are written with it too.
 Codec<Interpolation> interpolation_word();
 
 }  // namespace tunewright::api

@@ -15,7 +15,7 @@ namespace {
 
 constexpr const char* kNothingDesigned = "A schedule was given: nothing was designed.";
 
-/// A controller of the ideal form as the contract shows any other.
+/// A controller of the ideal form, written like any other.
 template <class Owner>
 void pid_field(Description<Owner>& d, const char* name, IdealPid Owner::*member, const char* sentence) {
     d.field(
@@ -358,7 +358,7 @@ const Description<range::LinearisingPassage>& linearising_passage_contract() {
     return description;
 }
 
-/// Times and targets are the same for both of a passage; the longer one has all that there are.
+/// Times and targets are the same for both runs of a passage; the longer run has all of them.
 const range::ScheduledRun& longer(const RangePassage& passage) {
     if (!passage.schedule) return *passage.one;
     if (!passage.one) return *passage.schedule;

@@ -1,4 +1,4 @@
-// Answers about a whole operating range. Answers are only written.
+// Answers about a whole operating range. They are written, never read.
 #pragma once
 
 #include <memory>
@@ -13,14 +13,14 @@
 
 namespace tunewright::api {
 
-/// Ms, Mt and price over the range; not a number where they are not known.
+/// Ms, Mt and cost over the range; NaN where they are not known.
 struct RangeTraces {
     std::vector<double> Ms, Mt, relative_IAE;
-    std::vector<double> Kp, Ti, Td;  ///< of a schedule: what the controller computes with there
+    std::vector<double> Kp, Ti, Td;  ///< of a schedule: the interpolated settings there
 };
 
 struct RangeCurves {
-    std::vector<double> at, K, T, L, u, y;  ///< u, y of equations alone
+    std::vector<double> at, K, T, L, u, y;  ///< u, y for equations only
     std::optional<RangeTraces> one, schedule;
 };
 
@@ -28,7 +28,7 @@ struct RangeWorst {
     std::vector<range::WorstPoint> one, schedule;
 };
 
-/// The result in the shape of the contract.
+/// The result in the structure of the contract.
 struct RangeContent {
     explicit RangeContent(RangeResult result);
     RangeContent() = default;
@@ -40,7 +40,7 @@ struct RangeContent {
     RangeWorst worst;
 };
 
-/// With what only the request knew.
+/// The result with members that only the request has.
 struct RangeAnswer {
     RangeContent range;
     std::optional<Units> units;

@@ -9,7 +9,7 @@
 namespace tunewright::api {
 namespace {
 
-// Left out where there is nothing to say.
+// A text, left out if it is empty.
 Codec<std::string> words_if_any() {
     return unless<std::string>(words(), [](const std::string& value) { return value.empty(); });
 }
@@ -147,7 +147,7 @@ const Description<EmulatedScenario>& scenario_contract() {
     return description;
 }
 
-// A trace of the first scenario at the entry's own level.
+// A trace of the first scenario, at the entry's own level.
 void first_scenario(Description<EmulationReport>& d, const char* name, std::vector<double> EmulatedScenario::*member,
                     const char* sentence, const char* unit) {
     d.field(

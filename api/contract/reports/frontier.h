@@ -1,4 +1,4 @@
-// The front of robust optima: what POST /v1/frontier is asked and answers, and the report of the method frontier.
+// The frontier of robust optima: request and answer of POST /v1/frontier, and the report of the method frontier.
 #pragma once
 
 #include <optional>
@@ -13,7 +13,7 @@ struct FrontierRequest {
     std::optional<std::string> name;
     std::optional<Units> units;
     std::optional<PlantModel> plant;
-    std::optional<AnalysedPlant> subject;  ///< that `plant` describes
+    std::optional<AnalysedPlant> subject;  ///< the analysed `plant`
     MethodOptions options;                 ///< those of the method frontier
 };
 

@@ -1,4 +1,5 @@
-// What methods tell beside their controllers, as entries carry it: one contract file a report, listed in reports.cpp.
+// Reports of methods in addition to their controllers, as entries carry them: one contract file per report, listed in
+// reports.cpp.
 #pragma once
 
 #include <string>
@@ -10,12 +11,12 @@
 namespace tunewright::api {
 
 struct ReportContract {
-    std::string field;     ///< of the entry
-    std::string sentence;  ///< what it is
+    std::string field;     ///< its name in the entry
+    std::string sentence;  ///< its description
     Callable<bool(const MethodReport&)> is;
     Callable<void(const MethodReport&, Writer&)> write;
     SchemaOf schema;
-    bool last = false;  ///< stands at the entry's end, after the comparison with the optimum
+    bool last = false;  ///< at the end of the entry, after the comparison with the optimum
 };
 
 template <class Report>
@@ -36,7 +37,7 @@ ReportContract rimc_report();
 ReportContract tradeoff_report();
 ReportContract emulation_report();
 
-/// In the order in which an entry has them.
+/// In their order within an entry.
 const std::vector<ReportContract>& report_contracts();
 
 }  // namespace tunewright::api

@@ -14,7 +14,7 @@ void write_why(const Figure& figure, Writer& out) { out.text(figure.why.empty() 
 
 void write_figure(const Figure& figure, Writer& out) { figure ? out.number(*figure) : out.null(); }
 
-// The limits are the margins seen from the plant: a missing one has the margin's reason.
+// The tolerated changes of the plant are its margins: a missing one has the margin's reason.
 void write_tolerates(const Robustness& robustness, Writer& out) {
     const Tolerates& tolerates = robustness.tolerates;
     out.begin_object();

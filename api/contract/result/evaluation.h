@@ -1,4 +1,4 @@
-// What is known about one controller on one plant, as answers carry it.
+// The evaluation of one controller on one plant, as answers carry it.
 #pragma once
 
 #include "api/describe/description.h"
@@ -6,13 +6,13 @@
 
 namespace tunewright::api {
 
-// Figures of the loop. One without a value is null, with the reason under its name in `why_null`.
+// Figures of the loop. A figure without a value is null, with the reason under its name in `why_null`.
 const Description<Robustness>& robustness_contract();
 const Description<Performance>& performance_contract();
 const Description<LoadPerformance>& load_contract();
-/// Of a controller of the form npid.
+/// Figures of a controller of the form npid.
 const Description<NonlinearFigures>& nonlinear_contract();
-/// Of a nonlinear plant's linearisation, beside the figures of the plant itself.
+/// Figures of a nonlinear plant's linearisation, next to those of the plant itself.
 const Description<LinearisedResponse>& linear_contract();
 /// The worst figures over the plants that the controller must serve.
 const Description<RegionFigures>& region_contract();
@@ -21,7 +21,7 @@ const Description<RegionFigures>& region_contract();
 const Description<Responses>& responses_contract();
 const Description<FrequencyTraces>& frequency_contract();
 
-// How the figures were checked.
+// The estimated errors of the figures.
 const Description<IndexErrors>& index_errors_contract();
 const Description<Verification>& verification_contract();
 

@@ -95,7 +95,7 @@ const Description<ClosedLoop>& closed_loop_contract() {
     return description;
 }
 
-/// The test in words, with the signal that moved: "one step of the set point, in automatic".
+/// The kind of test in words, with the signal that moved: "one step of the set point, in automatic".
 std::string test_words(const DataQuality& quality) {
     const auto steps = [](int count, const std::string& signal) {
         return count == 1 ? "one step of " + signal : std::to_string(count) + " steps of " + signal;
@@ -159,7 +159,7 @@ const Description<DataQuality>& quality_contract() {
 
 Codec<std::map<std::string, double>> standard_errors() { return numbers_by_name("Symbol of the parameter."); }
 
-/// The same where a model is sent back.
+/// The standard errors of a model that is sent back.
 Codec<std::map<std::string, double>> given_errors() {
     auto codec = standard_errors();
     codec.read = [](const Json& value, std::map<std::string, double>& target, Reader& reader) {
@@ -189,9 +189,9 @@ const Description<Candidate>& candidate_contract() {
     return description;
 }
 
-/// One row and one column for each name, equal on both sides of the diagonal: to rounding, which is taken out.
+/// Checks for one row and one column per name and for symmetry; asymmetry within rounding is removed.
 void check_matrix(ParameterCovariance& covariance, Reader& reader) {
-    constexpr double kMaxRelativeAsymmetry = 1e-9;  // of the two standard errors' product
+    constexpr double kMaxRelativeAsymmetry = 1e-9;  // of the product of the two standard errors
     const std::size_t size = covariance.names.size();
     auto& rows = covariance.matrix;
     const bool square =

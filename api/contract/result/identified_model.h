@@ -1,4 +1,4 @@
-// What an answer says of a record: the model that was found in it, and how good the record was.
+// The part of an answer that describes a record: the identified model and the quality of the record.
 #pragma once
 
 #include "api/describe/description.h"

@@ -38,7 +38,7 @@ namespace {
 
 Json whole_number(SchemaBook&) { return {{"type", "integer"}}; }
 
-// Reads a member of the entry's evaluation; left out where there is none.
+// The codec of a member of the entry's evaluation; left out if there is none.
 template <class M>
 void evaluation_field(Description<TuningEntry>& d, const char* name, M Evaluation::*member, const Codec<M>& codec,
                       const char* sentence) {
@@ -51,7 +51,7 @@ void evaluation_field(Description<TuningEntry>& d, const char* name, M Evaluatio
         });
 }
 
-// One of the entry's reports; left out where there is none of this kind.
+// One of the entry's reports; left out if there is none of this kind.
 void report_field(Description<TuningEntry>& d, const ReportContract& contract) {
     const auto find = [is = contract.is](const TuningEntry& entry) -> const MethodReport* {
         for (const auto& report : entry.reports)
@@ -148,7 +148,7 @@ const Description<OperatingPoint>& operating_point_contract() {
     return description;
 }
 
-// The fields operating_point and linear_model of an answer; left out where `of` gives null.
+// The fields operating_point and linear_model of an answer; left out if `of` returns null.
 template <class Answer>
 void add_operating_point(Description<Answer>& d, Callable<const OperatingPoint*(const Answer&)> of) {
     const auto none = [of](const Answer& answer) { return of(answer) == nullptr; };

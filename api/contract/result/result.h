@@ -1,4 +1,4 @@
-// Answers of the contract about controllers: a tuning result, and the figures of controllers that were sent. Answers
+// Answers of the contract about controllers: a tuning result, and the evaluation of controllers that were sent. Answers
 // are only written; their descriptions read nothing.
 #pragma once
 
@@ -13,16 +13,16 @@ namespace tunewright::api {
 /// A conclusion of a verdict.
 const Description<verdict::Finding>& finding_contract();
 
-/// A tuning result with what only the request knew. Its times, gains and figures are in the units of the request:
-/// `units` holds their labels and nothing is converted.
+/// A tuning result with members that only the request has. Its times, gains and figures are in the units of the
+/// request: `units` holds their labels and nothing is converted.
 struct ResultAnswer {
     TuningResult result;
-    std::optional<Units> units;  ///< as sent; left out of the answer where none were sent
+    std::optional<Units> units;  ///< as sent; left out of the answer if none were sent
     std::string request_hash;    ///< SHA-256 of the request in its canonical spelling, 64 hexadecimal digits
 };
 
-/// The result of a job. An entry whose method found no controller has its `error` in place of the evaluation's members;
-/// `model` is left out where the request had a plant, `operating_point` and `linear_model` where the plant is linear.
+/// The result of a job. An entry whose method found no controller has its `error` instead of the evaluation's members;
+/// `model` is left out if the request had a plant, `operating_point` and `linear_model` if the plant is linear.
 const Description<ResultAnswer>& result_contract();
 
 /// The answer of POST /v1/design.

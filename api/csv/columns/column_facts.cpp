@@ -33,14 +33,14 @@ bool ColumnFacts::mostly_one_way(std::size_t column) const {
     return kMinRowsPerFall * p.falls <= p.numbers || kMinRowsPerFall * (p.changes - p.falls) <= p.numbers;
 }
 
-// One that goes up and down is none of times; a capital T that rises unevenly is rather a temperature.
+// A column that rises and falls holds no times; a capital T that rises unevenly is more likely a temperature.
 bool ColumnFacts::may_be_time(std::size_t column) const {
     const Heading& heading = headings_[column];
     const ColumnProfile& p = profiles_[column];
     constexpr int kMinRows = 3;
     if (p.stamps == 0 && !holds_numbers(column)) return false;
     if (is_spacing(heading) && p.changes == 0 && p.numbers != 2) return false;
-    // "S:40" of a serial log is a set point rather than seconds.
+    // "S:40" of a serial log is more likely a set point than seconds.
     if (heading.name == "s" && p.numbers >= kMinRows && !p.rises) return false;
     if (heading.name != "t" || p.stamps > 0) return true;
     if (!heading.unit.empty()) return seconds_per(heading.unit).has_value();

@@ -1,4 +1,4 @@
-// What is known of a file's columns before any is chosen: headings, contents, and what both say.
+// Facts about a file's columns before any is chosen: from headings, from contents, and from both.
 #pragma once
 
 #include <string>
@@ -24,12 +24,12 @@ public:
 
     bool holds_numbers(std::size_t column) const;
     bool switches(std::size_t column) const;        ///< between words such as ON and OFF
-    bool is_index(std::size_t column) const;        ///< numbers the rows, by its heading
+    bool is_index(std::size_t column) const;        ///< numbers the rows, according to its heading
     bool mostly_one_way(std::size_t column) const;  ///< as times do, also from the newest to the oldest
     bool may_be_time(std::size_t column) const;     ///< a column named t or T may be a temperature
-    bool is_clock(std::size_t column) const;        ///< times and nothing else
+    bool is_clock(std::size_t column) const;        ///< holds only times
 
-    /// `a` stays on its levels while `b` moves: so do u and y.
+    /// True if `a` stays on its levels while `b` moves, as u does while y moves.
     bool held(std::size_t a, std::size_t b) const;
 
     std::string shown(std::size_t column) const;  ///< its heading in quotes, or its number from 1
@@ -43,7 +43,7 @@ private:
     std::vector<Heading> headings_;
 };
 
-/// The first 40 bytes in quotes.
+/// The first 40 bytes, in quotes.
 std::string in_quotes(std::string_view text);
 
 }  // namespace tunewright::api

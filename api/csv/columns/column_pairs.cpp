@@ -34,7 +34,7 @@ std::vector<DataSet> data_sets(const ColumnFacts& facts) {
     return sets;
 }
 
-/// Another column whose very name is y's: input and output are then something else.
+/// True if another column has exactly a name of y: input and output then have another meaning.
 bool has_plain_output(const ColumnFacts& facts, std::size_t input, std::size_t output) {
     for (std::size_t i = 0; i < facts.size(); ++i) {
         if (i == input || i == output || !facts.holds_numbers(i) || is_auxiliary(facts.heading(i))) continue;

@@ -14,7 +14,7 @@ std::vector<std::string> quoted_all(const std::vector<std::string>& texts) {
     return out;
 }
 
-// "Line 1 has 13 headings and the rows have 8 values".
+// The counts as text: "Line 1 has 13 headings and the rows have 8 values".
 std::string surplus_counted(const CsvLayout& layout) {
     return "Line " + std::to_string(layout.heading_line) + " has " +
            std::to_string(layout.headings.size() + layout.surplus.size()) + " headings and the rows have " +

@@ -1,4 +1,4 @@
-// Why the columns of a file cannot be found: one sentence for each case, with the cure.
+// Faults for columns that cannot be found: one sentence for each case, with its cure.
 #pragma once
 
 #include <cstddef>
@@ -12,31 +12,32 @@
 
 namespace tunewright::api {
 
-/// Historians export each tag with its own times: values in one row do not belong together. `value` is u or y.
+/// The fault of an export in which each tag has its own times: values in one row do not belong together. `value` is u
+/// or y.
 std::optional<CsvFault> two_clocks(const ColumnFacts& facts, std::size_t time, std::size_t value);
 
-/// A fault at the choice of the role's column: `where` is "columns/t" and so on.
+/// A fault at the chosen column of a role: `where` is "columns/t" and so on.
 CsvFault column_fault(ColumnRole role, std::string message);
 
-/// Several headings name the role equally plainly.
+/// The fault if several headings name the role equally well.
 CsvFault several_columns(const ColumnFacts& facts, ColumnRole role, const std::vector<std::size_t>& columns);
 
-/// u and y were found, but their names are those of different devices.
+/// The fault if the names of u and y are those of different devices.
 CsvFault names_apart(const ColumnFacts& facts, std::size_t u, std::size_t y);
 
-/// Neither headings nor contents say which column has the role.
+/// The fault if neither headings nor contents identify the column of the role.
 CsvFault missing_column(const ColumnFacts& facts, ColumnRole role);
 
-/// One column has both roles.
+/// The fault if one column has both roles.
 CsvFault equal_columns(ColumnRole role, ColumnRole other);
 
-/// A step of u is given, and the file has u in `columns`.
+/// The fault if a step of u is given and the file has u in `columns`.
 CsvFault step_beside_column(const ColumnFacts& facts, const std::vector<std::size_t>& columns);
 
-/// A step of u is given, and `columns` may be u: they are not read.
+/// The note if a step of u is given and `columns` may be u: they are not read.
 std::string columns_unread(const ColumnFacts& facts, const std::vector<std::size_t>& columns);
 
-/// What is said where the first headings are believed to be those of the values, and where they are not.
+/// The note about surplus headings, whether the first ones are taken for those of the values or not.
 std::string surplus_note(const CsvLayout& layout);
 CsvFault surplus_fault(const CsvLayout& layout);
 

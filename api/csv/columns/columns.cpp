@@ -76,7 +76,7 @@ private:
         return numeric && !is_auxiliary(facts_.heading(column));
     }
 
-    /// None, or damaged cells.
+    /// True if no cell is of this kind, or so few that they are damaged cells.
     static bool rare(int count, const ColumnProfile& p) { return count == 0 || kDamagedShare * count <= p.numbers; }
 
     void take(ColumnRole role, std::size_t column, const std::string& why = "") {
@@ -99,7 +99,7 @@ private:
         faults_.push_back(several_columns(facts_, role, fits.best));
     }
 
-    // A quantity next to the process, such as humidity, is y only where nothing else is.
+    // A quantity next to the process, such as humidity, is y only if no other column is.
     NameFits output_fits() const {
         const auto free = [&](std::size_t column) { return may_be(column, kOutputRole); };
         NameFits all = fits_by_name(facts_, kOutputRole, free);
@@ -119,7 +119,7 @@ private:
         NameFits y = wanted(kOutputRole) ? output_fits() : NameFits{};
         keep_partners(u, y);
         if (wanted(kInputRole) && wanted(kOutputRole) && u.best.empty() && y.best.empty() && take_data_set()) return;
-        // One that stands still was not driven: what the others hold shows whether it is u.
+        // A column that stands still was not moved by a controller: the contents of the others show whether it is u.
         const bool still = u.best.size() == 1 && u.others.empty() && stands_still(u.best.front()) &&
                            (!wanted(kOutputRole) || y.best.size() == 1);
         if (wanted(kInputRole) && !still) take_fitting(kInputRole, u);
@@ -128,8 +128,9 @@ private:
         refuse_strangers();
     }
 
-    // Of what names alone leave open: what moves, and what belongs together by its names. Tags of a table belong
-    // together where one of them was chosen; "heater_bed.temp" of a log, and "Temperature 1", anyway.
+    // Decides between columns that names leave open: first those that move, then those whose names belong together.
+    // Tags of a table belong together only if one of them was chosen; "heater_bed.temp" of a log, and "Temperature 1",
+    // always.
     void keep_partners(NameFits& u, NameFits& y) {
         keep_moving(facts_, u, found_.notes);
         keep_moving(facts_, y, found_.notes);
@@ -146,7 +147,7 @@ private:
         }
     }
 
-    // In a log of several heaters the one's temperature does not answer the other's power.
+    // In a log of several heaters, the temperature of one does not respond to the power of another.
     void refuse_strangers() {
         if (!layout_.pairs || !found_.at[kInputRole] || !found_.at[kOutputRole]) return;
         if (chosen_[kInputRole] || chosen_[kOutputRole]) return;
@@ -186,7 +187,7 @@ private:
         }
     }
 
-    // More headings than values: the first ones are believed where time, u and y are among them by name.
+    // If there are more headings than values, the first ones are used if they name time, u and y.
     void check_surplus() {
         if (layout_.surplus.empty()) return;
         bool plain = faults_.empty();
@@ -229,7 +230,7 @@ private:
         }
     }
 
-    // The set point is reported where the file has one; nothing is refused without it.
+    // The set point is reported if the file has one; it is optional.
     void find_reference() {
         if (found_.at[kReferenceRole]) return;
         NameFits r = fits(kReferenceRole);
@@ -249,7 +250,7 @@ private:
                                "; none is read. Choose one if it matters.");
     }
 
-    // A step that is given in place of a u that the file has would be at another time than the real one.
+    // A given step that replaces a u of the file would be at another time than the real one.
     void refuse_step_beside_column() {
         if (!options_.u_step) return;
         if (chosen_[kInputRole])
@@ -263,7 +264,7 @@ private:
         found_.unread = columns_unread(facts_, u.best);
     }
 
-    // "cmd" is what was sent to the plant, where nothing else is.
+    // "cmd" is the command to the plant, if no other column is u.
     void take_command() {
         std::vector<std::size_t> commands;
         for (std::size_t i = 0; i < facts_.size(); ++i) {
@@ -273,7 +274,7 @@ private:
             take(kInputRole, commands.front(), " (no other column is; it may be the set point of an inner loop)");
     }
 
-    // A column of the very name that holds no number: reading it shows which line is wrong.
+    // A column with exactly the role's name but without numbers: reading it shows which line is wrong.
     void by_very_name(ColumnRole role) {
         for (std::size_t i = 0; i < layout_.headings.size(); ++i) {
             if (role == kTimeRole && profiles_[i].numbers > 0) continue;
@@ -312,7 +313,7 @@ private:
             take(kTimeRole, stamps.front(), " (it holds time stamps)");
             return join_date_and_clock();
         }
-        // In a file with headings, u and y may rise too; the first column is where time stands.
+        // In a file with headings, u and y may rise too; the time is usually the first column.
         if (!rising.empty() && (rising.size() == 1 || rising.front() == 0))
             take(kTimeRole, rising.front(), " (its numbers rise from line to line)");
     }
@@ -350,11 +351,12 @@ private:
     }
 
     bool stands_still(std::size_t column) const {
-        constexpr int kMinNumbers = 20;  // numbers
+        constexpr int kMinNumbers = 20;  // cells that hold a number
         return profiles_[column].numbers >= kMinNumbers && profiles_[column].changes == 0;
     }
 
-    // Beside y: the only column left that moves, else the named one that stands still, for the engine to refuse.
+    // Takes the only remaining column, other than y, that moves; else the named one that stands still, for the engine
+    // to refuse.
     void take_moving_input(const std::vector<std::size_t>& free, const std::vector<std::size_t>& switching) {
         const NameFits named = fits(kInputRole);
         if (named.best.size() != 1) return;

@@ -13,7 +13,7 @@
 namespace tunewright::api {
 namespace {
 
-/// Hz of a unit of frequency ("kHz", "1/min", "samples per second", "s^-1"); empty for another.
+/// Hz of a unit of frequency ("kHz", "1/min", "samples per second", "s^-1"); empty for another unit.
 std::optional<double> hertz_per(std::string_view text) {
     static constexpr std::string_view kCounted[] = {"",     "1",       "s",        "sa",     "sample", "samples",
                                                     "rows", "reading", "readings", "points", "pts",    "times"};
@@ -35,8 +35,8 @@ std::optional<double> hertz_per(std::string_view text) {
     return 1 / *seconds;
 }
 
-/// A period or a frequency, whichever `unit` says; without a unit, what the heading says: a frequency is then in Hz.
-/// Empty where the unit is unknown.
+/// A period or a frequency, according to `unit`; without a unit, according to the heading, and a frequency is then in
+/// Hz. Empty if the unit is unknown.
 std::optional<FileSpacing> spacing_from(double value, std::string_view unit, bool frequency, std::string text) {
     if (!(value > 0)) return std::nullopt;
     if (unit.empty()) return FileSpacing{frequency ? 1 / value : value, std::nullopt, frequency, std::move(text)};
@@ -45,8 +45,8 @@ std::optional<FileSpacing> spacing_from(double value, std::string_view unit, boo
     return std::nullopt;
 }
 
-/// The first cell behind the number that is not blank: a spreadsheet fills a line up with separators, or has the unit
-/// in a cell of its own.
+/// The first cell behind the number that is not blank: spreadsheets pad a line with separators, or put the unit in a
+/// cell of its own.
 std::string_view unit_behind(std::string_view rest) {
     constexpr std::string_view kSeparators = ",;|\t";
     while (!rest.empty()) {
@@ -57,7 +57,7 @@ std::string_view unit_behind(std::string_view rest) {
     return {};
 }
 
-/// "fs = 100 Hz", "Sample Period:,5 Sec" without comment signs and quotes.
+/// Reads "fs = 100 Hz" and "Sample Period:,5 Sec", without comment signs and quotes.
 std::optional<FileSpacing> spacing_in(std::string_view line, const CsvLayout& layout) {
     std::string plain;
     for (const char c : line)
@@ -122,7 +122,7 @@ std::optional<FileSpacing> spacing_in_column(const ColumnFacts& facts, std::size
     if (!constant || (!is_spacing(heading) && !is_frequency(heading))) return std::nullopt;
     const std::string unit = unit_of(facts.layout(), p, column), text = "Column " + facts.shown(column);
     auto found = spacing_from(p.first, unit, is_frequency(heading), text);
-    // The line below the headings may hold descriptions.
+    // The line below the headings may hold descriptions instead of units.
     if (!found && heading.unit.empty() && p.suffix.empty())
         found = spacing_from(p.first, "", is_frequency(heading), text);
     return found;

@@ -14,7 +14,7 @@
 namespace tunewright::api {
 namespace {
 
-/// Behind "y", "pv", "pv_in" and before what may also name a command, such as "speed".
+/// After "y", "pv", "pv_in" and before words that may also name a command, such as "speed".
 constexpr int kMeasuredOrder = 2;
 
 bool has_word(const Heading& heading, std::string_view word) {
@@ -26,7 +26,7 @@ Heading heading_of(std::string_view whole, std::string_view name, std::string_vi
     return {std::string(whole), lower_case(name), std::string(trimmed(unit)), words(name)};
 }
 
-// "time_ms", "elapsedMs", "TimeUS": the unit behind a name of time.
+// Splits "time_ms", "elapsedMs", "TimeUS": a name of time with its unit.
 std::optional<Heading> with_unit_of_time(std::string_view text) {
     const std::vector<std::string> parts = words(text);
     if (parts.size() < 2 || !seconds_per(parts.back())) return std::nullopt;
@@ -47,7 +47,7 @@ bool names_role(const Heading& heading, ColumnRole role) {
                        [&](const std::string& word) { return word_place(word, role).has_value(); });
 }
 
-/// "SP", "TIC101.SP", "T_set", "setTemp", "targetSpeed", "speed_cmd".
+/// Matches "SP", "TIC101.SP", "T_set", "setTemp", "targetSpeed", "speed_cmd".
 std::optional<NameMatch> reference_match(const Heading& heading) {
     if (const auto at = place(heading.name, kReferenceRole)) return NameMatch{1, *at};
     static constexpr std::string_view kWords[] = {
@@ -98,7 +98,7 @@ Heading split_heading(std::string_view text) {
 
 std::optional<NameMatch> match(const Heading& heading, ColumnRole role) {
     if (role == kReferenceRole) return reference_match(heading);
-    // A capital T is a temperature before it is a time.
+    // A capital T is more likely a temperature than a time.
     constexpr int kLast = 1000;
     if (heading.name == "t" && heading.text.front() == 'T') {
         if (role == kTimeRole) return NameMatch{1, kLast};
@@ -108,11 +108,11 @@ std::optional<NameMatch> match(const Heading& heading, ColumnRole role) {
     if (role == kOutputRole && is_measured(heading)) return NameMatch{1, kMeasuredOrder};
     std::vector<std::string> parts = heading.words;
     if (parts.empty()) return std::nullopt;
-    // The parameter's own current value, as in PID1/OUT.CV.
+    // The current value of a parameter, as in PID1/OUT.CV.
     if (parts.size() > 1 && (parts.back() == "cv" || parts.back() == "value" || parts.back() == "val") &&
         (word_place(parts[parts.size() - 2], kInputRole) || word_place(parts[parts.size() - 2], kOutputRole)))
         parts.pop_back();
-    // The command of a named actuator is what it does: "valve cmd".
+    // The command of a named actuator is its output: "valve cmd".
     if (parts.size() > 1 && role == kInputRole && (parts.back() == "cmd" || parts.back() == "command") &&
         word_place(parts[parts.size() - 2], kInputRole))
         parts.pop_back();

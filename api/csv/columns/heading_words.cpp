@@ -7,7 +7,7 @@
 namespace tunewright::api {
 namespace {
 
-// In the order of preference; several languages, several makers' conventions.
+// In the order of preference; several languages and makers' conventions.
 constexpr std::string_view kTimeNames[] = {"t",
                                            "time",
                                            "timestamp",
@@ -252,7 +252,7 @@ std::optional<int> place(std::string_view name, ColumnRole role) {
     return static_cast<int>(found - all.begin());
 }
 
-// "heater_bed targetTemp": where a small letter is followed by a capital one a word begins, too.
+// In "heater_bed targetTemp" a word also begins where a capital letter follows a small one.
 std::vector<std::string> words(std::string_view text) {
     constexpr std::string_view kBetween = " ._-/\\:!|[]()<>'";
     std::vector<std::string> out;
@@ -270,8 +270,8 @@ std::vector<std::string> words(std::string_view text) {
     return out;
 }
 
-// "pv1" -> "pv"; single letters say too little, and what else stands beside a word may say that another thing of it is
-// meant: motor speed, cooling water temperature.
+// "pv1" counts as "pv". Single letters are ambiguous, and a word next to others may name another quantity: motor speed,
+// cooling water temperature.
 std::optional<int> word_place(std::string_view word, ColumnRole role) {
     static constexpr std::string_view kOnlyAlone[] = {"heat", "heating", "cooling", "burner", "compressor", "relay",
                                                       "ssr",  "boiler",  "motor",   "bomba",  "pompe",      "voltage",

@@ -11,7 +11,7 @@ namespace tunewright::api {
 namespace {
 
 struct EventLine {
-    std::string_view name, time, value;  ///< name empty: of the quantity that is written all the time
+    std::string_view name, time, value;  ///< name empty: the quantity that is logged continuously
 };
 
 std::optional<EventLine> event_of(std::string_view line) {
@@ -40,7 +40,7 @@ std::optional<ShapedText> event_lines(std::string_view text) {
     constexpr int kProbedLines = 200, kMinLinesPerOther = 10;
     std::size_t at = 0;
     int named = 0, plain = 0, other = 0;
-    bool turned = false;  // a line of the other kind has come
+    bool turned = false;  // a line of the other kind was found
     for (int n = 0; n < kProbedLines || (!turned && n < 100 * kProbedLines); ++n) {
         const auto line = next_line(text, at);
         if (!line) break;

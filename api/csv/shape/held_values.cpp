@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
-/// Takes `value` as the one that holds; true where it is a number and another than before.
+/// Takes `value` as the current one; true if it is a number other than the previous one.
 bool moves(double value, double& held) {
     if (std::isnan(value) || value == held) return false;
     held = value;

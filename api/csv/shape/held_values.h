@@ -1,4 +1,4 @@
-// Values that are written where they change, and hold until the next one.
+// Values that are logged when they change, and hold until the next one.
 #pragma once
 
 #include <vector>
@@ -11,8 +11,8 @@ namespace tunewright::api {
 /// Clears `r` and returns false if no row has a set point.
 bool hold_reference(std::vector<double>& r);
 
-/// For a table made from values with times of their own (pivot.h): a time without u has that of the time before.
-/// A row without y stays only where u or a measured disturbance moves.
+/// For a table made from values with times of their own (pivot.h): a row without u takes the previous value. A row
+/// without y is kept only if u or a measured disturbance moves in it.
 void hold_input(CsvRecord& record);
 
 }  // namespace tunewright::api

@@ -58,7 +58,7 @@ private:
         return at->second;
     }
 
-    using Cells = std::vector<std::pair<std::size_t, std::string>>;  ///< column and value, of those that a row has
+    using Cells = std::vector<std::pair<std::size_t, std::string>>;  ///< column and value of the cells that a row has
 
     std::vector<std::string> headings_;
     std::unordered_map<std::string, std::size_t> places_;
@@ -130,7 +130,7 @@ std::optional<ShapedText> json_rows(std::string_view text) {
     if (text.size() < 2) return std::nullopt;
     const bool array = text.front() == '[' && text.back() == ']', object = text.front() == '{' && text.back() == '}';
     if (!array && !object) return std::nullopt;
-    // "[14:05:06] temp=20": a log's line.
+    // "[14:05:06] temp=20" is a line of a log.
     const std::string_view inner = trimmed(text.substr(1));
     if (array && inner.front() != '{' && inner.front() != '[') return std::nullopt;
     auto parsed = parse(text);

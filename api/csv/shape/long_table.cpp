@@ -27,7 +27,7 @@ constexpr std::string_view kValueNames[] = {"value",   "varvalue", "wert",  "vva
 constexpr std::string_view kFirstTime[] = {"_time", "last_changed", "last_updated"};
 constexpr std::string_view kMilliseconds[] = {"millitm", "millisecond", "milliseconds", "msec"};
 
-/// The columns of a long table; `clock` and `millis` where the time is in several.
+/// The columns of a long table; `clock` and `millis` if the time is in several columns.
 struct LongColumns {
     std::size_t time = 0, value = 0;
     std::vector<std::size_t> tags;
@@ -64,7 +64,7 @@ private:
         return p.stamps > 0 && p.stamps >= p.numbers + p.texts;
     }
 
-    /// Words that change, or the numbers of tags.
+    /// True for words that change, or for numbers of tags.
     bool is_tag(std::size_t i) const {
         const ColumnProfile& p = profiles_[i];
         const bool number = headings_[i].name == "tagindex" || headings_[i].name == "tagid";
@@ -101,7 +101,7 @@ private:
         return true;
     }
 
-    /// Without headings: a stamp, a word that comes back, a value.
+    /// The columns of a file without headings: a stamp, a word that repeats, a value.
     std::optional<LongColumns> by_contents() const {
         constexpr std::size_t kColumns = 3;
         constexpr int kMinRowsPerName = 4;
@@ -140,12 +140,12 @@ private:
     std::vector<Heading> headings_;
 };
 
-/// The columns among `tags` whose words differ from line to line.
+/// The columns among `tags` whose words differ between lines.
 std::vector<std::size_t> varying(std::string_view text, const CsvLayout& layout, std::vector<std::size_t> tags) {
     if (tags.size() < 2) return tags;
     CsvLines lines(text, layout);
     CsvLine line;
-    // Two columns that always change together name the same tag twice.
+    // Two columns that always change together name the same tag.
     std::vector<std::set<std::string>> seen(tags.size());
     for (int n = 0; n < kProfiledLines && lines.next(line); ++n)
         for (std::size_t k = 0; k < tags.size(); ++k)

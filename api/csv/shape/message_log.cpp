@@ -57,7 +57,7 @@ public:
     }
 
 private:
-    /// Takes the kinds that hold the chosen columns, or says why there is none.
+    /// Takes the kinds of messages that hold the chosen columns, or reports why there is none.
     void take_chosen(const ColumnChoices& chosen, ShapedText& out) {
         const auto take = [&](const std::string& role, const ColumnChoice& choice) {
             if (!out.fault.empty()) return;
@@ -73,7 +73,7 @@ private:
             chosen_names_.push_back(*name);
             const auto owners = owners_of(*name);
             if (owners.size() == 1) owners.front()->taken = true;
-            // The kinds' common clock is read anyway.
+            // The common clock of the kinds is read anyway.
             if (owners.size() == 1 || (role == "t" && !owners.empty())) return;
             out.fault = "\"" + *name + "\" is " + (owners.empty() ? "in no kind" : "in several kinds") +
                         " of the log's messages. Name the column with its kind, such as " + example() + ". " +
@@ -138,7 +138,7 @@ private:
                (kinds_.size() > kMaxListed ? "; and " + std::to_string(kinds_.size() - kMaxListed) + " more." : ".");
     }
 
-    /// "RATE.ROut", or "ROut" where it was chosen so.
+    /// "RATE.ROut", or "ROut" if it was chosen by that name.
     std::string heading_of_column(const MessageKind& kind, std::size_t i) const {
         const bool bare = std::ranges::find(chosen_names_, kind.columns[i]) != chosen_names_.end();
         return bare ? kind.columns[i] : kind.name + "." + kind.columns[i];
@@ -179,7 +179,7 @@ private:
 
     std::string_view text_;
     std::vector<MessageKind> kinds_;
-    std::map<std::string, std::size_t, std::less<>> places_;  ///< of kinds_, by name
+    std::map<std::string, std::size_t, std::less<>> places_;  ///< index in kinds_, by name
     std::vector<std::string> chosen_names_;
 };
 

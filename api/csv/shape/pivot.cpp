@@ -27,7 +27,7 @@ void add_line(ShapedText& table, const std::vector<std::string_view>& cells, int
     }
     for (std::size_t i = 0; i < cells.size(); ++i) {
         if (i > 0) table.text += ',';
-        // Alone in its line it must be seen.
+        // An empty cell alone in its line would be a blank line.
         if (cells[i].empty() && cells.size() > 1) continue;
         table.text += '"';
         for (const char c : cells[i]) {
@@ -41,7 +41,7 @@ void add_line(ShapedText& table, const std::vector<std::string_view>& cells, int
 }
 
 std::optional<std::size_t> Pivot::tag_index(std::string_view tag) {
-    // Mostly the one of the entry before.
+    // Usually the tag of the previous entry.
     if (!entries_.empty() && tags_[entries_.back().tag] == tag) return entries_.back().tag;
     const auto known = places_.find(std::string(tag));
     if (known != places_.end()) return known->second;
@@ -71,7 +71,7 @@ bool Pivot::add(std::string_view time, std::string_view tag, std::string_view va
 }
 
 ShapedText Pivot::table(std::string_view time_heading) const {
-    // 03/04/2026 has two readings: the right one is that in which time runs on.
+    // 03/04/2026 has two readings: the right one is that in which time increases.
     double way[2] = {};
     for (std::size_t i = 1; i < entries_.size(); ++i)
         for (int k = 0; k < 2; ++k) way[k] += std::abs(entries_[i].key[k] - entries_[i - 1].key[k]);

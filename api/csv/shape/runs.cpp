@@ -9,14 +9,14 @@
 namespace tunewright::api {
 namespace {
 
-/// Rows [first, end) of a record; `countdown` of them come first and count down.
+/// Rows [first, end) of a record; the first `countdown` of them count down.
 struct RowRun {
     std::size_t first = 0, end = 0, countdown = 0;
 
     std::size_t rows() const { return end - first; }
 };
 
-constexpr std::size_t kShortest = 3;  // rows that go one way
+constexpr std::size_t kShortest = 3;  // rows in the same direction
 
 bool newest_first(const std::vector<double>& t) {
     std::size_t up = 0, down = 0;
@@ -27,7 +27,7 @@ bool newest_first(const std::vector<double>& t) {
     return down > 9 * up && down > 2;
 }
 
-/// How many rows from `i` on count down, one after another.
+/// Number of consecutive rows from `i` on that count down.
 std::size_t falling(const std::vector<double>& t, std::size_t i) {
     std::size_t end = i + 1;
     while (end < t.size() && t[end] < t[end - 1]) ++end;
@@ -35,14 +35,14 @@ std::size_t falling(const std::vector<double>& t, std::size_t i) {
 }
 
 /// True if the times begin again at row i of a run that began at `first` and has come to `latest`: they fall by half of
-/// what it has covered and go on from there, and the row before is not the false one.
+/// the covered time and continue from there, and the row before is not the false one.
 bool begins_again(const std::vector<double>& t, std::size_t first, std::size_t i, double latest) {
     if (i - first < 2) return false;
     const double covered = latest - t[first];
     if (!(latest - t[i] > 0.5 * covered)) return false;
     // A row far ahead of its neighbours is a false time.
     if (t[i - 2] <= t[i] && (i < first + 3 || t[i - 3] <= t[i])) return false;
-    // A single row of the past is one, too.
+    // A single row with an earlier time is a false time, too.
     return i + 1 < t.size() && t[i + 1] < latest;
 }
 
@@ -73,7 +73,7 @@ std::vector<RowRun> runs_of(const std::vector<double>& t) {
     return runs;
 }
 
-/// Puts the rows that count down in front of those that count up, where they belong together in time.
+/// Moves the rows that count down in front of those that count up, into the order of time.
 void turn_countdown(CsvRecord& record, const RowRun& run) {
     if (run.countdown == 0) return;
     const std::size_t last = run.first + run.countdown - 1;
@@ -85,7 +85,7 @@ void turn_countdown(CsvRecord& record, const RowRun& run) {
                            tunewright::text(record.t[run.first]) + " on.");
 }
 
-/// True if the rows that count up go on from those that count down.
+/// True if the rows that count up continue from those that count down.
 bool contiguous(const std::vector<double>& t, const RowRun& run) {
     if (run.countdown == 0 || run.rows() == run.countdown) return true;
     constexpr double kMaxSpacings = 3;
@@ -109,7 +109,7 @@ std::vector<RowRun> parted(const std::vector<double>& t, const std::vector<RowRu
     return out;
 }
 
-/// Largest less smallest number; negative where there is none.
+/// Largest minus smallest number; negative if there is none.
 double range_of(const std::vector<double>& values) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const double value : values) {
@@ -120,7 +120,7 @@ double range_of(const std::vector<double>& values) {
     return high - low;
 }
 
-/// True if u moves in the run and y then moves too: by a twentieth of `range_y`, what it does in the whole file.
+/// True if u moves in the run and y then moves too: by a twentieth of `range_y`, its range in the whole file.
 bool tests_something(const CsvRecord& record, const RowRun& run, double range_y) {
     constexpr std::size_t kMinRunRows = 8;
     constexpr double kMinAnswerShare = 0.05;

@@ -1,4 +1,4 @@
-// A file as the reader sees it: its text, made into a table where it is none, and its layout.
+// An opened file: its text, converted to a table if necessary, and its layout.
 #pragma once
 
 #include <string>
@@ -10,8 +10,8 @@
 
 namespace tunewright::api {
 
-/// The bytes of a file, opened. What it was given must outlive it; it is neither copied nor moved, because its texts
-/// refer to it.
+/// The bytes of a file, opened. The bytes must outlive it; it can be neither copied nor moved, because its texts refer
+/// to it.
 class CsvSource {
 public:
     CsvSource(std::string_view bytes, const ColumnChoices& chosen);
@@ -22,7 +22,7 @@ public:
     std::string_view file_text() const { return file_; }  ///< UTF-8, of the file
     const CsvLayout& layout() const { return layout_; }
     const std::vector<std::string>& notes() const { return notes_; }
-    const std::string& fault() const { return fault_; }        ///< "" where the file can be read as a table
+    const std::string& fault() const { return fault_; }        ///< "" if the file can be read as a table
     const std::string& fault_at() const { return fault_at_; }  ///< as CsvFault::where
 
 private:

@@ -1,7 +1,6 @@
-"""Writes the wheel of the client for pip (PEP 517), with nothing but the standard library.
-
-The one module goes in as a package, because only packages can carry py.typed, by which type checkers know that its
-annotations count (PEP 561). Name, version and description are those of pyproject.toml.
+""""""Writes the wheel of the client for pip (PEP 517) with the standard library alone. The module goes in as a package,
+because only packages can carry py.typed, which tells type checkers to use its annotations (PEP 561). Name, version and
+description are those of pyproject.toml. """
 """
 
 import base64
@@ -16,7 +15,7 @@ HERE = pathlib.Path(__file__).resolve().parents[1]
 
 
 def project() -> Dict[str, str]:
-    """The texts of the table [project]; Python has a reader of TOML only since 3.11."""
+    """The texts of the table [project]. The standard library reads TOML only since Python 3.11."""
     table = (HERE / "pyproject.toml").read_text("utf-8").split("[project]")[1].split("\n[")[0]
     return dict(re.findall(r'^([\w-]+) = "(.*)"$', table, re.MULTILINE))
 
@@ -38,7 +37,8 @@ def build_wheel(wheel_directory: str, config_settings: Optional[Dict[str, Any]] 
     wheel = name + "-py3-none-any.whl"
     with zipfile.ZipFile(os.path.join(wheel_directory, wheel), "w", zipfile.ZIP_DEFLATED) as archive:
         for path, content in files.items():
-            archive.writestr(zipfile.ZipInfo(path), content, zipfile.ZIP_DEFLATED)  # equal sources, equal wheels
+            archive.writestr(zipfile.ZipInfo(path), content, zipfile.ZIP_DEFLATED)  # no date: equal sources give equal
+                                                                                    # wheels
     return wheel
 
 

@@ -9,11 +9,12 @@
 
 namespace tunewright::api {
 
-/// JobOutline of the document, in two steps, because the request is gone when there is a result. `plant` is that of the
-/// request or of the model identified from its record, only its type if it is long; the figures are those of the first
-/// tuned entry in the ranking, together with those of today's settings. A few hundred bytes, whatever the size of the
-/// result. The line of a failed job, its error alone, comes from error_outline(): it has no result, and often no
-/// request that could be read.
+/// JobOutline of the document, in two steps, because the request is gone when there is a result.
+///
+/// `plant` is that of the request or of the model identified from its record, only its type if it is long; the figures
+/// are those of the first tuned entry in the ranking, together with those of today's settings. A few hundred bytes,
+/// whatever the size of the result. The line of a failed job, its error alone, comes from error_outline(): it has no
+/// result, and often no request that could be read.
 class Outline {
 public:
     explicit Outline(const JobRequest& request);

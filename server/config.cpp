@@ -103,7 +103,7 @@ std::string default_web_folder() {
     std::error_code error;
     const std::filesystem::path binary = std::filesystem::read_symlink("/proc/self/exe", error);
     if (error) return {};
-    // As built and in the container, or as a package has it.
+    // In the build folder and in the container, or in a package.
     const std::filesystem::path prefix = binary.parent_path().parent_path();
     const std::filesystem::path packaged = prefix / "share" / "tunewright" / "web";
     return (std::filesystem::exists(packaged / "index.html", error) ? packaged : prefix / "web").string();

@@ -1,4 +1,4 @@
-// The configuration of the process, as its options and variables give it at the start.
+// The configuration of the process, from its options and variables at the start.
 #pragma once
 
 #include <string>
@@ -6,24 +6,24 @@
 
 namespace tunewright::server {
 
-/// What of the service this process does. `api` takes requests and computes nothing; `worker` computes and answers
-/// probes and metrics alone.
+/// The part of the service that this process performs. `api` accepts requests and computes nothing; `worker` computes
+/// and answers only probes and metrics.
 enum class ProcessRole { all, api, worker };
 
 struct Config {
     std::string listen = "127.0.0.1:8080";  ///< HOST:PORT; [::1]:8080 for IPv6; port 0: the system chooses
     std::string store = "sqlite:tunewright.db";
-    std::string migrate = "auto";     ///< or manual: the store's tables are brought up to date by `tunewright migrate`
+    std::string migrate = "auto";     ///< or manual: `tunewright migrate` updates the store's tables
     bool pooled = false;              ///< PostgreSQL is behind a pooler in transaction mode
     std::string role = "all";         ///< or api, worker
     std::size_t workers = 0;          ///< 0: as many as there are cores
-    std::size_t memory = 0;           ///< bytes that the process may take; 0: see memory_limit()
-    std::string web;                  ///< "": `web` beside the folder of the binary
-    double drain_timeout_s = 5;       ///< what running jobs get when the service is asked to stop
+    std::size_t memory = 0;           ///< bytes that the process may use; 0: see memory_limit()
+    std::string web;                  ///< "": `web` next to the folder of the binary
+    double drain_timeout_s = 5;       ///< time for running jobs when the service is stopped
     std::string log_format = "text";  ///< or json
     std::string log_level = "info";   ///< debug, info, warn, error
 
-    std::string metrics_listen;  ///< another port, for metrics and probes alone, without keys; "": none
+    std::string metrics_listen;  ///< another address, for metrics and probes only, without keys; "": none
 
     // Jobs
     std::size_t queue_limit = 10'000;     ///< single jobs that may wait
@@ -32,27 +32,27 @@ struct Config {
     int max_attempts = 10;
     double lease_s = 10;
     double retention_s = 7 * 86400;  ///< 0: without limit
-    double retention_failed_s = -1;  ///< of jobs that failed; 0: without limit, below: as the others
+    double retention_failed_s = -1;  ///< for failed jobs; 0: without limit, negative: as for the others
     double retention_cancelled_s = -1;
     double job_timeout_s = 60;
     double max_timeout_s = 3600;
 
-    // Telling others of an end
-    std::vector<std::string> notify_targets;  ///< where to: ORIGIN[/PATH]; none: nobody may be told
-    std::string notify_secrets;               ///< the file of secrets that sign it
+    // Notifications
+    std::vector<std::string> notify_targets;  ///< allowed targets, ORIGIN[/PATH]; none: no notifications
+    std::string notify_secrets;               ///< the file with the secrets that sign notifications
 
-    // The port
+    // The server
     std::size_t max_body = 8 << 20;          ///< bytes of one request
     std::size_t max_batch_body = 256 << 20;  ///< bytes of one batch
     std::string auth = "none";               ///< or keys
     std::string keys;                        ///< the file of keys
     bool allow_anonymous = false;            ///< beyond loopback without keys
-    double rate_limit = 0;                   ///< calls a second of one client; 0: none
-    std::vector<std::string> allowed_hosts;  ///< names that it answers to, beside its address
+    double rate_limit = 0;                   ///< calls per second of one client; 0: no limit
+    std::vector<std::string> allowed_hosts;  ///< names of the service, in addition to its address
     std::vector<std::string> cors_origins;
     bool behind_proxy = false;
 
-    std::vector<std::string> remarks;  ///< on how all this was given, for the log
+    std::vector<std::string> remarks;  ///< on the source of the settings, for the log
 };
 
 struct HostPort {
@@ -60,7 +60,7 @@ struct HostPort {
     int port = 0;
 };
 
-/// Throws std::invalid_argument with a sentence.
+/// Throws std::invalid_argument with a sentence if the text is not valid.
 HostPort parse_listen(const std::string& text);
 ProcessRole parse_role(const std::string& text);
 /// Bytes of "8" (MiB), "512KiB", "8MiB", "1GiB". A plain number of more than 65,536 is one of bytes.
@@ -68,12 +68,11 @@ std::size_t parse_size(const std::string& text);
 /// Seconds of "10", "10s", "500ms", "5min", "12h", "7d".
 double parse_duration(const std::string& text);
 
-/// Throws std::invalid_argument with a sentence where the options do not go together: a port beyond loopback that asks
-/// for no keys, keys without a file, a worker of a store that only one process can use, a shorter longest time-out than
-/// the default one.
+/// Throws std::invalid_argument with a sentence for options that exclude each other: an address beyond loopback without
+/// keys, keys without a file, a worker on a store for one process, a longest timeout below the default one.
 void check_config(const Config& config);
 
-/// build/release/tunewright -> build/web; /usr/bin/tunewright -> /usr/share/tunewright/web
+/// The folder of the page: build/release/tunewright -> build/web; /usr/bin/tunewright -> /usr/share/tunewright/web
 std::string default_web_folder();
 
 std::size_t core_count();

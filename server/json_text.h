@@ -1,4 +1,4 @@
-// Writes small JSON objects around texts that are JSON already, without parsing them again.
+// Writes small JSON objects around texts that are already JSON, without parsing them again.
 #pragma once
 
 #include <cstdint>

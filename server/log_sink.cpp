@@ -14,7 +14,7 @@ constexpr std::chrono::milliseconds kGathering{5};
 void write_all(int descriptor, const std::string& text) {
     for (std::size_t written = 0; written < text.size();) {
         const ssize_t count = ::write(descriptor, text.data() + written, text.size() - written);
-        if (count < 0 && errno != EINTR) return;  // there is nobody left to tell
+        if (count < 0 && errno != EINTR) return;  // standard error is closed
         if (count > 0) written += static_cast<std::size_t>(count);
     }
 }
@@ -49,7 +49,7 @@ void GatheringSink::work() {
     for (;;) {
         changed_.wait(lock, [this] { return stopping_ || !waiting_.empty(); });
         if (waiting_.empty()) return;
-        // The next lines come in a moment where there are many: they are gathered without a wake-up for each.
+        // If there are many, the next lines come in a moment: they are collected without a wake-up for each.
         if (!stopping_) changed_.wait_for(lock, kGathering, [this] { return stopping_; });
         std::string text;
         for (const std::string& line : std::exchange(waiting_, {})) text += line;

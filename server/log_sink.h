@@ -1,5 +1,5 @@
-// Where the log's lines go: a thread writes what has gathered, so that neither a slow reader nor a wake-up for each
-// line holds up who logs. Of more lines than wait for the reader, the oldest are dropped.
+// The sink of the log's lines: a thread writes what has been collected, so that neither a slow reader nor a wake-up for
+// each line delays the caller. If too many lines wait for the reader, the oldest are dropped.
 #pragma once
 
 #include <spdlog/sinks/base_sink.h>
@@ -16,9 +16,9 @@ namespace tunewright::server {
 
 class GatheringSink : public spdlog::sinks::base_sink<std::mutex> {
 public:
-    /// Lines go to the open file `descriptor`; at most `max_waiting` wait for it.
+    /// Writes lines to the open file `descriptor`; at most `max_waiting` wait for it.
     GatheringSink(int descriptor, std::size_t max_waiting);
-    /// Writes what waits.
+    /// Writes the waiting lines.
     ~GatheringSink() override;
 
     std::size_t dropped() const { return dropped_; }
@@ -30,7 +30,7 @@ private:
 
     const int descriptor_;
     const std::size_t max_waiting_;
-    std::deque<std::string> waiting_;  // under base_sink's mutex_, as the rest
+    std::deque<std::string> waiting_;  // protected by base_sink's mutex_, like the rest
     bool stopping_ = false;
     std::condition_variable changed_;
     std::atomic<std::size_t> dropped_ = 0;

@@ -9,7 +9,7 @@ namespace tunewright::server {
 
 std::vector<unsigned char> random_bytes(std::size_t count) {
     std::vector<unsigned char> bytes(count);
-    // At most 256 bytes come at once, and these never in part.
+    // At most 256 bytes per call are never returned in part.
     if (count > 256 || ::getrandom(bytes.data(), count, 0) != static_cast<ssize_t>(count))
         throw std::runtime_error("the system gives no random bytes");
     return bytes;

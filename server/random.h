@@ -1,4 +1,4 @@
-// Bits that nobody can guess, from the system: names of jobs and processes, keys.
+// Random bits from the system that cannot be guessed: names of jobs and processes, keys.
 #pragma once
 
 #include <cstddef>
@@ -7,13 +7,13 @@
 
 namespace tunewright::server {
 
-/// Throws std::runtime_error where the system gives none.
+/// Throws std::runtime_error if the system has none.
 std::vector<unsigned char> random_bytes(std::size_t count);
 
-/// So many bytes as twice as many lower-case hexadecimal digits.
+/// This number of bytes as twice as many lower-case hexadecimal digits.
 std::string random_hex(std::size_t bytes);
 
-/// Names a job, a batch or a process: 130 random bits as 26 letters and digits.
+/// A name for a job, a batch or a process: 130 random bits as 26 letters and digits.
 std::string new_id();
 
 }  // namespace tunewright::server

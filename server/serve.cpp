@@ -36,14 +36,14 @@
 namespace tunewright::server {
 namespace {
 
-constexpr std::chrono::seconds kStopPatience{2};  // for computations and for the store, which have been asked to end
+constexpr std::chrono::seconds kStopPatience{2};  // for computations and for the store, after they were asked to stop
 constexpr std::size_t kLargeBody = 1 << 20, kWaitingComputations = 64;
-constexpr std::size_t kForOthers = 4;  // computations, for clients that have none while others fill the cores
-// Answers with a whole job that are made at the same time; each may take a hundred megabytes for some moments.
+constexpr std::size_t kForOthers = 4;  // computations, for clients that have none while others use all cores
+// Concurrent answers with a whole job; each may take a hundred megabytes for a moment.
 constexpr std::size_t kReaders = 2, kWaitingReaders = 1024;
-// Fewer than the connections for reading, four of a shared store: a single job is never behind lists alone.
+// Fewer than the connections for reading, of which a shared store has four: a single job never waits for lists only.
 constexpr std::size_t kListers = 2, kSearchers = 1;
-// Batches come and go without keeping others from being answered.
+// Batches are uploaded and downloaded without delaying other calls.
 constexpr std::size_t kBatchThreads = 2;
 constexpr int kBatchNiceness = 5;
 
@@ -56,7 +56,7 @@ Retention retention_of(const Config& config) {
     return {age(config.retention_s), own(config.retention_failed_s), own(config.retention_cancelled_s)};
 }
 
-/// As many connections as the system allows this process.
+/// Allows as many connections as the system permits this process.
 void raise_file_limit() {
     rlimit limit{};
     if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
@@ -80,7 +80,7 @@ sigset_t stop_signals() {
     return set;
 }
 
-/// The parts in the order in which they are made; stop() takes them down so that none calls one that is gone.
+/// The parts in the order of their construction; stop() destroys them so that none calls one that is gone.
 class Service {
 public:
     Service(const Config& config, std::unique_ptr<JobStore> store)
@@ -126,7 +126,7 @@ public:
         if (metrics_server_) serving_metrics_ = std::jthread([this] { metrics_server_->run(); });
     }
 
-    /// False where a computation did not stop: the process must end without waiting for it.
+    /// False if a computation did not stop: the process must end without waiting for it.
     bool stop() {
         closing_.request_stop();
         notifier_.close();
@@ -149,7 +149,7 @@ public:
 private:
     static std::size_t workers(const Config& config) { return config.workers == 0 ? core_count() : config.workers; }
 
-    /// Helpers included: no more than jobs at the same time, and than there are cores.
+    /// Including helpers: at most the number of concurrent jobs, and of cores.
     static std::size_t computations(const Config& config) { return std::min(workers(config), core_count()); }
 
     JobSettings settings(const Config& config) {
@@ -192,7 +192,7 @@ private:
         return made;
     }
 
-    /// By the store's clock, which the machines of a shared one have in common.
+    /// The store's clock, which the machines of a shared store have in common.
     UnixMs now() const { return wall_clock() + store_->clock_ahead().count(); }
 
     Standing standing() const {
@@ -210,7 +210,7 @@ private:
         return made;
     }
 
-    /// A third of the memory is for what clients hold: requests and answers on their way.
+    /// A third of the memory is for clients: requests and answers in progress.
     http::ServerLimits limits() const {
         http::ServerLimits made;
         made.connections = connection_limit();
@@ -252,7 +252,7 @@ private:
         });
     }
 
-    /// What a process that only computes does not answer.
+    /// The routes that a process with the role worker does not have.
     void add_public_routes() {
         add_job_routes(router_, jobs_, places_, {turns_, readers_, listers_, searchers_}, policy_,
                        {config_.job_timeout_s, config_.max_timeout_s});
@@ -268,7 +268,7 @@ private:
         router_.set_fallback([this](const http::Request& request) { return page_.find(request); });
     }
 
-    /// Some threads are always there for what is over soon; one client may have half of the others.
+    /// Some threads are always free for short calls; one client may use half of the others.
     static std::array<std::size_t, 2> places_of(const http::ServerLimits& limits) {
         const std::size_t lasting = limits.connections * 3 / 4;
         return {lasting, lasting / 2};
@@ -282,7 +282,7 @@ private:
         made.handle = [this, &router](http::Request request) {
             const bool large = request.body.size() > kLargeBody;
             http::Response response = router.handle(std::move(request));
-            if (large) memory_.look();  // what it took goes back before the next one comes
+            if (large) memory_.look();  // its memory is returned before the next large one
             return response;
         };
         made.refuse = [this](int status, const std::string& detail, http::Request& request) {
@@ -328,7 +328,7 @@ private:
     http::Server server_;
     std::jthread serving_;
     http::Router metrics_router_;
-    std::unique_ptr<http::Server> metrics_server_;  ///< of --metrics-listen; nothing where there is none
+    std::unique_ptr<http::Server> metrics_server_;  ///< of --metrics-listen; null if it is not given
     std::jthread serving_metrics_;
 };
 
@@ -356,7 +356,7 @@ void wait_for_stop(const sigset_t& signals) {
 }  // namespace
 
 int serve(Config config) {
-    // Blocked before any thread exists, the log's too, so that only wait_for_stop sees them.
+    // Blocked before any thread exists, including that of the log, so that only wait_for_stop sees them.
     const sigset_t signals = stop_signals();
     pthread_sigmask(SIG_BLOCK, &signals, nullptr);
     try {
@@ -368,7 +368,7 @@ int serve(Config config) {
     config.remarks.push_back(fit_body(config.max_body, memory_limit(config.memory)));
     for (const std::string& remark : config.remarks)
         if (!remark.empty()) log_warning(remark);
-    std::signal(SIGPIPE, SIG_IGN);  // a receiver or a client that goes is an error of one write
+    std::signal(SIGPIPE, SIG_IGN);  // a receiver or a client that disconnects is an error of one write
     raise_file_limit();
     keep_small_memory();
 

@@ -13,14 +13,14 @@
 namespace tunewright::server {
 namespace {
 
-constexpr std::chrono::milliseconds kQuietOpenTime{700};       // most stores open sooner, and nobody need know
-constexpr std::chrono::seconds kRetryInterval{2};              // where somebody else takes the steps
-constexpr std::chrono::milliseconds kSignalPollInterval{100};  // between two looks whether the process is to end
+constexpr std::chrono::milliseconds kQuietOpenTime{700};       // most stores open sooner; a longer wait is logged
+constexpr std::chrono::seconds kRetryInterval{2};              // if another process migrates the store
+constexpr std::chrono::milliseconds kSignalPollInterval{100};  // between checks whether the process is to end
 constexpr const char* kNotYet =
     "The store is not open yet: its tables are being brought up to date, or its disk is full; the log says which. Try "
     "again in a while.";
 
-/// A port that says so.
+/// A server that reports the state of the startup.
 class StartupServer {
 public:
     explicit StartupServer(const std::string& listen) : server_(http::ServerLimits(), application()) {
@@ -54,7 +54,7 @@ private:
     std::jthread serving_;
 };
 
-/// One that others are to bring up to date is waited for.
+/// A store that another process must migrate is waited for.
 std::unique_ptr<JobStore> open_patiently(const Config& config, const std::stop_token& stop) {
     const SchemaSteps steps = config.migrate == "manual" ? SchemaSteps::leave : SchemaSteps::take;
     for (bool logged = false; !stop.stop_requested();) {
@@ -99,7 +99,7 @@ std::unique_ptr<JobStore> open_behind_startup_server(const Config& config, const
         if (sigtimedwait(&signals, nullptr, &look) > 0) {
             log_info("asked to stop before the store was there");
             opening.request_stop();
-            // A step that is under way is undone by the end of the process.
+            // A step in progress is rolled back by the end of the process.
             if (store.wait_for(std::chrono::seconds(1)) != std::future_status::ready) ::_exit(0);
             return nullptr;
         }

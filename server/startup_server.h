@@ -1,5 +1,5 @@
-// What answers on the port while the store is not to be had yet: its tables are brought up to date, by this process or
-// another, which may take minutes. The process is alive then and not ready, and nobody who watches it ends it.
+// Answers calls while the store is not available yet: its tables are being migrated, by this process or another, which
+// may take minutes. The process is then alive but not ready, so that an orchestrator does not kill it.
 #pragma once
 
 #include <csignal>
@@ -11,12 +11,11 @@
 
 namespace tunewright::server {
 
-/// Opens the store that the configuration names. Nothing where one of `signals` (blocked in every thread) came
-/// meanwhile: the process is to end. Throws as open_store() does, and std::runtime_error where the port cannot be
-/// opened.
+/// Opens the store of the configuration. Null if one of `signals` (blocked in every thread) arrived meanwhile: the
+/// process must end. Throws like open_store(), and std::runtime_error if the port cannot be opened.
 std::unique_ptr<JobStore> open_behind_startup_server(const Config& config, const sigset_t& signals);
 
-/// Opens the port that HOST:PORT names, as http::Server::listen() does.
+/// Opens the port of HOST:PORT, like http::Server::listen().
 int open_port(http::Server& server, const std::string& listen);
 
 }  // namespace tunewright::server

@@ -14,7 +14,8 @@ enum class Traces {
 };
 
 /// The traces of a result as one table, headings in the first line.
-///  Columns such as "robust setpoint y [degC]" follow the column of their times: traces with the same times share it
+///
+/// Columns such as "robust setpoint y [degC]" follow the column of their times: traces with the same times share it
 /// ("t [s]"), others follow with their own ("robust t [s]"), and shorter ones end in empty cells. The second entry of a
 /// method is "robust (2)". `result_json` is a result as the service wrote it; its labels of units are in the headings,
 /// seconds if it has none. Empty if it has no such traces or is not a JSON object. Values have six significant digits,
@@ -22,7 +23,8 @@ enum class Traces {
 ///
 ///     t [s],robust setpoint y [degC],robust setpoint u [%],...
 ///     0,0,12.5,...
-///  Traces of `frequency` have "omega [rad/s]" in place of the time, L as its parts and its phase in degrees, the
+///
+/// Traces of `frequency` have "omega [rad/s]" in place of the time, L as its parts and its phase in degrees, the
 /// others as absolute values.
 std::optional<std::string> traces_csv(std::string_view result_json, Traces traces);
 

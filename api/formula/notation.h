@@ -2,7 +2,8 @@
 // MathML.
 //
 //     PI: Kp = 2 T/(3 K L), Ti = T; PID: Kp = 2 (T1 + T2)/(3 K L), Ti = T1 + T2
-//  "; " and ". " end a line. The text before the last ": " of a line is its label. ", " ends a cell if there is an
+//
+// "; " and ". " end a line. The text before the last ": " of a line is its label. ", " ends a cell if there is an
 // equation on either side of it. Products are written without a sign and have the precedence of a slash, from left to
 // right: a b/c d is (a b/c) d. Powers have ^, magnitudes |x|, indices _ or digits; min, max, exp and sqrt are functions
 // if a bracket follows; int and sum are signs with limits (int_0^H). A single letter, a Greek name or one of the

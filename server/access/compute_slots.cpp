@@ -5,14 +5,14 @@
 namespace tunewright::server {
 namespace {
 
-constexpr std::chrono::milliseconds kPollInterval{100};  // for clients that have gone
+constexpr std::chrono::milliseconds kPollInterval{100};  // between checks for clients that have disconnected
 
 }  // namespace
 
 ComputeSlots::Wait ComputeSlots::take(const std::string& client, Clock::time_point deadline,
                                       const std::function<bool()>& left) {
     std::unique_lock lock(mutex_);
-    // Who waits may not begin, or would have: nobody is overtaken whose turn it was.
+    // A request that waits may not begin yet, or would have: nobody is overtaken.
     if (may_begin(client)) return begin(client), Wait::granted;
     const auto own = queues_.find(client);
     if (waiting_ >= max_waiting_ || (own != queues_.end() && 2 * own->second.size() >= max_waiting_)) return Wait::full;
@@ -51,7 +51,7 @@ void ComputeSlots::begin(const std::string& client) {
     held_[client]++;
 }
 
-/// Gives what is free to the clients whose turn it is.
+/// Gives free slots to the clients whose turn it is.
 void ComputeSlots::grant() {
     for (;;) {
         const auto next_client = std::ranges::find_if(order_, [this](const auto& each) { return may_begin(each); });

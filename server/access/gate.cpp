@@ -16,10 +16,10 @@ using http::Response;
 
 constexpr const char* kExposed = "Location, ETag, Retry-After, X-Request-Id, Server-Timing, Preference-Applied";
 
-/// Health checks come from whoever watches the machine; they are neither counted nor asked for a key.
+/// Health checks come from monitoring; they are neither counted nor asked for a key.
 bool is_probe(const Request& request) { return request.path() == "/healthz" || request.path() == "/readyz"; }
 
-/// The page, its description and probes say nothing about anybody's jobs.
+/// The page, its description and probes contain nothing about jobs.
 bool needs_key(const Request& request) {
     if (request.segments.empty()) return false;
     return request.segments.front() == "v1" || request.segments.front() == "metrics";
@@ -41,14 +41,14 @@ std::string_view bearer(const Request& request) {
     return first == std::string_view::npos ? std::string_view{} : text.substr(first);
 }
 
-/// Some proxies add the port, which differs from call to call, and write an address of IPv6 in brackets.
+/// Some proxies add the port, which differs between calls, and write an IPv6 address in brackets.
 std::string_view without_port(std::string_view address) {
     if (address.starts_with('[')) return address.substr(1, address.find(']') - 1);
     const std::size_t colon = address.find(':');
     return colon == address.rfind(':') ? address.substr(0, colon) : address;
 }
 
-/// What the nearest proxy wrote: the last address of the field.
+/// The address that the nearest proxy wrote: the last one of the field.
 std::string_view forwarded(const Request& request) {
     std::string_view last;
     const auto [first, end] = request.headers.equal_range("X-Forwarded-For");
@@ -61,7 +61,8 @@ std::string_view forwarded(const Request& request) {
     return last.size() <= longest ? last : std::string_view{};
 }
 
-/// 00-TRACE-SPAN-FLAGS (W3C Trace Context, 2021), neither id all zeros. It goes into logs, so nothing else is taken.
+/// 00-TRACE-SPAN-FLAGS (W3C Trace Context, 2021), neither id all zeros. It is written to logs, so no other form is
+/// accepted.
 bool is_traceparent(std::string_view text) {
     const auto hex = [&](std::size_t from, std::size_t count) {
         return std::ranges::all_of(text.substr(from, count),
@@ -98,7 +99,7 @@ std::optional<Response> Gate::admit(Request& request) {
     if (auto refusal = check_host(request)) return refusal;
     if (auto refusal = check_site(request)) return refusal;
     auto no_key = check_key(request);
-    // Who tries keys is slowed down too, under his address.
+    // A client that tries keys is limited too, by its address.
     if (auto refusal = check_rate(request)) return refusal;
     return no_key;
 }
@@ -110,7 +111,7 @@ void Gate::name_refused(Request& request) {
 
 void Gate::name(Request& request) {
     const std::string_view given = request.header("X-Request-Id");
-    // An id from outside must be as plain as a key's name: it goes into headers and logs.
+    // An id from outside must be as plain as a key's name: it is copied into headers and logs.
     if (is_key_name(given)) {
         request.request_id = given;
     } else {
@@ -123,8 +124,8 @@ void Gate::name(Request& request) {
     request.client = client.empty() ? request.remote_addr : std::string(client);
 }
 
-/// A page on a name that was rebound to this machine could otherwise use the service as its visitor. It has no key, so
-/// where keys are asked for any name will do, unless names are given.
+/// A page on a name that was rebound to this machine could otherwise use the service on behalf of its visitor. It has
+/// no key, so if keys are required every name is accepted, unless names are configured.
 std::optional<Response> Gate::check_host(const Request& request) const {
     const bool any = keys_ && settings_.sites.allowed_hosts.empty();
     if (any || is_probe(request) || !request.has_header("Host") || sites_.serves(request.header("Host")))
@@ -134,7 +135,7 @@ std::optional<Response> Gate::check_host(const Request& request) const {
                             "start it with --allowed-host and that name.");
 }
 
-/// True where a page of another site calls that may read the answers, which say so from now on.
+/// True if the call comes from a page of another site that may read the answers; they then carry the CORS headers.
 bool Gate::allow_site(Request& request) const {
     if (!settings_.sites.cors_origins.empty()) request.answer_headers.emplace_back("Vary", "Origin");
     const std::string_view origin = request.header("Origin");
@@ -151,8 +152,8 @@ std::optional<Response> Gate::check_site(Request& request) const {
         return std::nullopt;
     }
     const bool foreign = !origin.empty() && !sites_.may_call(origin, request.header("Host"));
-    // A browser that names no origin says so itself when another site's page makes it call. Whoever follows a link to
-    // the page comes from there too.
+    // A browser that sends no origin states in this field that another site's page made the call. A user who follows a
+    // link to the page comes from there too.
     const std::string_view site = request.header("Sec-Fetch-Site");
     const bool follows_link = !changes(request) && request.header("Sec-Fetch-Mode") == "navigate";
     const bool crossing = (site == "cross-site" || site == "same-site") && !follows_link;

@@ -1,4 +1,4 @@
-// Places for requests that last: waits, event streams, batches on their way. Each holds a thread of the port.
+// Slots for long requests: waits, event streams, uploads of batches. Each holds a thread of the server.
 #pragma once
 
 #include <array>
@@ -12,10 +12,10 @@ namespace tunewright::server {
 
 class LongRequestSlots {
 public:
-    /// So many altogether, and so many for one client.
+    /// `max`: slots in total, and slots for one client.
     explicit LongRequestSlots(std::array<std::size_t, 2> max) : max_(max[0]), of_one_client_(max[1]) {}
 
-    /// Held while the request lasts; may be moved.
+    /// Held for the duration of the request; can be moved.
     class Slot {
     public:
         Slot(LongRequestSlots& places, std::string client) : places_(&places), client_(std::move(client)) {}
@@ -35,7 +35,7 @@ public:
         std::string client_;
     };
 
-    /// Nothing where all places, or all that one client may have, are taken.
+    /// Empty if all slots, or all that one client may have, are taken.
     std::optional<Slot> take(const std::string& client);
 
 private:

@@ -28,7 +28,7 @@ bool is_address(const std::string& host) {
            ::inet_pton(AF_INET6, host.c_str(), bytes.data()) == 1;
 }
 
-/// HOST[:PORT] of SCHEME://HOST[:PORT]; "" of anything else, such as "null".
+/// HOST[:PORT] of SCHEME://HOST[:PORT]; "" for anything else, such as "null".
 std::string_view authority_of(std::string_view origin) {
     const std::size_t colon = origin.find("://");
     return colon == std::string_view::npos ? std::string_view{} : origin.substr(colon + 3);
@@ -72,7 +72,7 @@ bool Sites::may_call(std::string_view origin, std::string_view host) const {
     if (is_allowed_site(origin)) return true;
     const std::string_view authority = authority_of(origin);
     if (authority.empty()) return false;
-    // Behind a proxy the service sees plain HTTP, and a Host without its port or of the proxy's own making.
+    // Behind a proxy the service sees plain HTTP, and a Host without its port or one that the proxy has set.
     const bool same = settings_.behind_proxy ? host_of(authority) == host_of(host)
                                              : http::lower_case(authority) == http::lower_case(host);
     return same || std::ranges::count(settings_.allowed_hosts, host_of(authority)) > 0;

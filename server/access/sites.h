@@ -1,5 +1,5 @@
-// From which names and from which pages this service may be called: the fence against DNS rebinding and against other
-// sites' pages. A page on a name that was rebound to this machine sends that name as Host; a page of another site sends
+// The names and pages from which this service may be called: protection against DNS rebinding and against pages of
+// other sites. A page on a name that was rebound to this machine sends that name as Host; a page of another site sends
 // its own Origin.
 #pragma once
 
@@ -11,29 +11,29 @@ namespace tunewright::server {
 
 struct SiteSettings {
     std::string listen_host = "127.0.0.1";        ///< an address or a name, without brackets
-    std::vector<std::string> allowed_hosts = {};  ///< further names, such as plant.example; "*": every name
+    std::vector<std::string> allowed_hosts = {};  ///< additional names, such as plant.example; "*": every name
     std::vector<std::string> cors_origins = {};   ///< sites whose pages may call: SCHEME://HOST[:PORT]; "*": every site
-    bool behind_proxy = false;                    ///< a proxy may have taken the port out of Host
+    bool behind_proxy = false;                    ///< a proxy may have removed the port from Host
 };
 
-/// Whether a name or an address is that of this machine alone.
+/// True for a name or an address of this machine only.
 bool is_loopback(const std::string& host);
 
-/// Names are compared without regard to letter case. Ports count in origins alone, and there not behind a proxy.
+/// Names are compared without regard to letter case. Ports are compared only in origins, and not behind a proxy.
 class Sites {
 public:
-    /// Throws std::invalid_argument with a sentence where an allowed host or an origin is none.
+    /// Throws std::invalid_argument with a sentence if an allowed host or an origin is not valid.
     explicit Sites(SiteSettings settings);
 
-    /// Whether `host`, the field Host, names this service: the listen address, localhost, a loopback address, an
-    /// allowed host; any address (not a name) where the service listens on every one, since no page can have an address
+    /// True if `host`, the field Host, names this service: the listen address, localhost, a loopback address, an
+    /// allowed host; or any address (not a name) if the service listens on all of them, since addresses cannot be
     /// rebound.
     bool serves(std::string_view host) const;
 
-    /// Whether a page of `origin` may call what it reached as `host`: the service's own page, or an allowed site.
+    /// True if a page of `origin` may call the service, reached as `host`: the service's own page, or an allowed site.
     bool may_call(std::string_view origin, std::string_view host) const;
 
-    /// Whether `origin` is an allowed site, which learns so from CORS headers.
+    /// True if `origin` is an allowed site, which gets CORS headers.
     bool is_allowed_site(std::string_view origin) const;
 
 private:

@@ -16,8 +16,8 @@
 namespace tunewright::server {
 namespace {
 
-constexpr std::string_view kBlanks = " \t\r";                // a file may come from another system
-constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";  // which editors of that system put first
+constexpr std::string_view kBlanks = " \t\r";                // the file may come from another operating system
+constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";  // editors on Windows write it first
 constexpr std::size_t kMaxNameLength = 64;
 constexpr std::chrono::seconds kLookInterval{1};
 
@@ -30,7 +30,7 @@ std::optional<std::string> text_of_lines(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
     if (!file) return std::nullopt;
     std::string text;
-    // A device may have no end.
+    // A device may be endless.
     for (std::istreambuf_iterator<char> at(file), end; at != end; ++at) {
         if (text.size() == kLongest) return std::nullopt;
         text += *at;
@@ -53,7 +53,7 @@ std::vector<NamedLine> named_lines(std::string_view text) {
         const std::size_t end = text.find('\n');
         const std::string_view whole = text.substr(0, end);
         text = end == std::string_view::npos ? std::string_view{} : text.substr(end + 1);
-        // Neither a name nor a value has this sign.
+        // Neither a name nor a value contains #.
         const std::string_view line = http::trim(whole.substr(0, whole.find('#')), kBlanks);
         if (line.empty()) continue;
         const std::size_t blank = line.find_first_of(" \t");
@@ -67,7 +67,7 @@ std::vector<NamedLine> named_lines(std::string_view text) {
 bool append_line(const std::string& path, const std::string& line) {
     const int fd = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0600);
     if (fd < 0) return false;
-    // Whoever edited it may have left the last line without its end.
+    // An editor may have left the last line without its line end.
     char last = '\n';
     const int reading = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
     if (reading >= 0) {
@@ -109,7 +109,7 @@ void WatchedFile::look() {
     if (now - looked_ < kLookInterval) return;
     looked_ = now;
     const auto stamp = stamp_of(path_);
-    // What cannot be read may be readable again without having changed.
+    // A file that could not be read may be readable again without a change.
     if (!stamp || stamp != stamp_ || !usable_) read_again(stamp);
     if (broken_since_ && now - *broken_since_ >= kMaxBrokenTime)
         hold_nothing("it has had a line that is no " + meaning_.kind + "'s for " +

@@ -1,10 +1,9 @@
-// A file of lines "NAME VALUE" that an operator edits while the service runs: keys, secrets. It is looked at once a
-// second at most, and read again when it has changed.
+// A file of lines "NAME VALUE" that an operator edits while the service runs: keys, secrets. It is checked at most once
+// a second, and read again when it has changed.
 //
-// - A file that is gone or cannot be read holds nothing: what was taken out of it never comes back because of a fault.
-// - A file with a line that cannot be read is perhaps being written: what it held last stays in force for
-// kMaxBrokenTime,
-//   then it holds nothing.
+// - A file that is missing or cannot be read counts as empty: an error never brings back an entry that was removed.
+// - A file with a line that cannot be read may be half-written: its previous content stays valid for kMaxBrokenTime,
+//   then it counts as empty.
 #pragma once
 
 #include <sys/types.h>
@@ -19,22 +18,22 @@
 
 namespace tunewright::server {
 
-/// 1 to 64 of A-Z a-z 0-9 . _ -
+/// True for 1 to 64 of A-Z a-z 0-9 . _ -
 bool is_key_name(std::string_view name);
 
 struct NamedLine {
-    std::size_t number = 0;  ///< from 1
+    std::size_t number = 0;  ///< number of the line, from 1
     std::string_view name, value;
 };
 
-/// The text of such a file; nothing where it cannot be read or is longer than 16 MiB.
+/// The text of such a file; empty if it cannot be read or is longer than 16 MiB.
 std::optional<std::string> text_of_lines(const std::string& path);
 
-/// The lines of such a file but for blank ones and, from a # on, comments. What is no name is for the caller to see.
+/// The lines of such a file without blank ones and comments, which begin with #. The caller checks the names.
 std::vector<NamedLine> named_lines(std::string_view text);
 
-/// Appends the line in one write, so that who reads meanwhile sees it or not. A new file is readable by its owner
-/// alone. False where that fails; errno says why.
+/// Appends the line in one write, so that a concurrent reader sees all of it or none. A new file is readable by its
+/// owner only. False on failure; errno has the reason.
 bool append_line(const std::string& path, const std::string& line);
 
 class WatchedFile {
@@ -44,25 +43,26 @@ public:
 
     struct Meaning {
         std::string what;                                        ///< for sentences: "file of keys"
-        std::string consequence;                                 ///< of holding nothing: "nobody is admitted"
-        std::string kind;                                        ///< of what stands in its lines: "key"
-        std::string option;                                      ///< that names it: "--keys"
-        std::function<std::size_t(std::string_view text)> take;  ///< how many; throws std::invalid_argument
+        std::string consequence;                                 ///< effect of an empty file: "nobody is admitted"
+        std::string kind;                                        ///< the content of its lines: "key"
+        std::string option;                                      ///< option that names the file: "--keys"
+        std::function<std::size_t(std::string_view text)> take;  ///< returns the number of entries; throws
+                                                                 ///< std::invalid_argument
         std::function<void()> forget;
     };
 
-    /// Reads the file. Throws std::invalid_argument with a sentence where it cannot be read.
+    /// Reads the file. Throws std::invalid_argument with a sentence if it cannot be read.
     WatchedFile(std::string path, Meaning meaning, std::function<Clock::time_point()> now);
 
-    /// Looks at the file if that was not done in the last second. Not to be called by two threads at once.
+    /// Checks the file unless that was done within the last second. Must not be called by two threads at once.
     void look();
-    /// Whether it could be used when it was last looked at.
+    /// True if the file could be used at the last check.
     bool usable() const { return usable_; }
     const std::string& path() const { return path_; }
 
 private:
-    /// What tells one state of the file from another. A file that takes the place of another may have its size and the
-    /// time of its last change, but not its number nor, where the number is given anew, the time that nobody sets.
+    /// Identifies a state of the file. A file that replaces another may have the same size and time of modification,
+    /// but not the same inode number or, if the number is reused, the time of status change, which cannot be set.
     struct Stamp {
         dev_t device = 0;
         ino_t number = 0;
@@ -78,9 +78,10 @@ private:
     std::string path_;
     Meaning meaning_;
     std::function<Clock::time_point()> now_;
-    std::optional<Stamp> stamp_;  ///< of what was read last; empty: nothing could be
+    std::optional<Stamp> stamp_;  ///< of the content that was read last; empty: it could not be read
     Clock::time_point looked_;
-    std::optional<Clock::time_point> broken_since_;  ///< a line that cannot be read, what was there before in force
+    std::optional<Clock::time_point> broken_since_;  ///< since when a line cannot be read and the previous content is
+                                                     ///< valid
     bool usable_ = true;
 };
 

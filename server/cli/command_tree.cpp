@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kUsage = 2;
 
-/// One form for whatever is wrong with the words.
+/// All errors of the command line have one form.
 int usage_error(std::string sentence, const CLI::App* command) {
     if (sentence.empty() || std::string_view(".?!").find(sentence.back()) == std::string_view::npos) sentence += ".";
     const std::string name = command ? command->get_name() + " " : "";
@@ -34,7 +34,7 @@ std::vector<std::string> command_names(const CLI::App& app) {
     return names;
 }
 
-/// The options' names as they are typed, without the hyphens.
+/// The names of the options as typed, without the hyphens.
 std::vector<std::string> option_names(const CLI::App& command) {
     std::vector<std::string> names;
     for (const CLI::Option* each : command.get_options())
@@ -77,7 +77,7 @@ int CommandTree::run(int argc, char** argv) {
     try {
         app_.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        if (error.get_exit_code() == 0) return app_.exit(error);  // a help or the version
+        if (error.get_exit_code() == 0) return app_.exit(error);  // help or version
         const std::vector<CLI::App*> named = app_.get_subcommands();
         const CLI::App* command = named.empty() ? nullptr : named.front();
         const std::vector<std::string> unknown = command ? command->remaining() : std::vector<std::string>{};

@@ -1,4 +1,4 @@
-// The command line as a tree: commands with their options, what each does, and how a word that is wrong is answered.
+// The command line as a tree: commands with their options, their actions, and the answer to an argument that is wrong.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -16,10 +16,10 @@ public:
     CommandTree(const CommandTree&) = delete;
     CommandTree& operator=(const CommandTree&) = delete;
 
-    /// A command; `action` is called once its words are known, and returns the exit code of the process.
+    /// Adds a command; `action` is called once its arguments are known, and returns the exit code of the process.
     CLI::App& add(const std::string& name, const std::string& help, std::function<int()> action);
 
-    /// Words of a command, which live as long as the tree.
+    /// Arguments of a command, which live as long as the tree.
     template <class Words>
     Words& keep(Words words = {}) {
         auto kept = std::make_shared<Words>(std::move(words));
@@ -29,8 +29,8 @@ public:
 
     CLI::App& app() { return app_; }
 
-    /// Runs the command that the words name and returns its exit code; 0 for a help or the version; 2 where a word
-    /// cannot be used, and standard error has the sentence that says why.
+    /// Runs the command and returns its exit code; 0 for help or version; 2 for an argument that cannot be used, with
+    /// the reason on standard error.
     int run(int argc, char** argv);
 
 private:
@@ -39,10 +39,9 @@ private:
     std::vector<std::shared_ptr<void>> kept_;
 };
 
-/// Each option of a service and of an operator's command has a variable of the same name: --max-body is
-/// TUNEWRIGHT_MAX_BODY.
+/// The environment variable of an option of the service or of an operator's command: --max-body is TUNEWRIGHT_MAX_BODY.
 std::string variable_of(const std::string& name);
-/// A sentence for each variable of `environment` ("NAME=VALUE") that begins as those do and is none of `known`.
+/// A sentence for each variable of `environment` ("NAME=VALUE") with this prefix that is not one of `known`.
 /// Kubernetes' variables about a service of that name are left out.
 std::vector<std::string> strange_variables(const std::vector<std::string>& environment,
                                            const std::vector<std::string>& known);
@@ -52,12 +51,12 @@ CLI::Option* option(CLI::App& app, const std::string& name, T& value, const std:
     return app.add_option("--" + name, value, help)->envname(variable_of(name));
 }
 
-/// The commands of one file each.
+/// Each adds the commands of one source file.
 void add_serve_command(CommandTree& tree);
 void add_loop_commands(CommandTree& tree);
 void add_list_commands(CommandTree& tree);
 void add_operator_commands(CommandTree& tree);
-/// `completion` and `manual`, which say what the tree holds when they are called.
+/// Adds `completion` and `manual`, which describe the tree at the time of the call.
 void add_tree_commands(CommandTree& tree);
 
 }  // namespace tunewright::server

@@ -26,7 +26,7 @@ namespace tunewright::server {
 
 namespace {
 
-/// For the one computation of a command.
+/// The spare cores for the one computation of a command.
 struct AllCores {
     SpareCores cores{core_count()};
     SpareCores::Computation computation{cores};
@@ -72,7 +72,7 @@ int write_drawing(const std::string& file, const std::string& drawing, const Out
     return write_problem(problem, words);
 }
 
-/// The drawings that were asked for; the first problem ends it.
+/// Draws the requested plots; stops at the first problem.
 int draw(const TuneCommand& command, const std::string& result, const std::string& request) {
     const api::ResultSource source{result, request};
     if (command.plot) {
@@ -86,8 +86,8 @@ int draw(const TuneCommand& command, const std::string& result, const std::strin
     return write_drawing(command.svg, std::get<std::string>(drawn), command.output);
 }
 
-/// The text of a result's file, and of its request's as the service keeps it. What is written with their problem, where
-/// one of them is none.
+/// Reads the texts of a result's file and of its request's. If one of them is not valid, writes the problem and returns
+/// its exit code.
 std::optional<int> read_texts(const ResultWords& words, std::string& result, std::string& request) {
     if (!read_input(words.file, result)) return write_problem(unreadable(words.file), {});
     if (words.request.empty()) return std::nullopt;

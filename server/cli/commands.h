@@ -1,4 +1,4 @@
-// The commands that need no service of their own: they answer one question, from files and words.
+// Commands that need no running service: each answers one question from files and arguments.
 #pragma once
 
 #include <string>
@@ -9,16 +9,17 @@
 
 namespace tunewright::server {
 
-// Each returns the exit code of the process: 0 for an answer on standard output; 1 for a problem on standard error.
+// Each function returns the exit code of the process: 0 for an answer on standard output; 1 for a problem on standard
+// error.
 
-/// `tunewright tune`, and `tunewright compare` where `all`.
+/// `tunewright tune`, and with `all` `tunewright compare`.
 struct TuneCommand {
-    std::string file;  ///< a request, a recorded test, "-": standard input; "": the words have a plant
+    std::string file;  ///< a request, a recorded test, "-": standard input; "": the arguments have a plant
     api::TuneWords words;
-    bool all = false;           ///< every method that applies, whatever the file names
-    bool plot = false;          ///< the table, and the responses drawn below it
-    std::string svg;            ///< file that the responses are drawn into; "": none
-    bool with_request = false;  ///< the answer is {request, result}, not the result alone
+    bool all = false;           ///< every method that applies, whatever the file asks for
+    bool plot = false;          ///< the table, with the responses drawn below it
+    std::string svg;            ///< file for the drawing of the responses; "": none
+    bool with_request = false;  ///< the answer is {request, result} instead of the result alone
     OutputWords output;
 };
 int tune(const TuneCommand& command);
@@ -30,11 +31,11 @@ struct RangeCommand {
 int range(const RangeCommand& command);
 
 struct IdentifyCommand {
-    std::string file;  ///< CSV or a log as it is, or a request of POST /v1/identify; "-": standard input
+    std::string file;  ///< a CSV file or a log, or a request of POST /v1/identify; "-": standard input
     api::CsvRequest question;
     OutputWords output;
 };
-/// The only limit on the file's size is that of a record, 2,000,000 samples.
+/// The file's size is limited only by the length of a record, 2,000,000 samples.
 int identify(const IdentifyCommand& command);
 
 struct PlantCommand {
@@ -42,14 +43,14 @@ struct PlantCommand {
     std::string time_unit = "s";
     OutputWords output;
 };
-/// What POST /v1/plants/parse answers.
+/// The answer of POST /v1/plants/parse.
 int plant(const PlantCommand& command);
 
-/// A controller of a result that is in a file.
+/// A controller of a result in a file.
 struct ResultWords {
     std::string file;        ///< a result or a job; "-": standard input
-    std::string request;     ///< file of the request that it answers; "": not known
-    std::string controller;  ///< its number in the result; "": the best
+    std::string request;     ///< file of the request that led to it; "": not known
+    std::string controller;  ///< its number in the result; "": the best one
 };
 
 struct CodeCommand {
@@ -58,24 +59,24 @@ struct CodeCommand {
 };
 int code(const CodeCommand& command);
 
-/// What GET /v1/jobs/{id}/report.html answers.
+/// The answer of GET /v1/jobs/{id}/report.html.
 int report(const ResultWords& command);
 
-/// Lists of what there is; one of them where `name` is given.
+/// Lists; a single item if `name` is given.
 struct ListCommand {
     std::string name;
     OutputWords output;
 };
 int methods(const ListCommand& command);
 int controllers(const ListCommand& command);
-/// The requests of GET /v1/examples; the one with that id or number, from 1, as a file for `tunewright tune`.
+/// The requests of GET /v1/examples; a single one by id or number, from 1, as a file for `tunewright tune`.
 int examples(const ListCommand& command);
 
-/// GET `url` (http://HOST:PORT/PATH, HOST an address or a name), answered within three seconds. Returns 0 where the
-/// status is 200; else 1, and standard error says why. 2 where the url cannot be used.
+/// GET `url` (http://HOST:PORT/PATH, HOST an address or a name), with a limit of three seconds. Returns 0 for the
+/// status 200; otherwise 1, with the reason on standard error. 2 if the URL cannot be used.
 int check_health(const std::string& url);
 
-/// http://HOST:PORT/healthz for what --listen says; loopback where it says every address.
+/// http://HOST:PORT/healthz for the address of --listen; loopback if that is every address.
 std::string health_url(const std::string& listen);
 
 }  // namespace tunewright::server

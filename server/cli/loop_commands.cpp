@@ -83,7 +83,7 @@ void add_result_options(CLI::App& app, ResultWords& words, const std::string& he
     app.add_option("--request", words.request, help_of_request)->type_name("FILE");
 }
 
-/// An option of the command that is a parameter of the call too, under the same name: --sample-time is sample_time.
+/// Adds an option that is also a parameter of the call, under the same name: --sample-time is sample_time.
 void code_word(CLI::App& app, const std::string& name, api::CodeWords& words, const std::string& help) {
     std::string parameter = name;
     std::replace(parameter.begin(), parameter.end(), '-', '_');

@@ -1,4 +1,4 @@
-// The commands of whoever runs the service: keys, secrets, stores, health.
+// The commands for the operator of the service: keys, secrets, stores, health.
 #include <exception>
 #include <iostream>
 #include <stdexcept>

@@ -64,7 +64,7 @@ bool read_input(const std::string& file, std::string& text) {
     if (std::filesystem::is_directory(file, unknown)) return false;
     std::ifstream stream(file, std::ios::binary);
     if (!stream) return false;
-    // A pipe has neither a size nor an end to go to.
+    // A pipe has no size and cannot be positioned.
     if (std::filesystem::is_regular_file(file, unknown)) text.reserve(std::filesystem::file_size(file, unknown));
     std::array<char, 1 << 16> piece;
     while (stream.read(piece.data(), piece.size()) || stream.gcount() > 0)

@@ -17,7 +17,7 @@ void flag(CLI::App& app, const std::string& name, bool& value, const std::string
     app.add_flag("--" + name, value, help)->envname(variable_of(name));
 }
 
-/// An option that is typed with a unit and kept as a number; `shown` is the default as one would type it.
+/// Adds an option that is typed with a unit and stored as a number; `shown` is the default as typed.
 template <class T>
 void quantity(CLI::App& app, const std::string& name, T& value, T (*read)(const std::string&), const std::string& shown,
               std::pair<double, double> range, const std::string& help) {
@@ -33,7 +33,7 @@ void quantity(CLI::App& app, const std::string& name, T& value, T (*read)(const 
     app.add_option_function<std::string>("--" + name, take, help)->envname(variable_of(name))->default_str(shown);
 }
 
-/// CLI::Range takes what is no number, as nan is neither below nor above.
+/// CLI::Range accepts NaN, which is neither below nor above a bound.
 CLI::Validator number_within(double min, double max) {
     const auto judge = [min, max](const std::string& text) -> std::string {
         double value = 0;

@@ -1,5 +1,5 @@
-// `tunewright completion` and `tunewright manual`: what a shell and man know of the commands, written from the tree
-// itself, so that neither can say anything else than what is there.
+// `tunewright completion` and `tunewright manual`: texts for a shell and for man, generated from the tree of commands,
+// so that they always agree with it.
 #include <algorithm>
 #include <sstream>
 
@@ -13,10 +13,10 @@ std::vector<const CLI::App*> commands_of(const CLI::App& app) {
     return app.get_subcommands([](const CLI::App*) { return true; });
 }
 
-/// Whether a word follows the option.
+/// True if a value follows the option.
 bool takes_value(const CLI::Option& option) { return option.get_items_expected_max() > 0; }
 
-/// "--Ms", or "" for a place among the words.
+/// The option as typed, "--Ms", or "" for a positional argument.
 std::string typed_name(const CLI::Option& option) {
     return option.get_lnames().empty() ? "" : "--" + option.get_lnames().front();
 }
@@ -58,7 +58,7 @@ void write_bash(const CLI::App& app, std::ostream& out) {
            "complete -o filenames -F _tunewright tunewright\n";
 }
 
-/// For a place between single quotes in which a colon and brackets have a meaning.
+/// Escapes a text for a place between single quotes in which a colon and brackets have a meaning.
 std::string zsh_text(const std::string& text) {
     std::string out;
     for (const char c : text) {
@@ -102,12 +102,12 @@ void write_zsh(const CLI::App& app, std::ostream& out) {
            "}\n"
            "if [ \"$funcstack[1]\" = _tunewright ]; then\n"
            "    _tunewright \"$@\"\n"
-           "else\n"  // it is sourced
+           "else\n"  // the script is sourced
            "    compdef _tunewright tunewright\n"
            "fi\n";
 }
 
-/// For a line of troff: a backslash and a hyphen are letters, a dot at the beginning is no request.
+/// Escapes a line of troff: a backslash and a hyphen stay letters, and a dot at the beginning is not a request.
 std::string troff(const std::string& text) {
     std::string out;
     for (const char c : text) {

@@ -1,4 +1,4 @@
-// For those who have a thread to wait with: the value that a call of the store or of the jobs hands to its callback.
+// Blocking waits for threads that may wait: the value that a call of the store or of the jobs passes to its callback.
 #pragma once
 
 #include <chrono>
@@ -9,7 +9,7 @@
 
 namespace tunewright::server {
 
-/// Calls `start` with a callback and returns what that is called with, from whatever thread.
+/// Calls `start` with a callback and returns the value that the callback gets, from any thread.
 template <class T, class Start>
 T await(const Start& start) {
     const auto promise = std::make_shared<std::promise<T>>();
@@ -17,8 +17,8 @@ T await(const Start& start) {
     return promise->get_future().get();
 }
 
-/// The same for a callback without a value, as long as somebody waits: false where `left` (asked now and then; may be
-/// empty) says that nobody does. The callback may come later all the same.
+/// Waits for a callback without a value, as long as somebody needs it: false if `left` (called from time to time; may
+/// be empty) reports that nobody does. The callback may still come later.
 template <class Start>
 bool await_end(const Start& start, const std::function<bool()>& left = {}) {
     constexpr std::chrono::milliseconds look{250};

@@ -120,7 +120,7 @@ void Followers::look_here(std::vector<Message>& messages, std::vector<std::strin
             const bool known = sight == followed.last && followed.view;
             seen(followed, sight, known ? followed.view : view_of(*held), messages);
         } else if (poll || followed.due) {
-            // While the store takes what came out it still says "running", with the progress of a while ago.
+            // Until the store has the result it still reports "running", with old progress.
             if (!held || held->stage() != HeldJob::Stage::ending) elsewhere.push_back(id);
         }
         followed.due = false;
@@ -156,7 +156,7 @@ void Followers::look_elsewhere(const std::vector<std::string>& ids, std::vector<
     for (const std::string& id : missing) last_news(id, {JobNews::Kind::gone, nullptr}, messages);
 }
 
-/// Called with the lock.
+/// Requires the lock.
 void Followers::seen(Followed& followed, const Sight& sight, std::shared_ptr<const JobView> view,
                      std::vector<Message>& messages) {
     const bool changed = sight != followed.last;

@@ -1,6 +1,6 @@
-// Whoever follows a job learns how it stands and then of each change until its end, wherever it runs. One thread serves
-// all followers: it looks at what runs here ten times a second, and asks the store about all others at once, every
-// `poll` and when a notice of a change comes. Knows no HTTP.
+// Reports the current state of a job to its followers, and then each change until its end, wherever it runs. One thread
+// serves all followers: it checks the jobs that run here ten times a second, and asks the store about all others
+// together, every `poll` and after a notice of a change. Independent of HTTP.
 #pragma once
 
 #include <chrono>
@@ -22,7 +22,7 @@
 
 namespace tunewright::server {
 
-/// A job as it is this moment: what the store keeps, and the progress of one that runs in this process.
+/// A job at this moment: the stored data, and the progress if it runs in this process.
 struct JobView {
     JobRecord job;
     std::optional<Progress> progress;  ///< of a job that runs here; that of others is in job.progress
@@ -30,13 +30,13 @@ struct JobView {
 
 struct JobNews {
     enum class Kind {
-        present,  ///< how it stands, or a change of status or progress: `view` without request and result
+        present,  ///< the current state, or a change of status or progress: `view` without request and result
         ended,    ///< the last: `view` is complete
-        gone,     ///< the last: it has been deleted
-        closing,  ///< the last: this process ends, others may go on with the job
+        gone,     ///< the last: the job was deleted
+        closing,  ///< the last: this process ends, other processes may continue the job
     };
     Kind kind = Kind::present;
-    std::shared_ptr<const JobView> view;  ///< nothing of gone and closing
+    std::shared_ptr<const JobView> view;  ///< empty for gone and closing
 };
 
 class Followers {
@@ -48,29 +48,29 @@ public:
     /// All must outlive the followers.
     Followers(JobArchive& archive, const HeldJobs& held, StoreOutageLog& outage, std::chrono::milliseconds poll);
 
-    /// `listener` learns how the job stands at once, then of changes, at most about ten a second.
+    /// `listener` gets the state of the job at once, then changes, at most about ten a second.
     Key follow(const std::string& id, Listener listener);
     void leave(Key key);
-    /// That job ("": any) may have changed: it is looked at now.
+    /// That job ("": any) may have changed: it is checked now.
     void changed(const std::string& id);
-    /// Every listener learns that this process ends; those that come later as well.
+    /// Tells every listener that this process ends; also those that are added later.
     void close();
 
     std::size_t count() const;
 
 private:
     using Clock = std::chrono::steady_clock;
-    /// What the listeners learned last, to see what has changed.
+    /// The state that the listeners got last, for comparison.
     struct Sight {
         JobStatus status = JobStatus::queued;
         int attempts = -1;
-        unsigned revision = 0;  ///< of what runs here
-        std::string progress;   ///< of what runs elsewhere
+        unsigned revision = 0;  ///< of a job that runs here
+        std::string progress;   ///< of a job that runs elsewhere
         bool operator==(const Sight&) const = default;
     };
     struct Followed {
         std::map<Key, Listener> followers;
-        std::set<Key> fresh;  ///< who has heard nothing yet
+        std::set<Key> fresh;  ///< listeners that have got nothing yet
         Sight last;
         std::shared_ptr<const JobView> view;
         bool due = true;
@@ -96,7 +96,7 @@ private:
     std::map<Key, std::string> ids_;
     Key next_ = 1;
     bool closed_ = false;
-    Clock::time_point next_poll_{};          ///< of the thread alone
+    Clock::time_point next_poll_{};          ///< used by the thread only
     std::unique_ptr<PeriodicThread> pulse_;  ///< last: its thread uses all of the above
 };
 

@@ -58,7 +58,7 @@ void QueueBound::refresh(JobQueue& queue) {
         }
         const QueueDepth counted = queue.depth();
         const std::lock_guard lock(mutex_);
-        // What came or went while the store counted may be counted twice or not at all; on the last try so be it.
+        // Changes during the store's count may be counted twice or not at all; the last attempt accepts that.
         if (changes_ != before && i + 1 < kTries) continue;
         waiting_ = counted;
         return;

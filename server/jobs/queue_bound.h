@@ -1,5 +1,5 @@
-// How many jobs wait, so that the queue stays bounded: counted here as they come and go, put right by the store, which
-// other processes may use too.
+// The number of waiting jobs, which bounds the queue: counted here, and corrected by the store, which other processes
+// may use too.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ public:
     QueueBound(std::size_t single_limit, std::size_t entry_limit)
         : single_limit_(single_limit), entry_limit_(entry_limit) {}
 
-    /// A single job that is being accepted: counted until it waits, is refused, or nobody holds its place any more.
+    /// A single job that is being accepted: counted until it waits, is refused, or its last Place is destroyed.
     class Place {
     public:
         explicit Place(QueueBound& bound) : bound_(&bound) {}
@@ -30,15 +30,15 @@ public:
     private:
         QueueBound* bound_;
     };
-    /// Nothing where there is no room.
+    /// Empty if there is no room.
     std::shared_ptr<Place> reserve();
-    /// So many wait no longer.
+    /// These numbers of jobs no longer wait.
     void gone(std::size_t singles, std::size_t entries = 0);
-    /// Counts so many entries as waiting where there is room for them; else changes nothing.
+    /// Counts these entries as waiting if there is room for them; otherwise changes nothing.
     bool reserve_entries(std::size_t count);
-    /// So it is now, whatever the store said when it was last asked.
+    /// Sets the current state, which replaces the store's last answer.
     void paused(bool paused);
-    /// Asks the store. Throws StoreError.
+    /// Reads the numbers from the store. Throws StoreError.
     void refresh(JobQueue& queue);
 
     QueueDepth now() const;

@@ -17,10 +17,10 @@ using Stop = HeldJob::Stop;
 
 constexpr std::chrono::seconds kStopPatience{2};
 
-// A header cannot give it: the space in front would be cut off.
+// A header cannot contain it: the leading space would be removed.
 constexpr const char* kUniqueKey = " unique ";
 
-/// As the store has it now.
+/// The job as the store now has it.
 JobRecord record_of(const Ended& ended) {
     JobRecord job = ended.held->job;
     job.status = ended.end.status;
@@ -115,18 +115,18 @@ void JobService::submit(Order order, std::function<void(Submission)> done, WaitE
         place->end(true);
         submission.kind = Submission::Kind::created;
         submission.job.request = std::move(*request);
-        // Before a worker of this process can know of the job, so that its end is not missed.
+        // Before a worker of this process can know the job, so that its end is not missed.
         if (wait.count() > 0) waits_.add(submission.job.id, wait, ended);
         const std::string id = submission.job.id;
         done(std::move(submission));
         claims_.arrived();
-        // Those that wait know already that the service stops; this one was not among them.
+        // Earlier waits have been told that the service stops; this one has not.
         if (draining_) waits_.notify(id);
     };
     store_.accept(std::move(job), accepted);
 }
 
-/// The answer of a full queue: a job that was accepted before under the same key, if there is one.
+/// The answer of a full queue: the job that was accepted before with the same key, if there is one.
 Submission JobService::submission_of_key(const Order& order) {
     Submission full{Submission::Kind::queue_full, {}, {}};
     if (order.idempotency_key.empty()) return full;
@@ -145,7 +145,7 @@ Submission JobService::submission_of_key(const Order& order) {
 }
 
 int JobService::seconds_until_room() const {
-    // A hundredth of the queue: a client that comes back finds room for more than one job.
+    // A hundredth of the queue: a client that returns finds room for more than one job.
     const double jobs = std::max(1.0, 0.01 * static_cast<double>(settings_.queue_limit));
     const double at_once = std::max(1.0, static_cast<double>(settings_.workers));
     return static_cast<int>(std::clamp(std::ceil(jobs * claims_.pace() / at_once), 1.0, 60.0));
@@ -206,19 +206,19 @@ void JobService::pause(bool paused, Done<bool> done) {
     });
 }
 
-/// Claimed jobs that no worker has begun wait again.
+/// Claimed jobs that no worker has begun are queued again.
 void JobService::give_back_unbegun() {
     for (const auto& held : claims_.withdraw(HeldJob::Clock::now())) outbox_.release(held);
 }
 
 void JobService::wait(const std::string& id, std::chrono::duration<double> wait, WaitEnd ended) {
     waits_.add(id, wait, std::move(ended));
-    // It may have ended before the waiter was there.
+    // It may have ended before the wait was registered.
     const std::optional<JobState> found = state(id);
     if (!found || has_ended(found->status) || draining_) waits_.notify(id);
 }
 
-// ---- what batches need -----------------------------------------------------------------------------------------
+// ---- interface for batches -------------------------------------------------------------------------------------
 
 bool JobService::room_for_entries(std::size_t count) { return depth_.reserve_entries(count); }
 
@@ -240,7 +240,7 @@ void JobService::look_again() {
     if (looking_) looking_->wake();
 }
 
-// ---- what happens to held jobs ---------------------------------------------------------------------------------
+// ---- events of held jobs ---------------------------------------------------------------------------------------
 
 ClaimSettings JobService::claim_settings() {
     ClaimSettings made;
@@ -262,7 +262,7 @@ ResultOutbox::Listener JobService::end_listener() {
     made.done = [this](const Ended& end, bool kept) { ended(end, kept); };
     made.released = [this](const std::shared_ptr<HeldJob>& held) {
         held_.forget(held);
-        // It waits again, or has been cancelled where somebody asked for that meanwhile.
+        // It is queued again, or was cancelled if that was requested meanwhile.
         look_again();
         claims_.arrived();
     };
@@ -326,7 +326,7 @@ void JobService::tell_ended(const std::string& id) {
     followers_.changed(id);
 }
 
-/// Another has it, or it is gone: what came of it here counts for nothing.
+/// Another process has it, or it was deleted: the result here is dropped.
 void JobService::forget(const std::shared_ptr<HeldJob>& held) {
     held_.forget(held);
     claims_.freed();
@@ -363,9 +363,10 @@ bool JobService::drain(std::chrono::duration<double> grace) {
 namespace {
 
 constexpr int kPollsPerUpkeep = 2;
-constexpr int kMinPauseOverCounting = 20;  // of the time at most one part goes into counting a long queue
+constexpr int kMinPauseOverCounting = 20;  // counting a long queue takes at most one part in this number of the time
 constexpr std::chrono::milliseconds kShortest{1};
-constexpr std::chrono::milliseconds kMaxUnbegunTime{250};  // then others may have what no worker here has begun
+constexpr std::chrono::milliseconds kMaxUnbegunTime{250};  // after this time other processes may take claimed jobs that
+                                                           // no worker here has begun
 
 }  // namespace
 

@@ -1,4 +1,4 @@
-// The queue and its workers: takes tuning requests, has them computed, keeps what came out.
+// The queue and its workers: accepts tuning requests, computes them, stores the results.
 #pragma once
 
 #include <atomic>
@@ -28,28 +28,29 @@
 
 namespace tunewright::server {
 
-/// What has been happening, for metrics; the callbacks run on the threads of workers and of the store.
+/// Events, for metrics; the callbacks run on the threads of workers and of the store.
 struct JobObserver {
-    std::function<void(const Ended& ended)> ended;  ///< once for each job that a worker ended, when the store has it
-    std::function<void()> dropped;  ///< a result came too late: another process has the job, or had ended it
+    std::function<void(const Ended& ended)> ended;  ///< once for each job that a worker ended, when it is stored
+    std::function<void()> dropped;  ///< a result came too late: another process has the job, or has ended it
     std::function<void(const JobRecord& job)> begun;       ///< a worker begins with it
-    std::function<void()> limited;                         ///< a client has as many jobs under way as it may
-    std::function<void(const Recovery& found)> recovered;  ///< jobs whose process had gone, at the start and later
+    std::function<void()> limited;                         ///< a client has the maximum number of jobs waiting or
+                                                           ///< running
+    std::function<void(const Recovery& found)> recovered;  ///< jobs whose process had ended, at the start and later
 };
 
 struct JobSettings {
     std::string name;                     ///< of this process, for leases; "": a random one
-    std::size_t workers = 1;              ///< 0: this process takes requests and computes nothing
+    std::size_t workers = 1;              ///< 0: this process accepts requests and computes nothing
     std::size_t queue_limit = 10'000;     ///< single jobs that may wait, all processes together
     std::size_t entry_limit = 1'000'000;  ///< entries of batches that may wait
     std::size_t client_jobs = 0;          ///< single jobs of one client that may wait or run; 0: any number
-    int max_attempts = 10;                ///< a job that was interrupted that often is given up
+    int max_attempts = 10;                ///< a job that was interrupted this often fails
     std::chrono::milliseconds lease{10'000};
-    /// How often the store is looked at for what other processes have done, notices or none.
+    /// The interval at which the store is checked for changes by other processes, in addition to notices.
     std::chrono::milliseconds poll{500};
     Retention retention;  ///< how long ended jobs are kept
     std::string version;
-    /// Computes a job: api::run_job, or a test's own.
+    /// Computes a job: api::run_job, or a function of a test.
     std::function<api::JobOutcome(const api::StoredRequest& request, const RunControl& control)> run;
     std::function<UnixMs()> now;  ///< wall clock
     JobObserver observer;
@@ -62,7 +63,7 @@ struct Submission {
     StoreFault fault;  ///< of store_failed
 };
 
-/// Whom a job or a batch tells of its end, as a store keeps it.
+/// The notification target of a job or a batch, in the store's form.
 inline NotifyTarget target_of(const std::optional<api::Notify>& notify) {
     return notify ? NotifyTarget{notify->url, notify->secret_id} : NotifyTarget{};
 }
@@ -79,58 +80,57 @@ struct Order {
 
 class JobService {
 public:
-    /// Both outlive its work; when it goes the timer has been stopped and the store has gone or has answered each call.
+    /// Both references must outlive it; before its destruction the timer must have stopped, and the store must be
+    /// destroyed or have answered each call.
     JobService(JobStore& store, Timer& timer, JobSettings settings);
-    /// Stops as drain() does, without grace.
+    /// Stops like drain(), without grace.
     ~JobService();
     JobService(const JobService&) = delete;
     JobService& operator=(const JobService&) = delete;
 
-    /// Takes up what an earlier process left behind and starts the workers.
+    /// Recovers the jobs that an earlier process left, and starts the workers.
     Recovery start();
 
-    /// `done` runs once, when the job is durable or refused. Where `wait` > 0 and the job is created, `ended` runs
-    /// after it, once: when the job has ended (wherever it ran; with the job where that was here), or when `wait` is
-    /// over.
+    /// `done` runs once, when the job is durable or refused. If `wait` > 0 and the job is created, `ended` runs once
+    /// after it: when the job has ended (in any process; with the job if it was this one), or when `wait` is over.
     void submit(Order order, std::function<void(Submission)> done, WaitEnd ended);
 
     /// Reads throw StoreError.
     std::optional<JobView> find(const std::string& id);
-    /// The same without request and result.
+    /// The state without request and result.
     std::optional<JobState> state(const std::string& id);
     JobPage list(const JobQuery& query) { return store_.list(query); }
     /// A running job is asked to stop; it ends soon after, not necessarily before `done`.
     void cancel(const std::string& id, Done<CancelEffect> done);
     void remove(const std::string& id, Done<RemoveEffect> done) { store_.remove(id, std::move(done)); }
-    /// Waits like a job that has just come, where there is room for it. Throws StoreError.
+    /// Queues the job like a new one, if there is room. Throws StoreError.
     void requeue(const std::string& id, Done<RequeueEffect> done);
-    /// While the queue is paused no process on this store begins a job; those that run go on.
+    /// While the queue is paused no process on this store begins a job; running ones continue.
     void pause(bool paused, Done<bool> done);
 
-    /// Calls `ended` once: as soon as the job has ended (also if it had before), at the latest after `wait`.
+    /// Calls `ended` once: as soon as the job has ended (also if it already had), at the latest after `wait`.
     void wait(const std::string& id, std::chrono::duration<double> wait, WaitEnd ended);
 
-    /// As Followers::follow(); a job that is not there is `gone`.
+    /// Like Followers::follow(); a job that does not exist is `gone`.
     Followers::Key follow(const std::string& id, Followers::Listener listener) {
         return followers_.follow(id, std::move(listener));
     }
     void unfollow(Followers::Key key) { followers_.leave(key); }
 
-    // ---- for batches (batches.h), which put their entries into the store themselves
-    /// True where so many more entries may wait; they are counted as waiting from now on.
+    // ---- for batches (batches.h), which store their entries themselves True if this number of further entries may
+    // wait; they are counted as waiting from now on.
     bool room_for_entries(std::size_t count);
-    /// Entries have been queued: workers look, here and (by the store's notice) elsewhere.
+    /// Entries have been queued: workers check, here and (after the store's notice) elsewhere.
     void work_arrived();
-    /// Running jobs of these ids, as far as they run here, stop as cancelled.
+    /// Running jobs of these ids that run here are stopped as cancelled.
     void stop_running(const std::vector<std::string>& ids);
-    /// A batch that did not come to its end is dropped: its entries that run here stop, and nobody misses their
-    /// results.
+    /// An incomplete batch is dropped: its entries that run here stop, and their results are not needed.
     void batch_dropped(const std::string& batch);
-    /// Jobs have ended without a worker (a batch was cancelled): who waits for one of them looks again.
+    /// Jobs have ended without a worker (a batch was cancelled): waits for them check again.
     void look_again();
 
-    /// Takes no more work; running jobs get `grace` to end, then they are stopped and go back to the queue.
-    /// Whoever waits gets the job as it stands. Returns true where every worker has stopped within two seconds more.
+    /// Accepts no more work; running jobs get `grace` to end, then they are stopped and queued again. Waiting clients
+    /// get the job in its current state. Returns true if every worker has stopped within two more seconds.
     bool drain(std::chrono::duration<double> grace);
 
     /// Seconds after which a full queue has room again, from the pace of the latest jobs: 1 to 60.
@@ -138,13 +138,13 @@ public:
 
     std::size_t client_jobs() const { return settings_.client_jobs; }
     bool draining() const { return draining_; }
-    /// Jobs accepted and not yet running, those being accepted included.
+    /// Jobs accepted and not yet running, including those being accepted.
     std::size_t queued() const { return depth_.now().single + depth_.now().entries; }
     QueueDepth depth() const { return depth_.now(); }
     /// Held by this process.
     std::size_t running() const { return held_.size(); }
     std::size_t workers() const { return settings_.workers; }
-    /// Who follows jobs here.
+    /// Number of followers of jobs in this process.
     std::size_t followers() const { return followers_.count(); }
 
 private:
@@ -167,7 +167,7 @@ private:
     JobStore& store_;
     JobSettings settings_;
     std::atomic<bool> draining_ = false;
-    std::optional<bool> drained_;  ///< what drain() returned
+    std::optional<bool> drained_;  ///< return value of drain()
     StoreOutageLog outage_;
     QueueBound depth_;
     HeldJobs held_;
@@ -180,10 +180,10 @@ private:
     Workers workers_;
     std::atomic<bool> look_again_ = false;
     Sweeper sweeper_;
-    HeldJob::Clock::time_point next_beat_{};  ///< this and the next of the tending thread
+    HeldJob::Clock::time_point next_beat_{};  ///< this and the next member are used by the tending thread
     HeldJob::Clock::time_point next_upkeep_{};
-    HeldJob::Clock::time_point next_depth_{};  ///< of the looking thread
-    std::unique_ptr<PeriodicThread> tending_;  ///< beats, rescues, retries: queues writes, so it is never held up
+    HeldJob::Clock::time_point next_depth_{};  ///< used by the looking thread
+    std::unique_ptr<PeriodicThread> tending_;  ///< beats, rescues, retries: only queues writes, so it never blocks
     std::unique_ptr<PeriodicThread> looking_;  ///< reads the store, which may take long
 };
 

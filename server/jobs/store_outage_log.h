@@ -1,5 +1,5 @@
-// Notes in the log when the store cannot be used any more and when it can be used again: one line each, however many
-// calls fail, and though some work in between, as they do on a full disk.
+// Logs the beginning and the end of a store outage: one line each, however many calls fail, even if some succeed in
+// between, as on a full disk.
 #pragma once
 
 #include <atomic>
@@ -14,12 +14,12 @@ namespace tunewright::server {
 /// Its functions may be called from any thread.
 class StoreOutageLog {
 public:
-    /// A call has failed while doing `what`.
+    /// A call failed during `what`.
     void failed(std::string_view what, const StoreFault& fault) {
         failed_at_ = Clock::now();
         if (!down_.exchange(true)) log_error("the store cannot be used, " + std::string(what) + ": " + fault.detail);
     }
-    /// A call has been done.
+    /// A call succeeded.
     void worked() {
         if (!down_.load(std::memory_order_relaxed) || Clock::now() - failed_at_.load() < kMinQuietTime) return;
         if (down_.exchange(false)) log_info("the store can be used again");

@@ -9,14 +9,15 @@
 namespace tunewright::server {
 namespace {
 
-constexpr std::size_t kSweepSlice = 5000;  // which the store parts again, so that others come between
+constexpr std::size_t kSweepSlice = 5000;  // the store divides it into smaller slices, so that other writes run in
+                                           // between
 constexpr std::chrono::milliseconds kBetweenSlices{20};
 constexpr int kPauseShare = 4;  // of a slice's time: the pause before the next one
 constexpr std::chrono::milliseconds kMaxRest{10'000};
 constexpr std::chrono::seconds kMaxClockJump{60};
 constexpr std::chrono::hours kPauseAfterJump{1};
 
-/// Nothing where all are kept for ever.
+/// Empty if all are kept forever.
 std::optional<std::chrono::milliseconds> shortest(const Retention& retention) {
     std::optional<std::chrono::milliseconds> found;
     for (const auto& [status, age] : retention.by_state())
@@ -30,7 +31,7 @@ std::chrono::milliseconds Sweeper::sweep() {
     const std::optional<std::chrono::milliseconds> first = shortest(retention_);
     if (!first) return kMaxRest;
     if (!sweeping_ && more_.exchange(false)) next_ = Clock::now() + pause_.load();
-    // While a slice is under way: soon enough for the next one.
+    // While a slice is in progress: soon enough for the next one.
     if (sweeping_) return kBetweenSlices;
     if (!next_) next_ = Clock::now() + before_first();
     const auto wait = std::chrono::ceil<std::chrono::milliseconds>(*next_ - Clock::now());
@@ -53,14 +54,15 @@ std::chrono::milliseconds Sweeper::sweep() {
     return kBetweenSlices;
 }
 
-/// A machine that has just been started may have a wrong clock, which is set soon after, and a process that was not
-/// there has not seen a jump: what would be deleted waits as long as after one.
+/// A machine that has just been started may have a wrong clock, which is set soon after, and a new process has not seen
+/// a jump of the clock: the first deletion waits as long as after a jump.
 std::chrono::milliseconds Sweeper::before_first() const {
     if (store_.shared()) return std::chrono::milliseconds(0);
     return std::min<std::chrono::milliseconds>(kPauseAfterJump, *shortest(retention_));
 }
 
-/// Of the first sweep the log says what went: it comes all at once where the process, or its clock, was away for long.
+/// The log reports what the first sweep deleted: after a long absence of the process, or a jump of its clock, that is
+/// much at once.
 void Sweeper::swept(std::size_t count) {
     if (!first_) return;
     *first_ += count;
@@ -71,7 +73,7 @@ void Sweeper::swept(std::size_t count) {
     first_.reset();
 }
 
-/// A clock that was set says nothing about how long a job has been there. A shared store has a clock of its own.
+/// A clock that was set gives no information about the age of a job. A shared store has a clock of its own.
 bool Sweeper::clock_jumped(UnixMs now) {
     const auto jump =
         std::chrono::duration_cast<std::chrono::seconds>(drift_.since_last(now).value_or(std::chrono::milliseconds(0)));

@@ -1,5 +1,5 @@
-// Deletes jobs that ended longer ago than results are kept: thousands at a time while there are more, which the store
-// parts into slices, so that nobody waits behind them.
+// Deletes jobs that ended longer ago than the retention: thousands at a time while there are more, which the store
+// divides into slices, so that nobody waits for them.
 #pragma once
 
 #include <atomic>
@@ -16,7 +16,7 @@ public:
     Sweeper(JobStore& store, Retention retention, std::function<UnixMs()> now)
         : store_(store), retention_(retention), now_(std::move(now)) {}
 
-    /// Sweeps a slice where one is due. Returns when to call it again.
+    /// Sweeps a slice if one is due. Returns the time until the next call.
     std::chrono::milliseconds sweep();
 
 private:
@@ -28,12 +28,13 @@ private:
     JobStore& store_;
     Retention retention_;
     std::function<UnixMs()> now_;
-    std::optional<Clock::time_point> next_;  ///< this and the next of the caller's thread alone; nothing at the start
+    std::optional<Clock::time_point> next_;  ///< this and the next member are used by the caller's thread only; empty
+                                             ///< at the start
     WallDrift drift_;
     std::atomic<bool> sweeping_ = false;
     std::atomic<bool> more_ = false;
-    std::atomic<std::chrono::milliseconds> pause_{};  ///< before the next slice, where there is more
-    std::optional<std::size_t> first_ = 0;            ///< jobs gone so far with the first sweep since the start
+    std::atomic<std::chrono::milliseconds> pause_{};  ///< before the next slice, if there is more
+    std::optional<std::size_t> first_ = 0;            ///< jobs deleted so far by the first sweep since the start
 };
 
 }  // namespace tunewright::server

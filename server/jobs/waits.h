@@ -1,4 +1,4 @@
-// Who waits for the end of a job: a callback and a timer each, no thread.
+// Waits for the end of a job: a callback and a timer each, no thread.
 #pragma once
 
 #include <functional>
@@ -13,23 +13,23 @@
 
 namespace tunewright::server {
 
-/// Runs once: with the job where it ended in this process, so that nobody has to read it again; else with nothing.
+/// Runs once: with the job if it ended in this process, which saves reading it again; otherwise with null.
 using WaitEnd = std::function<void(const std::shared_ptr<const JobRecord>& job)>;
 
 class Waits {
 public:
-    /// The timer must have been stopped before the waits go.
+    /// The timer must have been stopped before the waits are destroyed.
     explicit Waits(Timer& timer) : timer_(timer) {}
 
     /// Calls `ended` once: when notify() names the job, or after `wait`.
     void add(const std::string& id, std::chrono::duration<double> wait, WaitEnd ended);
-    /// That job has ended.
+    /// The job has ended.
     void notify(const std::string& id) { tell(take(id), nullptr); }
-    /// The same; `job` makes it, where somebody waits.
+    /// The job has ended; `job` makes the record, if somebody waits.
     void notify(const std::string& id, const std::function<JobRecord()>& job);
-    /// Nobody waits any longer.
+    /// Ends all waits.
     void tell_all();
-    /// The jobs that are waited for, each once.
+    /// The ids of all jobs with a wait, each once.
     std::vector<std::string> ids() const;
 
 private:

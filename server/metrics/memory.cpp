@@ -14,7 +14,7 @@ namespace tunewright::server {
 namespace {
 
 constexpr std::size_t kDefault = 512 << 20;
-constexpr std::size_t kUnlimited = std::size_t{1} << 50;  // what the older kernels write for none is above
+constexpr std::size_t kUnlimited = std::size_t{1} << 50;  // older kernels write a larger number for no limit
 
 std::optional<std::size_t> limit_in(const std::string& file) {
     std::ifstream in(file);
@@ -23,7 +23,7 @@ std::optional<std::size_t> limit_in(const std::string& file) {
     return bytes;
 }
 
-/// The limit of the control group that the process is in, or of one above it.
+/// The limit of the control group of the process, or of one above it.
 std::optional<std::size_t> group_limit() {
     std::ifstream groups("/proc/self/cgroup");
     std::optional<std::size_t> min = limit_in("/sys/fs/cgroup/memory/memory.limit_in_bytes");

@@ -1,4 +1,4 @@
-// The memory that the process may take, and the memory that it has.
+// The memory limit of the process, and its memory use.
 #pragma once
 
 #include <atomic>
@@ -6,25 +6,24 @@
 
 namespace tunewright::server {
 
-/// Bytes that the process may take: `asked`, or where that is 0 the limit of its control group, or 512 MiB where there
-/// is none.
+/// The limit in bytes: `asked`, or if that is 0 the limit of its control group, or 512 MiB if there is none.
 std::size_t memory_limit(std::size_t asked);
 
 /// Answers of some 100 KiB come and go on many threads. Returned to the system each time, they cost a fifth of all jobs
-/// a second in page faults; what is larger than a MiB is returned. What a thread frees stays in its arena: there are
-/// few, or the peaks of many requests would add up.
+/// a second in page faults; blocks larger than a MiB are returned. Memory that a thread frees stays in its arena: the
+/// number of arenas is small, otherwise the peaks of many requests would add up.
 void keep_small_memory();
 
 class Memory {
 public:
     explicit Memory(std::size_t limit) : limit_(limit) { look(); }
 
-    /// Measures what the process has (its resident set); of more than half of the limit, what is free goes back to the
-    /// system. To be called once a second or so.
+    /// Measures the memory in use (the resident set); above half of the limit, free memory is returned to the system.
+    /// To be called about once a second.
     void look();
     std::size_t limit() const { return limit_; }
     std::size_t taken() const { return taken_; }
-    /// Nothing large should begin: more than eight tenths are taken.
+    /// True if more than eight tenths are in use: nothing large should begin.
     bool tight() const { return taken_ > limit_ / 10 * 8; }
 
 private:

@@ -32,7 +32,7 @@ auto& family(Builder builder, prometheus::Registry& registry, const char* name, 
     return builder.Name(name).Help(help).Register(registry);
 }
 
-/// Of what may take an hour.
+/// For durations of up to an hour.
 const Histogram::BucketBoundaries kLongTimes{0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1, 3, 10, 30, 100, 300, 1000, 3600};
 
 double seconds_since(const std::optional<UnixMs>& then, UnixMs now) {
@@ -41,7 +41,7 @@ double seconds_since(const std::optional<UnixMs>& then, UnixMs now) {
 
 }  // namespace
 
-/// Histograms of times, one for each value of a label. The family looks one up by building a map of labels; for each
+/// Histograms of times, one for each value of a label. The family finds one by building a map of labels; for each
 /// request that is too slow.
 class TimesByLabel {
 public:
@@ -70,7 +70,7 @@ private:
 
 namespace {
 
-/// A counter that somebody else counts.
+/// Sets a counter from an external count.
 void set(Counter& counter, double value) {
     if (const double more = value - counter.Value(); more > 0) counter.Increment(more);
 }
@@ -145,7 +145,7 @@ struct Metrics::Families {
     Gauge& threads = gauge("process_threads", "Threads of this process");
     Gauge& started = gauge("process_start_time_seconds", "Start of this process, in seconds since 1970");
 
-    // Found again here for the reason for which TimesByLabel keeps its histograms.
+    // Stored here for the same reason as the histograms in TimesByLabel.
     std::mutex mutex;
     std::map<std::tuple<std::string, std::string, int>, Counter*, std::less<>> request_counters;
 };

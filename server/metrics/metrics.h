@@ -1,4 +1,4 @@
-// What the service counts, in Prometheus' text form.
+// The metrics of the service, in Prometheus' text form.
 #pragma once
 
 #include <memory>
@@ -13,13 +13,13 @@ namespace tunewright::server {
 
 enum class DeliveryOutcome;
 
-/// How things stand when somebody looks. Nothing in it waits for the store: what the queue holds is as last counted.
+/// The current state for a scrape. No value waits for the store: those of the queue are from its last count.
 struct Standing {
     QueueDepth queue;
-    UnixMs now = 0;  ///< of the clock that the queue's moments are of
+    UnixMs now = 0;  ///< of the clock to which the queue's times refer
     std::size_t running = 0, workers = 0;
     http::Occupancy clients;
-    std::size_t memory_limit = 0;  ///< bytes that the process may take
+    std::size_t memory_limit = 0;  ///< bytes that the process may use
     std::size_t event_streams = 0;
     std::size_t synchronous_waiting = 0;  ///< calls that wait for their turn to be computed
     std::size_t batch_tasks_waiting = 0;  ///< pieces of batches that wait for a thread
@@ -39,15 +39,15 @@ public:
     void count(JobStatus status, const std::string& method, double seconds);
     void count_dropped();
     void count_limited();
-    /// A worker begins with a job that was accepted so long ago.
+    /// A worker begins a job that was accepted this long ago.
     void count_begun(bool entry_of_batch, double waited_s);
     void count(const Recovery& found);
-    /// A try to tell somebody of an end.
+    /// An attempt to deliver a notification.
     void count(DeliveryOutcome outcome);
-    /// An operation of the store; its name must be one of a few.
+    /// An operation of the store; its name must be one of a small set.
     void count_store(std::string_view operation, double seconds, bool done);
 
-    /// Everything counted so far, and how things stand.
+    /// All counters, and the current state.
     std::string text(const Standing& standing);
 
 private:

@@ -22,8 +22,8 @@ double read_boot_time() {
     return 0;
 }
 
-/// Seconds since 1970 at which the system started; 0 where that cannot be read. It is kept: the system works it out
-/// from a clock that may be set, and the start of this process must not move.
+/// Seconds since 1970 at which the system started; 0 if that cannot be read. It is stored: the system computes it from
+/// a clock that may be set, and the start time of this process must not change.
 double boot_time() {
     static std::atomic<double> known = 0;
     if (known == 0) known = read_boot_time();
@@ -43,11 +43,11 @@ ProcessFigures process_figures() {
     std::ifstream file("/proc/self/stat");
     std::string line;
     std::getline(file, line);
-    // The second field is the program's name in brackets, which may hold anything.
+    // The second field is the program's name in brackets, which may contain any character.
     const std::size_t name_end = line.rfind(')');
     if (name_end == std::string::npos) return figures;
     std::istringstream fields(line.substr(name_end + 1));
-    // Of proc(5), from the third on.
+    // Fields of proc(5), from the third on.
     constexpr int kUser = 14, kSystem = 15, kThreads = 20, kStart = 22, kVirtual = 23, kResident = 24;
     const auto ticks = static_cast<double>(::sysconf(_SC_CLK_TCK));
     std::string field;

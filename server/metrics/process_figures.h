@@ -1,4 +1,4 @@
-// What the system says of this process, under the names that every exporter of Prometheus uses.
+// The system's figures of this process, under the names that all exporters of Prometheus use.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@ struct ProcessFigures {
     std::size_t threads = 0;
 };
 
-/// From /proc; what cannot be read there stays 0.
+/// From /proc; figures that cannot be read stay 0.
 ProcessFigures process_figures();
 
 }  // namespace tunewright::server

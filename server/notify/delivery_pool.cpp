@@ -35,7 +35,7 @@ bool DeliveryPool::add(Task task) {
     return true;
 }
 
-/// One thread more; where the system has none, those that there are do the work, or it comes again.
+/// Starts another thread; if the system has none, the existing threads do the work, or it is offered again later.
 void DeliveryPool::grow() {
     try {
         threads_.emplace_back([this] { work(); });
@@ -44,7 +44,7 @@ void DeliveryPool::grow() {
     }
 }
 
-/// The first that may run. What has waited for too long is dropped on the way.
+/// The first task that may run. Tasks that have waited too long are dropped on the way.
 bool DeliveryPool::pick(Task& task) {
     const auto now = Clock::now();
     for (auto it = waiting_.begin(); it != waiting_.end();) {

@@ -1,5 +1,5 @@
-// A few threads that run tasks which wait for others' machines: eight at a time, two for each of those, so that a slow
-// one holds up nobody but those who wait for it.
+// A few threads for tasks that wait for other machines: eight at a time, two per machine, so that a slow machine delays
+// only its own tasks.
 #pragma once
 
 #include <chrono>
@@ -19,13 +19,14 @@ public:
     using Clock = std::chrono::steady_clock;
     static constexpr std::size_t kThreads = 8, kMaxPerMachine = 2;
     static constexpr std::size_t kMaxWaiting = 128;  ///< tasks that may wait
-    /// A machine for which a task took so long is slow until one is quicker; no more than so many wait for it.
+    /// A machine for which a task took this long is slow until one is quicker; only
+    /// kMaxWaitingOfSlow tasks wait for it.
     static constexpr std::chrono::seconds kSlowTime{1};
     static constexpr std::size_t kMaxWaitingOfSlow = 2;
 
     struct Task {
         std::string machine;
-        Clock::time_point latest;  ///< it is dropped where it has not begun by then
+        Clock::time_point latest;  ///< the task is dropped if it has not begun by then
         std::function<void()> run;
     };
 
@@ -34,9 +35,10 @@ public:
     std::size_t room() const;
     /// Tasks that wait or run.
     std::size_t size() const;
-    /// False where it is dropped: no room, none for its machine, or all has been stopped.
+    /// False if it is dropped: no room, no room for its machine, or the pool has stopped.
     bool add(Task task);
-    /// Drops what waits. True where all that runs has ended within `patience`; else it is not to be destroyed.
+    /// Drops waiting tasks. True if all running ones have ended within `patience`; otherwise the pool must not be
+    /// destroyed.
     bool stop(std::chrono::milliseconds patience);
 
 private:
@@ -54,7 +56,7 @@ private:
     mutable std::mutex mutex_;
     std::condition_variable changed_;
     std::deque<Task> waiting_;
-    std::map<std::string, Machine> machines_;  ///< those with tasks, and the slow ones
+    std::map<std::string, Machine> machines_;  ///< those with tasks, and slow ones
     std::size_t running_ = 0;
     bool stopping_ = false;
     std::vector<std::thread> threads_;

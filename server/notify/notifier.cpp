@@ -12,7 +12,7 @@
 namespace tunewright::server {
 namespace {
 
-constexpr std::chrono::milliseconds kWatchInterval{500};  ///< between looks at what is under way
+constexpr std::chrono::milliseconds kWatchInterval{500};  ///< interval of checks of the requests in progress
 constexpr int kHttpGone = 410;
 
 static_assert(Notifier::kHold > 2 * Sender::kLongest);
@@ -21,7 +21,7 @@ std::string what_ended(const Delivery& delivery) {
     return delivery.batch.empty() ? "job " + delivery.job : "batch " + delivery.batch;
 }
 
-/// All of a url that a log may show: the rest of it may be a secret.
+/// The part of a URL that a log may show: the rest may be a secret.
 std::string shown(const std::string& url) {
     const auto read = parse_address(url);
     const auto* address = std::get_if<WebAddress>(&read);
@@ -33,7 +33,7 @@ double chance() {
     return std::uniform_real_distribution<double>()(source);
 }
 
-/// The same trace, in which this note is a span of its own (W3C Trace Context).
+/// The same trace, with a span of its own for this notification (W3C Trace Context).
 std::string continued(const std::string& traceparent) {
     constexpr std::size_t kSpanOffset = 36, kSpanLength = 16;
     return std::string(traceparent).replace(kSpanOffset, kSpanLength, random_hex(kSpanLength / 2));
@@ -47,7 +47,8 @@ Notifier::Notifier(JobStore& store, NotifyPolicy& policy, NotifierSettings setti
 Notifier::~Notifier() { stop(2 * Sender::kLongest); }
 
 void Notifier::start() {
-    // Others on the same store may be allowed what this process is not: it leaves their notes alone.
+    // Other processes on the same store may be allowed to send where this one is not: it leaves those notifications to
+    // them.
     if (store_.shared() && !policy_.allows_any()) return;
     const std::lock_guard lock(mutex_);
     looking_ = std::make_unique<PeriodicThread>([this] { return look(); });
@@ -98,12 +99,12 @@ void Notifier::take() {
         const auto& due = std::get<std::vector<Delivery>>(outcome);
         taken(due, when);
         taking_ = false;
-        // There may be more, of which some are for others.
+        // There may be more, some of them for other processes.
         if (due.size() == max) wake();
     });
 }
 
-/// What finds no place here comes again when its hold is over.
+/// Notifications that find no room here are offered again when their hold is over.
 void Notifier::taken(const std::vector<Delivery>& due, DeliveryPool::Clock::time_point when) {
     if (closed_) return;
     for (const Delivery& delivery : due)
@@ -124,7 +125,7 @@ void Notifier::tell(const Delivery& delivery) {
         log_error(what_ended(delivery) + " cannot be read, to tell of its end: " + error.what());
         return;
     }
-    // Deleted, or begun anew, meanwhile: there is no end to tell of.
+    // Deleted, or queued again, meanwhile: there is no end to report.
     if (!news) return settle(delivery, std::nullopt);
     const auto begun = DeliveryPool::Clock::now();
     const Reply reply = send(delivery, where, *news);
@@ -141,7 +142,7 @@ void Notifier::tell(const Delivery& delivery) {
     failed(delivery, where.origin(), why, read_retry_after(reply.retry_after, settings_.now()));
 }
 
-/// Nothing where there is nothing to tell.
+/// Empty if there is nothing to report.
 std::optional<Notifier::News> Notifier::news_of(const Delivery& delivery) {
     JsonObject body;
     if (delivery.batch.empty()) {
@@ -184,7 +185,8 @@ Reply Notifier::send(const Delivery& delivery, const WebAddress& address, const 
 
 void Notifier::failed(const Delivery& delivery, const std::string& where, const std::string& why,
                       std::optional<std::chrono::seconds> retry_after) {
-    // It was cut off here, or not even begun: that was no fault of the receiver's, and it comes again after its hold.
+    // The attempt was cut off here, or not even begun: the receiver has not failed, and the notification is offered
+    // again after its hold.
     if (closed_) return;
     const auto pause = pause_after({delivery.tries, delivery.created_at, settings_.now(), chance(), retry_after});
     if (!pause) return give_up(delivery, why);
@@ -201,10 +203,10 @@ void Notifier::give_up(const Delivery& delivery, const std::string& why) {
     settle(delivery, std::nullopt);
 }
 
-/// Another process, or this one when it is started anew, may be allowed what this one is not: a note waits for it as
-/// long as for a receiver.
+/// Another process, or this one after a restart, may be allowed to send where this one is not: a notification waits for
+/// that as long as for a receiver.
 void Notifier::leave_to_others(const Delivery& delivery, const std::string& why) {
-    // By chance, so that not the same process comes first each time.
+    // Random, so that it is not always the same process that comes first.
     const auto min = std::chrono::duration_cast<std::chrono::milliseconds>(kPoll * (0.3 + 2 * chance()));
     const auto pause = pause_for_others({0, delivery.created_at, settings_.now(), chance()}, min);
     if (!pause) return give_up(delivery, why);

@@ -1,6 +1,5 @@
-// Tells those who asked for it that a job or a batch has ended. What is to be told stands in the store, from the
-// transaction on that ends the job; here it is taken out, sent, and settled: at least once, in any process on the
-// store.
+// Delivers notifications of ended jobs and batches. A notification is stored in the transaction that ends its job; here
+// it is read, sent and settled: at least once, in any process on the store.
 #pragma once
 
 #include <atomic>
@@ -22,13 +21,13 @@ namespace tunewright::server {
 
 enum class DeliveryOutcome {
     delivered,
-    failed,    ///< it is tried again
-    given_up,  ///< it is not
+    failed,    ///< failed, and will be tried again
+    given_up,  ///< failed, and will not be tried again
 };
 
 struct NotifierSettings {
-    std::function<UnixMs()> now;  ///< by the store's clock
-    /// An ended job, or batch, as `data` shows it.
+    std::function<UnixMs()> now;  ///< time of the store's clock
+    /// An ended job, or batch, in the form of `data`.
     std::function<std::string(const JobRecord& job)> job_text;
     std::function<std::string(const BatchSummary& batch)> batch_text;
     std::function<void(DeliveryOutcome outcome)> count;
@@ -37,25 +36,25 @@ struct NotifierSettings {
 
 class Notifier {
 public:
-    /// How often the store is asked, when nobody wakes it.
+    /// The interval at which the store is asked, without a wake-up.
     static constexpr std::chrono::milliseconds kPoll{1000};
-    /// What is taken here is nobody else's for so long: longer than the longest try, so that no other process sends it
-    /// at the same time. A process that dies gives it back by that.
+    /// A notification taken here is reserved for this long: longer than the longest attempt, so that no other process
+    /// sends it at the same time. If the process dies, it becomes available again after that.
     static constexpr std::chrono::milliseconds kHold{45'000};
 
-    /// All must outlive it, and the store must have answered each call when it goes.
+    /// All references must outlive it, and the store must have answered each call before its destruction.
     Notifier(JobStore& store, NotifyPolicy& policy, NotifierSettings settings);
     ~Notifier();
     Notifier(const Notifier&) = delete;
     Notifier& operator=(const Notifier&) = delete;
 
     void start();
-    /// Something has ended here that somebody may want to hear of.
+    /// A job or batch has ended here that may have a notification.
     void wake();
-    /// Nothing more is begun; what is under way goes on.
+    /// Starts no more deliveries; those in progress continue.
     void close();
-    /// Ends what is under way, which then comes again. True where that was done within `patience`; else it is not to be
-    /// destroyed.
+    /// Ends deliveries in progress, which are then offered again. True if that was done within `patience`; otherwise
+    /// the object must not be destroyed.
     bool stop(std::chrono::milliseconds patience);
 
 private:
@@ -70,7 +69,7 @@ private:
     void tell(const Delivery& delivery);
     struct News {
         std::string body;
-        std::string traceparent;  ///< of the call that posted what has ended; "" if it had none
+        std::string traceparent;  ///< of the call that posted the job; "" if it had none
     };
     std::optional<News> news_of(const Delivery& delivery);
     Reply send(const Delivery& delivery, const WebAddress& address, const News& news);
@@ -87,9 +86,9 @@ private:
     std::atomic<bool> closed_ = false;
     std::atomic<bool> taking_ = false;
     std::atomic<bool> store_failed_ = false;
-    std::atomic<bool> left_some_ = false;  ///< to others, which the log has said
+    std::atomic<bool> left_some_ = false;  ///< notifications were left to other processes, which the log has reported
     std::mutex mutex_;
-    std::map<std::int64_t, std::shared_ptr<UnderWay>> under_way_;  ///< by the delivery
+    std::map<std::int64_t, std::shared_ptr<UnderWay>> under_way_;  ///< by the number of the delivery
     DeliveryPool delivery_pool_;
     std::unique_ptr<PeriodicThread> looking_;
 };

@@ -1,4 +1,4 @@
-// What the operator allows in telling others: where to, and signed by what.
+// The operator's policy for notifications: allowed targets, and secrets for signatures.
 #pragma once
 
 #include <optional>
@@ -15,18 +15,18 @@ namespace tunewright::server {
 
 class NotifyPolicy {
 public:
-    /// `secrets_file` may be "". Throws std::invalid_argument with a sentence where one of them cannot be used.
+    /// `secrets_file` may be "". Throws std::invalid_argument with a sentence if a target or the file cannot be used.
     NotifyPolicy(const std::vector<std::string>& targets, const std::string& secrets_file);
 
-    /// 422 where this may not be accepted, with every fault and its cure. `prefix` is what stands before url and
-    /// secret_id where the caller writes them: "notify." in a request, "notify_" in parameters.
+    /// 422 for a notification that is not allowed, with every fault and its cure. `prefix` precedes url and secret_id
+    /// in the caller's notation: "notify." in a request, "notify_" in parameters.
     std::optional<api::Problem> refuse(const api::Notify& notify, const std::string& prefix);
 
-    /// The address, where it is allowed now; else why it is not, as the end of a sentence.
+    /// The address, if it is allowed now; else the reason, as the end of a sentence.
     std::variant<WebAddress, std::string> address_of(const std::string& url) const;
-    /// None where no secret has that name now.
+    /// Empty if no secret has that name now.
     std::vector<std::string> secrets(std::string_view name);
-    /// False where nobody may be told.
+    /// False if no target is allowed.
     bool allows_any() const { return !targets_.empty(); }
 
 private:

@@ -20,14 +20,14 @@ constexpr std::array<seconds, 6> kPauses{seconds(5),
                                          std::chrono::hours(5),
                                          std::chrono::hours(10)};
 constexpr double kJitter = 0.1;
-constexpr int kShareOfAge = 8;  // of a note that is left to others
+constexpr int kShareOfAge = 8;  // of the age of a notification that is left to other processes
 constexpr seconds kMaxRetryAfter = std::chrono::hours(1);
 
 milliseconds jittered(milliseconds pause, double chance) {
     return milliseconds(std::llround(static_cast<double>(pause.count()) * (1 + kJitter * (2 * chance - 1))));
 }
 
-/// The last try comes when the time is over.
+/// The last attempt is made when the time is over.
 std::optional<milliseconds> within_time(const FailedTry& failed, milliseconds pause) {
     const milliseconds left(failed.end + milliseconds(kTellingTime).count() - failed.now);
     if (left.count() <= 0) return std::nullopt;

@@ -1,4 +1,4 @@
-// When somebody who could not be told is tried again, and when he is given up.
+// Times of the attempts of a notification, and its end.
 #pragma once
 
 #include <chrono>
@@ -9,29 +9,29 @@
 
 namespace tunewright::server {
 
-/// A try that has failed.
+/// A failed attempt.
 struct FailedTry {
-    int earlier = 0;                                       ///< tries that failed before it
+    int earlier = 0;                                       ///< failed attempts before it
     UnixMs end = 0;                                        ///< of the job or batch
-    UnixMs now = 0;                                        ///< when it failed
-    double chance = 0.5;                                   ///< from 0 to 1, for the jitter
-    std::optional<std::chrono::seconds> retry_after = {};  ///< what the receiver asked for
+    UnixMs now = 0;                                        ///< time of the failure
+    double chance = 0.5;                                   ///< random, from 0 to 1, for the jitter
+    std::optional<std::chrono::seconds> retry_after = {};  ///< as the receiver asked
 };
 
-/// How long after the end somebody is tried.
+/// The time after the end in which delivery is attempted.
 constexpr std::chrono::hours kTellingTime{24};
 
-/// The pause until the next try: 5 s, 5 min, 30 min, 2 h, 5 h, then 10 h each, 10 % more or less, so that those who
-/// failed together do not come back together; longer where the receiver asks for it, up to an hour. The last try comes
-/// when the time is over. Nothing after that: he is given up.
+/// The pause until the next attempt: 5 s, 5 min, 30 min, 2 h, 5 h, then 10 h each, 10 % more or less, so that attempts
+/// which failed together are not repeated together; longer if the receiver asks for it, up to an hour. The last attempt
+/// is made when the time is over. Empty after that: the notification is given up.
 std::optional<std::chrono::milliseconds> pause_after(const FailedTry& failed);
 
-/// The pause of a note that this process may not send: an eighth of the time since the end, 10 % more or less, and not
-/// below `min`, so that whoever may send it finds it soon; at most 5 min, so that it is found when settings change.
-/// Nothing when the time is over.
+/// The pause of a notification that this process may not send: an eighth of the time since the end, 10 % more or less,
+/// and at least `min`, so that a process which may send it finds it soon; at most 5 min, so that it is found when
+/// settings change. Empty when the time is over.
 std::optional<std::chrono::milliseconds> pause_for_others(const FailedTry& left, std::chrono::milliseconds min);
 
-/// What the field Retry-After says: seconds, or a moment (RFC 9110, 10.2.3); nothing where it says neither.
+/// Parses the field Retry-After: seconds, or a date (RFC 9110, 10.2.3); empty if it is neither.
 std::optional<std::chrono::seconds> read_retry_after(std::string_view field, UnixMs now);
 
 }  // namespace tunewright::server

@@ -10,7 +10,7 @@
 namespace tunewright::server {
 namespace {
 
-constexpr std::size_t kMaxReadBytes = 64 * 1024;  ///< of an answer's body, of which nothing is looked at
+constexpr std::size_t kMaxReadBytes = 64 * 1024;  ///< of an answer's body, which is ignored
 
 std::unique_ptr<httplib::ClientImpl> client_for(const WebAddress& address) {
     if (!address.tls) return std::make_unique<httplib::ClientImpl>(address.host, address.port);
@@ -84,7 +84,7 @@ Reply Sender::send(const OutgoingNote& note) {
     httplib::Response response;
     httplib::Error error = httplib::Error::Success;
     const bool done = client->send(request, response, error);
-    // Once the head is there the answer is known, whatever becomes of its body.
+    // Once the head has arrived the answer is known, even if its body fails.
     if (reply.status == 0) {
         if (done)
             reply.status = response.status;

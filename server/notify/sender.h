@@ -1,5 +1,5 @@
-// One POST to an address outside: over HTTP or verified TLS, without following redirects, within a time that no
-// receiver can stretch.
+// One POST to an external address: over HTTP or verified TLS, without following redirects, with a time limit that no
+// receiver can extend.
 #pragma once
 
 #include <chrono>
@@ -20,15 +20,15 @@ struct OutgoingNote {
 };
 
 struct Reply {
-    int status = 0;           ///< 0: there was none
-    std::string fault;        ///< why, as the end of a sentence: "it cannot be reached"
+    int status = 0;           ///< 0: no answer
+    std::string fault;        ///< the reason, as the end of a sentence: "it cannot be reached"
     std::string retry_after;  ///< the field; "" if none
 };
 
 class Sender {
 public:
     static constexpr std::chrono::seconds kConnect{5}, kReadWrite{10};
-    /// Of a try as a whole, from its name's look-up on.
+    /// Time limit of a whole attempt, including the look-up of the name.
     static constexpr std::chrono::seconds kLongest{20};
 
     Sender() = default;
@@ -36,9 +36,9 @@ public:
     Sender(const Sender&) = delete;
     Sender& operator=(const Sender&) = delete;
 
-    /// Returns when there is an answer, or none. To be called once.
+    /// Returns with the answer, or after the failure. To be called once.
     Reply send(const OutgoingNote& note);
-    /// From any thread, at any time: send() returns soon after, except out of the look-up of a name.
+    /// From any thread, at any time: send() returns soon after, except during the look-up of a name.
     void cut();
 
 private:
@@ -46,7 +46,7 @@ private:
 
     std::mutex mutex_;
     bool cut_ = false;
-    std::vector<int> sockets_;  ///< duplicates, so that none of them is closed while it is cut
+    std::vector<int> sockets_;  ///< duplicates, so that none is closed while it is shut down
 };
 
 }  // namespace tunewright::server

@@ -27,7 +27,7 @@ int hex_digit(char c) {
     return c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
 }
 
-/// What may stand in a url at all; what some programs mend, and so read differently, may not.
+/// Checks the characters of a URL: those that some programs correct, and so read differently, are refused.
 Fault check_characters(std::string_view url) {
     constexpr std::string_view refused = "\\\"<>^`{|}";
     for (const char c : url) {
@@ -39,7 +39,7 @@ Fault check_characters(std::string_view url) {
     return std::nullopt;
 }
 
-/// Whether the segment, decoded, is one that leads elsewhere; a ; ends what servers take for its name.
+/// True if the decoded segment is . or .., also before a ; because some servers end the name there.
 bool is_dots(std::string_view segment) {
     segment = segment.substr(0, segment.find(';'));
     return segment == "." || segment == "..";
@@ -62,7 +62,7 @@ Fault check_path(std::string_view path) {
         const int low = high >= 0 ? hex_digit(path[i + 2]) : -1;
         if (low < 0) return "each % in it must be followed by two hexadecimal digits";
         const int code = 16 * high + low;
-        // Decoded by one program and not by the next, these would change where the path leads.
+        // If one program decodes these and the next does not, the path leads elsewhere.
         if (code < 0x20 || code == 0x7F || code == '/' || code == '\\' || code == '%')
             return "its path must not contain / \\ % or control characters as % codes";
         segment += static_cast<char>(code);

@@ -11,12 +11,12 @@
 namespace tunewright::server {
 namespace {
 
-constexpr std::size_t kMaxRows = 200, kFirstRows = 20;  // the store gives fewer where they are long
+constexpr std::size_t kMaxRows = 200, kFirstRows = 20;  // the store returns fewer if they are long
 constexpr std::size_t kPageBytes = 512 * 1024;
-constexpr std::chrono::seconds kMaxJobWait{10};  // for one job; then the client and the row are looked at again
+constexpr std::chrono::seconds kMaxJobWait{10};  // for one job; then the client and the row are checked again
 constexpr std::chrono::milliseconds kRetryInterval{500};
 
-/// One answer.
+/// The rows of one answer.
 class Results {
 public:
     Results(ResultsQuestion question, Batches& batches, JobService& jobs, http::BodyWriter& out)
@@ -39,7 +39,7 @@ public:
 private:
     enum class Next { page, wait, end, broken };
 
-    /// On the lane, which is held until there is room for the page: no others are made meanwhile.
+    /// Runs on the lane, which is held until there is room for the page: no other pages are made meanwhile.
     Next page(std::string& text) {
         try {
             const Next next = read_page(text);
@@ -68,12 +68,13 @@ private:
         return !rows.empty() && rows.size() == max ? Next::page : after_last(!rows.empty());
     }
 
-    /// The store has given fewer rows than were asked for: they were long, or there are no more.
+    /// The store returned fewer rows than requested: they were long, or there are no more.
     Next after_last(bool some) {
         const auto batch = batches_.find(question_.batch);
         if (!batch) return deleted();
         if (next_ < static_cast<std::int64_t>(batch->total))
-            // Entries may have come between the two looks; not seen at the second one either, they are gone.
+            // Entries may have arrived between the two reads; if the second read does not find them either, they were
+            // deleted.
             return std::exchange(missed_, !some) && !some ? deleted() : Next::page;
         return question_.follow && !batch->sealed ? Next::wait : Next::end;
     }
@@ -83,8 +84,8 @@ private:
         return Next::broken;
     }
 
-    /// For the job before whose row nothing may be sent, or for entries that have not come. False where the client has
-    /// gone, or the service stops and rows are missing: the client is to see that.
+    /// Waits for the job whose row is next, or for entries that have not arrived. False if the client has disconnected,
+    /// or if the service stops while rows are missing: the client must notice that.
     bool wait() {
         if (jobs_.draining() || out_.gone() || (question_.admitted && !question_.admitted())) return false;
         if (awaited_.empty())
@@ -107,8 +108,8 @@ private:
     http::BodyWriter& out_;
     std::int64_t next_;
     std::size_t rows_ = kFirstRows;
-    bool missed_ = false;  ///< the last look found no row where the batch has some
-    std::string awaited_;  ///< the job that is waited for
+    bool missed_ = false;  ///< the last read found no row although the batch has some
+    std::string awaited_;  ///< the job whose end is awaited
 };
 
 }  // namespace

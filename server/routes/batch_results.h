@@ -1,4 +1,4 @@
-// Sends the results of a batch while it reads them from the store: page by page, as fast as the client takes them.
+// Sends the results of a batch while it reads them from the store: page by page, as fast as the client reads.
 #pragma once
 
 #include <functional>
@@ -11,20 +11,21 @@
 namespace tunewright::server {
 
 struct ResultsQuestion {
-    std::string batch;                    ///< its id; the caller has found it and may see it
+    std::string batch;                    ///< its id; the caller has checked that it exists and is visible
     bool csv = false;                     ///< one line for each controller; else NDJSON, one line for each job
-    bool follow = false;                  ///< each row is sent when its job has ended, and the last one ends the answer
+    bool follow = false;                  ///< each row is sent when its job has ended; the answer ends after the last
+                                          ///< row
     std::int64_t from = 0;                ///< index of the first row
-    std::function<bool()> admitted = {};  ///< false where the caller's key is known no longer; may be empty
+    std::function<bool()> admitted = {};  ///< false if the caller's key has been removed; may be empty
 };
 
-/// The body of GET /v1/batches/{id}/results: rows until all are out, the client has gone, the batch is deleted or the
-/// store fails, which the client sees, because the answer then lacks its end; the log says why. Pages are read on
-/// `lane`.
+/// The body of GET /v1/batches/{id}/results: rows until all are sent, the client disconnects, the batch is deleted or
+/// the store fails. In the last two cases the client notices that the answer lacks its end, and the log has the reason.
+/// Pages are read on `lane`.
 ///
-/// Memory stays bounded however large the batch is: the next page is read when the client has taken the one before.
-/// With `follow`, rows come in the order of the batch: a row waits for the jobs before it. All that is passed by
-/// reference must outlive the answer.
+/// Memory is bounded for a batch of any size: the next page is read when the client has read the previous one. With
+/// `follow`, rows come in the order of the batch: a row waits for the jobs before it. References must outlive the
+/// answer.
 http::BodyProducer results_of(ResultsQuestion question, Batches& batches, JobService& jobs, Executor& lane);
 
 }  // namespace tunewright::server

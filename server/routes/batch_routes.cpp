@@ -30,7 +30,7 @@ bool may_see(const http::Request& request, const BatchSummary& batch) {
     return !owner || *owner == batch.owner;
 }
 
-/// The batch of the call, as `answer` shows it.
+/// The batch of the call, in the form that `answer` gives it.
 template <class Answer>
 Response about_batch(Batches& batches, const http::Request& request, const std::string& id, const Answer& answer) {
     return guarded([&] {
@@ -53,7 +53,7 @@ std::optional<Response> refuse_stranger(Batches& batches, const Call& call) {
 
 // ---- POST /v1/batches ------------------------------------------------------------------------------------------
 
-/// The form that the media type names; nothing and no refusal where the body's first bytes show it.
+/// The form according to the media type; empty without a refusal if the body's first bytes decide.
 std::optional<Response> read_form(const http::Request& request, std::optional<api::BatchForm>& form) {
     const std::string type = http::media_type(request);
     if (type.empty() || type == "application/x-www-form-urlencoded" || type == "application/octet-stream")
@@ -73,7 +73,7 @@ std::optional<Response> read_form(const http::Request& request, std::optional<ap
     return std::nullopt;
 }
 
-/// Whom to tell, where the parameters say it.
+/// Reads and checks the notification in the parameters.
 std::optional<Response> judge_notify(NotifyPolicy& policy, const http::Request& request, BatchOrder& order) {
     order.question.judge_notify = [&policy](const api::Notify& notify) { return policy.refuse(notify, "notify."); };
     const auto url = request.query.find("notify_url"), secret = request.query.find("notify_secret_id");
@@ -184,7 +184,7 @@ Response list_batches(Batches& batches, ComputeSlots& listers, const Call& call)
                    [&] { return http::json_response(batch_page_json(batches.list(owner, limit, before), limit)); });
 }
 
-/// What the call asks of the results; a refusal where that is not possible.
+/// Reads the parameters for the results; a refusal if they are not valid.
 std::optional<Response> read_results_question(const http::Request& request, ResultsQuestion& question) {
     api::Problem problem = bad_parameters("results");
     std::string format;

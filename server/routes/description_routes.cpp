@@ -11,7 +11,7 @@ namespace {
 
 using http::Call;
 
-/// A text that does not change while the process lives.
+/// A text that is constant for the life of the process.
 http::Handler constant(std::string body) {
     return [text = http::ConstantBody(std::move(body), "application/json")](const Call& call) {
         if (auto refusal = refuse_form(call.request)) return *std::move(refusal);
@@ -19,7 +19,7 @@ http::Handler constant(std::string body) {
     };
 }
 
-/// What the path's id names.
+/// The description of the item whose id is in the path.
 http::Handler one_of(api::Answer (*describe)(std::string_view)) {
     return [describe](const Call& call) {
         if (auto refusal = refuse_form(call.request)) return *std::move(refusal);

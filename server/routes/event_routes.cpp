@@ -21,11 +21,11 @@ namespace {
 using http::Call;
 using http::Response;
 
-constexpr std::chrono::milliseconds kPollInterval{1000};  // for clients that have gone
-constexpr int kHeartbeat = 15;                            // looks
+constexpr std::chrono::milliseconds kPollInterval{1000};  // between checks for clients that have disconnected
+constexpr int kHeartbeat = 15;                            // poll intervals
 constexpr const char* kRetry = "retry: 2000\n\n";
 
-/// Names one state of progress alike in every process: attempt and a sum of the text.
+/// Identifies a state of progress, in the same way in every process: attempt and a checksum of the text.
 std::string state_id(int attempts, std::string_view progress) {
     return fmt::format("{}-{}", attempts, http::text_sum(progress));
 }
@@ -36,8 +36,8 @@ std::string event(std::string_view name, const std::string& id, const std::strin
     return text;
 }
 
-/// What the followers have to say to one client, until its thread has sent it. Of progress only the latest is kept, so
-/// that a client that reads slowly gets less of it; the end always goes out.
+/// Events for one client, until its thread has sent them. Only the latest progress is kept, so that a slow client gets
+/// fewer events; the end is always sent.
 class News {
 public:
     void put(const JobNews& news) {
@@ -46,7 +46,7 @@ public:
         latest_ = news;
         come_.notify_one();
     }
-    /// Nothing where none has come within `patience`.
+    /// Empty if none has arrived within `patience`.
     std::optional<JobNews> wait(std::chrono::milliseconds patience) {
         std::unique_lock lock(mutex_);
         come_.wait_for(lock, patience, [this] { return latest_.has_value(); });
@@ -59,7 +59,7 @@ private:
     std::optional<JobNews> latest_;
 };
 
-/// One client that follows one job, for as long as it is there.
+/// One client that follows one job, while it is connected.
 class EventStream {
 public:
     EventStream(JobService& jobs, std::string job, std::string known, std::function<bool()> admitted)
@@ -78,14 +78,14 @@ private:
     bool goes_on(http::BodyWriter& out, const std::optional<JobNews>& news, int& silent) {
         if (out.gone() || !is_admitted()) return false;
         silent = news ? 0 : silent + 1;
-        // Proxies close connections on which nothing comes.
+        // Proxies close idle connections.
         if (!news) return silent % kHeartbeat != 0 || out.write(": still here\n\n");
         if (news->kind == JobNews::Kind::present) return send_progress(out, *news->view);
         if (news->kind == JobNews::Kind::ended) out.write(event("done", "done", job_news_json(*news->view)));
         return false;
     }
 
-    /// Asked once a second: a key may be taken away while its owner follows.
+    /// Checked once a second: a key may be removed while its owner follows.
     bool is_admitted() {
         const auto now = std::chrono::steady_clock::now();
         if (!admitted_ || now - asked_ < kPollInterval) return true;
@@ -104,12 +104,12 @@ private:
 
     JobService& jobs_;
     std::string job_;
-    std::string known_;  ///< what the client has
+    std::string known_;  ///< the state that the client has
     std::function<bool()> admitted_;
     std::chrono::steady_clock::time_point asked_ = std::chrono::steady_clock::now();
 };
 
-/// What forbids to follow the job; 204 where the client has seen its end, which stops its trying again.
+/// The refusal of following the job; 204 if the client has seen its end, which stops its reconnecting.
 std::optional<Response> refuse_events(JobService& jobs, const Call& call) {
     if (!http::accepts(call.request, "text/event-stream"))
         return http::problem_response(406, "The answer is text/event-stream, which the Accept field does not allow.");
@@ -118,7 +118,7 @@ std::optional<Response> refuse_events(JobService& jobs, const Call& call) {
         const std::optional<JobState> state = jobs.state(id);
         if (!state || !may_see(call.request, *state)) return no_such_job(id);
         Response answer;
-        // A job that has been queued again since then has another end to come.
+        // A job that was queued again since then has another end to come.
         if (call.request.header("Last-Event-ID") == "done" && has_ended(state->status)) answer.status = 204;
         return answer;
     });
@@ -133,7 +133,7 @@ Response follow_job(JobService& jobs, LongRequestSlots& places, const Call& call
     Response response;
     response.set("Content-Type", "text/event-stream");
     response.set("Cache-Control", "no-store");
-    // nginx would gather events before it passes them on.
+    // nginx would otherwise buffer events.
     response.set("X-Accel-Buffering", "no");
     response.stream = [&jobs, place, id = call.path.at("id"), known = std::string(call.request.header("Last-Event-ID")),
                        admitted = call.request.admitted](http::BodyWriter& out) {

@@ -1,4 +1,4 @@
-// What all calls about one job have in common: whom it belongs to, and what a store that fails is answered with.
+// Common parts of all calls about one job: ownership, and answers to failures of the store.
 #pragma once
 
 #include <functional>
@@ -13,10 +13,10 @@ namespace tunewright::server {
 
 http::Response no_such_job(const std::string& id);
 
-/// 507 where the disk is full, else 503.
+/// 507 if the disk is full, otherwise 503.
 http::Response store_failed(const StoreFault& fault);
 
-/// Runs what reads the store; its failure becomes such an answer.
+/// Runs `work`, which reads the store; a failure of the store becomes an answer.
 template <class Work>
 http::Response guarded(Work work) {
     try {
@@ -26,19 +26,19 @@ http::Response guarded(Work work) {
     }
 }
 
-/// Runs `work`, which reads a job as a whole and answers with it, when the client's turn has come: a job may have tens
-/// of megabytes, several times over while its answer is made. The turn ends when the answer counts among those that
-/// clients have not taken.
+/// Runs `work`, which reads a whole job and answers with it, when the client's turn has come: a job may have tens of
+/// megabytes, several times while its answer is made. The turn ends when the answer counts as unsent.
 http::Response in_turn(ComputeSlots& readers, const http::Request& request,
                        const std::function<http::Response()>& work);
 
-/// Whose jobs the caller may know of: nothing for everybody's, where nobody asks who he is or he runs the service.
+/// The owner whose jobs the caller may see; empty for all jobs, if no keys are required or the caller is an
+/// administrator.
 std::optional<std::string> visible_owner(const http::Request& request);
 
-/// True where the caller may know of the job.
+/// True if the caller may see the job.
 bool may_see(const http::Request& request, const JobSummary& job);
 
-/// The refusal of a call about /v1/jobs/{id} where there is no such job for this caller. Owners never change.
+/// The refusal of a call about /v1/jobs/{id} if this caller has no such job. Owners never change.
 std::optional<http::Response> refuse_stranger(JobService& jobs, const http::Call& call);
 
 }  // namespace tunewright::server

@@ -24,7 +24,7 @@ std::string links(const JobSummary& job) {
     return std::move(object).str();
 }
 
-/// Only a stopped search leaves a result behind without having succeeded.
+/// Only a stopped search leaves a result although it has not succeeded.
 bool is_partial(const JobRecord& job) { return !job.result.empty() && job.status != JobStatus::succeeded; }
 
 JsonObject head_of(const JobSummary& job) {

@@ -1,4 +1,4 @@
-// Jobs and batches as the contract shows them.
+// Jobs and batches in the form of the contract.
 #pragma once
 
 #include <cstdint>
@@ -13,25 +13,25 @@ namespace tunewright::server {
 /// A job with its request, and its result or error.
 std::string job_json(const JobView& view);
 
-/// The same without request and result.
+/// A job without request and result.
 std::string job_news_json(const JobView& view);
 
-/// The same with both, but for traces: what others are told of an ended job.
+/// A job with request and result but without traces: the content of a notification.
 std::string job_told_json(JobRecord job);
 
-/// The contract's progress object, also of a job that waits or has just begun; null for one that has ended.
+/// The contract's progress object, also for a job that waits or has just begun; null for one that has ended.
 std::string job_progress_json(const JobView& view);
 
-/// {"jobs": [...], "next": "/v1/jobs?..." or null}: jobs without requests and results, for whoever runs the service
-/// with their owners.
+/// {"jobs": [...], "next": "/v1/jobs?..." or null}: jobs without requests and results; for an administrator with their
+/// owners.
 std::string job_page_json(const JobPage& page, const JobQuery& query, bool with_owners);
 
 std::string batch_json(const BatchSummary& batch);
 
-/// {"batches": [...], "next": "/v1/batches?..." or null}
+/// {"batches": [...], "next": "/v1/batches?..." or null}.
 std::string batch_page_json(const BatchPage& page, int limit);
 
-/// The place in a list that `cursor` names; nothing where no list has given it out.
+/// The position that `cursor` names in a list; empty for a text that no list has returned.
 std::optional<std::int64_t> parse_cursor(const std::string& cursor);
 
 }  // namespace tunewright::server

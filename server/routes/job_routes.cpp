@@ -18,7 +18,7 @@ using http::Call;
 using http::problem_response;
 using http::Response;
 
-constexpr std::size_t kMinLargeBody = 256 * 1024;  // bytes of a body that is read in turn
+constexpr std::size_t kMinLargeBody = 256 * 1024;  // bytes of a body that is read in a turn
 
 Response job_response(JobService& jobs, ComputeSlots& readers, const http::Request& request, const std::string& id,
                       int status) {
@@ -60,7 +60,7 @@ Response submitted(const JobService& jobs, const Submission& submission) {
     return store_failed(submission.fault);
 }
 
-/// The answer after a wait: 200 with the job where it has ended, else 202, as always where nobody waited.
+/// The answer after a wait: 200 with the job if it has ended, otherwise 202, as without a wait.
 Response waited(const JobView& view, std::optional<std::chrono::seconds> wait) {
     const bool ended = wait && has_ended(view.job.status);
     Response response = http::json_response(job_json(view), ended ? 200 : 202);
@@ -76,7 +76,7 @@ Response waited(JobService& jobs, ComputeSlots& readers, const http::Request& re
     });
 }
 
-/// What becomes of a job that is there: at once, or when it has ended or the wait is over.
+/// The answer about an existing job: at once, or when it has ended or the wait is over.
 Response after_wait(JobService& jobs, ComputeSlots& readers, const http::Request& request, const std::string& id,
                     std::chrono::seconds wait) {
     if (wait.count() == 0) return waited(jobs, readers, request, id, std::nullopt);
@@ -91,15 +91,14 @@ Response after_wait(JobService& jobs, ComputeSlots& readers, const http::Request
     return waited(jobs, readers, request, id, wait);
 }
 
-/// What came of an order: the job as it was accepted and, where it was waited for and ended here, as it ended.
+/// The result of an order: the job as accepted and, if the call waited for it and it ended here, as ended.
 struct Submitted {
     Submission submission;
     std::shared_ptr<const JobRecord> ended;
 };
 
-/// Where the order says to wait, a job that is created is waited for in the same breath: this thread is woken once. The
-/// room for the request is given back in between, when the store has answered. Nothing where the client has left
-/// meanwhile.
+/// If the order has a wait, creation and wait are one call of the service, so that this thread wakes once. The room of
+/// the request is released in between, when the store has answered. Empty if the client has disconnected meanwhile.
 std::optional<Submitted> submit(JobService& jobs, Order order, const http::Request& call) {
     const bool waits = order.wait.count() > 0;
     const auto made = std::make_shared<Submitted>();
@@ -129,7 +128,7 @@ std::optional<Response> refuse_parameters(const http::Request& request) {
     return http::problem_response(problem);
 }
 
-/// A large body takes a turn as what is computed does: reading it may take a second.
+/// A large body takes a turn like a computation: reading it may take a second.
 std::variant<api::PreparedJob, api::Problem, Response> prepared_in_turn(ComputeSlots& computing,
                                                                         const http::Request& request,
                                                                         const api::JobLimits& limits) {
@@ -170,7 +169,7 @@ Response post_job(JobService& jobs, LongRequestSlots& places, const SharedTurns&
     order.owner = call.request.owner.value_or("");
     order.flow = call.request.client;
     order.origin = {call.request.request_id, call.request.traceparent};
-    // Where too many wait already this one does not: it gets its job at once, as without the preference.
+    // If too many already wait, this client does not: it gets its job at once, as without the preference.
     std::chrono::seconds wait = http::preferred_wait(call.request).value_or(std::chrono::seconds(0));
     std::optional<LongRequestSlots::Slot> place;
     if (wait.count() > 0 && !(place = places.take(call.request.client))) wait = {};
@@ -187,14 +186,14 @@ Response post_job(JobService& jobs, LongRequestSlots& places, const SharedTurns&
     return waited(jobs, turns.readers, call.request, submission.job.id, wait);
 }
 
-/// Of a job that has ended nothing changes any more, so that its tag needs no look at its result.
+/// A job that has ended does not change, so its tag does not depend on its result.
 std::string entity_tag_of(const JobSummary& job, const std::string& body) {
     if (!has_ended(job.status)) return http::entity_tag(body);
     std::string tag = "\"" + job.id + "-" + std::to_string(job.attempts) + "-";
     return tag.append(std::to_string(job.finished_at.value_or(0))).append("-" TUNEWRIGHT_VERSION "\"");
 }
 
-/// 304 for who has an ended job already, without reading its request and result.
+/// 304 for a client that already has an ended job, without reading its request and result.
 std::optional<Response> unchanged(JobService& jobs, const Call& call) {
     if (!call.request.has_header("If-None-Match")) return std::nullopt;
     const std::optional<JobState> state = jobs.state(call.path.at("id"));
@@ -216,11 +215,11 @@ Response get_job(JobService& jobs, ComputeSlots& readers, const Call& call) {
         http::apply_entity_tag(call.request, found, entity_tag_of(view->job, found.body));
         return found;
     });
-    // It may be kept if it is asked for again each time.
+    // It may be cached if it is revalidated each time.
     return response.set("Cache-Control", "no-cache");
 }
 
-/// Reads the list's parameters into `query`; what is wrong with them into the problem.
+/// Reads the list's parameters into `query`, and their faults into the problem.
 api::Problem read_query(const http::Request& request, JobQuery& query) {
     api::Problem problem = bad_parameters("list");
     for (const auto& [name, value] : request.query) {
@@ -274,7 +273,7 @@ Response cancel_job(JobService& jobs, ComputeSlots& readers, const Call& call) {
     return job_response(jobs, readers, call.request, id, 202);
 }
 
-/// What came of it, where the job does not wait again.
+/// The answer if the job was not queued again.
 Response not_requeued(const JobService& jobs, const std::string& id, RequeueEffect effect) {
     if (effect == RequeueEffect::queue_full) return queue_full(jobs);
     if (effect == RequeueEffect::batch_cancelled)
@@ -304,14 +303,14 @@ Response requeue_job(JobService& jobs, ComputeSlots& readers, const Call& call) 
     });
 }
 
-/// 412 where If-Match names another state of the job than that which it ended with.
+/// 412 if If-Match names another state of the job than that with which it ended.
 std::optional<Response> refuse_other_state(JobService& jobs, const Call& call) {
     if (!call.request.has_header("If-Match")) return std::nullopt;
     const std::string& id = call.path.at("id");
     Response found = guarded([&] {
         const std::optional<JobState> state = jobs.state(id);
         if (!state) return no_such_job(id);
-        // One that has not ended is not deleted whatever its tag.
+        // A job that has not ended is not deleted, whatever its tag.
         if (!has_ended(state->status) || http::matches_entity_tag(call.request, entity_tag_of(*state, "")))
             return Response();
         return problem_response(412,

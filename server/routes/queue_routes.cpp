@@ -1,4 +1,4 @@
-// What whoever runs the service sees of the queue, and how he stops and starts it.
+// The administrator's view of the queue, and the calls that pause and resume it.
 #include "server/http/app/problems.h"
 #include "server/jobs/await.h"
 #include "server/json_text.h"

@@ -13,7 +13,7 @@ using http::Call;
 using http::problem_response;
 using http::Response;
 
-/// The parameter `controller`; "" where it is not given.
+/// The parameter `controller`; "" if it is not given.
 std::optional<Response> read_controller(const http::Request& request, std::string& controller) {
     api::Problem problem = bad_parameters("report");
     for (const auto& [name, value] : request.query) {
@@ -26,7 +26,7 @@ std::optional<Response> read_controller(const http::Request& request, std::strin
     return problem_response(problem);
 }
 
-/// Where the client has reached the service.
+/// The address under which the client has reached the service.
 std::string origin_of(const http::Request& request) {
     const std::string host(request.header("Host"));
     return host.empty() ? "" : "http://" + host;

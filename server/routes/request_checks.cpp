@@ -12,8 +12,8 @@ namespace tunewright::server {
 namespace {
 
 constexpr std::size_t kMaxKeyLength = 200;
-constexpr std::size_t kCells = 5;  // what the numbers of a file take, in its bytes
-constexpr std::size_t kTree = 36;  // what JSON takes at most, in its bytes: [{"":0},...]
+constexpr std::size_t kCells = 5;  // memory of the numbers of a file, relative to its bytes
+constexpr std::size_t kTree = 36;  // memory of JSON at most, relative to its bytes: [{"":0},...]
 
 /// The bytes of the texts in a JSON body, each of which may be a file.
 std::size_t texts_of(std::string_view json) {
@@ -33,12 +33,13 @@ std::size_t handling_weight(const http::Request& request) {
     const std::size_t bytes = request.body.size();
     if (!http::sends_json(request)) return (kStoredCopies + kCells) * bytes;
     const std::size_t tree = api::tree_size(request.body);
-    if (tree > api::kMaxTree) return 0;  // what is refused takes nothing
+    if (tree > api::kMaxTree) return 0;  // a refused body needs no memory
     return kStoredCopies * bytes + tree + kCells * texts_of(request.body);
 }
 
 std::string fit_body(std::size_t& max_body, std::size_t memory) {
-    constexpr std::size_t any = 1 + kStoredCopies + kCells;  // what any body takes, in its bytes; JSON more
+    constexpr std::size_t any = 1 + kStoredCopies + kCells;  // memory of any body, relative to its bytes; JSON needs
+                                                             // more
     const std::size_t half = memory / 2, fits = half / (any + kTree);
     const std::size_t asked = max_body, max = fits <= api::kMaxTree / kTree ? fits : (half - api::kMaxTree) / any;
     if (asked <= max) return {};

@@ -1,4 +1,4 @@
-// What the service answers: the routes of the contract, each translated between HTTP and the facade of api/.
+// The routes of the contract, each a translation between HTTP and the facade of api/.
 #pragma once
 
 #include <functional>
@@ -19,16 +19,15 @@
 
 namespace tunewright::server {
 
-/// Turns of what takes a core, a connection to the store or much memory for a while.
+/// Turns for work that takes a core, a connection to the store or much memory for a while.
 struct SharedTurns {
-    ComputeSlots& computing;  ///< what is computed, or read from a large body, while its client waits
-    ComputeSlots& readers;    ///< answers with a job as a whole
+    ComputeSlots& computing;  ///< computations, and parsing of large bodies, while the client waits
+    ComputeSlots& readers;    ///< answers with a whole job
     ComputeSlots& listers;    ///< lists
-    ComputeSlots& searchers;  ///< lists that look for a text in all jobs that are kept, which may take seconds
+    ComputeSlots& searchers;  ///< lists that search for a text in all stored jobs, which may take seconds
 };
 
-/// /v1/jobs and what is below it. Who waits for a job takes one of `places`; whom a job may tell of its end, `policy`
-/// says.
+/// /v1/jobs and below. A client that waits for a job takes one of `places`; `policy` decides on notification targets.
 void add_job_routes(http::Router& router, JobService& jobs, LongRequestSlots& places, const SharedTurns& turns,
                     NotifyPolicy& policy, const api::JobLimits& limits);
 
@@ -44,7 +43,7 @@ void add_code_routes(http::Router& router, JobService& jobs, ComputeSlots& reade
 /// /v1/jobs/{id}/report.html
 void add_report_routes(http::Router& router, JobService& jobs, ComputeSlots& readers);
 
-/// /v1/queue and what is below it, for whoever runs the service.
+/// /v1/queue and below, for administrators.
 void add_queue_routes(http::Router& router, JobService& jobs);
 
 struct BatchLimits {
@@ -52,7 +51,7 @@ struct BatchLimits {
     std::size_t longest_entry = 0;  ///< bytes of one request of a batch
 };
 
-/// /v1/batches and what is below it. Bodies are read and results are made on `lane`.
+/// /v1/batches and below. Bodies are read and results are made on `lane`.
 void add_batch_routes(http::Router& router, Batches& batches, JobService& jobs, LongRequestSlots& places,
                       ComputeSlots& listers, Executor& lane, NotifyPolicy& policy, const BatchLimits& limits);
 
@@ -62,7 +61,7 @@ void add_batch_routes(http::Router& router, Batches& batches, JobService& jobs, 
 void add_synchronous_routes(http::Router& router, ComputeSlots& turns, Timer& timer, SpareCores& spare_cores,
                             const std::stop_token& closing);
 
-/// /v1/methods, /v1/controllers, /v1/examples, /openapi.json: the same for the life of the process.
+/// /v1/methods, /v1/controllers, /v1/examples, /openapi.json: constant for the life of the process.
 void add_description_routes(http::Router& router);
 
 /// /healthz

@@ -32,7 +32,7 @@ constexpr std::chrono::seconds kRangeTime{20};
 constexpr std::chrono::seconds kIdentifyTime{30};
 constexpr std::chrono::seconds kRelayTime{10};
 constexpr std::chrono::seconds kConversionTime{10};
-constexpr std::chrono::milliseconds kGonePollInterval{250};  // for clients that have gone
+constexpr std::chrono::milliseconds kGonePollInterval{250};  // between checks for clients that have disconnected
 
 bool is_file(const http::Request& request) {
     const std::string type = http::media_type(request);
@@ -48,7 +48,7 @@ Response too_slow(std::chrono::seconds limit) {
     return http::problem_response(api::to_problem(error));
 }
 
-/// It was never begun.
+/// The answer to a call that was never begun.
 Response too_busy(std::chrono::seconds limit) {
     return problem_response(503, "The service was busy with other computations for " + std::to_string(limit.count()) +
                                      " s, and this one was not begun. Try again in a moment, or post it as a job, "
@@ -57,7 +57,7 @@ Response too_busy(std::chrono::seconds limit) {
 
 Response closing_down() { return problem_response(503, "The service is being stopped. Try again shortly."); }
 
-/// Stops a computation at its deadline, when the service stops, or when nobody waits for it any more.
+/// Stops a computation at its deadline, when the service stops, or when its client has disconnected.
 class ComputationWatchdog : public std::enable_shared_from_this<ComputationWatchdog> {
 public:
     ComputationWatchdog(Timer& timer, ComputeSlots::Clock::time_point deadline, std::function<bool()> left)
@@ -70,19 +70,19 @@ public:
         if (gone_ || ComputeSlots::Clock::now() >= deadline_) return stop();
         look_later();
     }
-    /// What is over soon is not looked after: the first look comes after a while.
+    /// Short computations are not watched: the first check comes after a while.
     void look_later() {
         const std::chrono::duration<double> rest = deadline_ - ComputeSlots::Clock::now();
         timer_.after(std::min<std::chrono::duration<double>>(kGonePollInterval, rest),
                      [self = shared_from_this()] { self->look(); });
     }
     void stop() { stop_.request_stop(); }
-    /// From now on the client is not looked at.
+    /// From now on the client is not checked.
     void end() {
         const std::lock_guard lock(mutex_);
         over_ = true;
     }
-    /// True where it was stopped because nobody waits for it.
+    /// True if it was stopped because the client has disconnected.
     bool gone() const { return gone_; }
     std::stop_token token() const { return stop_.get_token(); }
 
@@ -96,7 +96,7 @@ private:
     std::atomic<bool> gone_ = false;
 };
 
-/// The answer of `work`, which runs on this thread. Its turn has come.
+/// The answer of `work`, which runs on this thread when its turn has come.
 Response compute(const SyncCall& work, const Call& call, std::chrono::seconds limit, SpareCores& spare_cores,
                  const std::shared_ptr<ComputationWatchdog>& watchdog, const std::stop_token& closing) {
     const std::stop_callback on_closing(closing, [watchdog] { watchdog->stop(); });
@@ -116,7 +116,7 @@ Response compute(const SyncCall& work, const Call& call, std::chrono::seconds li
     return response;
 }
 
-/// A file of a recorded test, or JSON that holds it.
+/// The body is a file of a recorded test, or JSON that contains it.
 std::optional<Response> refuse_file_call(const http::Request& request) {
     if (!is_file(request) && !http::sends_json(request))
         return problem_response(415, "The body must be the file itself, with Content-Type: text/csv, or JSON.");
@@ -127,7 +127,7 @@ api::Answer preview(const Call& call, const RunControl&) {
     return is_file(call.request) ? api::preview_file(call.request.body) : api::preview_call(call.request.body);
 }
 
-/// The time counts from the arrival of the request, waiting for its turn included.
+/// The time limit counts from the arrival of the request, including the wait for its turn.
 http::Handler synchronous(const SyncCall& work, std::chrono::seconds limit, ComputeSlots& turns, Timer& timer,
                           SpareCores& spare_cores, const std::stop_token& closing, Refusal refuse) {
     return [=, &turns, &timer, &spare_cores](const Call& call) {
@@ -151,17 +151,17 @@ http::Handler synchronous(const SyncCall& work, std::chrono::seconds limit, Comp
     };
 }
 
-/// A call that asks for nothing but its body.
+/// A call whose only input is its body.
 SyncCall of_body(api::Answer (*work)(std::string_view, const RunControl&)) {
     return [work](const Call& call, const RunControl& control) { return work(call.request.body, control); };
 }
 
-/// A conversion for the product that the path names.
+/// A conversion for the product in the path.
 SyncCall of_product(api::Answer (*work)(std::string_view, std::string_view)) {
     return [work](const Call& call, const RunControl&) { return work(call.path.at("id"), call.request.body); };
 }
 
-/// What is answered at once: as long as somebody types, it is asked for at each key, and waits for no computation.
+/// Answered at once: while a user types, it is called at each key, and does not wait for computations.
 Response parse_plant(const Call& call) {
     if (auto refusal = refuse_call(call.request)) return *std::move(refusal);
     return response_of(api::parse_plant_call(call.request.body));

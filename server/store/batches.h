@@ -1,4 +1,4 @@
-// Batches: many jobs posted at once, received piece by piece, looked at, cancelled and deleted as one.
+// Batches: many jobs posted at once, stored piece by piece, and read, cancelled and deleted as one.
 #pragma once
 
 #include <chrono>
@@ -29,10 +29,10 @@ struct NewEntry {
     std::string id;
     std::string name;
     double timeout_s = 60;
-    std::string request;  ///< "" where it could not be read
+    std::string request;  ///< "" if it could not be read
     std::string request_hash;
-    std::string error;         ///< problem of an entry that is failed from the start; "" for one that waits
-    std::string outline = {};  ///< of one that is failed from the start
+    std::string error;         ///< problem of an entry that fails from the start; "" for one that waits
+    std::string outline = {};  ///< of an entry that fails from the start
 };
 
 struct BatchSummary {
@@ -41,7 +41,7 @@ struct BatchSummary {
     std::string name;
     std::string owner;
     UnixMs created_at = 0;
-    bool sealed = false;  ///< all its entries have come
+    bool sealed = false;  ///< all its entries have arrived
     bool cancel_requested = false;
     std::size_t total = 0;
     std::size_t queued = 0, running = 0, succeeded = 0, failed = 0, cancelled = 0;
@@ -65,17 +65,17 @@ struct BatchRow {
     std::string error;
 };
 
-/// The end of a batch's way in.
+/// The end of a batch's upload.
 struct BatchSeal {
     std::string batch;
     std::string request_hash;
-    std::string idempotency_key;  ///< "" if none; each owner has keys of his own
-    std::string name;             ///< where it was known only after the batch was opened; "" leaves the name
-    NotifyTarget notify = {};     ///< likewise
+    std::string idempotency_key;  ///< "" if none; keys belong to an owner
+    std::string name;             ///< set if it became known after the batch was opened; "" leaves the name
+    NotifyTarget notify = {};     ///< set if it became known after the batch was opened
 };
 
 struct Sealed {
-    enum class Kind { none, sealed, existing, conflict };  ///< existing, conflict: the batch itself has been dropped
+    enum class Kind { none, sealed, existing, conflict };  ///< existing, conflict: this batch has been dropped
     Kind kind = Kind::none;
     std::string id;  ///< of sealed and existing
 };
@@ -84,27 +84,26 @@ class BatchStore {
 public:
     virtual ~BatchStore() = default;
 
-    /// Entries may run as soon as they are added. Until it is sealed a batch must hear from its receiver (add_entries,
-    /// also with none) every `kReceiving`; then it is dropped by reclaim(), as drop_batch() does.
+    /// Entries may run as soon as they are added. Until it is sealed, the receiver of a batch must call add_entries,
+    /// possibly without entries, at least every `kReceiving`; otherwise reclaim() drops it like drop_batch().
     static constexpr std::chrono::milliseconds kReceiving{60'000};
     virtual void open_batch(NewBatch batch, Done<bool> done) = 0;
-    /// False where the batch is not there, sealed or cancelled.
+    /// False if the batch does not exist, is sealed or cancelled.
     virtual void add_entries(std::string batch, std::vector<NewEntry> entries, UnixMs now, Done<bool> done) = 0;
-    /// With a known key ("" if none): the earlier batch, or a conflict where its hash was another; this one is dropped.
+    /// With a known key ("" if none): the earlier batch, or a conflict if its hash differs; this one is dropped.
     virtual void seal_batch(BatchSeal seal, Done<Sealed> done) = 0;
-    /// The batch and its jobs are gone, whatever their state; a worker that has one learns it from beat().
+    /// Deletes the batch and its jobs, whatever their state; a worker that has one learns it from beat().
     virtual void drop_batch(std::string batch, Done<bool> done) = 0;
     virtual std::optional<BatchSummary> find_batch(const std::string& id) = 0;
     virtual std::optional<std::string> batch_of_key(const std::string& owner, const std::string& idempotency_key) = 0;
     virtual BatchPage list_batches(const std::optional<std::string>& owner, int limit,
                                    std::optional<std::int64_t> before_seq) = 0;
-    /// At most `limit` rows with index >= from, in order. Fewer where these have come to `kRowsBytes`; one in any case,
-    /// where there is one.
+    /// At most `limit` rows with index >= from, in order. Fewer after `kRowsBytes`; at least one, if there is one.
     static constexpr std::size_t kRowsBytes = 1024 * 1024;
     virtual std::vector<BatchRow> batch_rows(const std::string& id, std::int64_t from, std::size_t limit) = 0;
-    /// Waiting jobs are cancelled, running ones asked to stop: their ids. Nothing where there is no such batch.
+    /// Cancels waiting jobs and asks running ones to stop: their ids. Empty if there is no such batch.
     virtual void cancel_batch(std::string id, UnixMs now, Done<std::optional<std::vector<std::string>>> done) = 0;
-    /// Only a batch whose jobs have all ended.
+    /// Deletes only a batch whose jobs have all ended.
     virtual void remove_batch(std::string id, Done<RemoveEffect> done) = 0;
 };
 

@@ -1,5 +1,5 @@
-// Notes of ended jobs and batches that are on their way to whoever asked for one. A note is written in the transaction
-// that ends its job, so none is lost; it may be delivered twice, never not at all while its time lasts.
+// Pending notifications of ended jobs and batches. A notification is written in the transaction that ends its job, so
+// none is lost; it may be delivered twice, but at least once unless all attempts fail.
 #pragma once
 
 #include <chrono>
@@ -13,12 +13,12 @@
 
 namespace tunewright::server {
 
-/// Whom to tell when a job or a batch has ended; `url` "" for nobody.
+/// Target of a notification when a job or a batch has ended; `url` "" for none.
 struct NotifyTarget {
     std::string url;
     std::string secret_id;  ///< names the operator's secret that signs it; "" for the first
 
-    /// As stores keep it: "" for nobody.
+    /// The stored form: "" for no target.
     std::string text() const { return url.empty() ? std::string{} : secret_id + " " + url; }
     static NotifyTarget of_text(const std::string& text) {
         const std::size_t blank = text.find(' ');
@@ -29,9 +29,9 @@ struct NotifyTarget {
 struct Delivery {
     std::int64_t seq = 0;
     NotifyTarget target;
-    std::string job;    ///< its id; "" where a batch has ended
-    std::string batch;  ///< likewise
-    int tries = 0;      ///< that failed so far
+    std::string job;    ///< its id; "" if a batch has ended
+    std::string batch;  ///< its id; "" if a single job has ended
+    int tries = 0;      ///< failed attempts so far
     UnixMs created_at = 0;
 };
 
@@ -39,11 +39,11 @@ class DeliveryStore {
 public:
     virtual ~DeliveryStore() = default;
 
-    /// Those that are due, the oldest first; they are nobody else's for `hold` from now.
+    /// Takes those that are due, the oldest first, and reserves them for `hold` from now on.
     virtual void take_deliveries(UnixMs now, std::chrono::milliseconds hold, std::size_t max,
                                  Done<std::vector<Delivery>> done) = 0;
-    /// Delivered or given up: it goes. With a pause: the next try is due so long after `now`; one that was `tried` has
-    /// failed once more, another was not for this process to send.
+    /// Without a pause: delivered or given up, deleted. With a pause: the next attempt is due that long after `now`;
+    /// `tried`: one more attempt has failed; otherwise this process was not allowed to send it.
     virtual void settle_delivery(std::int64_t seq, UnixMs now, std::optional<std::chrono::milliseconds> pause,
                                  bool tried, Done<bool> done) = 0;
 };

@@ -1,5 +1,4 @@
-// Why a store could not do its work, and how it answers: at once, by an exception where it reads, or later, by a
-// callback where it writes.
+// Failures of a store: thrown as an exception by reads, passed to the callback by writes.
 #pragma once
 
 #include <functional>
@@ -11,34 +10,34 @@ namespace tunewright::server {
 
 struct StoreFault {
     enum class Kind {
-        full,         ///< the disk is; nothing was changed
-        unavailable,  ///< anything else of the machine's; nothing was changed
-        unknown,      ///< the connection was lost during a commit: it may have been done or not
+        full,         ///< the disk is full; nothing was changed
+        unavailable,  ///< any other failure of the machine; nothing was changed
+        unknown,      ///< the connection was lost during a commit, which may have succeeded or not
     };
     Kind kind = Kind::unavailable;
     std::string detail;  ///< for the log
 };
 
-/// Thrown by reads and when a store is opened.
+/// Thrown by reads and by opening a store.
 class StoreError : public std::runtime_error {
 public:
     explicit StoreError(const StoreFault& fault) : std::runtime_error(fault.detail), kind(fault.kind) {}
     StoreFault::Kind kind;
 };
 
-/// How many of its steps a schema has taken, and how many this program knows.
+/// The number of steps that a schema has, and that this program has.
 struct SchemaState {
     int have = 0;
     int known = 0;
 };
 
-/// Who brings the tables of a store up to date when a newer program comes.
+/// Controls the migration of a store's tables by a newer program.
 enum class SchemaSteps {
-    take,   ///< whoever opens it
-    leave,  ///< `tunewright migrate`: until then it cannot be opened
+    take,   ///< the process that opens the store
+    leave,  ///< `tunewright migrate`: until then the store cannot be opened
 };
 
-/// Thrown when a store is opened that is to be brought up to date by somebody else, and has not been yet.
+/// Thrown by opening a store whose migration is left to another process and not done yet.
 class SchemaBehind : public StoreError {
 public:
     explicit SchemaBehind(const std::string& sentence) : StoreError({StoreFault::Kind::unavailable, sentence}) {}
@@ -47,7 +46,7 @@ public:
                        "; `tunewright migrate` brings it up to date") {}
 };
 
-/// Runs `work`, which opens the store that people know as `shown`; what it throws becomes a sentence about that.
+/// Runs `work`, which opens the store with the printable address `shown`; an exception becomes a sentence about that.
 template <class Work>
 auto opening(const std::string& shown, Work work) {
     const auto sentence = [&](const std::exception& error) {
@@ -66,7 +65,7 @@ auto opening(const std::string& shown, Work work) {
 
 template <class T>
 using Outcome = std::variant<T, StoreFault>;
-/// Runs on the store's own thread once the change is durable: quick, and never throws.
+/// Runs on the store's own thread once the change is durable; must be quick and must not throw.
 template <class T>
 using Done = std::function<void(Outcome<T>)>;
 

@@ -136,7 +136,7 @@ private:
         }
     }
 
-    // The store goes first: it still answers while it is being closed.
+    // The store is destroyed first: it still answers while it is being closed.
     StoreMeter meter_;
     std::unique_ptr<JobStore> store_;
 };

@@ -9,8 +9,8 @@
 
 namespace tunewright::server {
 
-/// `meter` runs on whatever thread the operation ends on: its name, the seconds from the call to the answer, and
-/// whether the store could do it.
+/// `meter` runs on the thread on which the operation ends: its name, the seconds from the call to the answer, and
+/// whether the store succeeded.
 using StoreMeter = std::function<void(std::string_view operation, double seconds, bool done)>;
 
 std::unique_ptr<JobStore> metered(std::unique_ptr<JobStore> store, StoreMeter meter);

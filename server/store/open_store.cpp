@@ -25,7 +25,7 @@ void check_store_address(const std::string& address) {
             "\"; it must name a file, such as sqlite:tunewright.db: several connections and the "
             "next start are to find the same jobs.");
     if (address.starts_with(kSqlite) && address.size() > kSqlite.size()) return;
-    // What looks like user:password@host is not repeated.
+    // A text with the form user:password@host is not repeated.
     const std::string shown = address.find('@') == std::string::npos ? "\"" + address + "\"" : "no address of a store";
     throw std::invalid_argument("--store is " + shown +
                                 "; it must be sqlite:PATH, such as sqlite:tunewright.db, or "

@@ -1,4 +1,4 @@
-// A few connections for reading, handed out to whoever asks.
+// A few connections for reading, shared by the threads.
 #pragma once
 
 #include <condition_variable>
@@ -14,7 +14,7 @@ class Pool {
 public:
     explicit Pool(std::size_t places) : places_(places) { idle_.reserve(places); }
 
-    /// One of the places, held while somebody reads.
+    /// One of the connections, held during a read.
     class Slot {
     public:
         explicit Slot(Pool& pool) : pool_(pool) {
@@ -22,7 +22,7 @@ public:
             pool.left_.wait(lock, [&] { return pool.busy_ < pool.places_; });
             enter();
         }
-        /// Waits no longer than `patience`: connection(), keep() only where it `is_held`.
+        /// Waits at most `patience`; connection() and keep() only if it `is_held`.
         template <class Duration>
         Slot(Pool& pool, Duration patience) : pool_(pool) {
             std::unique_lock lock(pool.mutex_);
@@ -40,7 +40,7 @@ public:
         Slot& operator=(const Slot&) = delete;
 
         bool is_held() const { return held_; }
-        /// The idle connection that came with it; nothing where there was none.
+        /// The idle connection of the slot; null if there is none.
         std::unique_ptr<Connection> connection() { return std::move(connection_); }
         /// The connection is idle again.
         void keep(std::unique_ptr<Connection> connection) {
@@ -62,7 +62,7 @@ public:
         std::unique_ptr<Connection> connection_;
     };
 
-    /// Closes those that are idle.
+    /// Closes the idle connections.
     void forget_idle() {
         const std::lock_guard lock(mutex_);
         idle_.clear();

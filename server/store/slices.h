@@ -1,6 +1,6 @@
-// Changes that touch every entry of a batch, and sweeping, in slices: some milliseconds of the one thread that writes
-// each, so that other changes never wait longer for a large batch. The same for every store; what one slice does is the
-// store's own, found by the type of its context (a connection inside a transaction).
+// Changes to all entries of a batch, and sweeping, in slices: each takes some milliseconds of the one writing thread,
+// so that other changes do not wait for a large batch. Common to all stores; each store has its own functions for one
+// slice, selected by the type of its context (a connection inside a transaction).
 #pragma once
 
 #include <cstddef>
@@ -20,27 +20,27 @@ namespace tunewright::server {
 /// Entries that one slice touches.
 constexpr std::size_t kSliceEntries = 250;
 
-/// The end of a batch's upload. `leaving` is the seq of the batch that has to be deleted: the one that was sent, where
-/// the answer is `existing` or `conflict`.
+/// The end of a batch's upload. `leaving` is the seq of the batch that has to be deleted: the one that was sent, if the
+/// answer is `existing` or `conflict`.
 struct SealedBatch {
     Sealed answer;
     std::optional<std::int64_t> leaving;
 };
 
-/// What BatchStore::remove_batch() found. `leaving` is the seq of the batch that has to be deleted, where the effect is
+/// The result of BatchStore::remove_batch(). `leaving` is the seq of the batch that has to be deleted, if the effect is
 /// `removed`.
 struct RemovedBatch {
     RemoveEffect effect = RemoveEffect::none;
     std::int64_t leaving = 0;
 };
 
-/// Batches that somebody has to go on with.
+/// Batches whose changes must be continued.
 struct Unsettled {
-    std::vector<std::int64_t> leaving;     ///< being deleted; with those whose receiver has not been heard of
-    std::vector<std::int64_t> cancelling;  ///< cancelled, and entries still wait
+    std::vector<std::int64_t> leaving;     ///< being deleted; including those whose receiver is silent
+    std::vector<std::int64_t> cancelling;  ///< cancelled, but entries still wait
 };
 
-/// The functions that a store has for its Context, beside it in its namespace:
+/// The functions that a store provides for its Context, in the same namespace:
 ///
 ///     SealedBatch seal_batch(Context&, const BatchSeal&);
 ///     std::optional<std::int64_t> leave_batch(Context&, const std::string& id);   no longer seen from now on
@@ -65,7 +65,7 @@ public:
         run<SealedBatch>([given = std::move(given)](Context& store) { return seal_batch(store, given); }, done,
                          [this, done](SealedBatch sealed) {
                              if (!sealed.leaving) return done(std::move(sealed.answer));
-                             // What could not be deleted now is not seen, and goes later.
+                             // A batch that could not be deleted now is invisible, and is deleted later.
                              erase(*sealed.leaving, [answer = std::move(sealed.answer),
                                                      done](const std::optional<StoreFault>&) { done(answer); });
                          });
@@ -107,7 +107,8 @@ public:
         sweep_on(now, retention, max, 0, std::move(done));
     }
 
-    /// What others left undone; nobody waits for it. To be called where changes are reported, as all that it starts is.
+    /// Continues changes that were interrupted; no caller waits for them. To be called on the thread of the callbacks,
+    /// like everything that it starts.
     void go_on(const Unsettled& unsettled, UnixMs now) {
         for (const std::int64_t batch : unsettled.leaving)
             if (going_.insert(batch).second)
@@ -153,7 +154,7 @@ private:
     }
 
     Submit submit_;
-    std::set<std::int64_t> going_;  ///< batches that go_on() is at
+    std::set<std::int64_t> going_;  ///< batches that go_on() is processing
 };
 
 }  // namespace tunewright::server

@@ -1,4 +1,4 @@
-// A fixed set of threads that run what is posted, in order.
+// A fixed set of threads that run posted tasks, in order.
 #pragma once
 
 #include <condition_variable>
@@ -12,21 +12,21 @@ namespace tunewright::server {
 
 class Executor {
 public:
-    /// `niceness` > 0 lets other threads of the process go first when cores are short.
+    /// `niceness` > 0 gives other threads of the process priority when all cores are busy.
     explicit Executor(std::size_t threads, int niceness = 0);
     ~Executor();
     Executor(const Executor&) = delete;
     Executor& operator=(const Executor&) = delete;
 
-    /// Runs what is queued, then joins; what is posted later is dropped.
+    /// Runs the queued tasks, then joins; tasks posted later are dropped.
     void stop();
 
-    /// False where none is taken any more. What the task throws is logged.
+    /// False after stop(). Exceptions of the task are logged.
     bool post(std::function<void()> task);
-    /// Runs the task there and waits for it. False where none is taken any more. Throws what the task throws.
+    /// Runs the task on a thread of the executor and waits for it. False after stop(). Rethrows exceptions of the task.
     bool run(std::function<void()> task);
 
-    /// Posted and not begun.
+    /// Number of tasks posted but not begun.
     std::size_t waiting() const;
 
 private:
@@ -39,7 +39,7 @@ private:
     std::vector<std::jthread> threads_;
 };
 
-/// Lowers the priority of the calling thread alone.
+/// Lowers the priority of the calling thread only.
 void be_nice(int niceness);
 
 }  // namespace tunewright::server

@@ -1,4 +1,4 @@
-// A thread that does the same thing again and again, with pauses, and at once when it is asked to.
+// A thread that repeats an action, with pauses, and at once after a wake-up.
 #pragma once
 
 #include <chrono>
@@ -11,13 +11,13 @@ namespace tunewright::server {
 
 class PeriodicThread {
 public:
-    /// `beat` returns how long to pause; it must not throw. The first beat comes at once.
+    /// `beat` returns the pause; it must not throw. The first beat comes at once.
     explicit PeriodicThread(std::function<std::chrono::milliseconds()> beat);
     ~PeriodicThread() { stop(); }
     PeriodicThread(const PeriodicThread&) = delete;
     PeriodicThread& operator=(const PeriodicThread&) = delete;
 
-    /// The next beat begins now, or again after the one that is going on.
+    /// The next beat begins now, or after the one in progress.
     void wake();
     /// No beat runs after it returns.
     void stop();

@@ -6,7 +6,7 @@
 
 namespace tunewright::server {
 
-/// What is shared out. Helpers may look at it after the call has returned, but not at `f`.
+/// The shared computation. Helpers may access it after the call has returned, but not `f`.
 struct SpareCores::SharedCall {
     const std::function<void(int)>& f;
     const int n;
@@ -14,7 +14,7 @@ struct SpareCores::SharedCall {
     std::mutex mutex;
     std::exception_ptr fault;
 
-    /// False where there is nothing left to begin.
+    /// False if no part is left.
     bool take_one() {
         const int i = next++;
         if (i >= n) return false;
@@ -29,7 +29,7 @@ struct SpareCores::SharedCall {
     }
 };
 
-// Not at a lower priority than the computation that waits for them.
+// Not at a lower priority than the computation that waits for the helpers.
 SpareCores::SpareCores(std::size_t cores)
     : cores_(static_cast<int>(std::max<std::size_t>(1, cores))), helpers_(static_cast<std::size_t>(cores_) - 1) {}
 
@@ -37,7 +37,7 @@ ParallelFor SpareCores::Computation::spread() {
     return [&cores = cores_](int n, const std::function<void(int)>& f) { cores.spread(n, f); };
 }
 
-/// A helper leaves to computations of their own what they need.
+/// A helper leaves the cores that other computations need.
 void SpareCores::help(SharedCall& share) {
     while (busy_ <= cores_ && share.take_one()) {
     }

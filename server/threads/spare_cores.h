@@ -1,4 +1,4 @@
-// Cores that no computation uses help one that can be spread.
+// Lets a parallel computation use cores that no other computation needs.
 #pragma once
 
 #include <atomic>
@@ -12,10 +12,10 @@ namespace tunewright::server {
 
 class SpareCores {
 public:
-    /// For up to `cores` computations at once, helpers among them.
+    /// For up to `cores` computations at once, including helpers.
     explicit SpareCores(std::size_t cores);
 
-    /// A computation that is on its way: it has a core as long as this lives.
+    /// A computation in progress: it has a core during its lifetime.
     class Computation {
     public:
         explicit Computation(SpareCores& cores) : cores_(cores) { ++cores_.busy_; }
@@ -23,7 +23,8 @@ public:
         Computation(const Computation&) = delete;
         Computation& operator=(const Computation&) = delete;
 
-        /// For its RunControl; it must outlive its use. What f throws is thrown on, once the others have returned.
+        /// For its RunControl; this object must outlive its use. Exceptions of f are rethrown once the other threads
+        /// have returned.
         ParallelFor spread();
 
     private:

@@ -1,4 +1,4 @@
-// Runs things at their time, on one thread: deadlines of jobs, ends of waits.
+// Runs actions at their time, on one thread: deadlines of jobs, ends of waits.
 #pragma once
 
 #include <chrono>
@@ -23,7 +23,7 @@ public:
     /// The action must be quick and must not throw.
     Key after(std::chrono::duration<double> delay, std::function<void()> action);
     void cancel(const Key& key);
-    /// Nothing runs after it returns, what is asked for later included.
+    /// No action runs after it returns, including later ones.
     void stop();
 
 private:

@@ -31,8 +31,7 @@ struct DetectedColumns {
 ///  1. The columns that the request names, with measured disturbances.
 ///  2. The controller's own terms (P, I, D) are excluded: none of them is u or y.
 ///  3. Headings that identify u and y only as a pair, such as x and y with w; the spacing of samples, in a column or
-///     above
-///     the data, in place of times.
+///     above the data, instead of times.
 ///  4. Time by its heading.
 ///  5. u and y by their headings: u and y with a common name; then each by the words of its role (heading_words): the
 ///     best fit, among equal fits those that move, and those that share a stem or number.
@@ -41,7 +40,8 @@ struct DetectedColumns {
 ///     moves; the only column left.
 ///  8. The set point: reported if it is found, and never u or y.
 ///  9. Checks: all roles found, none twice, one clock, no more headings than values.
-///  The order matters: a column that a later step takes by its content must not have been named before.
+///
+/// The order matters: a column that a later step takes by its content must not have been named before.
 DetectedColumns find_columns(std::string_view text, const CsvLayout& layout, const std::vector<ColumnProfile>& profiles,
                              const CsvOptions& options, std::vector<CsvFault>& faults);
 

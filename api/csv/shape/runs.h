@@ -26,9 +26,10 @@ inline constexpr int kMaxFileRuns = 1000;
 ///     ...
 ///     0,0,20      run 2, of the logger started again: taken
 ///     1,5,20
-///  Fills record.runs (with the times as the file counts them) and record.run where there are several, and says so: in
-/// record.unread where nobody chose, else in the notes. Returns a fault where there is no run `chosen`, or where there
-/// are too many.
+///
+/// Fills record.runs (with the times as the file counts them) and record.run if there are several, and reports it: in
+/// record.unread if none was chosen, else in the notes. Returns a fault if there is no run `chosen`, or if there are
+/// too many.
 std::optional<CsvFault> take_run(CsvRecord& record, std::optional<int> chosen);
 
 }  // namespace tunewright::api

@@ -23,8 +23,8 @@ bool is_word(std::string_view text) {
     });
 }
 
-/// What was asked for, in quotes, with the names of the parameters alone: a value may be a secret, such as the address
-/// that a batch tells, also where the name before it is spelt in another way.
+/// The request's target in quotes, with the names of its parameters only: a value may be a secret, such as the address
+/// for a batch's notification, even if the name is spelled in another way.
 std::string shown_target(std::string_view target) {
     const std::size_t mark = std::min(target.find('?'), target.size());
     std::string shown(target.substr(0, mark));
@@ -33,7 +33,7 @@ std::string shown_target(std::string_view target) {
         const std::string_view parameter = target.substr(at + 1, end - at - 1);
         const std::string_view name = parameter.substr(0, std::min(parameter.find('='), parameter.size()));
         shown += at == mark ? '?' : '&';
-        // Without a value, it may be one.
+        // A parameter without a value may itself be one.
         if (name.size() < parameter.size() && is_word(name)) shown.append(name).append("=");
         if (!parameter.empty()) shown += "...";
         at = end;

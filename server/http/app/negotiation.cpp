@@ -100,7 +100,7 @@ std::optional<std::chrono::seconds> preferred_wait(const Request& request) {
             const std::size_t equals = word.find('=');
             if (equals == std::string_view::npos || lower_case(trim(word.substr(0, equals))) != "wait") continue;
             std::string_view digits = trim(word.substr(equals + 1));
-            // A quoted value is the same one (RFC 7240, section 2).
+            // A quoted value means the same (RFC 7240, section 2).
             if (digits.size() > 2 && digits.front() == '"' && digits.back() == '"')
                 digits = digits.substr(1, digits.size() - 2);
             int seconds = 0;

@@ -54,7 +54,7 @@ api::Problem problem(int status, std::string detail) {
 Response problem_response(const api::Problem& problem, std::chrono::seconds retry_after) {
     Response response;
     response.status = problem.status;
-    // Sentences quote what was asked for, whatever its bytes are.
+    // Sentences quote the request, whose bytes may be anything.
     const std::string body = api::to_json(problem);
     std::string storage;
     response.body = api::utf8_text(body, storage);

@@ -1,4 +1,4 @@
-// application/problem+json answers of the transport itself; those of requests and jobs come from api/.
+// application/problem+json answers of the transport; those of requests and jobs come from api/.
 #pragma once
 
 #include <chrono>
@@ -9,7 +9,7 @@
 
 namespace tunewright::server::http {
 
-/// The problem for a status that HTTP itself explains (404, 405, 413, 415, 429, ...): type and title from one table.
+/// The problem for a status of HTTP (404, 405, 413, 415, 429, ...): type and title from one table.
 api::Problem problem(int status, std::string detail);
 
 /// 429 and 503 carry Retry-After.

@@ -100,7 +100,7 @@ Response Router::handle(Request request) const {
     return observed(call.request, route, start, answer(route, call));
 }
 
-/// What a handler throws becomes a 500 that says nothing about our insides.
+/// An exception of a handler becomes a 500 that reveals nothing about the program.
 Response Router::answer(const Route* route, Call& call) const {
     try {
         return route != nullptr ? route->handler(call) : unrouted(call.request);
@@ -131,7 +131,7 @@ Response Router::unrouted(const Request& request) const {
     return response.set("Allow", allow);
 }
 
-/// The answer with what every answer carries, after logs and metrics have heard of it.
+/// The answer with the common headers, after it was reported to logs and metrics.
 Response Router::observed(const Request& request, const Route* route, std::chrono::steady_clock::time_point start,
                           Response response) const {
     if (route != nullptr && route->compresses) compress(response, accepts_gzip(request));

@@ -1,4 +1,4 @@
-// The table of routes: which call goes where. From the table follow 404, 405 with Allow, HEAD and OPTIONS.
+// The table of routes. 404, 405 with Allow, HEAD and OPTIONS follow from it.
 #pragma once
 
 #include <chrono>
@@ -20,46 +20,46 @@ struct Call {
     PathValues path;
 };
 
-/// Gives the answer. Runs on the request's own thread and may wait.
+/// Makes the answer. Runs on the request's own thread and may wait.
 using Handler = std::function<Response(Call&)>;
 
-/// What logs and metrics learn about each answered request.
+/// Data about an answered request, for logs and metrics.
 struct Answered {
     std::string method;
     std::string target;
-    std::string route;        ///< the pattern, never user text; "" where none matched
+    std::string route;        ///< the pattern, never user text; "" if none matched
     std::string client;       ///< as in Request
-    std::string request_id;   ///< "" where the request was refused before it had one
+    std::string request_id;   ///< "" if the request was refused before it had one
     std::string traceparent;  ///< as in Request
     int status = 0;
     std::size_t bytes = 0;
     std::chrono::microseconds duration{0};
 };
 
-/// What every answer of the service carries: whoever reads it in a browser gets it as data, never as something to run,
-/// to frame or to remember, unless the answer says so itself.
+/// Headers of every answer: a browser treats it as data that must not be run, framed or stored, unless the answer's own
+/// headers allow it.
 void add_common_headers(Response& response);
 
 class Router {
 public:
-    /// Pattern: "/v1/jobs/{id}". For what is small, or compressed once and for all.
+    /// Pattern: "/v1/jobs/{id}". For small answers, or constant ones that are compressed already.
     void quick(const std::string& method, const std::string& pattern, Handler handler);
-    /// Its answers are compressed for those who take it.
+    /// Like quick, with answers that are compressed for clients that accept it.
     void add(const std::string& method, const std::string& pattern, Handler handler);
-    /// The same for a call whose body is read as it arrives (Request::read_body).
+    /// Like add, for a call whose body is read as it arrives (Request::read_body).
     void streamed(const std::string& method, const std::string& pattern, Handler handler);
 
-    /// Asked on GET and HEAD where no pattern matches: files.
+    /// Called on GET and HEAD if no pattern matches: files.
     void set_fallback(std::function<std::optional<Response>(const Request&)> fallback) {
         fallback_ = std::move(fallback);
     }
-    /// Asked first about every request; what it returns is the answer.
+    /// Called first for every request; its return value, if any, is the answer.
     void guard(std::function<std::optional<Response>(Request&)> admit) { admit_ = std::move(admit); }
     /// Called once for each answer, on the thread that gave it.
     void observe(std::function<void(const Answered&)> observer) { observer_ = std::move(observer); }
 
-    // For the Server (Application).
-    /// The refusal of a request of which only the head is known: by the guard, or as no route takes it.
+    // For the Server (Application). The refusal of a request of which only the head is known: by the guard, or because
+    // no route accepts it.
     std::optional<Response> admit(Request& request) const;
     bool streams(const Request& head) const;
     Response handle(Request request) const;

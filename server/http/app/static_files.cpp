@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 
 constexpr std::uintmax_t kLargestFile = 16 * 1024 * 1024;
 
-// No script or style but our own files; nothing inline; no frames around us; strings never become markup.
+// Only the service's own scripts and styles; nothing inline; no framing by others; strings never become markup.
 constexpr const char* kPagePolicy =
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; connect-src 'self'; "
     "base-uri 'none'; form-action 'self'; frame-ancestors 'none'; require-trusted-types-for 'script'; "

@@ -1,4 +1,4 @@
-// The browser's page: read into memory once, so that no request ever names a file.
+// The page for browsers: read into memory once, so that no request can name a file.
 #pragma once
 
 #include <map>
@@ -12,10 +12,10 @@ namespace tunewright::server::http {
 
 class StaticFiles {
 public:
-    /// Reads the folder; one that is missing, or has no index.html, gives a plain page that says how to build it.
+    /// Reads the folder; if it is missing, or has no index.html, a plain page explains how to build it.
     explicit StaticFiles(const std::string& folder);
 
-    /// The file at the request's path ("/" is index.html) with its headers; nothing where there is none.
+    /// The file at the request's path ("/" is index.html) with its headers; empty if there is none.
     std::optional<Response> find(const Request& request) const;
 
     std::size_t size() const { return files_.size(); }

@@ -7,9 +7,9 @@
 namespace tunewright::server::http {
 namespace {
 
-// Parts of the whole: what a small request holds at most, and what is kept for such, whoever fills the rest.
+// Shares of the total: the largest share of a small request, and the part that is reserved for small requests.
 constexpr std::size_t kSmallRequestShare = 512, kSmallShare = 4;
-constexpr std::chrono::seconds kLeaveTime{1};  // for one that was asked to give way, before another is
+constexpr std::chrono::seconds kLeaveTime{1};  // for a request that was asked to give way, before another one is asked
 
 }  // namespace
 
@@ -25,8 +25,8 @@ std::size_t Budget::taken() const {
 
 bool Budget::is_small(std::size_t bytes) const { return bytes <= max_ / kSmallRequestShare; }
 
-/// Whether one that holds `before` of `sum` may hold `own` bytes. Others do not count what small ones hold in the room
-/// that is kept for them.
+/// True if a request that holds `before` of `sum` may hold `own` bytes. Large requests do not count the reserve that
+/// small ones use.
 bool Budget::fits(const Sum& sum, std::size_t own, std::size_t before) const {
     const std::size_t kept = max_ / kSmallShare, together = sum.all - before + own;
     return together <= max_ / 2 + (is_small(own) ? kept : std::min(kept, sum.small - (is_small(before) ? before : 0)));
@@ -41,7 +41,7 @@ bool Budget::grow(Entry& entry, std::size_t bytes, std::chrono::milliseconds pat
         if (Entry* victim = to_give_way(entry.client, own)) {
             victim->leaving = Clock::now();
             victim->give_way();
-            freed_.notify_all();  // it may be waiting here itself
+            freed_.notify_all();  // the request itself may be waiting here
         } else if (freed_.wait_until(lock, std::min(end, Clock::now() + kLeaveTime)) == std::cv_status::timeout &&
                    Clock::now() >= end) {
             break;
@@ -76,7 +76,7 @@ void Budget::keep(Entry& entry, std::size_t bytes) {
     freed_.notify_all();
 }
 
-/// Under the lock.
+/// Requires the lock.
 void Budget::set(Entry& entry, std::size_t bytes) {
     Sum& sum = entry.answering ? answering_ : arriving_;
     sum.all += bytes - entry.bytes;
@@ -93,13 +93,13 @@ void Budget::close(EntryIterator place) {
     freed_.notify_all();
 }
 
-/// Under the lock: none while one that was asked a moment ago is still there. For another request of the same client
-/// only one that is more than twice as large goes.
+/// Requires the lock. None while a request that was asked recently is still there. For another request of the same
+/// client only a request of more than twice the size gives way.
 Budget::Entry* Budget::to_give_way(const std::string& client, std::size_t bytes) {
     const auto now = Clock::now();
     if (std::ranges::any_of(entries_, [&](const Entry& one) { return one.leaving && now - *one.leaving < kLeaveTime; }))
         return nullptr;
-    // Clients by what they hold in requests that can still give way.
+    // Clients by the bytes of their requests that can still give way.
     std::map<std::string_view, std::pair<std::size_t, Entry*>> clients;
     for (Entry& entry : entries_) {
         if (!entry.give_way || entry.leaving) continue;

@@ -1,5 +1,5 @@
-// The memory that requests take until they are answered. Half of it is for requests that arrive: when they need more,
-// one of them gives way. The other half is for requests that are being answered.
+// The memory of requests until they are answered. Half of it is for requests that arrive: if they need more, one of
+// them gives way. The other half is for requests that are being answered.
 #pragma once
 
 #include <chrono>
@@ -23,17 +23,18 @@ private:
     struct Entry {
         std::string client;
         std::size_t bytes = 0;
-        std::function<void()> give_way;                 ///< empty: its request has arrived, and keeps what it holds
-        bool answering = false;                         ///< counts among those that are being answered
-        std::optional<Clock::time_point> leaving = {};  ///< since when it has been asked to give way
+        std::function<void()> give_way;                 ///< empty: its request has arrived completely and does not give
+                                                        ///< way
+        bool answering = false;                         ///< the request is being answered
+        std::optional<Clock::time_point> leaving = {};  ///< time at which it was asked to give way
     };
     using EntryIterator = std::list<Entry>::iterator;
     struct Sum {
-        std::size_t all = 0, small = 0;  ///< bytes, and those of small requests
+        std::size_t all = 0, small = 0;  ///< bytes of all requests, and of small ones
     };
 
 public:
-    /// A request's part of the budget; given back when it goes.
+    /// A request's part of the budget; returned by the destructor.
     class Reservation {
     public:
         Reservation() = default;
@@ -46,20 +47,20 @@ public:
         ~Reservation() {
             if (budget_ != nullptr) budget_->close(place_);
         }
-        /// Holds so many bytes more of a request that arrives. Where they are too many it waits, while of the client
-        /// that holds most in requests that arrive the largest gives way; if that is the same client, to one of half
-        /// its size or less. Small requests have room of their own, a quarter of the whole. False where there was no
-        /// room within the time, or this one has been asked to give way itself.
+        /// Reserves this number of further bytes for a request that arrives. If there is no room it waits, while the
+        /// largest arriving request of the client with the most bytes gives way; if that is the same client, only to a
+        /// request of half its size or less. Small requests have room of their own, a quarter of the total. False if
+        /// there was no room in time, or this request was asked to give way.
         bool grow(std::size_t bytes, std::chrono::milliseconds patience) {
             return budget_->grow(*place_, bytes, patience);
         }
-        /// The request is whole and gives no way from now on; it holds so many bytes more while it is answered, in all
-        /// at most half of the whole: where nothing else is being answered but small requests there is room for it.
-        /// False where there was none within the time; then it counts as before.
+        /// The request is complete and no longer gives way; it reserves this number of further bytes for its answer, in
+        /// all at most half of the total: if only small requests are being answered, there is room for it. False if
+        /// there was no room in time; its state is then unchanged.
         bool arrived(std::size_t more, std::chrono::milliseconds patience) {
             return budget_->arrived(*place_, more, patience);
         }
-        /// Holds no more than so many bytes from now on.
+        /// Reduces the reservation to this number of bytes.
         void keep(std::size_t bytes) { budget_->keep(*place_, bytes); }
 
     private:
@@ -69,8 +70,8 @@ public:
         EntryIterator place_;
     };
 
-    /// A share of nothing yet. `give_way` is called once at most, from any thread and under a lock: it only tells the
-    /// one whose share it is.
+    /// An empty share. `give_way` is called at most once, from any thread and under a lock: it may only notify the
+    /// owner of the share.
     Reservation open(std::string client, std::function<void()> give_way);
     /// The sum over all requests.
     std::size_t taken() const;

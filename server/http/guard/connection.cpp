@@ -24,7 +24,7 @@ constexpr std::size_t kMaxDropped = 256 * 1024;
 constexpr std::size_t kMaxLingerBody = 64 * 1024 * 1024;
 constexpr std::size_t kMaxSizeDigits = 8;
 
-/// Errors and the end of the stream count as ready. False where the time is over.
+/// Errors and the end of the stream count as ready. False after the timeout.
 bool wait_for(int fd, short what, nanoseconds patience) {
     pollfd entry{fd, what, 0};
     const auto whole = std::chrono::duration_cast<milliseconds>(patience) + milliseconds(1);
@@ -49,11 +49,11 @@ Connection::~Connection() { ::close(fd_); }
 
 // ---- reading ----
 
-/// Waits for bytes and takes what is there; false where the client has gone or the time is over.
+/// Waits for bytes and reads them; false if the client has disconnected or the time is over.
 bool Connection::receive(nanoseconds patience) {
     std::array<char, 64 * 1024> piece;
     for (const auto end = Clock::now() + patience;;) {
-        // The socket itself waits for as long as kSocketTimeout, which saves a call for every request.
+        // The socket itself waits up to kSocketTimeout, which saves a call per request.
         const bool long_wait = end - Clock::now() > kSocketTimeout;
         const ssize_t n = ::recv(fd_, piece.data(), piece.size(), long_wait ? 0 : MSG_DONTWAIT);
         if (n > 0) return in_.append(piece.data(), static_cast<std::size_t>(n)), true;
@@ -151,7 +151,7 @@ bool Connection::receive_body() {
     return true;
 }
 
-/// The next line of the body without its CR LF, of at most so many bytes.
+/// The next line of the body without its CR LF, of at most `max` bytes.
 bool Connection::take_line(std::string& line, std::size_t max, const char* rule) {
     for (std::size_t end = 0; (end = in_.find('\n')) == std::string::npos || end > max + 1;) {
         if (in_.size() > max + 1) return fail(400, rule);
@@ -164,7 +164,7 @@ bool Connection::take_line(std::string& line, std::size_t max, const char* rule)
     return true;
 }
 
-/// Strict: no extensions, no trailers. What two readers could see differently is refused.
+/// Strict: no extensions, no trailers. Input that two parsers could read differently is refused.
 bool Connection::next_chunk() {
     constexpr const char* ends = "A chunk must end with CR LF, without extensions or trailers.";
     constexpr const char* sizes = "The size of a chunk must be 1 to 8 hexadecimal digits, without extensions.";
@@ -215,7 +215,7 @@ bool Connection::send(std::string_view bytes) {
     return !gone_;
 }
 
-/// Both directions are closed, by a reset or by us.
+/// Both directions are closed, by a reset or by the server.
 bool Connection::reset() const {
     pollfd entry{fd_, 0, 0};
     return ::poll(&entry, 1, 0) > 0 && (entry.revents & (POLLHUP | POLLERR)) != 0;
@@ -226,7 +226,7 @@ bool Connection::gone() {
     pollfd entry{fd_, POLLRDHUP, 0};
     if (::poll(&entry, 1, 0) <= 0 || http_1_0_ || !body_done() || !out_.empty()) return false;
     if (asked_.exchange(true)) return false;
-    // An interim answer may come at any time before the answer; a chunk's size may begin with any number of zeros.
+    // An interim answer may be sent at any time before the answer; a chunk's size may begin with any number of zeros.
     const std::string_view nothing = gathers_ ? "HTTP/1.1 100 Continue\r\n\r\n" : "0";
     ::send(fd_, nothing.data(), nothing.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
     return reset();

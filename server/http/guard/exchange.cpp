@@ -13,10 +13,10 @@ constexpr const char* kNoRoom = "Too many requests are being received; try again
 
 using HandlerResponse = httplib::Server::HandlerResponse;
 
-/// What would end a header's line, or is forbidden in it.
+/// True for a character that would end a header's line, or is forbidden in it.
 bool is_control(char c) { return (c >= 0 && c < ' ' && c != '\t') || c == 127; }
 
-/// IMF-fixdate, made once a second for each thread.
+/// IMF-fixdate, formatted once a second by each thread.
 const std::string& http_date() {
     thread_local std::time_t made_at = 0;
     thread_local std::string text;
@@ -31,12 +31,12 @@ const std::string& http_date() {
     return text;
 }
 
-/// The library's sink as our handlers see it.
+/// The library's sink, adapted for the handlers.
 class SinkWriter : public BodyWriter {
 public:
     SinkWriter(httplib::DataSink& sink, Connection& stream, UnsentResponses& answers)
         : sink_(sink), stream_(stream), answers_(answers) {}
-    // An empty chunk would be the end of the body; the library copies each, so none is large.
+    // An empty chunk would be the end of the body; the library copies each one, so all are small.
     bool write(std::string_view piece) override {
         bool taken = true;
         for (; taken && !piece.empty(); piece.remove_prefix(std::min(piece.size(), kChunkBytes)))
@@ -68,7 +68,7 @@ Exchange::Exchange(Connection& connection, const Head& head, const Application& 
       answers_(answers),
       stopping_(stopping),
       keep_(head.keep_alive && head.state == Head::State::complete) {
-    // The library never sees a head that is refused, but writes the refusal as an answer to this.
+    // The library never sees a refused head, but writes the refusal as an answer to this request.
     constexpr std::string_view nothing = "GET / HTTP/1.1\r\n\r\n";
     connection_.start(head_, head.state == Head::State::complete ? std::string_view(head_.clean) : nothing);
 }
@@ -87,7 +87,8 @@ void Exchange::take(httplib::Request& raw) {
     request_.remote_addr = connection_.address;
     taken_ = true;
     request_.left = [this] { return connection_.gone(); };
-    // What is left is what the library routes by: whether there is a body, and our one handler of each method.
+    // Only the data that the library uses for routing remain: the presence of a body, and the one handler for each
+    // method.
     raw.method = request_.method;
     raw.path = "/";
 }
@@ -103,7 +104,7 @@ HandlerResponse Exchange::begin(httplib::Response& out) {
     return HandlerResponse::Handled;
 }
 
-/// All that can be said against the request before any of its body is read.
+/// The refusals that need none of the body.
 std::optional<Response> Exchange::refuse_early() {
     if (head_.state == Head::State::refused) return refused(head_.status, head_.detail);
     streamed_ = application_.streams && application_.streams(request_);
@@ -116,7 +117,7 @@ std::optional<Response> Exchange::refuse_early() {
     return std::nullopt;
 }
 
-/// Counts what has come of a body. What is read as it arrives is handed on, and held up to a limit.
+/// Counts received bytes of a body. A body that is read as it arrives is passed on, and counted up to a limit.
 bool Exchange::count(std::size_t bytes) {
     if (streamed_) bytes = std::min(bytes, limits_.arriving - std::min(limits_.arriving, come_));
     come_ += bytes;
@@ -127,7 +128,7 @@ void Exchange::answer(httplib::Response& out, const httplib::ContentReader& body
     const std::string& client = request_.client == connection_.address ? connection_.network : request_.client;
     share_ = std::make_shared<Budget::Reservation>(bodies_.open(client, [this] { connection_.give_way(); }));
     request_.keep = [share = share_](std::size_t bytes) { share->keep(bytes); };
-    // The library reads in small pieces; they are handed on when there are no more at hand.
+    // The library reads small pieces; they are passed on when no more are available.
     const auto read = [this, &body](const BodyTaker& take) {
         std::string piece;
         const auto pass_on = [&] { return piece.empty() || take(std::exchange(piece, {})); };
@@ -152,7 +153,7 @@ void Exchange::answer(httplib::Response& out, const httplib::ContentReader& body
         if (!share_->arrived(more, limits_.room)) whole = connection_.refuse_body(kNoRoom);
     }
     if (!whole) std::string().swap(request_.body), share_->keep(0);
-    // The library sets a status of its own where it was not given the whole body.
+    // The library sets its own status if it did not receive the whole body.
     Response response = whole ? handled() : Response();
     out.status = 200;
     if (connection_.body_failed()) response = refused(connection_.failed_status(), connection_.failed_detail());
@@ -160,7 +161,7 @@ void Exchange::answer(httplib::Response& out, const httplib::ContentReader& body
 }
 
 Response Exchange::handled() {
-    // What a refusal says of the request, should the rest of its body not come.
+    // Data of the request for the refusal if the rest of its body does not arrive.
     Request named;
     named.client = request_.client;
     named.request_id = request_.request_id;
@@ -174,7 +175,7 @@ Response Exchange::handled() {
 
 Response Exchange::refused(int status, const std::string& detail) {
     keep_ = false;
-    // Nobody is there to read it.
+    // The client has disconnected.
     if (status == 0) return {};
     request_.remote_addr = connection_.address;
     return application_.refuse(status, detail, request_);
@@ -213,14 +214,14 @@ void Exchange::give_stream(BodyProducer producer, const std::string& type, httpl
         out.set_chunked_content_provider(type, provider);
 }
 
-/// The library's own fields about the connection say what it would do; here they say what is done.
+/// The library's own fields about the connection describe its intention; these describe the actual behaviour.
 void Exchange::finish(httplib::Response& out) {
     if (!taken_) {
         give(refused(400, "The request line or a header field cannot be read."), out);
         out.headers.erase("Content-Length");
         out.headers.emplace("Content-Length", std::to_string(out.body.size()));
     }
-    // What a handler did not want of a body that is read as it arrives may be long.
+    // The rest of a body that a handler stopped reading may be long.
     keep_ = keep_ && (streamed_ ? connection_.body_done() : connection_.drop_body());
     for (const char* name : {"Keep-Alive", "Connection", "Accept-Ranges"}) out.headers.erase(name);
     if (out.status == 204 || out.status == 304) out.headers.erase("Content-Length");

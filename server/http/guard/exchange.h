@@ -1,5 +1,5 @@
-// One request on its way through the library: the head that the guard has read becomes our request, what a handler
-// answers becomes the library's response.
+// One request in the library: the head that the guard has read becomes a Request, and the handler's answer becomes the
+// library's response.
 #pragma once
 
 #include <httplib.h>
@@ -16,8 +16,8 @@ public:
     Exchange(Connection& connection, const Head& head, const Application& application, const ServerLimits& limits,
              Budget& bodies, UnsentResponses& answers, const std::atomic<bool>& stopping);
 
-    /// Gives the connection to `process`, which is the library's process_request with the hooks below. True where
-    /// another request may follow on it.
+    /// Gives the connection to `process`, the library's process_request with the hooks below. True if another request
+    /// may follow.
     template <class Process>
     bool run(const Process& process) {
         current() = this;
@@ -25,14 +25,14 @@ public:
         return connection_.flush() && whole && keep_;
     }
 
-    // The library's hooks, in their order. Each is called on the thread of the exchange that it belongs to.
+    // The library's hooks, in their order. Each is called on the thread of its exchange.
     static void on_head(httplib::Request& raw) { current()->take(raw); }
     static httplib::Server::HandlerResponse before_body(httplib::Response& out) { return current()->begin(out); }
     static void with_body(httplib::Response& out, const httplib::ContentReader& body) { current()->answer(out, body); }
     static void before_headers(httplib::Response& out) { current()->finish(out); }
 
 private:
-    // The library hands nothing of ours from its one end to the other; an exchange has one thread from start to end.
+    // The library passes no user data through; an exchange stays on one thread from start to end.
     static Exchange*& current();
 
     void take(httplib::Request& raw);
@@ -55,9 +55,9 @@ private:
     const std::atomic<bool>& stopping_;
     Request request_;
     std::shared_ptr<Budget::Reservation> share_;
-    std::size_t come_ = 0;               ///< of the body, as far as it is held
+    std::size_t come_ = 0;               ///< bytes of the body, as far as they are held
     UnsentResponses::Reservation held_;  ///< the body of the answer; the library has it until the end of the exchange
-    bool taken_ = false;                 ///< the library could read the head
+    bool taken_ = false;                 ///< the library accepted the head
     bool streamed_ = false;
     bool keep_;
 };

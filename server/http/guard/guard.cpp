@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kBacklog = 1024;
 constexpr std::chrono::milliseconds kStoppingInterval{10};
-constexpr std::size_t kNetworkBytes = 8;  // of an IPv6 address: what one customer gets is a /64
+constexpr std::size_t kNetworkBytes = 8;  // of an IPv6 address: a customer gets a /64
 
 sockaddr_storage peer_of(int fd) {
     sockaddr_storage address{};
@@ -39,7 +39,7 @@ std::string text_of(const sockaddr_storage& address) {
     return text.data();
 }
 
-/// Whose connection it is: the address, of IPv6 its first 64 bits.
+/// The network of a connection: the address, for IPv6 its first 64 bits.
 std::string network_of(sockaddr_storage address) {
     if (address.ss_family != AF_INET6) return text_of(address);
     auto& bytes = reinterpret_cast<sockaddr_in6&>(address).sin6_addr.s6_addr;
@@ -61,7 +61,7 @@ Server::Guard::Guard(const ServerLimits& limits, Application application)
       answers_(limits.unsent),
       crew_(limits.connections) {
     set_tcp_nodelay(true);
-    // SO_REUSEADDR alone: a port that another process listens on is an error, never shared.
+    // SO_REUSEADDR only: a port on which another process listens is an error, never shared.
     set_socket_options([](socket_t fd) {
         const int on = 1;
         ::setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
@@ -90,7 +90,7 @@ int Server::Guard::open(const std::string& host, int port) {
         throw std::runtime_error("Cannot listen on " + where + ": " +
                                  (errno != 0 ? std::strerror(errno) : "the host name is not known") + ".");
     }
-    // The library listens with a backlog of 5, which drops connections of any burst.
+    // The library listens with a backlog of 5, which drops connections in bursts.
     ::listen(svr_sock_, kBacklog);
     listener_ = svr_sock_;
     sockaddr_storage address{};
@@ -100,7 +100,7 @@ int Server::Guard::open(const std::string& host, int port) {
                                                : reinterpret_cast<sockaddr_in&>(address).sin_port);
 }
 
-/// In place of the library's own loop, which ends at errors that pass, such as too many open files of the whole system.
+/// Replaces the library's own loop, which ends at temporary errors, such as too many open files in the whole system.
 void Server::Guard::serve() {
     while (!closed_) {
         const int socket = ::accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
@@ -114,7 +114,7 @@ void Server::Guard::serve() {
 
 void Server::Guard::close() {
     if (stopping_.exchange(true) || listener_ < 0) return;
-    // Who has been connected is accepted first: closing the port would reset them.
+    // Clients that are already connected are accepted first: closing the port would reset them.
     const auto end = std::chrono::steady_clock::now() + limits_.farewell;
     for (pollfd port{listener_, POLLIN, 0}; ::poll(&port, 1, 0) > 0 && std::chrono::steady_clock::now() < end;)
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -123,13 +123,13 @@ void Server::Guard::close() {
     ::shutdown(listener_, SHUT_RDWR);
 }
 
-/// Under the lock: true where one of the connections is such.
+/// Requires the lock. True if one of the connections satisfies the condition.
 template <class Which>
 bool Server::Guard::any(const Which& which) const {
     return std::ranges::any_of(neighbours_, [&](const auto& item) { return std::ranges::any_of(item.second, which); });
 }
 
-/// After the port is closed: requests that are on their way get their answer, those under way the time of `stopping`.
+/// After the port is closed: requests that are arriving get their answer, and those in progress the time `stopping`.
 void Server::Guard::finish_under_way() {
     const auto start = std::chrono::steady_clock::now();
     const auto elapsed = [&] { return std::chrono::steady_clock::now() - start; };
@@ -144,9 +144,9 @@ void Server::Guard::finish_under_way() {
     any([](const Connection* connection) { return connection->cut_off(), false; });
 }
 
-// ---- connections come and go ----
+// ---- opening and closing of connections ----
 
-/// Another connection is to be served. Where there are as many as there may be, one of whoever has the most gives way.
+/// Another connection is to be served. At the limit, a connection of the network with the most gives way.
 void Server::Guard::expect_one(int socket) {
     {
         const std::lock_guard lock(mutex_);
@@ -158,15 +158,15 @@ void Server::Guard::expect_one(int socket) {
     thin_out();
 }
 
-/// Under the lock. Who has the most is known when every thread has a connection.
+/// Requires the lock. The network with the most connections is known once every thread has a connection.
 void Server::Guard::thin_out() {
     const std::size_t max = starved_ ? served_ : limits_.connections;
     if (neighbours_.empty() || connections_ - leaving_ <= max || served_ < max) return;
     make_room(std::ranges::max_element(neighbours_, {}, [](const auto& item) { return item.second.size(); })->second);
 }
 
-/// Cuts off the connection that has waited for its client for longest. A client sends its head, and more of its body,
-/// at once: its connections are hardly ever among these but between two requests.
+/// Cuts off the connection that has waited longest for its client. A client normally sends its head and its body
+/// without delay, so its connections are rarely among these except between two requests.
 bool Server::Guard::make_room(const Neighbours& among) {
     Connection* longest = nullptr;
     Connection::Clock::time_point since;
@@ -181,7 +181,7 @@ bool Server::Guard::make_room(const Neighbours& among) {
     return true;
 }
 
-/// False where its network has as many as it may have and none of them gives way.
+/// False if its network has the maximum number of connections and none of them gives way.
 bool Server::Guard::enter(Connection& connection) {
     const std::lock_guard lock(mutex_);
     Neighbours& all = neighbours_[connection.network];
@@ -189,7 +189,7 @@ bool Server::Guard::enter(Connection& connection) {
     const bool allowed = !limited || all.size() < limits_.of_one_network || make_room(all);
     all.insert(&connection);
     served_++;
-    // More may have come than there were to give way: they wait for a thread, and this one has just had one.
+    // More connections may have arrived than could give way: they wait for a thread, and this one has just had one.
     thin_out();
     return allowed && !over_;
 }
@@ -209,7 +209,7 @@ Occupancy Server::Guard::occupancy() const {
     return {.connections = connections_, .body_bytes = bodies_.taken(), .unsent_bytes = answers_.bytes()};
 }
 
-/// On a thread of the crew: all requests of a connection.
+/// On a thread of the pool: all requests of a connection.
 void Server::Guard::attend(int socket) {
     const sockaddr_storage peer = peer_of(socket);
     Connection connection(socket, text_of(peer), network_of(peer), limits_);
@@ -219,7 +219,7 @@ void Server::Guard::attend(int socket) {
     }
 }
 
-/// One request and its answer; false where it was the last.
+/// One request and its answer; false if it was the last.
 bool Server::Guard::converse(Connection& connection) {
     const std::optional<Head> head = connection.next_head();
     if (!head) return false;
@@ -230,7 +230,7 @@ bool Server::Guard::converse(Connection& connection) {
     return goes_on;
 }
 
-// ---- the door to it ----
+// ---- public interface ----
 
 Server::Server(const ServerLimits& limits, Application application)
     : guard_(std::make_unique<Guard>(limits, std::move(application))) {}

@@ -1,5 +1,5 @@
-// The library's server with our hand on its sockets: each connection has a thread, of a crew that grows on demand, and
-// is read and written by a Connection of ours. What clients may hold together has a limit.
+// The library's server with the guard on its sockets: each connection has a thread of a pool that grows on demand, and
+// is read and written by a Connection. The total resources of clients are limited.
 #pragma once
 
 #include <atomic>
@@ -46,16 +46,17 @@ private:
     const Application application_;
     Budget bodies_;
     UnsentResponses answers_;
-    std::atomic<bool> stopping_ = false;                         ///< answers say that they are the last
-    std::atomic<bool> closed_ = false;                           ///< nobody is accepted any more
-    int listener_ = -1;                                          ///< the port
-    mutable std::mutex mutex_;                                   ///< of what follows
+    std::atomic<bool> stopping_ = false;                         ///< answers announce the end of the connection
+    std::atomic<bool> closed_ = false;                           ///< no further connections are accepted
+    int listener_ = -1;                                          ///< the listening socket
+    mutable std::mutex mutex_;                                   ///< protects the members below
     std::map<std::string, Neighbours, std::less<>> neighbours_;  ///< by network; none is empty
-    bool over_ = false;                                          ///< who comes now is not served
-    std::size_t connections_ = 0;                                ///< accepted, whether they have a thread yet or not
-    std::size_t served_ = 0;                                     ///< of these: have a thread
-    std::size_t leaving_ = 0;                                    ///< and of those: give way, and have not left yet
-    bool starved_ = false;                                       ///< the system had no thread for who came last
+    bool over_ = false;                                          ///< new connections are not served
+    std::size_t connections_ = 0;                                ///< accepted, with or without a thread
+    std::size_t served_ = 0;                                     ///< of these, connections that have a thread
+    std::size_t leaving_ = 0;                                    ///< of these, connections that give way but have not
+                                                                 ///< ended yet
+    bool starved_ = false;                                       ///< the system had no thread for the last connection
     ThreadPool crew_;                                            ///< last: its threads use all of the above
 };
 

@@ -38,7 +38,7 @@ bool has_word(std::string_view list, std::string_view word) {
     return false;
 }
 
-/// What has been seen so far of one request's fields.
+/// The fields of one request that have been read so far.
 struct Fields {
     int hosts = 0;
     int lengths = 0;
@@ -64,7 +64,7 @@ bool is_authority(std::string_view value) {
     return port.size() <= 5 && std::ranges::all_of(port, [](char c) { return c >= '0' && c <= '9'; });
 }
 
-/// Each % of the query stands before two hexadecimal digits.
+/// True if each % of the query is followed by two hexadecimal digits.
 bool is_encoded(std::string_view target) {
     const auto hex = [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F'); };
     for (std::size_t at = target.find('?'); at < target.size(); ++at)
@@ -73,7 +73,7 @@ bool is_encoded(std::string_view target) {
     return true;
 }
 
-/// The methods that the serving library takes.
+/// True for the methods that the HTTP library accepts.
 bool is_known(std::string_view method) {
     constexpr std::array<std::string_view, 9> known = {"GET",     "HEAD",    "POST",  "PUT",  "DELETE",
                                                        "CONNECT", "OPTIONS", "TRACE", "PATCH"};
@@ -113,14 +113,14 @@ bool take_field(std::string_view name, std::string_view value, Fields& seen, Hea
     return true;
 }
 
-/// The first line as it is understood.
+/// The first line after parsing.
 struct RequestLine {
     std::string_view method;
-    std::string_view authority;  ///< of a target that names it, as proxies are sent (RFC 9112, section 3.2.2)
+    std::string_view authority;  ///< of a target in absolute form, as sent to proxies (RFC 9112, section 3.2.2)
     std::string target;          ///< path and query
 };
 
-/// Takes scheme and authority off; false where the rest is no target.
+/// Removes scheme and authority; false if the rest is not a target.
 bool split_target(std::string_view target, RequestLine& read) {
     for (const std::string_view scheme : {"http://", "https://"}) {
         if (!equals(target.substr(0, scheme.size()), scheme)) continue;
@@ -169,7 +169,7 @@ bool read_request_line(std::string_view line, RequestLine& read, Head& head) {
     return true;
 }
 
-/// The next line without its CRLF; false (and a refusal) where it has a control character.
+/// The next line without its CRLF; false (and a refusal) if it has a control character.
 bool next_line(std::string_view& rest, std::string_view& line, Head& head) {
     line = rest.substr(0, rest.find(kLineEnd));
     rest.remove_prefix(line.size() + kLineEnd.size());
@@ -216,11 +216,11 @@ bool has_bare_line_feed(std::string_view text, std::size_t from = 0) {
 }
 
 Head read_strictly(std::string_view input) {
-    // Some clients send one after a body, beyond its length (RFC 9112, section 2.2).
+    // Some clients send an empty line after a body, beyond its length (RFC 9112, section 2.2).
     const std::size_t skipped = input.starts_with(kLineEnd) ? kLineEnd.size() : 0;
     input.remove_prefix(skipped);
     if (input.starts_with(kLineEnd)) return refuse(400, "The first line must be METHOD TARGET HTTP/1.1.");
-    // Each of these limits is found at the same byte however the input is cut.
+    // Each of these limits applies at the same byte however the input is cut.
     if (std::min(input.find('\n'), input.size()) > kMaxLineBytes + 1)
         return refuse(414, "The request line may have at most 8,000 bytes.");
     const std::size_t end = input.find("\r\n\r\n");
@@ -256,7 +256,7 @@ Head read_strictly(std::string_view input) {
     return head;
 }
 
-/// Of a head that is refused: what its answer is to carry, if that can be read.
+/// Reads the fields that the answer to a refused head needs, if they are readable.
 void keep_names(std::string_view input, Head& head) {
     head.fields.clear();
     input = input.substr(0, std::min(input.find("\r\n\r\n"), kMaxHeadBytes));

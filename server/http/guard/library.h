@@ -1,4 +1,4 @@
-// Calls that differ between versions of cpp-httplib, for the guard alone. ADR 12 says what the versions do differently.
+// Calls that differ between versions of cpp-httplib, for the guard only. ADR 12 describes the differences.
 #pragma once
 
 #include <httplib.h>
@@ -11,8 +11,8 @@ namespace tunewright::server::http {
 /// Called by the library when it has read a head.
 using HeadHook = std::function<void(httplib::Request&)>;
 
-/// One request and its answer, by the library's process_request(). False where the connection must end.
-/// Version 0.11 asks the stream for the addresses; nothing here uses what the library knows of them.
+/// One request and its answer, by the library's process_request(). False if the connection must end. Version 0.11 reads
+/// the addresses from the stream; they are not used here.
 inline bool process(httplib::Server& server,
                     bool (httplib::Server::*process_request)(httplib::Stream&, bool, bool&, const HeadHook&),
                     httplib::Stream& stream, const HeadHook& on_head) {
@@ -20,7 +20,7 @@ inline bool process(httplib::Server& server,
     return (server.*process_request)(stream, false, closed, on_head);
 }
 
-/// The same by version 0.18, which is given the addresses.
+/// The call of version 0.18, which takes the addresses as arguments.
 inline bool process(httplib::Server& server,
                     bool (httplib::Server::*process_request)(httplib::Stream&, const std::string&, int,
                                                              const std::string&, int, bool, bool&, const HeadHook&),

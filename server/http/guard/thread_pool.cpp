@@ -58,7 +58,7 @@ void ThreadPool::work() {
         lock.lock();
     }
     threads_--;
-    // Under the lock: the crew may be gone as soon as it is free.
+    // Requires the lock: the pool may be destroyed as soon as it is released.
     left_.notify_all();
 }
 

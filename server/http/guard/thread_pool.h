@@ -1,4 +1,4 @@
-// Threads that come when there is work and go when there is none for a while.
+// A pool of threads that are started when there is work and end after a time without work.
 #pragma once
 
 #include <chrono>
@@ -16,11 +16,11 @@ public:
     ThreadPool(const ThreadPool&) = delete;
     ThreadPool& operator=(const ThreadPool&) = delete;
 
-    /// Ends the threads when they have done what was posted; false where that takes longer.
+    /// Ends the threads when they have done the posted work; false if that takes longer.
     bool stop_within(std::chrono::milliseconds patience);
 
-    /// Runs the task on a thread of its own, or when one of `max` is free. What it throws is logged. False where the
-    /// system gives no more threads, so that it waits for one of those that there are.
+    /// Runs the task on a new thread, or when one of `max` is free. Exceptions are logged. False if the system has no
+    /// more threads, so that the task waits for an existing one.
     bool post(std::function<void()> task);
 
 private:

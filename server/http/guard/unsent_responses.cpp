@@ -5,9 +5,9 @@ namespace {
 
 using Clock = Connection::Clock;
 
-constexpr std::size_t kMaxUncountedBytes = 16 * 1024;  // goes out at once, or fits what the system buffers
+constexpr std::size_t kMaxUncountedBytes = 16 * 1024;  // sent at once, or held in the system's buffers
 constexpr std::chrono::milliseconds kStalledTime{500};
-constexpr std::chrono::milliseconds kMaxPatience{2000};  // with clients that take something, if too little
+constexpr std::chrono::milliseconds kMaxPatience{2000};  // with clients that read, but too slowly
 constexpr std::chrono::milliseconds kPollInterval{50};
 
 }  // namespace
@@ -38,7 +38,8 @@ void UnsentResponses::give_back(EntryIterator place) {
     freed_.notify_all();
 }
 
-/// Under the lock, which is free while it waits. The threads of those who are cut off free what they held.
+/// Requires the lock, which is released during the wait. The threads of connections that are cut off release their
+/// bytes.
 void UnsentResponses::make_room(std::unique_lock<std::mutex>& lock, const Entry& own) {
     const auto start = Clock::now();
     while (sum_ > max_ && sum_ > own.bytes && Clock::now() < start + 2 * kMaxPatience) {
@@ -55,7 +56,7 @@ void UnsentResponses::make_room(std::unique_lock<std::mutex>& lock, const Entry&
     }
 }
 
-/// Of those that are being sent, and whose clients have taken nothing since then.
+/// The oldest of those that are being sent and whose clients have read nothing since then.
 UnsentResponses::Entry* UnsentResponses::oldest(Clock::time_point moved_before) {
     Entry* found = nullptr;
     for (Entry& entry : entries_)

@@ -1,4 +1,5 @@
-// The memory that answers take until their clients have taken them: one sum, and who gives way where it is too much.
+// The memory of answers until their clients have read them: one total, and the rule which answer is dropped if it is
+// too large.
 #pragma once
 
 #include <chrono>
@@ -20,12 +21,12 @@ private:
         Connection* connection;
         std::size_t bytes;
         bool sending = false;  ///< there was room for it
-        bool leaving = false;  ///< its connection has been cut off
+        bool leaving = false;  ///< its connection was cut off
     };
     using EntryIterator = std::list<Entry>::iterator;
 
 public:
-    /// Bytes that are held; given back when it goes.
+    /// Reserved bytes; returned by the destructor.
     class Reservation {
     public:
         Reservation() = default;
@@ -46,9 +47,9 @@ public:
         EntryIterator place_;
     };
 
-    /// Counts what is held for the connection, and waits until there is room for it: clients that have taken nothing
-    /// for a moment are cut off, those first whose requests are the oldest, as many as it takes. Where all take
-    /// something, the oldest go after a while. What is small does not count.
+    /// Reserves bytes for the connection, and waits until there is room: clients that have read nothing for a moment
+    /// are cut off, the oldest requests first, as many as necessary. If all clients read, the oldest requests are cut
+    /// off after a while. Small answers do not count.
     Reservation hold(Connection& connection, std::size_t bytes);
     std::size_t bytes() const;
 
@@ -61,8 +62,8 @@ private:
     mutable std::mutex mutex_;
     std::condition_variable freed_;
     std::list<Entry> entries_;
-    std::size_t sum_ = 0;      ///< of all
-    std::size_t leaving_ = 0;  ///< of those that have been cut off
+    std::size_t sum_ = 0;      ///< bytes of all answers
+    std::size_t leaving_ = 0;  ///< bytes of those that were cut off
 };
 
 }  // namespace tunewright::server::http

@@ -17,19 +17,19 @@ namespace tunewright::server {
 namespace {
 
 constexpr std::size_t kMaxGroupEntries = 500;            ///< entries of one write
-constexpr std::size_t kMaxGroupBytes = 2 * 1024 * 1024;  ///< and bytes, but for an entry that has more by itself
-// A slow client may leave more time between two groups than the store waits.
+constexpr std::size_t kMaxGroupBytes = 2 * 1024 * 1024;  ///< bytes of one write, except for a single larger entry
+// With a slow client the time between two groups may exceed the store's timeout.
 constexpr std::chrono::seconds kReceiptInterval{15};
 static_assert(kReceiptInterval * 3 <= JobStore::kReceiving);
 
-/// One batch on its way in, from its bytes into the store. Used by the thread that receives the body; what it reads is
-/// worked on by the lane, one piece after the other. Entries go to the store in groups, of which few bytes are on their
-/// way at a time: a client that is faster than the store waits.
+/// One batch during its upload, from its bytes into the store. Used by the thread that receives the body; the lane
+/// parses it, one piece after the other. Entries are written to the store in groups, with a limited number of bytes in
+/// progress: a client that is faster than the store waits.
 class Reception {
 public:
     Reception(JobStore& store, JobService& jobs, Executor& lane, const std::function<UnixMs()>& now,
               const BatchOrder& order);
-    /// Waits for what the store still has to say.
+    /// Waits for the outstanding answers of the store.
     ~Reception();
     Reception(const Reception&) = delete;
     Reception& operator=(const Reception&) = delete;
@@ -69,14 +69,14 @@ private:
     std::vector<NewEntry> group_;
     std::size_t group_bytes_ = 0;
     std::int64_t next_index_ = 0;
-    std::optional<bool> earlier_;  ///< whether a batch has this key already
+    std::optional<bool> earlier_;  ///< true if a batch already has this key
     bool opened_ = false;
     Clock::time_point last_sent_{};
 
     mutable std::mutex mutex_;
     std::condition_variable changed_;
-    std::optional<BatchReceipt> failure_;  ///< the first
-    std::size_t out_ = 0;                  ///< calls that the store has not answered
+    std::optional<BatchReceipt> failure_;  ///< the first failure
+    std::size_t out_ = 0;                  ///< calls that the store has not answered yet
     std::size_t bytes_out_ = 0;            ///< of their entries
 };
 
@@ -106,7 +106,7 @@ BatchReceipt Reception::run(const BatchBody& body) {
     return *failure_;
 }
 
-/// Has a piece of the body read on the lane, and waits until the store has kept up.
+/// Parses a piece of the body on the lane, and waits until the store has kept up.
 bool Reception::take(std::string_view piece) {
     if (failed()) return false;
     if (jobs_.draining() || !lane_.run([&] { read(piece); })) return fail(BatchReceipt::Kind::draining), false;
@@ -114,7 +114,7 @@ bool Reception::take(std::string_view piece) {
     return wait_until(kMaxGroupBytes);
 }
 
-/// A known key: the body is only compared with the earlier one's.
+/// A known key: the body is only compared with that of the earlier batch.
 bool Reception::find_earlier() {
     if (order_.idempotency_key.empty() || earlier_) return true;
     try {
@@ -201,7 +201,7 @@ void Reception::add(std::vector<NewEntry> entries, std::size_t bytes, bool waiti
                        [this, bytes, waiting](const Outcome<bool>& outcome) { sent(outcome, bytes, waiting); });
 }
 
-/// From any thread. The last that is done with this: it may be gone as soon as the lock is free.
+/// From any thread. The last access to this object: it may be destroyed as soon as the lock is released.
 void Reception::sent(const Outcome<bool>& outcome, std::size_t bytes, bool waiting) {
     if (const auto* fault = std::get_if<StoreFault>(&outcome))
         fail({BatchReceipt::Kind::store_failed, {}, {}, *fault});
@@ -215,7 +215,7 @@ void Reception::sent(const Outcome<bool>& outcome, std::size_t bytes, bool waiti
     changed_.notify_all();
 }
 
-/// False where the batch has failed; 0 waits for every call of the store.
+/// False if the batch has failed; 0 waits for every call of the store.
 bool Reception::wait_until(std::size_t bytes_out) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [&] { return failure_ || (bytes_out > 0 ? bytes_out_ <= bytes_out : out_ == 0); });
@@ -236,12 +236,13 @@ BatchReceipt Reception::seal() {
         case Sealed::Kind::existing: return {BatchReceipt::Kind::existing, what.id, {}, {}};
         case Sealed::Kind::sealed: break;
     }
-    // The earlier one was deleted while this body was compared with it.
+    // The earlier batch was deleted while this body was compared with it.
     if (next_index_ == 0) return {BatchReceipt::Kind::store_failed, {}, {}, {}};
     return {BatchReceipt::Kind::created, what.id, {}, {}};
 }
 
-/// Returns when nothing of it is kept; a store that cannot drop it now does so later, for it hears of it no more.
+/// Returns when none of it is stored; a store that cannot drop it now does so later, when the receiver's timeout is
+/// over.
 void Reception::drop() {
     if (!opened_) return;
     jobs_.batch_dropped(id_);

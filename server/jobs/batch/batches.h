@@ -1,4 +1,4 @@
-// Many jobs posted at once: their way into the store while they arrive, and what is asked of them together.
+// Many jobs posted at once: their upload into the store, and the operations on a whole batch.
 #pragma once
 
 #include <functional>
@@ -17,7 +17,7 @@ namespace tunewright::server {
 /// A body that is to become a batch.
 struct BatchOrder {
     api::BatchQuestion question;
-    std::string asked;  ///< what else distinguishes two bodies, such as the parameters of the call
+    std::string asked;  ///< other data that distinguish two bodies, such as the parameters of the call
     std::string idempotency_key;
     std::string owner;  ///< as in NewBatch
     std::string flow;
@@ -27,14 +27,14 @@ struct BatchOrder {
 struct BatchReceipt {
     enum class Kind {
         created,
-        existing,    ///< the same body came before under this key
-        conflict,    ///< another body came before under this key
-        refused,     ///< `problem` says why
-        queue_full,  ///< of entries
+        existing,    ///< the same body was posted before with this key
+        conflict,    ///< another body was posted before with this key
+        refused,     ///< `problem` has the reason
+        queue_full,  ///< too many entries wait
         draining,
-        cancelled,     ///< by somebody, while it was being received
+        cancelled,     ///< by somebody, during the upload
         abandoned,     ///< by its client
-        store_failed,  ///< `fault` says why
+        store_failed,  ///< `fault` has the reason
     };
     Kind kind = Kind::store_failed;
     std::string id;  ///< of created and existing
@@ -42,18 +42,16 @@ struct BatchReceipt {
     StoreFault fault;
 };
 
-/// Gives a body piece after piece to whom it is passed, until that returns false; false where it does not come to its
-/// end.
+/// Passes a body piece by piece to a function, until that returns false; false if the body is incomplete.
 using BatchBody = std::function<bool(const std::function<bool(std::string_view)>&)>;
 
 class Batches {
 public:
-    /// All must outlive it. What takes long runs on `lane`.
+    /// All references must outlive it. Long work runs on `lane`.
     Batches(JobStore& store, JobService& jobs, Executor& lane, std::function<UnixMs()> now);
 
-    /// Reads the body and puts its entries into the store as they come; returns when the whole batch is durable, or as
-    /// soon as it is refused. Entries may run while others are still coming; a batch that does not come to its end
-    /// leaves nothing behind.
+    /// Reads the body and stores its entries as they arrive; returns when the whole batch is durable, or as soon as it
+    /// is refused. Entries may run while others are still arriving; an incomplete batch leaves nothing behind.
     BatchReceipt receive(BatchOrder order, const BatchBody& body);
 
     /// Reads throw StoreError.
@@ -64,7 +62,7 @@ public:
     std::vector<BatchRow> rows(const std::string& id, std::int64_t from, std::size_t limit) {
         return store_.batch_rows(id, from, limit);
     }
-    /// Waiting jobs are cancelled, running ones stop soon after. False where there is no such batch.
+    /// Waiting jobs are cancelled, running ones stop soon after. False if there is no such batch.
     void cancel(const std::string& id, Done<bool> done);
     void remove(const std::string& id, Done<RemoveEffect> done) { store_.remove_batch(id, std::move(done)); }
 

@@ -6,15 +6,15 @@
 namespace tunewright::server {
 namespace {
 
-constexpr double kShortJobSeconds = 0.020;  // seconds; also what is claimed ahead for one worker
+constexpr double kShortJobSeconds = 0.020;  // seconds; also the amount of work that is claimed ahead for one worker
 constexpr std::size_t kMaxAhead = 16;
-// One claim in so many takes a job of low priority first, so that batches go on however many single jobs come.
+// One claim in kLowShare takes a job of low priority first, so that batches progress however many single jobs arrive.
 constexpr std::uint64_t kLowShare = 8;
 constexpr double kPaceForgetting = 0.2;
-// Where no worker has come for that long, each is at a long job, whatever the latest took.
+// If no worker has taken a job for that long, all are at long jobs, whatever the latest ones took.
 constexpr std::chrono::milliseconds kMaxTimeSinceTake{25};
 constexpr std::chrono::seconds kMaxPoliteWait{
-    10};  // that jobs which must run alone wait for a process that is never idle
+    10};  // waiting time of jobs that must run alone, for a process that is never idle
 
 }  // namespace
 
@@ -25,7 +25,7 @@ std::shared_ptr<HeldJob> Claims::take(const std::stop_token& stop) {
     std::unique_lock lock(mutex_);
     idle_++;
     ask(lock);
-    // A single job that has just arrived is fetched before an entry of a batch is begun.
+    // A single job that has just arrived is claimed before an entry of a batch is begun.
     const auto there = [this] { return closed_ || (!ready_.empty() && !(urgent() && asking_for_arrivals_)); };
     const bool found = changed_.wait(lock, stop, there);
     idle_--;
@@ -45,7 +45,7 @@ void Claims::arrived() {
 
 void Claims::took(double seconds, bool whole) {
     const std::lock_guard lock(mutex_);
-    // One that was stopped would have taken longer: of its time only a lower bound is known.
+    // A stopped job would have taken longer: only a lower bound of its time is known.
     if (whole || seconds > pace_) pace_ = std::max(seconds, (1 - kPaceForgetting) * pace_ + kPaceForgetting * seconds);
     streak_ = pace_ < kShortJobSeconds ? streak_ + 1 : 0;
 }
@@ -88,7 +88,7 @@ std::size_t Claims::ahead() const {
 
 std::size_t Claims::wanted() const {
     const std::size_t enough = idle_ + ahead();
-    // Half of what is claimed ahead is used up before more is asked for: several at once cost as much as one.
+    // Half of the jobs claimed ahead are used before more are claimed: several at once cost as much as one.
     if (ready_.size() < idle_ || ready_.size() <= enough / 2) return enough - std::min(enough, ready_.size());
     const bool overtaking = arrivals_ != seen_ && urgent();
     return overtaking && enough > 0 ? 1 : 0;
@@ -96,12 +96,12 @@ std::size_t Claims::wanted() const {
 
 bool Claims::suspects_turn(std::size_t held) const { return suspects_ > 0 && held == 0 && idle_ > 0; }
 
-/// For a job that runs alone, or that has waited long enough to.
+/// True to make room for a job that runs alone, or that has waited long enough to.
 bool Claims::keeps_clear(std::size_t held) const {
     return held > 0 && (alone_ || (suspects_ > 0 && HeldJob::Clock::now() > suspects_since_ + kMaxPoliteWait));
 }
 
-/// Called with the lock, returns with it; asks the store without.
+/// Called with the lock and returns with it; releases it while it asks the store.
 void Claims::ask(std::unique_lock<std::mutex>& lock) {
     const std::size_t held = held_.size();
     alone_ = alone_ && held > 0;
@@ -110,7 +110,7 @@ void Claims::ask(std::unique_lock<std::mutex>& lock) {
     if (held >= settings_.max_held || unsaved_ >= settings_.max_unsaved) return;
     std::size_t max = suspects ? 1 : std::min(wanted(), settings_.max_held - held);
     if (max == 0) return;
-    // One job then, and whatever has arrived is still to be asked for.
+    // Only one job then, and new arrivals still have to be claimed.
     const bool low_first = !suspects && ++claims_ % kLowShare == 0;
     if (low_first) max = 1;
     asking_ = true;
@@ -139,7 +139,7 @@ void Claims::come(Outcome<std::vector<JobRecord>> outcome, std::size_t asked, bo
     asking_ = asking_for_arrivals_ = false;
     failed_ = jobs == nullptr;
     if (std::exchange(asking_for_suspects_, false)) {
-        // Others may have taken it; the next count says.
+        // Other processes may have taken it; the next count shows that.
         suspects_ = 0;
         alone_ = jobs != nullptr && !jobs->empty();
         arrivals_++;
@@ -148,10 +148,10 @@ void Claims::come(Outcome<std::vector<JobRecord>> outcome, std::size_t asked, bo
     if (failed_) arrivals_++;  // so that retry() asks again
     if (jobs != nullptr) {
         more_ = jobs->size() >= asked;
-        // Jobs of another kind may come when these are done.
+        // Jobs of another kind may follow when these are done.
         if (!more_) streak_ /= 2;
         for (JobRecord& job : *jobs) {
-            // Registered on the store's thread: a cancel that the store sees later finds the job here.
+            // Registered on the store's thread: a cancellation that the store sees later finds the job here.
             const bool goes_first = low_first || job.batch.empty();
             std::shared_ptr<HeldJob> held = held_.add(std::move(job), goes_first);
             closed_ ? late.push_back(std::move(held)) : put(std::move(held));

@@ -16,7 +16,7 @@ std::chrono::milliseconds Heartbeats::interval() const {
     return settings_.shared ? std::min(settings_.poll, third) : third;
 }
 
-/// Who holds nothing only has to find out now and then whether the store thinks otherwise.
+/// A process that holds nothing only has to check from time to time whether the store disagrees.
 bool Heartbeats::is_due(const Asked& held) {
     const auto now = HeldJob::Clock::now();
     if (held.empty() && (!settings_.shared || now < last_ + settings_.lease / 3)) return false;
@@ -62,7 +62,7 @@ void Heartbeats::heard(const Asked& asked, const std::vector<Holding>& holdings)
     std::map<std::int64_t, const Holding*> known;
     for (const Holding& holding : holdings) known[holding.seq] = &holding;
     for (const std::shared_ptr<HeldJob>& held : asked) {
-        // One whose end is on its way into the store is sent there.
+        // A job whose end is being written to the store is handled there.
         if (held->stage() == HeldJob::Stage::ending || held_.find(held->job.id) != held) continue;
         const auto found = known.find(held->job.seq);
         if (found == known.end() || found->second->attempts != held->job.attempts)
@@ -73,7 +73,7 @@ void Heartbeats::heard(const Asked& asked, const std::vector<Holding>& holdings)
     release_strays(holdings);
 }
 
-/// What the store handed out in an answer that never came here: nobody computes it.
+/// Jobs that the store handed out in an answer that was lost: nobody computes them.
 void Heartbeats::release_strays(const std::vector<Holding>& holdings) {
     std::set<std::int64_t> here;
     for (const auto& held : held_.all()) here.insert(held->job.seq);

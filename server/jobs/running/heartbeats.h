@@ -1,5 +1,6 @@
-// Signs of life of this process: while the store hears them, its jobs are its own. They carry the progress of what runs
-// here, and bring what others want of it: a cancel, or the news that a job is not this process's any longer.
+// Heartbeats of this process: while the store receives them, the process keeps its jobs. They carry the progress of the
+// jobs that run here, and return requests of other processes: a cancellation, or the notice that this process has lost
+// a job.
 #pragma once
 
 #include <atomic>
@@ -18,20 +19,22 @@ namespace tunewright::server {
 struct HeartbeatSettings {
     std::string worker;  ///< names this process
     std::chrono::milliseconds lease{10'000};
-    std::chrono::milliseconds poll{500};  ///< others learn of progress, and this process of cancels, that quickly
-    bool shared = false;                  ///< others use the store too
+    std::chrono::milliseconds poll{500};  ///< delay with which others learn of progress, and this process of
+                                          ///< cancellations
+    bool shared = false;                  ///< other processes use the store too
     std::function<UnixMs()> now;
-    std::function<void(const std::shared_ptr<HeldJob>&)> cancelled;  ///< somebody, perhaps elsewhere, asked for it
-    std::function<void(const std::shared_ptr<HeldJob>&)> lost;       ///< another has it, or it is gone
+    std::function<void(const std::shared_ptr<HeldJob>&)> cancelled;  ///< a cancellation was requested, perhaps
+                                                                     ///< elsewhere
+    std::function<void(const std::shared_ptr<HeldJob>&)> lost;       ///< another process has it, or it was deleted
 };
 
 class Heartbeats {
 public:
     Heartbeats(JobQueue& queue, HeldJobs& held, StoreOutageLog& outage, HeartbeatSettings settings);
 
-    /// How often beat() is to be called.
+    /// The interval at which beat() is to be called.
     std::chrono::milliseconds interval() const;
-    /// Nothing while an earlier one is under way, nor where there is nothing to say.
+    /// Does nothing while an earlier one is in progress, or if there is nothing to report.
     void beat();
 
 private:
@@ -47,7 +50,8 @@ private:
     HeartbeatSettings settings_;
     std::atomic<bool> beating_ = false;
     std::atomic<bool> resend_ = false;
-    HeldJob::Clock::time_point last_{};                      ///< this and the next of the caller's thread alone
+    HeldJob::Clock::time_point last_{};                      ///< this and the next member are used by the caller's
+                                                             ///< thread only
     std::map<std::int64_t, std::pair<int, unsigned>> sent_;  ///< attempt and revision of the progress last sent
 };
 

@@ -1,5 +1,4 @@
-// The jobs that this process has, from their claim to their end in the store: what is asked to stop and shown
-// as running.
+// The jobs that this process holds, from their claim to their end in the store: for stop requests and for progress.
 #pragma once
 
 #include <chrono>
@@ -17,31 +16,31 @@
 
 namespace tunewright::server {
 
-/// One claim of one job. Its parts may be used from every thread.
+/// One claim of one job. May be used from every thread.
 class HeldJob {
 public:
     using Clock = std::chrono::steady_clock;
     enum class Stage {
-        ready,      ///< claimed, no worker has begun
-        computing,  ///< a worker is at it
-        ending,     ///< computed: the store has still to take what came out
+        ready,      ///< claimed, not begun by a worker
+        computing,  ///< a worker computes it
+        ending,     ///< computed: the result is not stored yet
     };
     enum class Stop {
         none,
-        cancel,    ///< somebody asked
-        timeout,   ///< its time is over
+        cancel,    ///< a cancellation was requested
+        timeout,   ///< its time limit is over
         shutdown,  ///< this process ends: it is queued again
-        lost,      ///< another has it: whatever comes out is dropped
-        dropped,   ///< so has been its batch, with all its jobs
+        lost,      ///< another process has it: the result is dropped
+        dropped,   ///< its batch was dropped with all its jobs
     };
 
     HeldJob(JobRecord claimed, bool in_front) : job(std::move(claimed)), goes_first(in_front) {}
 
     const JobRecord job;
-    const bool goes_first;  ///< before entries of batches: a single job, or one whose turn has come
+    const bool goes_first;  ///< before entries of batches: a single job, or a low-priority job claimed first
     const Clock::time_point claimed_at = Clock::now();
 
-    /// The first reason counts.
+    /// The first reason is kept.
     void request(Stop why);
     Stop why() const;
     std::stop_token token() const { return stop_.get_token(); }
@@ -51,7 +50,7 @@ public:
 
     void report(const Progress& progress);
     std::optional<Progress> progress() const;
-    /// Counts reports; 0 before the first.
+    /// Number of reports; 0 before the first.
     unsigned revision() const;
 
 private:
@@ -65,15 +64,15 @@ private:
 
 class HeldJobs {
 public:
-    /// Where the same job is held already, that was an earlier attempt which has been lost: it is stopped.
+    /// If the same job is already held, that was an earlier attempt, now lost: it is stopped.
     std::shared_ptr<HeldJob> add(JobRecord claimed, bool goes_first);
-    /// Nothing where that id is held by a later attempt now.
+    /// Does nothing if a later attempt of that job is held now.
     void forget(const std::shared_ptr<HeldJob>& held);
 
     std::shared_ptr<HeldJob> find(const std::string& id) const;
     std::vector<std::shared_ptr<HeldJob>> all() const;
     std::size_t size() const;
-    /// False where some are held still when `patience` is over.
+    /// False if some are still held when `patience` is over.
     bool wait_until_none(std::chrono::duration<double> patience);
 
 private:

@@ -1,5 +1,5 @@
-// Looks for jobs whose process has gone, and for batches that nobody goes on with. On a store that several processes
-// use one of them does it at a time: whoever comes first when it is due.
+// Finds jobs whose process has ended, and batches that nobody continues. In a shared store one process does it at a
+// time: the first when it is due.
 #pragma once
 
 #include <atomic>
@@ -15,13 +15,14 @@ namespace tunewright::server {
 
 struct RescuerSettings {
     std::chrono::milliseconds lease{10'000};
-    std::chrono::milliseconds period{1000};  ///< how often it is due, all processes together
-    bool shared = false;                     ///< else no other process has jobs
+    std::chrono::milliseconds period{1000};  ///< the interval, over all processes
+    bool shared = false;                     ///< false: no other process has jobs
     int max_attempts = 10;
-    std::string given_up;  ///< problem of a job that was interrupted that often
+    std::string given_up;  ///< problem of a job that was interrupted too often
     std::function<UnixMs()> now;
-    std::function<void()> clock_jumped;              ///< a sign of life is due before anybody is thought dead
-    std::function<void(const Recovery&)> recovered;  ///< something was found
+    std::function<void()> clock_jumped;              ///< called before any other process is considered dead, so that it
+                                                     ///< can send a heartbeat first
+    std::function<void(const Recovery&)> recovered;  ///< called if something was found
 };
 
 class Rescuer {
@@ -29,8 +30,8 @@ public:
     Rescuer(JobQueue& queue, StoreOutageLog& outage, RescuerSettings settings)
         : queue_(queue), outage_(outage), settings_(std::move(settings)) {}
 
-    /// Not at the first call, nor where the wall clock has jumped since the last one: this machine slept, or its clock
-    /// was set.
+    /// Does nothing at the first call, or if the wall clock has jumped since the last one: this machine slept, or its
+    /// clock was set.
     void look();
 
 private:
@@ -38,7 +39,7 @@ private:
     StoreOutageLog& outage_;
     RescuerSettings settings_;
     std::atomic<bool> looking_ = false;
-    WallDrift drift_;  ///< of the caller's thread alone
+    WallDrift drift_;  ///< used by the caller's thread only
 };
 
 }  // namespace tunewright::server

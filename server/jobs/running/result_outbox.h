@@ -1,6 +1,6 @@
-// What came out of computations, on its way into the store. Where the store cannot take it, it is kept here and
-// offered again until it does; how much is kept is bounded, because workers claim nothing meanwhile (claims.h). The
-// reasons for which a job fails without a result stand here, too.
+// Results on their way into the store. While the store cannot accept them, they are kept here and offered again; the
+// amount is bounded, because workers claim nothing meanwhile (claims.h). The problems of jobs that fail without a
+// result are defined here, too.
 #pragma once
 
 #include <functional>
@@ -19,14 +19,14 @@ namespace tunewright::server {
 struct Ended {
     std::shared_ptr<HeldJob> held;
     JobEnd end;
-    double seconds = 0;  ///< of computing
-    std::string method;  ///< as in api::JobOutcome; "" where it was not computed
+    double seconds = 0;  ///< duration of the computation
+    std::string method;  ///< as in api::JobOutcome; "" if it was not computed
 };
 
 class ResultOutbox {
 public:
     struct Listener {
-        /// On the store's thread, once: the store has it, or (`kept` false) it was not this process's any longer.
+        /// Called once, on the store's thread: the result is stored, or (`kept` false) this process had lost the job.
         std::function<void(const Ended& ended, bool kept)> done;
         std::function<void(const std::shared_ptr<HeldJob>& held)> released;
         /// Bytes of results that wait for the store.
@@ -36,9 +36,9 @@ public:
     ResultOutbox(JobQueue& queue, StoreOutageLog& outage, Listener listener);
 
     void finish(Ended ended);
-    /// The job is queued again; where that cannot be written its lease runs out instead.
+    /// The job is queued again; if that cannot be written, its lease expires instead.
     void release(const std::shared_ptr<HeldJob>& held);
-    /// Offers again what the store could not take.
+    /// Offers the results again that the store could not accept.
     void retry();
 
 private:
@@ -53,12 +53,11 @@ private:
     std::size_t bytes_ = 0;
 };
 
-// Problem objects as JSON, ready for the store.
-/// The job's time, `timeout_s` seconds, was over.
+// Problem objects as JSON, ready for the store. This one: the time limit of `timeout_s` seconds is over.
 std::string timeout_problem(double timeout_s);
 /// The process that computed it died or was stopped `attempts` times.
 std::string given_up_problem(int attempts);
-/// A fault of the service itself. `detail` is for the client and shows nothing of the program's inside.
+/// An internal error of the service. `detail` is for the client and reveals nothing about the program.
 std::string fault_problem(const std::string& detail);
 
 }  // namespace tunewright::server

@@ -41,7 +41,7 @@ void Workers::run(const std::shared_ptr<HeldJob>& held) {
     held->enter(HeldJob::Stage::computing);
     if (held->why() != Stop::none) return end_unbegun(held);
     if (settings_.begun) settings_.begun(held->job);
-    // The time that it waited, claimed, for a worker is not its own.
+    // The time in which the claimed job waited for a worker does not count.
     const Timer::Key deadline =
         timer_.after(std::chrono::duration<double>(held->job.timeout_s), [held] { held->request(Stop::timeout); });
     const double started = monotonic_ms();
@@ -89,7 +89,7 @@ void Workers::end(const std::shared_ptr<HeldJob>& held, api::JobOutcome outcome,
                                                                      : std::move(outcome.outline_json);
     end.first = held->job.batch.empty();
     end.version = settings_.version;
-    // The database's clock said when it began; ours follows that to a millisecond or so.
+    // The start time is from the database's clock, which this process knows to about a millisecond.
     end.finished_at = std::max(settings_.now(), held->job.started_at.value_or(held->job.created_at));
     outbox_.finish({held, std::move(end), seconds, std::move(outcome.method)});
 }

@@ -1,4 +1,4 @@
-// The threads that compute: each takes a job, has it computed with a deadline, hands over what came out.
+// The threads that compute: each takes a job, computes it with a deadline, and passes on the result.
 #pragma once
 
 #include <functional>
@@ -22,7 +22,7 @@ struct WorkerSettings {
     std::function<api::JobOutcome(const api::StoredRequest& request, const RunControl& control)> run;
     std::function<UnixMs()> now;
     std::function<void(const JobRecord& job)> begun;            ///< may be empty
-    std::function<void(const std::shared_ptr<HeldJob>&)> lost;  ///< stopped because another has it
+    std::function<void(const std::shared_ptr<HeldJob>&)> lost;  ///< stopped because another process has it
 };
 
 class Workers {
@@ -30,11 +30,11 @@ public:
     Workers(Claims& claims, ResultOutbox& outbox, Timer& timer, WorkerSettings settings);
 
     void start();
-    /// They take no more jobs.
+    /// The workers take no more jobs.
     void request_stop();
     /// Waits until each has ended its job.
     void join();
-    /// Ends a job that no worker has begun and none will.
+    /// Ends a job that no worker has begun or will begin.
     void end_unbegun(const std::shared_ptr<HeldJob>& held);
 
 private:

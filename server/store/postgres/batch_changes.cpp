@@ -19,7 +19,7 @@ void leave(Session& session, std::int64_t batch) {
                 Values().number(batch));
 }
 
-/// Waiting entries take the turns that follow the last of their flow, as single jobs do among themselves.
+/// Waiting entries take the turns after the last one of their flow, as single jobs do.
 const std::string kAdd =
     "WITH served AS MATERIALIZED (SELECT " + last_turn("1", "$3") +
     " AS turn), "
@@ -55,7 +55,7 @@ void open_batch(Session& session, const NewBatch& batch) {
 }
 
 bool add_entries(Session& session, const std::string& id, const std::vector<NewEntry>& entries, UnixMs now) {
-    // The row is held until the commit: a cancel or a drop comes before these entries, or after them.
+    // The row is locked until the commit: a cancellation or a drop comes before these entries, or after them.
     const pqxx::result rows = session.run(
         "UPDATE batches SET heard_at = clock_timestamp() WHERE id = $1 AND state = 'receiving' "
         "AND NOT cancel_requested RETURNING seq, owner, flow, request_id, traceparent",
@@ -133,7 +133,7 @@ std::optional<std::int64_t> leave_batch(Work& work, const std::string& id) {
 
 std::size_t delete_entries(Work& work, std::int64_t batch, std::size_t max) {
     Session& session = work.session;
-    // An entry that moves at this moment may stay behind in a place: the last call clears those.
+    // An entry that moves at this moment may stay behind in a table: the last call deletes those.
     const auto gone = session
                           .run(
                               "WITH gone AS (DELETE FROM jobs WHERE seq IN (SELECT seq FROM jobs WHERE batch = $1 "
@@ -164,7 +164,7 @@ RemovedBatch remove_batch(Work& work, const std::string& id) {
 
 std::optional<std::int64_t> begin_cancel(Work& work, const std::string& id) {
     Session& session = work.session;
-    // One that has ended stays as it is: its failed entries may be queued again.
+    // A batch that has ended stays as it is: its failed entries may be queued again.
     return one_number(session.run(
         "UPDATE batches b SET cancel_requested = b.cancel_requested OR b.state <> 'sealed' OR "
         "coalesce((SELECT sum(c.queued) + sum(c.running) FROM batch_counts c WHERE c.batch = b.seq), 0) > 0 "
@@ -209,7 +209,7 @@ std::vector<std::string> end_cancel(Work& work, std::int64_t batch) {
 }
 
 Unsettled settle_batches(Session& session) {
-    // Whoever waits for the end of a batch is told in the same transaction in which the end is seen.
+    // The notification of a batch's end is written in the transaction that finds the end.
     static const std::string settle =
         "WITH over AS MATERIALIZED (SELECT b.seq, greatest(b.created_at, (SELECT max(c.last_end) FROM batch_counts c "
         "WHERE c.batch = b.seq)) AS ended_at FROM batches b WHERE b.ended_at IS NULL AND b.state = 'sealed' "
@@ -239,14 +239,14 @@ std::size_t sweep_state(Session& session, JobStatus status, UnixMs ended_before,
     const pqxx::result gone = session.run(
         "WITH due AS MATERIALIZED (SELECT seq FROM ended WHERE single AND status = $1 AND finished_at < $2 "
         "ORDER BY finished_at LIMIT $3), "
-        // One that waits again by now is not among those that have ended, and stays.
+        // A batch with a job that is queued again is not among those that have ended, and stays.
         "gone AS (DELETE FROM ended WHERE seq IN (SELECT seq FROM due) RETURNING seq) "
         "DELETE FROM jobs WHERE seq IN (SELECT seq FROM gone) RETURNING seq",
         Values().plain(std::string(to_string(status))).number(ended_before).number(static_cast<std::int64_t>(max)));
     return static_cast<std::size_t>(gone.size());
 }
 
-/// False where a job of it waits again by now.
+/// False if a job of the batch is queued again.
 bool leave_if_over(Session& session, std::int64_t batch, UnixMs ended_before) {
     const Values values = std::move(Values().number(batch).number(ended_before));
     const pqxx::result over =

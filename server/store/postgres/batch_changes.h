@@ -1,5 +1,5 @@
-// What the writers do to batches inside a transaction. What touches every entry goes in slices (slices.h says what each
-// does).
+// The writers' changes to batches inside a transaction. Changes to all entries are made in slices (slices.h describes
+// each one).
 #pragma once
 
 #include <optional>
@@ -12,7 +12,7 @@
 
 namespace tunewright::server::postgres {
 
-/// A transaction under way, and what other processes are told when it is committed.
+/// A transaction in progress, and the notices to other processes after its commit.
 struct Work {
     Session& session;
     Notices& notices;
@@ -28,7 +28,7 @@ std::optional<std::int64_t> begin_cancel(Work& work, const std::string& id);
 std::optional<std::int64_t> cancel_entries(Work& work, std::int64_t batch, std::int64_t from, UnixMs now);
 std::vector<std::string> end_cancel(Work& work, std::int64_t batch);
 std::size_t sweep_slice(Work& work, UnixMs now, const Retention& retention, std::size_t max);
-/// Batches whose receiver has not been heard of for BatchStore::kReceiving are dropped; ended ones are settled.
+/// Drops batches whose receiver has been silent for BatchStore::kReceiving, and settles ended ones.
 Unsettled settle_batches(Session& session);
 
 }  // namespace tunewright::server::postgres

@@ -12,12 +12,12 @@ namespace tunewright::server::postgres {
 
 namespace {
 
-/// With a limit ($15) another statement: one for both would be planned anew each time.
+/// With a limit ($15) the statement is another one: a common one would be planned again each time.
 std::string accept_sql(bool limited) {
     const auto if_limited = [limited](const std::string& sql) { return limited ? sql : std::string(); };
     return "WITH given AS MATERIALIZED (SELECT g.*, CASE WHEN g.earliest > " + kClock +
            " THEN g.earliest END AS not_before" +
-           // What is there already, or comes twice, is not made and counts for nothing.
+           // A job that exists already, or occurs twice, is not inserted and does not count.
            if_limited(
                ", g.key <> '' AND (row_number() OVER (PARTITION BY g.owner, g.key ORDER BY g.place) > 1 OR "
                "(SELECT j.seq FROM jobs j WHERE j.owner = g.owner AND j.idempotency_key = g.key) IS NOT NULL) "
@@ -40,7 +40,8 @@ std::string accept_sql(bool limited) {
            "owner, flow, created_at, timeout_s, request_hash, nullif(key, ''), request, nullif(notify, ''), "
            "request_id, traceparent, not_before FROM placed " +
            if_limited("WHERE under_way <= $15 ") +
-           // By key, as every process has it: two that insert the same keys wait for each other in one direction.
+           // By key, in the same order in every process: two that insert the same keys wait for each other in one
+           // direction.
            "ORDER BY owner COLLATE \"C\", key COLLATE \"C\", place ON CONFLICT DO NOTHING "
            "RETURNING id, seq, class, turn, flow, not_before), "
            "queued AS (INSERT INTO waiting (class, turn, seq, flow) "
@@ -48,8 +49,8 @@ std::string accept_sql(bool limited) {
            "SELECT id, seq, not_before FROM made";
 }
 
-/// A job that failed or was cancelled gives its key up to a unique one, and keeps it behind its id. Who calls this is
-/// in its turn (kInTurn): a job that is queued again takes the same turn first.
+/// A job that failed or was cancelled gives its key up to a unique one, and keeps it behind its id. The caller holds
+/// the lock of kInTurn: a job that is queued again takes the same lock first.
 void free_key(Session& session, const std::string& owner, const std::string& key) {
     session.run(
         "WITH free AS MATERIALIZED (SELECT e.seq FROM jobs j JOIN ended e ON e.seq = j.seq WHERE j.owner = $1 "
@@ -58,14 +59,15 @@ void free_key(Session& session, const std::string& owner, const std::string& key
         Values().text(owner).text(key));
 }
 
-// One process at a time accepts jobs of a client whose jobs are counted, and unique jobs of one key: those that others
-// are about to commit count. It comes before all other locks of accepting, in one order for all.
+// Only one process at a time accepts jobs of a client with a limit, and unique jobs of one key: jobs that another
+// process is about to commit count. This lock comes before all other locks of accepting, in one order for all
+// processes.
 const std::string kInTurn =
     "SELECT count(pg_advisory_xact_lock(x'74756e65'::int, hash)) FROM "
     "(SELECT DISTINCT hashtext(name) AS hash FROM unnest($1::text[]) AS g (name) ORDER BY hash OFFSET 0) f";
 
-/// Where the job has given its key up it takes it back; false where a later one has it. Until the commit no other job
-/// is accepted with that key, given up or not.
+/// A job that has given its key up takes it back; false if a later job has it. Until the commit no other job is
+/// accepted with that key, given up or not.
 bool take_key_back(Session& session, std::int64_t seq) {
     static const std::string look =
         "SELECT owner, CASE WHEN given_up THEN substr(key, 2 + length(id)) ELSE key END, given_up FROM "
@@ -88,7 +90,7 @@ bool take_key_back(Session& session, std::int64_t seq) {
                .affected_rows() > 0;
 }
 
-/// The job that stood in the way of this one: that of its key, or itself, accepted before.
+/// The job that prevented this one: the job with its key, or itself, accepted before.
 Accepted find_earlier(Session& session, const NewJob& job) {
     static const std::string sql = "SELECT " + kSummaryColumns + kJobTables + " WHERE j.id = $1 UNION ALL SELECT " +
                                    kSummaryColumns + kJobTables +
@@ -103,12 +105,12 @@ Accepted find_earlier(Session& session, const NewJob& job) {
     return accepted;
 }
 
-// Results are long. They come in a statement of their own, for those that are to be written, one behind the other in
-// one piece of bytes: an array of them would be read sign by sign.
+// Results are long. They are read in a separate statement, for the jobs that are to be written, concatenated in one
+// piece of bytes: an array of them would be parsed character by character.
 const std::string kTake =
     "DELETE FROM running r USING unnest($1::bigint[], $2::int[]) AS g (seq, attempts) WHERE r.seq = g.seq "
     "AND r.attempts = g.attempts RETURNING r.seq, r.batch, r.started_at, r.cancel_requested, "
-    // An entry whose batch is being deleted at this moment ends nowhere.
+    // An entry whose batch is being deleted at this moment is not ended.
     "r.batch IS NULL OR EXISTS (SELECT 1 FROM jobs j WHERE j.seq = r.seq)";
 const std::string kEnd =
     "WITH gone AS (INSERT INTO ended (seq, single, status, attempts, cancel_requested, started_at, finished_at, "
@@ -127,7 +129,7 @@ struct FoundJob {
     bool readable = false;  ///< has a request
 };
 
-/// A job that is not of a batch being deleted, wherever it is.
+/// A job in any state, unless its batch is being deleted.
 std::optional<FoundJob> find_job(Session& session, const std::string& id) {
     const pqxx::result rows = session.run(
         "SELECT j.seq, j.batch, coalesce(b.cancel_requested, false), j.request IS NOT NULL FROM jobs j "
@@ -142,7 +144,7 @@ std::optional<FoundJob> find_job(Session& session, const std::string& id) {
     return found;
 }
 
-/// False where it does not wait at this moment.
+/// False if it does not wait at this moment.
 bool cancel_waiting(Session& session, std::int64_t seq, UnixMs now) {
     static const std::string sql =
         "WITH taken AS (DELETE FROM waiting w USING jobs j WHERE j.seq = $1 AND w.class IN (j.class, 2) AND "
@@ -163,14 +165,14 @@ bool has_failed(Session& session, std::int64_t seq) {
                 .empty();
 }
 
-constexpr int kLooks = 20;  // at a job that others move meanwhile
+constexpr int kLooks = 20;  // attempts for a job that others move meanwhile
 
 }  // namespace
 
 std::vector<Accepted> accept_jobs(Session& session, const std::vector<const NewJob*>& jobs) {
     TextArray id, name, timeout, request, hash, key, owner, flow, created, priority, notify, call, trace, not_before;
     TextArray in_turn;
-    const std::size_t client_limit = jobs.front()->client_limit;  // the same for all of one process
+    const std::size_t client_limit = jobs.front()->client_limit;  // the same for all jobs of a process
     for (const NewJob* job : jobs) {
         id.add(job->id);
         name.add(job->name);
@@ -211,13 +213,13 @@ std::vector<Accepted> accept_jobs(Session& session, const std::vector<const NewJ
         Accepted& answer = answers.emplace_back(Accepted::Kind::created, summary_of(*job));
         answer.job.seq = found->second[1].as<std::int64_t>();
         answer.job.not_before = moment(found->second[2]);
-        created_jobs.erase(found);  // the same id once more is not created twice
+        created_jobs.erase(found);  // a repeated id is not created twice
     }
     return answers;
 }
 
 std::vector<bool> finish_jobs(Session& session, const std::vector<const JobEnd*>& ends) {
-    // Of two ends of one job the first counts.
+    // If one job has two ends, the first counts.
     std::map<std::int64_t, std::size_t> places;
     for (std::size_t i = 0; i < ends.size(); i++) places.emplace(ends[i]->seq, i);
     TextArray wanted, tokens;
@@ -264,7 +266,7 @@ std::vector<bool> finish_jobs(Session& session, const std::vector<const JobEnd*>
 CancelEffect cancel_job(Session& session, const std::string& id, UnixMs now) {
     const std::optional<FoundJob> found = find_job(session, id);
     if (!found) return CancelEffect::none;
-    // Others may move it between two looks: from waiting to running and back.
+    // Other processes may move it between two attempts: from waiting to running and back.
     for (int look = 0; look < kLooks; look++) {
         if (cancel_waiting(session, found->seq, now)) {
             BatchCounts counts;
@@ -283,10 +285,10 @@ CancelEffect cancel_job(Session& session, const std::string& id, UnixMs now) {
 RequeueEffect requeue_job(Session& session, const std::string& id) {
     const std::optional<FoundJob> found = find_job(session, id);
     if (!found) return RequeueEffect::none;
-    // What could never be read cannot be computed either.
+    // A request that could not be read cannot be computed either.
     if (!found->readable || !has_failed(session, found->seq)) return RequeueEffect::not_failed;
     if (found->batch_cancelled) return RequeueEffect::batch_cancelled;
-    // Held until the commit, so that nobody sweeps it meanwhile; who was earlier has it.
+    // Locked until the commit, so that it is not swept meanwhile; an earlier sweep wins.
     if (found->batch && session
                             .run("SELECT 1 FROM batches WHERE seq = $1 AND state <> 'leaving' FOR UPDATE",
                                  Values().number(*found->batch))
@@ -325,12 +327,12 @@ RemoveEffect remove_job(Session& session, const std::string& id) {
 
 namespace {
 
-/// After the milliseconds of parameter `place`.
+/// The end of a lease: now plus the milliseconds of parameter `place`.
 std::string lease_end(const std::string& place) {
     return "clock_timestamp() + " + place + "::bigint * interval '1 millisecond'";
 }
 
-/// Hands out the jobs that `which` names, of all that wait.
+/// Claims the waiting jobs that `which` selects.
 std::string claim_sql(const std::string& which) {
     return "WITH next AS MATERIALIZED (SELECT ctid FROM waiting WHERE " + which +
            " LIMIT $1 FOR UPDATE SKIP LOCKED), "
@@ -338,7 +340,7 @@ std::string claim_sql(const std::string& which) {
            "runs AS (INSERT INTO running (seq, class, turn, flow, batch, worker, attempts, crashes, started_at) "
            "SELECT seq, class, turn, flow, batch, $2, attempts + 1, crashes, $3 FROM taken "
            "RETURNING seq, class, turn, attempts, batch, started_at), "
-           // A sign of life, where the last one is not young enough to last.
+           // A heartbeat, if the last one is too old.
            "alive AS (INSERT INTO workers (name, lease_until) SELECT $2, " +
            lease_end("$4") +
            " WHERE EXISTS (SELECT 1 FROM taken) AND NOT EXISTS (SELECT 1 FROM workers WHERE name = $2 "
@@ -442,7 +444,7 @@ void count(Session& session, const RunningJob& run, JobStatus to, UnixMs now) {
     counts.write(session);
 }
 
-/// Locked until the end of the transaction; their workers have no sign of life left.
+/// Running jobs whose workers have no valid lease, locked until the end of the transaction.
 std::vector<std::int64_t> abandoned(Session& session) {
     session.run("DELETE FROM workers WHERE lease_until <= clock_timestamp()");
     std::vector<std::int64_t> found;

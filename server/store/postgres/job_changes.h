@@ -1,4 +1,4 @@
-// What the writers do to single jobs inside a transaction. Changes come many at a time and cost one statement together.
+// The writers' changes to single jobs inside a transaction. Many changes of a kind share one statement.
 #pragma once
 
 #include <string>
@@ -9,29 +9,29 @@
 
 namespace tunewright::server::postgres {
 
-// ---- jobs: the answers stand in the order of what was asked
+// ---- jobs: the answers are in the order of the arguments
 std::vector<Accepted> accept_jobs(Session& session, const std::vector<const NewJob*>& jobs);
 std::vector<bool> finish_jobs(Session& session, const std::vector<const JobEnd*>& ends);
 CancelEffect cancel_job(Session& session, const std::string& id, UnixMs now);
 RequeueEffect requeue_job(Session& session, const std::string& id);
 RemoveEffect remove_job(Session& session, const std::string& id);
 
-// ---- claims, signs of life, and what becomes of the jobs of a worker that gives none: by the database's clock alone
-/// The next jobs in their order, at most `claim.most`.
+// ---- claims, heartbeats, and recovery of the jobs of a worker without a lease; all times by the database's clock The
+// next jobs in their order, at most `claim.most`.
 std::vector<JobRecord> claim_jobs(Session& session, const Claim& claim);
 bool any_due(Session& session);
 std::size_t start_due(Session& session);
 std::vector<Holding> beat_worker(Session& session, const Heartbeat& beat);
-/// Empty where it was not held; else what has become of it: queued, or cancelled. With its id.
+/// The new status: queued, or cancelled; empty if the job was not held. With its id.
 struct Released {
     std::string id;
     JobStatus status = JobStatus::queued;
 };
 std::optional<Released> release_job(Session& session, std::int64_t seq, int attempts, UnixMs now);
-/// Nothing where another process has done it within `what.period`.
+/// Empty if another process has done it within `what.period`.
 std::optional<Recovery> reclaim_jobs(Session& session, const Reclaim& what);
 
-// ---- notifications of ends, and the settings that all processes share
+// ---- notifications, and the settings that all processes share
 std::vector<Delivery> take_deliveries(Session& session, UnixMs now, std::chrono::milliseconds hold, std::size_t max);
 bool settle_delivery(Session& session, std::int64_t seq, UnixMs now, std::optional<std::chrono::milliseconds> pause,
                      bool tried);

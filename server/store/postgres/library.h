@@ -1,4 +1,4 @@
-// Calls that differ between versions 6 and 7 of libpqxx, for the session and the listener alone.
+// Calls that differ between versions 6 and 7 of libpqxx, for the session and the listener only.
 #pragma once
 
 #include <functional>
@@ -18,8 +18,8 @@
 
 namespace tunewright::server::postgres {
 
-/// A statement's text or the name of a prepared one, its values for $1, $2, ..., and behind them bytes, where there are
-/// any. Refers to what it is given.
+/// A statement's text or the name of a prepared one, its values for $1, $2, ..., and after them bytes, if there are
+/// any. Refers to its arguments.
 struct Statement {
     const std::string& text;
     const std::vector<std::string>& values;
@@ -31,7 +31,7 @@ using PayloadHandler = std::function<void(const std::string&)>;
 
 #if PQXX_VERSION_MAJOR < 7
 
-/// Keeps the server's remarks on a connection to itself.
+/// Suppresses the server's notices on a connection.
 using Quiet = pqxx::quiet_errorhandler;
 
 inline pqxx::result execute(pqxx::nontransaction& on, const Statement& statement) {
@@ -46,7 +46,7 @@ inline pqxx::result execute_prepared(pqxx::nontransaction& on, const Statement& 
     return on.exec_prepared(statement.text, values, pqxx::binarystring(*statement.bytes));
 }
 
-/// Listens on a channel for as long as it lives; the handler is called within get_notifs().
+/// Listens on a channel during its lifetime; the handler is called within get_notifs().
 class Subscription : public pqxx::notification_receiver {
 public:
     Subscription(pqxx::connection& connection, const std::string& channel, PayloadHandler handler)
@@ -92,7 +92,7 @@ public:
     ~Subscription() {
         try {
             connection_.listen(channel_);
-        } catch (const std::exception&) {  // NOLINT(bugprone-empty-catch): nobody listens on a connection that is lost
+        } catch (const std::exception&) {  // NOLINT(bugprone-empty-catch): a lost connection has no subscription
         }
     }
     Subscription(const Subscription&) = delete;

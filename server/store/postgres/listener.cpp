@@ -60,7 +60,7 @@ void Listener::work() {
     while (!stopping_) {
         try {
             listen();
-        } catch (const std::exception&) {  // whoever writes logs what is wrong
+        } catch (const std::exception&) {  // the writers log the fault
             const bool first = connected_.exchange(false) || pause_ms == 0;
             pause_ms = first ? kFirstPauseMs : std::min(2 * pause_ms, kMaxPauseMs);
             tried();

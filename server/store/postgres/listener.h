@@ -1,5 +1,5 @@
-// Hears what other processes have done, on a connection of its own. What is said while that is lost is lost too:
-// afterwards it says that anything may have happened.
+// Receives notices of other processes, on a separate connection. Notices are lost while that is lost: afterwards the
+// listener reports that anything may have changed.
 #pragma once
 
 #include <atomic>
@@ -16,7 +16,8 @@ namespace tunewright::server::postgres {
 
 class Listener {
 public:
-    /// Listens already when it returns, if the database is there. Notices with this tag are our own and not passed on.
+    /// Listens when it returns, if the database is available. Notices with this tag are this process's own and not
+    /// passed on.
     Listener(Address address, std::string own_tag);
     ~Listener();
     Listener(const Listener&) = delete;
@@ -28,7 +29,7 @@ public:
 private:
     void work();
     void listen();
-    /// The first try to listen is over, one way or the other.
+    /// The first attempt to listen is over, successful or not.
     void tried();
     /// False when it is time to stop.
     bool pause(int milliseconds);

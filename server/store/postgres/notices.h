@@ -1,4 +1,4 @@
-// What replicas send each other: small payloads on one channel, "TAG KIND ID ID ...", sent with the commit.
+// Notices between replicas: small payloads on one channel, "TAG KIND ID ID ...", sent with the commit.
 #pragma once
 
 #include <functional>
@@ -17,11 +17,11 @@ class Notices {
 public:
     void queued() { queued_ = true; }
     void progress(const std::string& id) { progress_.push_back(id); }
-    /// "" where many have.
+    /// "" if many have ended.
     void ended(const std::string& id) { ended_.push_back(id); }
     void cancel(const std::string& id) { cancel_.push_back(id); }
 
-    /// The statements that send it, "" for none. `tag` names the process.
+    /// The statements that send the notices, "" for none. `tag` names the process.
     std::string statements(const std::string& tag) const;
 
 private:
@@ -29,7 +29,7 @@ private:
     std::vector<std::string> progress_, ended_, cancel_;
 };
 
-/// Calls `listener` for each notice of a payload of another process.
+/// Calls `listener` for each notice in a payload of another process.
 void read_payload(std::string_view payload, std::string_view own_tag,
                   const std::function<void(const StoreNotice&)>& listener);
 

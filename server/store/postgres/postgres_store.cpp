@@ -18,7 +18,7 @@ namespace tunewright::server {
 namespace postgres {
 namespace {
 
-/// Of what is quickly done where all is well.
+/// Time limit for operations that are normally quick.
 constexpr std::chrono::seconds kMaxSilence{5};
 
 class PostgresStore : public JobStore {
@@ -213,10 +213,10 @@ private:
 
     Watch watch_;
     Readers readers_;
-    std::atomic<UnixMs> ahead_ = 0;       ///< the database's clock, before ours; measured with each count
-    std::unique_ptr<Listener> listener_;  ///< nothing behind a pooler
-    // The first to go: they end what was asked for. What touches many rows has a connection of its own, so that jobs
-    // which somebody waits for never wait behind a batch; and so have results, which are long, so that nobody who posts
+    std::atomic<UnixMs> ahead_ = 0;       ///< offset of the database's clock; measured with each count
+    std::unique_ptr<Listener> listener_;  ///< null behind a pooler
+    // Destroyed first, after they have finished their queues. Changes of many rows have a connection of their own, so
+    // that single jobs never wait behind a batch; and so have results, which are long, so that accepting a job never
     // waits behind them.
     Writer writer_;
     Writer results_;

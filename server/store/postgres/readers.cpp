@@ -5,7 +5,7 @@
 namespace tunewright::server::postgres {
 namespace {
 
-constexpr std::chrono::milliseconds kReconnectPause{100};  // after a try to connect that failed
+constexpr std::chrono::milliseconds kReconnectPause{100};  // after a failed attempt to connect
 
 }  // namespace
 

@@ -15,7 +15,7 @@ class Readers {
 public:
     Readers(Address address, Watch& watch) : address_(std::move(address)), watch_(watch) {}
 
-    /// What `work` finds. A connection that turns out to be lost is replaced once. Throws StoreError.
+    /// The result of `work`. A lost connection is replaced once. Throws StoreError.
     template <class Work>
     std::invoke_result_t<Work, Session&> read(Work work) {
         try {

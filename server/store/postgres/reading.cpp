@@ -9,8 +9,8 @@ namespace {
 
 constexpr int kSummaryCount = 20;
 
-/// Processes know the database's clock to some milliseconds each: what one has begun and another has ended is not over
-/// before it came.
+/// Each process knows the database's clock only to some milliseconds: a job that one began and another ended must not
+/// end before it began.
 std::optional<UnixMs> moment_after(UnixMs earlier, const pqxx::field& field) {
     const auto at = moment(field);
     return at ? std::optional(std::max(*at, earlier)) : std::nullopt;
@@ -49,7 +49,7 @@ const std::string kSummaryColumns = "j.seq, j.id, j.name, " + kStatus +
                                     "j.request IS NULL OR coalesce(b.cancel_requested, false), j.not_before, "
                                     "r.progress";
 const std::string kRecordColumns = kSummaryColumns + ", j.request, e.result, e.error";
-// A job that has ended is in no other place: those are not looked into then.
+// A job that has ended is in no other table: those are then not searched.
 const std::string kEnded = " LEFT JOIN ended e ON e.seq = j.seq";
 const std::string kRunning =
     " LEFT JOIN LATERAL (SELECT * FROM running WHERE seq = j.seq AND e.seq IS NULL OFFSET 0) r ON true";
@@ -150,7 +150,7 @@ BatchSummary read_batch(const pqxx::row& row) {
 
 namespace {
 
-/// A SELECT that grows condition by condition, with the values of its parameters.
+/// A SELECT that is built condition by condition, with the values of its parameters.
 class Query {
 public:
     explicit Query(std::string sql) : sql_(std::move(sql)) {}
@@ -210,8 +210,8 @@ std::optional<JobState> find_job_of_key(Session& session, const std::string& own
 
 namespace {
 
-/// True where the jobs are found by the table of their state: few wait or run, and of those that have ended an index
-/// gives the newest of a state. Entries of a batch that wait or run are found among all of it.
+/// True if the jobs are found by the table of their state: few wait or run, and for those that have ended an index
+/// gives the newest of a state. Entries of a batch that wait or run are found among all its entries.
 bool found_by_state(const JobQuery& query) { return query.status && (!query.batch || has_ended(*query.status)); }
 
 std::string status_condition(const JobQuery& query, const std::string& name) {
@@ -221,8 +221,8 @@ std::string status_condition(const JobQuery& query, const std::string& name) {
     return query.batch ? "" : " AND e.single AND e.status = " + name;
 }
 
-/// The number that orders the list, of the table by which jobs are found. The entries of a batch stand in the order of
-/// their index, which is that of their seq too.
+/// The number that orders the list, from the table by which jobs are found. The entries of a batch are ordered by their
+/// index, which is also the order of their seq.
 std::string order_of(const JobQuery& query) {
     if (!found_by_state(query)) return query.batch ? "j.batch_index" : "j.seq";
     if (*query.status == JobStatus::queued) return "w.seq";
@@ -237,7 +237,7 @@ std::string tables_of(const JobQuery& query, const std::string& status) {
         return " FROM running r JOIN jobs j ON j.seq = r.seq" + kEnded + kWaiting + kBatch;
     if (!query.batch) return " FROM ended e JOIN jobs j ON j.seq = e.seq" + kRunning + kWaiting + kBatch;
     const std::string entry = "(SELECT seq FROM jobs WHERE batch = " + kBatchOfId + "$1) ORDER BY batch_index ";
-    // OFFSET 0 keeps the planner from looking at every entry of the batch instead.
+    // OFFSET 0 prevents the planner from checking every entry of the batch instead.
     return " FROM (SELECT * FROM ended WHERE NOT single AND status = " + status + " AND seq BETWEEN " + entry +
            "LIMIT 1) AND " + entry +
            "DESC LIMIT 1) ORDER BY seq DESC OFFSET 0) e CROSS JOIN LATERAL "

@@ -1,5 +1,5 @@
-// What is read from the database: jobs and batches as rows of the tables, in the one place that knows the order of the
-// columns, and the questions that the store answers, one statement each.
+// Reads the database: jobs and batches as rows of the tables, in the only place that knows the order of the columns,
+// and the queries of the store, one statement each.
 #pragma once
 
 #include <pqxx/row>
@@ -11,18 +11,19 @@
 
 namespace tunewright::server::postgres {
 
-/// The state of job j, of the tables below.
+/// The state of job j, in terms of the tables below.
 extern const std::string kStatus;
-/// Columns of a summary, with progress those of a state; of a record. "SELECT " + columns + kJobTables.
+/// Columns of a summary, of a state (with progress), and of a record. "SELECT " + columns + kJobTables.
 extern const std::string kSummaryColumns;
 extern const std::string kRecordColumns;
 extern const std::string kJobTables;
-/// Columns of a job that has just been claimed, of `runs r`, `jobs j` and `batches b`; and how many.
+/// Columns of a job that has just been claimed, of `runs r`, `jobs j` and `batches b`; and their number.
 extern const std::string kClaimedColumns;
 constexpr int kClaimedCount = 16;
-/// True for jobs that can be seen: those of a batch that is being deleted cannot.
+/// True for visible jobs: those of a batch that is being deleted are not.
 extern const std::string kVisible;
-/// Of one that waits after crashes: its pause is over, or longer than any, because the clock has been set back since.
+/// Condition for a job that waits after crashes: its pause is over, or is longer than any pause, because the clock has
+/// been set back since.
 extern const std::string kPauseOver;
 
 JobSummary read_summary(const pqxx::row& row);
@@ -36,14 +37,14 @@ extern const std::string kBatchTables;
 extern const std::string kBatchGroups;
 BatchSummary read_batch(const pqxx::row& row);
 
-/// Nothing where it is null.
+/// Empty if the field is null.
 std::optional<UnixMs> moment(const pqxx::field& field);
-/// "" where it is null.
+/// "" if the field is null.
 std::string text_of(const pqxx::field& field);
 
-/// The job with request, result and progress; nothing where there is none, or its batch is being deleted.
+/// The job with request, result and progress; empty if there is none, or its batch is being deleted.
 std::optional<JobRecord> find_record(Session& session, const std::string& id);
-/// The states of those of the jobs that there are, in no particular order.
+/// The states of the existing ones of these jobs, in no particular order.
 std::vector<JobState> find_states(Session& session, const std::vector<std::string>& ids);
 std::optional<JobState> find_job_of_key(Session& session, const std::string& owner, const std::string& key);
 /// A page of jobs, newest first, as `query` asks for.
@@ -52,7 +53,7 @@ struct Counted {
     QueueDepth depth;
     UnixMs clock = 0;  ///< the database's
 };
-/// How many single jobs, and how many entries of batches, wait.
+/// The number of single jobs, and of entries of batches, that wait.
 Counted count_waiting(Session& session);
 /// A batch that is not being deleted.
 std::optional<BatchSummary> find_batch(Session& session, const std::string& id);

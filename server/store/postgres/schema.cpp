@@ -6,12 +6,12 @@
 namespace tunewright::server::postgres {
 namespace {
 
-// The number is ours alone in the database: "tunewrig" in ASCII.
+// The number is the service's own in the database: "tunewrig" in ASCII.
 constexpr const char* kLock = "SELECT pg_advisory_xact_lock(x'74756e6577726967'::bigint)";
 
-// The rules of the states are in the database too. Batches count their entries by a trigger; each connection counts in
-// a row of its own, so that replicas which finish entries of one batch do not wait for each other. jobs.batch is no
-// foreign key, for its check would be one more look-up an entry: only a batch without entries is deleted.
+// The rules of the states are also in the database. Batches count their entries by a trigger; each connection counts in
+// a row of its own, so that replicas which finish entries of one batch do not wait for each other. jobs.batch is not a
+// foreign key, because its check would be one more look-up per entry: only a batch without entries is deleted.
 constexpr const char* kStep1 = R"sql(
 CREATE TABLE batches (
     seq bigint GENERATED ALWAYS AS IDENTITY PRIMARY KEY,
@@ -136,21 +136,22 @@ EXCEPTION WHEN feature_not_supported OR syntax_error THEN NULL;
 END $$;
 )sql";
 
-// A job that was running when its process ended may be why; one that was twice waits a while and then runs alone.
+// A job that was running when its process ended may be the cause; one for which that happened twice waits a while and
+// then runs alone.
 constexpr const char* kStep2 = R"sql(
 ALTER TABLE jobs ADD COLUMN crashes integer NOT NULL DEFAULT 0 CHECK (crashes >= 0);
 ALTER TABLE jobs ADD COLUMN not_before timestamptz;
 CREATE INDEX jobs_suspect ON jobs (not_before) WHERE status = 'queued' AND crashes > 1;
 )sql";
 
-// What a list shows of an ended job beside its name: small, so that a page of jobs reads no result.
+// The outline of an ended job for lists: small, so that a page of jobs reads no result.
 constexpr const char* kStep3 = "ALTER TABLE jobs ADD COLUMN outline text";
 
-// A job is in one of three places: it waits, it runs, or it has ended. What never changes of it stands in `jobs`,
-// written once; `waiting` and `running` are narrow, so that a claim and an end touch no wide row and few indexes. The
-// places are no foreign keys of `jobs`, whose check would cost as much as the change. Processes give their signs of
-// life in `workers`, one row each. `ended_at` of a batch is null while it is looked after: jobs of it wait or run, or
-// nobody has seen yet that none does. `upkeep` says when what one process does for all was last done.
+// A job is in one of three places: it waits, it runs, or it has ended. Its constant data are in `jobs`, written once;
+// `waiting` and `running` are narrow, so that a claim and an end touch no wide row and few indexes. The tables have no
+// foreign keys to `jobs`, whose check would cost as much as the change. Processes write their heartbeats to `workers`,
+// one row each. `ended_at` of a batch is null while jobs of it wait or run, or its end has not been noticed yet.
+// `upkeep` has the time of the last run of tasks that one process does for all.
 constexpr const char* kStep4 = R"sql(
 DROP TRIGGER jobs_move ON jobs;
 DROP TRIGGER entries_added ON jobs;
@@ -258,16 +259,16 @@ CREATE TABLE deliveries (
 CREATE INDEX deliveries_due ON deliveries (due_at);
 )sql";
 
-// Empty after a crash: what is found in it tells one life of the server from the next.
+// Empty after a crash: its content distinguishes one life of the server from the next.
 constexpr const char* kStep5 = R"sql(
 CREATE UNLOGGED TABLE server_life (id uuid NOT NULL, one boolean PRIMARY KEY DEFAULT true CHECK (one));
 )sql";
 
-// Entries of a batch that ended in a state, which are few among many.
+// Entries of a batch that ended in a state that few entries have.
 constexpr const char* kStep6 = "CREATE INDEX ended_entries ON ended (status, seq) WHERE NOT single";
 
-// The time before which a job does not start: until then it waits in a class of its own. And an index by which the
-// single jobs of one client are counted; those of low priority stand among entries of batches.
+// The time before which a job does not start: until then it waits in a class of its own. And an index for counting the
+// single jobs of one client; single jobs of low priority share a class with entries of batches.
 constexpr const char* kStep7 = R"sql(
 ALTER TABLE waiting DROP CONSTRAINT waiting_class_check, ADD CHECK (class IN (0, 1, 2));
 ALTER TABLE jobs ADD COLUMN not_before bigint;

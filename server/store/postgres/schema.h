@@ -1,4 +1,4 @@
-// The tables of the PostgreSQL database, the numbered steps to them, and who may use them.
+// The tables of the PostgreSQL database, the numbered migration steps, and the rights of roles.
 #pragma once
 
 #include <string>
@@ -7,15 +7,15 @@
 
 namespace tunewright::server::postgres {
 
-/// Throws Failure, or StoreError with a sentence where the database is not fit or was written by a newer program.
+/// Throws Failure, or StoreError with a sentence if the database is not suitable or was written by a newer program.
 SchemaState schema_state(Session& session);
-/// Brings the database to the newest schema by the numbered steps of schema.cpp, in one transaction and one process at
-/// a time: replicas may start together. A step is never edited after a release. Throws as schema_state() does.
+/// Migrates the database to the newest schema by the numbered steps of schema.cpp, in one transaction and one process
+/// at a time: replicas may start together. A step is never edited after a release. Throws like schema_state().
 void migrate(Session& session);
 /// A word that changes when the server crashes: after that it may give a transaction's number a second time. Throws
 /// Failure.
 std::string server_life(Session& session);
-/// What a service needs, for a role that may not change the schema.
+/// Grants the rights of a service to a role that may not change the schema.
 void grant_use(Session& session, const std::string& role);
 
 }  // namespace tunewright::server::postgres

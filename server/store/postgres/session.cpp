@@ -29,7 +29,8 @@ std::string quoted(const std::string& value) {
     return text + "'";
 }
 
-/// False for what comes of signs in a password that are not written as %XX: parts of it would stand elsewhere.
+/// False for an address whose password contains characters that are not written as %XX: parts of it would be read as
+/// other fields.
 bool makes_sense(const std::map<std::string, std::string>& options) {
     const auto has_any = [&](const char* keyword, const char* signs) {
         const auto found = options.find(keyword);
@@ -69,8 +70,8 @@ Address::Address(const std::string& uri, bool pooled) : pooled_(pooled) {
 
 namespace {
 
-// A queue's tables grow and shrink faster than the planner's statistics follow: an index, row by row, in the order in
-// which the statement names the tables, is right at every size.
+// A queue's tables grow and shrink faster than the planner's statistics follow: reading by index, row by row, in the
+// order in which the statement names the tables, is right at every size.
 std::string settings(const std::string& set) {
     std::string text;
     for (const char* setting :
@@ -86,7 +87,7 @@ Failure::Kind kind_of(const std::string& state) {
     if (state == "53100") return Failure::Kind::full;
     if (state == "40001" || state == "40P01" || state == "55P03") return Failure::Kind::conflict;
     const std::string kind = state.substr(0, 2);
-    // The server ends the connection, or lets nobody in: shutdown, recovery, too many connections.
+    // The server ends the connection, or accepts none: shutdown, recovery, too many connections.
     if (state.substr(0, 4) == "57P0" || kind == "08" || state == "53300") return Failure::Kind::broken;
     return Failure::Kind::refused;
 }
@@ -149,7 +150,7 @@ Session::Session(const Address& address, std::shared_ptr<Line> line)
     : pooled_(address.pooled()), link_(connect(address)), line_(std::move(line)) {}
 Session::~Session() = default;
 
-/// Runs `work`, which asks the server: the line is watched meanwhile, and a fault becomes a Failure.
+/// Runs `work`, which calls the server: the line is watched meanwhile, and an exception becomes a Failure.
 template <class Work>
 auto Session::watched(Work work) {
     if (line_) line_->asked(link_->connection.sock());
@@ -171,7 +172,7 @@ pqxx::result Session::guarded(Work work) {
     });
 }
 
-/// Version 6 of the library asks the server when the statement is used, version 7 at once.
+/// Version 6 of the library prepares the statement at its first use, version 7 at once.
 const std::string& Session::prepared(const std::string& sql) {
     const auto found = names_.find(sql);
     if (found != names_.end()) return found->second;

@@ -10,7 +10,7 @@ constexpr std::string_view kDigits = "0123456789abcdef";
 
 unsigned char at(std::string_view text, std::size_t i) { return static_cast<unsigned char>(text[i]); }
 
-/// Bytes of the character that starts at i; 0 where none does (RFC 3629: shortest form, no surrogates, <= U+10FFFF).
+/// Bytes of the character that starts at i; 0 if none does (RFC 3629: shortest form, no surrogates, <= U+10FFFF).
 std::size_t character_length(std::string_view text, std::size_t i) {
     const unsigned char first = at(text, i);
     if (first < 0x80) return 1;
@@ -32,7 +32,7 @@ int digit(char c) { return static_cast<int>(kDigits.find(c)); }
 }  // namespace
 
 std::string to_column(std::string_view text) {
-    const auto plain = [](char c) { return c > kEscape; };  // of signed bytes: ASCII but for 0 and 1
+    const auto plain = [](char c) { return c > kEscape; };  // for signed bytes: ASCII other than 0 and 1
     if (std::all_of(text.begin(), text.end(), plain)) return std::string(text);
     std::string column;
     column.reserve(text.size() + 16);

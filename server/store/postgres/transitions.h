@@ -1,5 +1,5 @@
-// The places of a job - it waits, runs or has ended - and what goes along when it moves: the counts of its batch, and
-// the note to whoever wants to hear of its end.
+// The tables through which a job moves - waiting, running, ended - and the related changes: the counts of its batch,
+// and the notification of its end.
 #pragma once
 
 #include <map>
@@ -10,22 +10,24 @@
 
 namespace tunewright::server::postgres {
 
-/// A job that was running, taken out of there.
+/// A running job, removed from its table.
 struct RunningJob {
     std::int64_t seq = 0;
     std::optional<std::int64_t> batch;
     int attempts = 0;
     int crashes = 0;
-    bool unwanted = false;  ///< its end was asked for, or that of its batch: it comes instead of another attempt
+    bool unwanted = false;  ///< its cancellation, or that of its batch, was requested: it ends instead of having
+                            ///< another attempt
 };
 
-/// Nothing where it does not run, or not as that attempt; 0 stands for any. put_waiting_again() or put_ended() follows
-/// in the same transaction, with what the row held.
+/// Takes a running job; empty if it does not run, or not as that attempt; 0 stands for any. put_waiting() or
+/// put_ended() must follow in the same transaction, with the row's data.
 class RunningRow {
 public:
     static std::optional<RunningRow> take(Session& session, std::int64_t seq, int attempts);
     const RunningJob& run() const { return run_; }
-    /// At its old place, after a pause where it has crashed; what it has crashed by then.
+    /// Queues the job again in its old position, after a pause if it has crashed; `crashes`: its number of crashes so
+    /// far.
     void put_waiting(Session& session, int crashes) const;
     void put_ended(Session& session, JobStatus status, UnixMs at, const std::string& error) const;
 
@@ -34,11 +36,11 @@ private:
     std::string priority_, turn_, flow_, started_at_;
 };
 
-/// The notes for jobs that have ended, which ` FROM source s` names by their seq: a part of a statement.
+/// The notifications for ended jobs, which ` FROM source s` selects by their seq: a part of a statement.
 std::string insert_deliveries(const std::string& source, const std::string& at);
 
-/// How the counts of batches change; written in one statement. Each connection counts in rows of its own, so that
-/// replicas which finish entries of one batch do not wait for each other.
+/// Changes of batches' counts, written in one statement. Each connection counts in rows of its own, so that replicas
+/// which finish entries of one batch do not wait for each other.
 class BatchCounts {
 public:
     void move(const std::optional<std::int64_t>& batch, std::optional<JobStatus> from, std::optional<JobStatus> to,
@@ -53,8 +55,8 @@ private:
     std::map<std::int64_t, Change> changes_;
 };
 
-/// The turn after which the next job of a flow comes: the last of its own that waits, and not below the one that is
-/// being served in its class, which is that before the first that waits. A part of a statement.
+/// The turn after which the next job of a flow comes: the last one of its own that waits, and at least the turn that is
+/// being served in its class, which is the one before the first that waits. A part of a statement.
 std::string last_turn(const std::string& priority, const std::string& flow);
 
 /// The single jobs of a flow that wait or run: a part of a statement.

@@ -1,5 +1,5 @@
-// A server that hangs while its machine still takes what is sent to it: no answer comes, and no error. A connection
-// whose answer does not come is cut, so that whoever waits for it learns that it is lost.
+// Detects a server that hangs while its machine still accepts data: no answer comes, and no error. A connection whose
+// answer is overdue is cut, so that the waiting thread learns that it is lost.
 #pragma once
 
 #include <chrono>
@@ -12,26 +12,26 @@
 
 namespace tunewright::server::postgres {
 
-/// What one user of connections, which has one at a time, waits for.
+/// The wait of one user of connections, which has one at a time.
 class Line {
 public:
     void asked(int socket);
     void answered();
-    /// How long the answer has been waited for; 0 where none is.
+    /// Time since the request that has no answer yet; 0 if there is none.
     std::chrono::milliseconds silence() const;
-    /// Cuts the connection where that has been so long. Its user notices, and closes it.
+    /// Cuts the connection if the wait has lasted this long. Its user notices that and closes it.
     void cut_after(std::chrono::milliseconds patience);
 
 private:
     using Clock = std::chrono::steady_clock;
     mutable std::mutex mutex_;
     std::optional<Clock::time_point> since_;
-    int socket_ = -1;  ///< open as long as the answer is waited for
+    int socket_ = -1;  ///< open during the wait for the answer
 };
 
 class Watch {
 public:
-    /// Longer than the server lets any statement take: one that is alive has refused it by then.
+    /// Longer than the server's own timeout of a statement: a live server has refused it by then.
     static constexpr std::chrono::milliseconds kMaxStatementTime{15'000};
 
     Watch();
@@ -39,7 +39,7 @@ public:
     Watch(const Watch&) = delete;
     Watch& operator=(const Watch&) = delete;
 
-    /// A line that is watched until nobody has it any more.
+    /// A line that is watched until its last reference is released.
     std::shared_ptr<Line> line();
 
 private:

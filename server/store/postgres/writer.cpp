@@ -15,11 +15,11 @@ namespace {
 constexpr std::size_t kMaxGroup = 200;             // changes of a kind
 constexpr std::size_t kMaxResults = 12;            // long ones: somebody may wait for the next group
 constexpr std::size_t kMaxOtherChanges = 16;       // a statement each, or more
-constexpr std::size_t kMaxText = 4 * 1024 * 1024;  // of a kind
+constexpr std::size_t kMaxText = 4 * 1024 * 1024;  // bytes of each kind
 constexpr std::chrono::milliseconds kFirstPause{100};
 constexpr std::chrono::milliseconds kMaxPause{2000};
 constexpr std::chrono::seconds kMaxDoubtTime{10};
-constexpr int kTriesMore = 4;  // of a group that was in another's way, or whose connection was lost
+constexpr int kTriesMore = 4;  // of a group that conflicted with another, or whose connection was lost
 
 std::size_t bytes(const Ask<NewJob, Accepted>& ask) { return ask.in.request.size(); }
 std::size_t bytes(const Ask<JobEnd, bool>& ask) { return ask.in.result.size() + ask.in.error.size(); }
@@ -28,7 +28,7 @@ std::size_t bytes(const T&) {
     return 0;
 }
 
-/// Moves the first to the end of another list: at most `max`, and about kMaxText of text.
+/// Moves the first changes to the end of another list: at most `max`, and about kMaxText of text.
 template <class T>
 void move_some(std::vector<T>& from, std::vector<T>& to, std::size_t max) {
     std::size_t count = 0;
@@ -70,7 +70,7 @@ void beat_all(Session& session, std::vector<Ask<Heartbeat, std::vector<Holding>>
     }
 }
 
-/// Neighbours of one worker are claimed together.
+/// Adjacent claims of one worker share a statement.
 void claim_all(Session& session, std::vector<Ask<Claim, std::vector<JobRecord>>>& asks) {
     for (std::size_t first = 0; first < asks.size();) {
         Claim together = asks[first].in;
@@ -101,7 +101,7 @@ void answer(Group& group, const std::optional<StoreFault>& fault) {
     answer(group.claims, fault);
 }
 
-/// Calls `each` for every change, in a group of its own.
+/// Calls `each` for every change, each in a group of its own.
 template <class T, class Each>
 void one_by_one(std::vector<T>& from, std::vector<T> Group::*place, Each each) {
     for (T& item : from) {
@@ -156,7 +156,7 @@ Group Writer::next_group() {
     else
         changed_.wait_until(lock, next_try_, ready);
     Group group;
-    // Claims and signs of life need not wait for the disk: they go by themselves, between two groups that do.
+    // Claims and heartbeats need not wait for the disk: they run separately, between two groups that do.
     const bool quick = !waiting_.claims.empty() || !waiting_.beats.empty();
     const bool others = waiting_.size() > waiting_.claims.size() + waiting_.beats.size();
     if (quick && (!others || !std::exchange(quick_went_, true))) {
@@ -190,7 +190,7 @@ void Writer::write(Group& group) {
         healthy_ = true;
         return answer(group, std::nullopt);
     }
-    // Somebody's change cannot be made: each alone, so that the others are not lost with it.
+    // One change fails: each is tried alone, so that the others are not lost with it.
     const bool lost = failure->kind == Failure::Kind::broken || failure->kind == Failure::Kind::unknown;
     if (group.size() > 1 && !lost) return write_alone(group);
     if (healthy_.exchange(false) || !lost) log_error("the store cannot write: " + std::string(failure->what()));
@@ -210,7 +210,7 @@ std::optional<Failure> Writer::try_write(Group& group) {
     const bool had_connection = session_ != nullptr;
     std::optional<Failure> failure = try_once(group);
     for (int again = 0; failure && again < kTriesMore; again++) {
-        // A connection that was lost while nobody used it is noticed now; nothing of the group can have been done.
+        // A connection that was lost while idle is noticed only now; nothing of the group can have been executed.
         const bool may_do = failure->kind == Failure::Kind::conflict ||
                             (failure->kind == Failure::Kind::broken && (had_connection || session_ != nullptr));
         if (!may_do || (!session_ && !connect())) break;
@@ -279,7 +279,7 @@ std::optional<bool> Writer::was_committed(std::int64_t transaction, const std::s
                 const pqxx::result rows = session_->run("SELECT txid_status($1)", Values().number(transaction));
                 if (rows[0][0].is_null()) return std::nullopt;
                 const std::string status = rows[0][0].c_str();
-                const bool crashed = life_ != life;  // what was under way then is not any more
+                const bool crashed = life_ != life;  // transactions that were in progress then are lost
                 if (status == "committed") return crashed ? std::nullopt : std::optional(true);
                 if (status == "aborted" || crashed) return false;
             }

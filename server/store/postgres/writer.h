@@ -1,10 +1,10 @@
-// A thread that writes, on a connection of its own. What is asked for while a transaction is being committed goes into
-// the next one together: single jobs' changes of one kind into one statement, and one commit for all.
+// A thread that writes, on a connection of its own. Changes that arrive while a transaction is being committed are
+// combined in the next one: single jobs' changes of one kind in one statement, and one commit for all.
 //
 // When the connection is lost: changes that cannot have been committed are tried once more on a new connection; a
-// commit whose answer was lost is looked up by its transaction's number, which says nothing after a crash of the
-// server: there the number may have become another's. Whatever remains unknown or impossible is answered with
-// StoreFault::unavailable, and a new connection is tried for with growing pauses.
+// commit whose answer was lost is looked up by its transaction's number, unless the server has crashed, because the
+// number may then belong to another one. Changes that remain unknown or impossible are answered with
+// StoreFault::unavailable, and reconnection is attempted with growing pauses.
 #pragma once
 
 #include <atomic>
@@ -24,7 +24,7 @@
 
 namespace tunewright::server::postgres {
 
-/// A question to the writer with its answer, which may be found twice before it is given.
+/// A request to the writer with its answer, which may be computed twice before it is delivered.
 template <class In, class Out>
 struct Ask {
     In in;
@@ -32,13 +32,13 @@ struct Ask {
     Out out{};
 };
 
-/// Any other change.
+/// A change of another kind.
 struct OtherChange {
     std::function<void(Work&)> apply;
     std::function<void(std::optional<StoreFault>)> done;
 };
 
-/// What one transaction takes, in the order in which it is done.
+/// The changes of one transaction, in their order.
 struct Group {
     std::vector<Ask<NewJob, Accepted>> accepts;
     std::vector<Ask<JobEnd, bool>> ends;
@@ -47,16 +47,16 @@ struct Group {
     std::vector<Ask<Claim, std::vector<JobRecord>>> claims;
 
     std::size_t size() const { return accepts.size() + ends.size() + beats.size() + others.size() + claims.size(); }
-    /// Claims and signs of life alone do not wait for the disk: where a crash of the server undoes them, the jobs are
-    /// queued again, which is where they belong then. Whoever ends such a job first, ends it.
+    /// Claims and heartbeats alone do not wait for the disk: if a crash of the server undoes them, the jobs are queued
+    /// again, as they should be. The first process that ends such a job ends it.
     bool durable() const { return !(accepts.empty() && ends.empty() && others.empty()); }
 };
 
 class Writer {
 public:
-    /// Connects by itself. `tag` "": other processes are told nothing.
+    /// Connects automatically. `tag` "": no notices to other processes.
     Writer(Address address, std::string tag, Watch& watch);
-    /// Does what was asked for, as far as the database is there, then joins.
+    /// Executes the queue, as far as the database is available, then joins.
     ~Writer();
     Writer(const Writer&) = delete;
     Writer& operator=(const Writer&) = delete;
@@ -68,7 +68,7 @@ public:
     void change(OtherChange change);
 
     bool healthy() const { return healthy_; }
-    /// How long the server has owed an answer.
+    /// Time since a request that the server has not answered.
     std::chrono::milliseconds silence() const { return line_->silence(); }
 
 private:
@@ -77,16 +77,15 @@ private:
     template <class T>
     void add(std::vector<T> Group::*place, T item, bool first = false);
     void work();
-    /// Empty when it is time to stop, or to look after the connection.
+    /// Empty when it is time to stop, or to check the connection.
     Group next_group();
     void write(Group& group);
     void write_alone(Group& group);
-    /// Nothing when the group has been committed.
+    /// Empty when the group has been committed.
     std::optional<Failure> try_write(Group& group);
     std::optional<Failure> try_once(Group& group);
     bool connect();
-    /// Of a transaction whose commit was not answered, in that life of the server; nothing where that cannot be found
-    /// out.
+    /// For a transaction whose commit was not answered, in that life of the server; empty if that cannot be determined.
     std::optional<bool> was_committed(std::int64_t transaction, const std::string& life);
     bool stopping() const;
 
@@ -94,14 +93,14 @@ private:
     std::string tag_;
     const std::shared_ptr<Line> line_;
     std::unique_ptr<Session> session_;
-    std::string life_;  ///< server_life() that the session saw
+    std::string life_;  ///< server_life() at the time of the session
     Clock::time_point next_try_{};
     std::chrono::milliseconds pause_{0};
 
     mutable std::mutex mutex_;
     std::condition_variable changed_;
     Group waiting_;
-    bool quick_went_ = false;  ///< the last group was of claims and signs of life
+    bool quick_went_ = false;  ///< the last group consisted of claims and heartbeats
     bool stopping_ = false;
     std::atomic<bool> healthy_ = true;
     std::jthread thread_;

@@ -147,7 +147,7 @@ RemovedBatch remove_batch(Connection& store, const std::string& id) {
 }
 
 std::optional<std::int64_t> begin_cancel(Connection& store, const std::string& id) {
-    // One that has ended stays as it is: its failed entries may be queued again.
+    // A batch that has ended stays as it is: its failed entries may be queued again.
     Connection::Use row = store.use(
         "UPDATE batches SET cancel_requested = cancel_requested OR state <> 'sealed' OR queued > 0 OR running > 0 "
         "WHERE id = ?1 AND state <> 'leaving' RETURNING seq");
@@ -187,7 +187,7 @@ std::vector<std::string> end_cancel(Connection& store, std::int64_t batch) {
 }
 
 Unsettled settle_batches(Connection& store, UnixMs heard_before) {
-    // What waits for the end of a batch is told in the same transaction in which the end is seen.
+    // The notification of a batch's end is written in the transaction that finds the end.
     store
         .use(
             "INSERT INTO deliveries (target, batch, created_at, due_at) SELECT notify, id, max(last_end, created_at), "

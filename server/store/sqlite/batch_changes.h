@@ -1,5 +1,5 @@
-// What the writer does to batches, each function inside a transaction of its own. What touches every entry goes in
-// slices (slices.h says what each does).
+// The writer's changes to batches, each function inside a transaction of its own. Changes to all entries are made in
+// slices (slices.h describes each one).
 #pragma once
 
 #include <optional>
@@ -20,7 +20,7 @@ std::size_t delete_entries(Connection& store, std::int64_t batch, std::size_t ma
 std::optional<std::int64_t> begin_cancel(Connection& store, const std::string& id);
 std::optional<std::int64_t> cancel_entries(Connection& store, std::int64_t batch, std::int64_t from, UnixMs now);
 std::vector<std::string> end_cancel(Connection& store, std::int64_t batch);
-/// Batches whose receiver was last heard of before that moment are dropped; ended ones are settled.
+/// Drops batches whose receiver has been silent since that moment, and settles ended ones.
 Unsettled settle_batches(Connection& store, UnixMs heard_before);
 std::size_t sweep_slice(Connection& store, UnixMs now, const Retention& retention, std::size_t max);
 

@@ -18,7 +18,7 @@ constexpr std::chrono::milliseconds kUsualWait{5000};
 
 class Connection {
 public:
-    /// A prepared statement in use; it is put back to its start when this goes. The same one never twice at a time.
+    /// A prepared statement in use; its destructor resets it. A statement must not be in use twice at a time.
     class Use {
     public:
         explicit Use(SQLite::Statement& statement) : statement_(statement) {}
@@ -26,7 +26,7 @@ public:
         Use(const Use&) = delete;
         Use& operator=(const Use&) = delete;
 
-        /// Values for ?1, ?2, ...; texts must live as long as this.
+        /// Values for ?1, ?2, ...; texts must outlive this object.
         template <class... Values>
         Use& with(const Values&... values) {
             int place = 0;
@@ -40,12 +40,12 @@ public:
         void bind(int place, double value) { statement_.bind(place, value); }
         void bind_null(int place) { statement_.bind(place); }
 
-        /// True where there is a (further) row.
+        /// True if there is a (further) row.
         bool next() { return statement_.executeStep(); }
-        /// For a statement that gives no rows: how many it changed.
+        /// For a statement that returns no rows: the number of changed rows.
         int run() { return statement_.exec(); }
 
-        /// Columns from 0; null is "", 0 or nothing.
+        /// Columns from 0; null is read as "", 0 or empty.
         std::string text(int column) const;
         std::int64_t integer(int column) const { return statement_.getColumn(column).getInt64(); }
         double real(int column) const { return statement_.getColumn(column).getDouble(); }

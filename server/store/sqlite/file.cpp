@@ -13,10 +13,10 @@
 namespace tunewright::server {
 namespace {
 
-/// The file that a link leads to: SQLite keeps the log of changes there too.
+/// The target of a link: SQLite keeps its log of changes (WAL) there too.
 std::string file_behind(const std::string& path) { return std::filesystem::weakly_canonical(path).string(); }
 
-/// Whether the file's head says that there may be a log of changes beside it. True of a file that has no head yet.
+/// True if the file's head says that a log of changes may be next to it. Also true of a file without a head.
 bool may_have_log(const std::string& path) {
     constexpr std::streamoff write_version = 18, read_version = 19;
     constexpr char with_log = 2;
@@ -41,7 +41,7 @@ void refuse_foreign_log(const std::string& path) {
     const std::string file = file_behind(path), log = file + "-wal";
     std::error_code none;
     const auto size = std::filesystem::file_size(log, none);
-    // SQLite marks the file before it makes a log, and removes the log before it takes the mark away.
+    // SQLite marks the file before it creates a log, and removes the log before it removes the mark.
     if (none || size == 0 || may_have_log(file)) return;
     throw StoreError({StoreFault::Kind::unavailable, "the file is a copy that was put in its place, and " + log +
                                                          " belongs to the file that was there before; remove it and " +

@@ -18,7 +18,7 @@ std::optional<Accepted> find_by_key(Connection& store, const NewJob& job) {
     return accepted;
 }
 
-/// A job that is not of a batch being deleted.
+/// A job whose batch is not being deleted.
 struct FoundJob : RowPosition {
     JobStatus status = JobStatus::queued;
     bool batch_cancelled = false;
@@ -37,7 +37,7 @@ std::optional<FoundJob> find_job(Connection& store, const std::string& id) {
     return found;
 }
 
-/// The single jobs of its flow are counted only where so many have come since the last count that there may be no room.
+/// The single jobs of its flow are counted only if there may be no room after those that arrived since the last count.
 bool has_room(Connection& store, ClientBounds& bounds, const NewJob& job) {
     constexpr std::size_t max_flows = 10'000;
     if (job.client_limit == 0) return true;
@@ -54,7 +54,7 @@ bool has_room(Connection& store, ClientBounds& bounds, const NewJob& job) {
     return bound++ < job.client_limit;
 }
 
-/// The job's place in the queue: by its time where that has not come, else by the next turn of its flow.
+/// The job's position in the queue: by its time if that has not come, else by the next turn of its flow.
 void find_turn(Connection& store, RowPosition& job, std::optional<UnixMs> not_before, UnixMs now) {
     const bool later = not_before.value_or(0) > now;
     job.turn = later ? *not_before : next_turn(store, job.priority, job.flow);
@@ -66,7 +66,7 @@ void give_key_up(Connection& store, std::int64_t seq) {
     store.use("UPDATE jobs SET idempotency_key = ' ' || id || idempotency_key WHERE seq = ?1").with(seq).run();
 }
 
-/// Where the job has given its key up it takes it back; false where a later one has it that has not failed.
+/// A job that has given its key up takes it back; false if a later job has it that has not failed.
 bool take_key_back(Connection& store, std::int64_t seq) {
     NewJob given;
     {
@@ -152,7 +152,7 @@ RequeueEffect requeue_job(Connection& store, const std::string& id) {
     if (!transition(found->status, JobEvent::requeue)) return RequeueEffect::not_failed;
     std::optional<UnixMs> not_before;
     {
-        // What could never be read cannot be computed either.
+        // A request that could not be read cannot be computed either.
         Connection::Use row = store.use("SELECT request IS NULL OR request = '', not_before FROM jobs WHERE seq = ?1");
         if (row.with(found->seq).next() && row.integer(0) != 0) return RequeueEffect::not_failed;
         not_before = row.moment(1);
@@ -216,7 +216,7 @@ void hear_of(Connection& store, const std::string& worker, UnixMs lease_until) {
         .run();
 }
 
-/// Where an end was asked for, of the job or of its batch, it comes now instead of another attempt.
+/// True if a cancellation of the job or of its batch was requested: it takes the place of another attempt.
 bool is_unwanted(Connection& store, const RunningJob& run) {
     if (run.cancel_requested) return true;
     if (!run.batch) return false;

@@ -150,13 +150,13 @@ std::optional<JobState> find_job_of_key(Connection& store, const std::string& ow
 
 namespace {
 
-/// True where the jobs are found by the table of their state: few wait or run, and of those that have ended an index
-/// gives the newest of a state. Entries of a batch that wait are found among all of it.
+/// True if the jobs are found by the table of their state: few wait or run, and for those that have ended an index
+/// gives the newest of a state. Entries of a batch that wait are found among all its entries.
 bool found_by_state(const JobQuery& query) {
     return query.status && !(query.batch && *query.status == JobStatus::queued);
 }
 
-/// The tables with the one first by which few jobs are found.
+/// The tables; the one that selects the fewest jobs comes first.
 std::string tables_of(const JobQuery& query) {
     if (!found_by_state(query)) return kJobTables;
     std::string tables = kJobTables;
@@ -174,15 +174,15 @@ std::string tables_of(const JobQuery& query) {
     return tables;
 }
 
-/// The number that orders the list, of the table by which jobs are found. The entries of a batch stand in the order of
-/// their index, which is that of their seq too.
+/// The number that orders the list, from the table by which jobs are found. The entries of a batch are ordered by their
+/// index, which is also the order of their seq.
 std::string order_of(const JobQuery& query) {
     if (!found_by_state(query)) return query.batch ? "j.batch_index" : "j.seq";
     if (*query.status == JobStatus::queued) return "w.seq";
     return *query.status == JobStatus::running ? "r.seq" : "e.seq";
 }
 
-/// "" where the table says it.
+/// "" if the table implies it.
 std::string status_condition(const JobQuery& query) {
     if (!found_by_state(query)) return " AND " + kStatus + " = ?2";
     if (*query.status == JobStatus::queued) return " AND w.batch IS NULL";
@@ -253,7 +253,7 @@ QueueDepth count_waiting(Connection& store) {
     depth.next_single = next_accepted(store, 0);
     depth.next_entry = next_accepted(store, 1);
     depth.single = count(store, "SELECT count(*) FROM waiting WHERE batch IS NULL");
-    // Batches count their entries themselves; those of one that is leaving wait no longer.
+    // Batches have counts of their entries; entries of a batch that is being deleted no longer wait.
     depth.entries = count(store,
                           "SELECT coalesce(sum(queued), 0) FROM batches WHERE ended_at IS NULL "
                           "AND state <> 'leaving'");

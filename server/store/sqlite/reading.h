@@ -1,5 +1,5 @@
-// What is read from the file: jobs and batches as rows of the tables, in the one place that knows the order of the
-// columns, and the questions that the store answers, one statement each.
+// Reads the file: jobs and batches as rows of the tables, in the only place that knows the order of the columns, and
+// the queries of the store, one statement each.
 #pragma once
 
 #include <string>
@@ -9,39 +9,39 @@
 
 namespace tunewright::server {
 
-/// The state of job j and its attempts, of the tables below.
+/// The state of job j and its attempts, in terms of the tables below.
 extern const std::string kStatus;
 extern const std::string kAttempts;
-/// Columns of a summary, with progress those of a state; of a record. "SELECT " + columns + kJobTables.
+/// Columns of a summary, of a state (with progress), and of a record. "SELECT " + columns + kJobTables.
 extern const std::string kSummaryColumns;
 extern const std::string kRecordColumns;
 extern const std::string kJobTables;
-/// True for jobs that can be seen: those of a batch that is being deleted cannot.
+/// True for visible jobs: those of a batch that is being deleted are not.
 extern const std::string kVisible;
 
-/// From the current row of a query that selects the columns of the same name.
+/// Reads the current row of a query that selects the columns of the same name.
 JobSummary read_summary(const Connection::Use& row);
 JobState read_state(const Connection::Use& row);
 JobRecord read_record(const Connection::Use& row);
-/// A job that has just been claimed: what never changes of it, and its request.
+/// A job that has just been claimed: its constant data and its request.
 JobRecord read_claimed(Connection& store, std::int64_t seq);
 
 /// Columns of a batch, of `batches b`.
 extern const std::string kBatchColumns;
 BatchSummary read_batch(const Connection::Use& row);
 
-// The questions. Each runs on a connection that only reads.
-/// The job with request, result and progress; nothing where there is none, or its batch is being deleted.
+// The queries. Each runs on a connection that only reads. The job with request, result and progress; empty if there is
+// none, or its batch is being deleted.
 std::optional<JobRecord> find_record(Connection& store, const std::string& id);
-/// The states of those of the jobs that there are, in no particular order.
+/// The states of the existing ones of these jobs, in no particular order.
 std::vector<JobState> find_states(Connection& store, const std::vector<std::string>& ids);
 std::optional<JobState> find_job_of_key(Connection& store, const std::string& owner, const std::string& key);
 /// A page of jobs, newest first, as `query` asks for.
 JobPage list_jobs(Connection& store, const JobQuery& query);
-/// How many single jobs, and how many entries of batches, wait.
+/// The number of single jobs, and of entries of batches, that wait.
 QueueDepth count_waiting(Connection& store);
-/// A condition on one that waits after crashes: its pause is over at `now`, an expression, or longer than any, because
-/// the clock has been set back since.
+/// A condition for a job that waits after crashes: its pause is over at `now`, an expression, or is longer than any
+/// pause, because the clock has been set back since.
 std::string pause_over(const std::string& now);
 /// A batch that is not being deleted.
 std::optional<BatchSummary> find_batch(Connection& store, const std::string& id);

@@ -9,7 +9,7 @@
 namespace tunewright::server {
 namespace {
 
-// The database knows the rules of the states too: an ended job has its moment and its outcome, a running one a start.
+// The database enforces the rules of the states too: an ended job has a time and an outcome, a running one a start.
 constexpr const char* kStep1 = R"sql(
 CREATE TABLE jobs (
     seq INTEGER PRIMARY KEY AUTOINCREMENT,
@@ -49,9 +49,9 @@ CREATE TABLE idempotency_keys (
 CREATE INDEX idempotency_keys_by_job ON idempotency_keys (seq);
 )sql";
 
-// Leases, owners, turns and batches. A table's CHECKs cannot be changed, so `jobs` is made anew and its rows move over.
-// A batch counts its entries by itself. One that is `leaving` is being deleted, slice by slice, and no longer seen;
-// `cancel_from` is the first entry that its cancelling has not reached yet.
+// Leases, owners, turns and batches. A table's CHECKs cannot be changed, so `jobs` is created again and its rows are
+// copied. A batch has counts of its entries. One that is `leaving` is being deleted, slice by slice, and no longer
+// visible; `cancel_from` is the first entry that its cancellation has not reached yet.
 constexpr const char* kStep2 = R"sql(
 CREATE TABLE batches (
     seq INTEGER PRIMARY KEY AUTOINCREMENT,
@@ -172,20 +172,21 @@ CREATE TRIGGER entries_moved AFTER UPDATE OF status ON jobs WHEN NEW.batch IS NO
 END;
 )sql";
 
-// A job that was running when its process ended may be why; one that was twice waits a while and then runs alone.
+// A job that was running when its process ended may be the cause; one for which that happened twice waits a while and
+// then runs alone.
 constexpr const char* kStep3 = R"sql(
 ALTER TABLE jobs ADD COLUMN crashes INTEGER NOT NULL DEFAULT 0 CHECK (crashes >= 0);
 ALTER TABLE jobs ADD COLUMN not_before INTEGER;
 CREATE INDEX jobs_suspect ON jobs (not_before) WHERE status = 'queued' AND crashes > 1;
 )sql";
 
-// What a list shows of an ended job beside its name: small, so that a page of jobs reads no result.
+// The outline of an ended job for lists: small, so that a page of jobs reads no result.
 constexpr const char* kStep4 = "ALTER TABLE jobs ADD COLUMN outline TEXT;";
 
-// A job is in one of three places: it waits, it runs, or it has ended. What never changes of it stands in `jobs`,
-// written once; `waiting` and `running` are narrow, so that a claim and an end touch no wide row and few indexes. Names
-// of processes have their sign of life in `workers`, one row each. `ended_at` of a batch is null while it is looked
-// after: jobs of it wait or run, or nobody has seen yet that none does.
+// A job is in one of three places: it waits, it runs, or it has ended. Its constant data are in `jobs`, written once;
+// `waiting` and `running` are narrow, so that a claim and an end touch no wide row and few indexes. `workers` has the
+// heartbeats of processes, one row each. `ended_at` of a batch is null while jobs of it wait or run, or its end has not
+// been noticed yet.
 constexpr const char* kStep5 = R"sql(
 DROP TRIGGER jobs_move;
 DROP TRIGGER jobs_attempts;
@@ -350,12 +351,12 @@ CREATE TRIGGER runs_as_claimed BEFORE UPDATE OF seq, worker, attempts, crashes O
 BEGIN SELECT RAISE(ABORT, 'a job that runs is its worker''s'); END;
 )sql";
 
-// Entries of a batch that ended in a state, which are few among many.
+// Entries of a batch that ended in a state that few entries have.
 constexpr const char* kStep6 = "CREATE INDEX ended_entries ON ended (status) WHERE NOT single;";
 
-// The time before which a job does not start, and an index by which the single jobs of one client are counted; those of
-// low priority stand among entries of batches. With an index WHERE class = 1 SQLite would compile every statement with
-// class = ?1 anew each time.
+// The time before which a job does not start, and an index for counting the single jobs of one client; single jobs of
+// low priority share a class with entries of batches. With an index WHERE class = 1 SQLite would compile every
+// statement with class = ?1 again each time.
 constexpr const char* kStep7 = R"sql(
 ALTER TABLE jobs ADD COLUMN not_before INTEGER;
 CREATE INDEX waiting_clients ON waiting (flow, batch, class) WHERE class > 0 AND batch IS NULL;
@@ -376,7 +377,7 @@ SchemaState schema_state(SQLite::Database& database) {
 
 void migrate(SQLite::Database& database) {
     const SchemaState state = schema_state(database);
-    // A table that is made anew is dropped once; its rows' requests and results must not go with it.
+    // A table that is created again is dropped once; the requests and results of its rows must not be deleted with it.
     database.exec("PRAGMA foreign_keys = OFF");
     for (int step = state.have; step < state.known; step++) {
         SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);

@@ -1,4 +1,4 @@
-// The tables of the SQLite file, and the numbered steps to them.
+// The tables of the SQLite file, and the numbered migration steps.
 #pragma once
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -7,10 +7,10 @@
 
 namespace tunewright::server {
 
-/// Throws StoreError where the database was written by a newer program.
+/// Throws StoreError if the database was written by a newer program.
 SchemaState schema_state(SQLite::Database& database);
-/// Brings the database to the newest schema by the numbered steps of schema.cpp, one transaction for each; a step is
-/// never edited after a release. Throws as schema_state() does.
+/// Migrates the database to the newest schema by the numbered steps of schema.cpp, one transaction for each; a step is
+/// never edited after a release. Throws like schema_state().
 void migrate(SQLite::Database& database);
 
 }  // namespace tunewright::server

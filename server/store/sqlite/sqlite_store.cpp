@@ -21,7 +21,7 @@ namespace tunewright::server {
 namespace {
 
 constexpr UnixMs kEndOfTime = std::numeric_limits<UnixMs>::max();
-constexpr std::size_t kOpeningBytes = 256 << 10;                  // bytes that opening may take
+constexpr std::size_t kOpeningBytes = 256 << 10;                  // bytes that opening may write
 constexpr std::size_t kReaders = 8;                               // connections for reading
 constexpr const char* kPageCache = "PRAGMA cache_size = -16384";  // KiB; the default of 2 MiB thrashes in long queues
 
@@ -42,7 +42,7 @@ public:
     SqliteStore(const std::string& path, SchemaSteps steps)
         : path_(path), lock_(path), reserve_(path), connection_(open_file(path)) {
         connection_.database().exec("PRAGMA journal_mode = WAL");
-        // Debian's library writes zeros over each page that it frees, which is most of what deleting costs.
+        // Debian's library overwrites each freed page with zeros, which is most of the cost of deleting.
         connection_.database().exec("PRAGMA secure_delete = FAST");
         connection_.database().exec(kPageCache);
         bring_up_to_date(connection_.database(), steps);
@@ -83,7 +83,7 @@ public:
             std::move(done), bytes, Kind::job);
     }
     void claim(Claim claim, Done<std::vector<JobRecord>> done) override {
-        // Not waiting for the disk: after a power cut the job is queued again, which is where it belongs anyway.
+        // Without waiting for the disk: after a power failure the job is queued again, as it should be.
         write<std::vector<JobRecord>>(
             kQuick, [claim = std::move(claim)](Connection& store) { return claim_jobs(store, claim); },
             std::move(done));
@@ -190,11 +190,11 @@ public:
     }
 
 private:
-    /// Idle: bulky, and not waiting for the disk: after a power cut it is done again.
+    /// Idle: bulky, and without waiting for the disk: after a power failure it is done again.
     enum Manner { kDurable, kQuick, kBulky, kIdle };
     using Kind = SqliteWriter::Change::Kind;
 
-    /// Queues `work`, which stores texts of so many bytes, for the writer and passes its value on after the commit.
+    /// Queues `work`, which stores texts of this length, for the writer and passes its value on after the commit.
     template <class T, class Work>
     void write(Manner manner, Work work, Done<T> done, std::size_t bytes = 0, Kind kind = Kind::usual) {
         auto value = std::make_shared<T>();
@@ -210,7 +210,7 @@ private:
         writer_->submit(std::move(change));
     }
 
-    /// Waits for a change; only while no callback of the writer's is waiting for this thread.
+    /// Waits for a change; allowed only while no callback of the writer waits for this thread.
     template <class T, class Work>
     T write_now(Work work) {
         std::promise<Outcome<T>> promise;
@@ -240,7 +240,7 @@ private:
     FileLock lock_;
     Reserve reserve_;
     Connection connection_;
-    ClientBounds bounds_;  ///< the writer's
+    ClientBounds bounds_;  ///< used by the writer's thread
     Pool<Connection> readers_{kReaders};
     std::unique_ptr<SqliteWriter> writer_;
     Slices<Connection> slices_{[this](std::function<void(Connection&)> apply, Slices<Connection>::Finished done) {
@@ -249,7 +249,7 @@ private:
 };
 
 Recovery SqliteStore::recover(UnixMs now, int attempts, const std::string& error) {
-    // What was interrupted is finished first, slice by slice, so that none of it is taken for waiting jobs.
+    // Interrupted changes are finished first, slice by slice, so that their entries do not count as waiting jobs.
     const auto unsettled = write_now<Unsettled>([](Connection& store) { return settle_batches(store, kEndOfTime); });
     for (const std::int64_t batch : unsettled.leaving)
         while (write_now<std::size_t>([&](Connection& store) { return delete_entries(store, batch, kSliceEntries); }) >
@@ -282,7 +282,7 @@ void SqliteStore::reclaim(Reclaim what, Done<Recovery> done) {
         });
 }
 
-/// Does `work`, which opens the file; on a full disk once more with the room of the reserve.
+/// Runs `work`, which opens the file; on a full disk once more with the space of the reserve.
 template <class Work>
 auto opening_where_room(const std::string& path, Work work) {
     return opening(path, [&] {
@@ -292,7 +292,7 @@ auto opening_where_room(const std::string& path, Work work) {
             try {
                 return work();
             } catch (const SQLite::Exception& error) {
-                // It may lack room for the files beside it, which it reports in many ways.
+                // There may be no space for the files next to it, which SQLite reports in many ways.
                 StoreFault fault = fault_of(error, errno);
                 if (room_of(path).left < kOpeningBytes) fault.kind = StoreFault::Kind::full;
                 if (fault.kind != StoreFault::Kind::full || !Reserve(path).release()) throw StoreError(fault);

@@ -1,4 +1,4 @@
-// The store in a file of SQLite, for one process.
+// The store in an SQLite file, for one process.
 #pragma once
 
 #include <iosfwd>
@@ -9,12 +9,12 @@
 
 namespace tunewright::server {
 
-/// Makes the file and its folder where they are not there, and brings the schema up to date or throws SchemaBehind.
-/// Throws StoreError with a sentence.
+/// Creates the file and its folder if they do not exist, and migrates the schema or throws SchemaBehind. Throws
+/// StoreError with a sentence.
 std::unique_ptr<JobStore> open_sqlite_store(const std::string& path, SchemaSteps steps);
 
-/// The schema alone, and `compact`: the file is written anew without the pages that deleted jobs left. Throws
-/// StoreError with a sentence, also where a service uses the file.
+/// Migrates the schema only; with `compact`, the file is rewritten without the pages that deleted jobs left. Throws
+/// StoreError with a sentence, also if a service uses the file.
 void migrate_sqlite(const std::string& path, bool compact, std::ostream& out);
 
 }  // namespace tunewright::server

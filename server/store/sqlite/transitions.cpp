@@ -20,7 +20,7 @@ Ending Ending::failed(UnixMs at, const std::string& error) {
 }
 
 std::int64_t next_turn(Connection& store, int priority, const std::string& flow) {
-    // Served is the turn before the first that waits; what has crashed twice waits out of turn.
+    // The turn being served is the one before the first that waits; a job that has crashed twice waits out of turn.
     Connection::Use row = store.use(
         "SELECT 1 + max(0, coalesce((SELECT turn - 1 FROM waiting WHERE class = ?1 AND crashes < 2 "
         "ORDER BY turn LIMIT 1), 0), coalesce((SELECT max(turn) FROM waiting WHERE class = ?1 AND flow = ?2), 0))");
@@ -89,7 +89,7 @@ void put_ended(Connection& store, const RowPosition& job, std::optional<UnixMs> 
         bind_batch(row, 11, started_at);
         row.run();
     }
-    if (job.batch) return;  // it is the batch's end that somebody may want to hear of
+    if (job.batch) return;  // the notification belongs to the end of the batch
     store
         .use(
             "INSERT INTO deliveries (target, job, created_at, due_at) "

@@ -1,5 +1,5 @@
-// The places of a job - it waits, runs or has ended - and its ways between them, with what goes along: the counts of
-// its batch, and the note to whoever wants to hear of its end. Everything that moves a job uses these.
+// The tables through which a job moves - waiting, running, ended - and the related changes: the counts of its batch,
+// and the notification of its end. Every change of a job's state uses these functions.
 #pragma once
 
 #include <map>
@@ -10,7 +10,7 @@
 
 namespace tunewright::server {
 
-/// What a job carries while it waits or runs.
+/// The data of a job while it waits or runs.
 struct RowPosition {
     std::int64_t seq = 0;
     int priority = 0;
@@ -21,13 +21,13 @@ struct RowPosition {
     int crashes = 0;
 };
 
-/// A job that runs.
+/// A running job.
 struct RunningJob : RowPosition {
     UnixMs started_at = 0;
     bool cancel_requested = false;
 };
 
-/// How a job ends; texts "" for none. They must live as long as the call.
+/// The end of a job; texts "" for none. They must outlive the call.
 struct Ending {
     JobStatus status = JobStatus::cancelled;
     UnixMs at = 0;
@@ -37,26 +37,26 @@ struct Ending {
     const std::string& error;
     const std::string& result;
 
-    /// Cancelled before it came to anything.
+    /// Cancelled without a result.
     static Ending cancelled(UnixMs at);
     static Ending failed(UnixMs at, const std::string& error);
 };
 
-/// The turn of the next job of that flow.
+/// The turn of the flow's next job.
 std::int64_t next_turn(Connection& store, int priority, const std::string& flow);
 
-/// From the current row of a query of: seq, class, turn, flow, batch, attempts, crashes.
+/// Reads the current row of a query of: seq, class, turn, flow, batch, attempts, crashes.
 RowPosition read_place(const Connection::Use& row);
 
 void put_waiting(Connection& store, const RowPosition& job, std::optional<UnixMs> not_before = std::nullopt);
-/// False where it does not wait.
+/// False if it does not wait.
 bool take_waiting(Connection& store, const RowPosition& job);
 void put_running(Connection& store, const RowPosition& job, const std::string& worker, UnixMs now);
-/// Nothing where it does not run, or not as that attempt; nullopt stands for any.
+/// Empty if it does not run, or not as that attempt; nullopt stands for any.
 std::optional<RunningJob> take_running(Connection& store, std::int64_t seq, std::optional<int> attempts);
 void put_ended(Connection& store, const RowPosition& job, std::optional<UnixMs> started_at, const Ending& ending);
 
-/// How the counts of batches change; written once for many jobs.
+/// Changes of batches' counts; written once for many jobs.
 class BatchCounts {
 public:
     void move(const std::optional<std::int64_t>& batch, std::optional<JobStatus> from, std::optional<JobStatus> to,

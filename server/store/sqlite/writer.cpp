@@ -17,18 +17,18 @@
 namespace tunewright::server {
 namespace {
 
-/// Keeps the time that one transaction holds the others up, and the log it writes, within bounds.
+/// Limits the time for which one transaction delays others, and the size of its log.
 constexpr std::size_t kMaxGroup = 256;
 constexpr std::chrono::milliseconds kProbePause{500};
 constexpr std::chrono::seconds kMinQuietTime{30};
 constexpr std::chrono::milliseconds kShortWait{20};
-constexpr std::chrono::seconds kFilePollInterval{1};  // whether the file is still there
-constexpr std::size_t kRowBytes = 4096;               // what a change without texts may take
-constexpr std::int64_t kMinFreePages = 256;           // of 4 KiB, free within the file
+constexpr std::chrono::seconds kFilePollInterval{1};  // of the check that the file still exists
+constexpr std::size_t kRowBytes = 4096;               // bytes of a change without texts, at most
+constexpr std::int64_t kMinFreePages = 256;           // of 4 KiB each, free within the file
 const StoreFault kMoved{StoreFault::Kind::unavailable,
                         "its file was removed or replaced while it was open; put it back, or start again"};
 
-/// Does it; where there is no memory for it, the thread goes on all the same.
+/// Runs `work`; if memory is exhausted, the thread continues.
 template <class Work>
 void survive(Work work) {
     try {
@@ -43,7 +43,7 @@ StoreFault fault_of(const std::exception& error, int system_error) {
     StoreFault fault{StoreFault::Kind::unavailable, error.what()};
     const auto* sqlite = dynamic_cast<const SQLite::Exception*>(&error);
     if (sqlite == nullptr) return fault;
-    // SQLite reports a file that cannot grow in several ways: "full" of some limits, "I/O error" of others.
+    // SQLite reports a file that cannot grow in several ways: some limits as "full", others as "I/O error".
     const int code = sqlite->getErrorCode() & 0xff;
     const bool cannot_grow = system_error == ENOSPC || system_error == EDQUOT || system_error == EFBIG;
     if (code == SQLITE_FULL || (code == SQLITE_IOERR && cannot_grow))
@@ -77,8 +77,8 @@ void SqliteWriter::next_group(std::vector<Change>& group) {
     std::unique_lock lock(mutex_);
     const auto ready = [this] { return stopping_ || !quick_.empty() || !waiting_.empty() || !bulky_.empty(); };
     changed_.wait_for(lock, healthy_ ? std::chrono::milliseconds(kFilePollInterval) : kProbePause, ready);
-    // What need not wait for the disk goes ahead, by itself: a claim that was put into a group with others would keep a
-    // worker waiting for their results. Every other group is theirs, whatever comes.
+    // Changes that need not wait for the disk go first and separately: a claim in a group with others would keep a
+    // worker waiting for their results. Every second group is theirs.
     std::deque<Change>& first = !quick_.empty() && !std::exchange(quick_went_, true) ? quick_ : waiting_;
     if (&first == &waiting_) quick_went_ = false;
     std::deque<Change>& chosen = first.empty() && bulky_.empty() ? quick_ : first;
@@ -94,7 +94,7 @@ void SqliteWriter::next_group(std::vector<Change>& group) {
 
 void SqliteWriter::work() {
     std::vector<Change> group;
-    group.reserve(kMaxGroup + 1);  // now: what has been taken over is not lost where memory runs out
+    group.reserve(kMaxGroup + 1);  // reserved now, so that no change is lost if memory is exhausted
     for (;;) {
         next_group(group);
         if (group.empty() && stopping()) return;
@@ -113,7 +113,7 @@ bool SqliteWriter::stopping() {
 void SqliteWriter::probe() {
     if (has_moved()) return failed(kMoved, 0);
     if (healthy_) return;
-    // Writes a page, and leaves everything as it is.
+    // Writes a page, and changes nothing.
     std::vector<Change> nothing(1);
     nothing[0].apply = [](Connection& store) {
         store.database().exec("PRAGMA user_version = " + std::to_string(store.number("PRAGMA user_version")));
@@ -122,13 +122,13 @@ void SqliteWriter::probe() {
     worked(0);
 }
 
-/// Whether the file system gives so much beside what it has; where it cannot say, it has none.
+/// True if the file system can allocate this number of bytes in addition; false if it cannot tell.
 bool SqliteWriter::has_room(std::size_t bytes) {
     if (bytes == 0) return true;
     const std::string path = connection_.database().getFilename() + "-room";
     const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600);
     if (fd < 0) return false;
-    // The text comes into the log of changes first, and then into the tables.
+    // The text is written to the log of changes first, and then to the tables.
     const bool room = ::posix_fallocate(fd, 0, static_cast<off_t>(2 * bytes)) == 0;
     ::close(fd);
     ::unlink(path.c_str());
@@ -164,7 +164,7 @@ void SqliteWriter::write_group(std::vector<Change>& group) {
         for (Change& change : group) answer(change, std::nullopt);
         return;
     }
-    // Somebody's change cannot be made: each alone, so that the others are not lost with it.
+    // One change fails: each is tried alone, so that the others are not lost with it.
     for (std::size_t i = 0; i < group.size(); i++) {
         const std::optional<StoreFault> fault = try_commit(group, i, 1);
         survive([&] { fault ? failed(*fault, size_of(group[i])) : worked(size_of(group[i])); });
@@ -172,27 +172,27 @@ void SqliteWriter::write_group(std::vector<Change>& group) {
     }
 }
 
-/// The path leads to another file, or to none: what is written now would be gone with the process.
+/// True if the path leads to another file, or to none: data written now would be lost with the process.
 bool SqliteWriter::has_moved() {
     int moved = 0;
     const int asked = sqlite3_file_control(connection_.database().getHandle(), "main", SQLITE_FCNTL_HAS_MOVED, &moved);
     return asked == SQLITE_OK && moved != 0;
 }
 
-/// Neither the disk nor the file itself has much room left.
+/// True if neither the disk nor the file itself has much space left.
 bool SqliteWriter::is_scarce() {
     return reserve_.is_scarce() && connection_.number("PRAGMA freelist_count") < kMinFreePages;
 }
 
-/// Makes room on a full disk: what the log of changes has grown by goes back to the disk, and the reserve is taken
-/// again. Where the tables must grow for it half of the reserve helps; another program may be quicker to take that.
+/// Frees space on a full disk: the growth of the log of changes is returned to the disk, and the reserve is allocated
+/// again. If the tables must grow for that, half of the reserve is used; another program may take that space first.
 void SqliteWriter::refill() {
     const auto now = std::chrono::steady_clock::now();
     if (now - refilled_at_ < kProbePause) return;
     refilled_at_ = now;
     connection_.wait_for_others(kShortWait);
     const auto shorten_log = [this] { return connection_.database().tryExec("PRAGMA wal_checkpoint(TRUNCATE)"); };
-    // It is done later while somebody reads.
+    // Delayed while a reader is active.
     if (shorten_log() != SQLITE_OK && reserve_.release(false)) shorten_log();
     connection_.wait_for_others(kUsualWait);
     reserve_.fill();
@@ -220,7 +220,7 @@ std::optional<StoreFault> SqliteWriter::commit_where_room(std::vector<Change>& g
         return StoreFault{StoreFault::Kind::full, "the disk is nearly full; what is left is for jobs that are there"};
     auto fault = commit(group, first, count);
     if (!fault || fault->kind != StoreFault::Kind::full) return fault;
-    refilled_at_ = {};  // at once: what was tried has filled the log, and others would take what has become free
+    refilled_at_ = {};  // immediately: the attempt has filled the log, and other programs would take the freed space
     if (count == 1 && any(Change::Kind::gives_room) && reserve_.release()) {
         if (healthy_) log_info("the disk of the store is full: the room that was kept for deleting is given away");
         fault = commit(group, first, count);
@@ -231,7 +231,7 @@ std::optional<StoreFault> SqliteWriter::commit_where_room(std::vector<Change>& g
 std::optional<StoreFault> SqliteWriter::commit(std::vector<Change>& group, std::size_t first, std::size_t count) {
     const auto begin = group.begin() + static_cast<std::ptrdiff_t>(first);
     const auto end = begin + static_cast<std::ptrdiff_t>(count);
-    errno = 0;  // SQLite's own record of it does not outlive the rollback
+    errno = 0;  // SQLite's own record of it is lost by the rollback
     try {
         const bool durable = std::any_of(begin, end, [](const Change& change) { return change.durable; });
         if (durable != waits_for_disk_) {

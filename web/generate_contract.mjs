@@ -1,26 +1,26 @@
 // Writes src/api/contract.gen.ts, the types of the contract, from the service's own document on standard input:
-//     curl -s http://127.0.0.1:8080/openapi.json | npm run --silent contract
-// A test compares the file with the document of the service as it is built. What the page does not use, and sentences, stay out.
+//     curl -s http://127.0.0.1:8080/openapi.json | npm run --silent contract A test compares the file with the current
+//     service's document. Types that the page does not use, and descriptions, are left out.
 import { readFileSync, writeFileSync } from "node:fs";
 import { fileURLToPath } from "node:url";
 import openapiTS, { astToString } from "openapi-typescript";
 
-/** What calls of the page send; an answer that shows one shows it as it was sent. */
+/** Types that the page sends; an answer with one of them contains it as sent. */
 const SENT = ["IdentifyRequest", "PlantQuestion", "RangeRequest", "RelayRequest", "TuningRequest"];
 
-/** What they get; what both refer to comes along. */
+/** Types of answers; the types to which both refer are included. */
 const ANSWERED = [
   "Batch", "ControllerProduct", "ControllerSummary", "DesignAnswer", "EvaluateAnswer", "Example", "Frontier", "IdentifyAnswer",
   "Job", "JobList", "MethodDescription", "PlantAnswer", "PreviewAnswer", "Problem", "RangeExample", "RangeResult", "RelayAnswer",
   "ScheduleSettingsAnswer", "SettingsAnswer", "TuningResult",
 ];
 
-/** Types that the page fills by a description and reads by name, each with the member that tells its kind. */
+/** Types that the page fills from a description and reads by name, each with the member that holds its kind. */
 const OPEN = { Plant: "type", PlantModel: "type", Method: "method" };
 
 const SHAPE = ["$ref", "type", "enum", "const", "additionalProperties", "items", "oneOf", "anyOf", "properties", "required"];
 
-/** The shape alone. What answers always have (`x-written`) is required where answers have the type. */
+/** Only the structure. Members that answers always have (`x-written`) are required if answers have the type. */
 function shapeOf(schema, answered) {
   if (Array.isArray(schema)) return schema.map((part) => shapeOf(part, answered));
   if (typeof schema !== "object" || schema === null) return schema;
@@ -42,7 +42,7 @@ function shapeOf(schema, answered) {
 
 const nameOf = (reference) => reference.split("/").at(-1);
 
-/** One object with the members of all the union's: whoever reads one looks at its kind. */
+/** One object with the members of all of the union's types: readers check its kind. */
 function merged(union, schemas) {
   const parts = union.oneOf.map(({ $ref }) => schemas[nameOf($ref)]);
   const names = [...new Set(parts.flatMap(({ properties }) => Object.keys(properties)))];
@@ -54,7 +54,7 @@ function merged(union, schemas) {
   return { type: "object", properties: Object.fromEntries(names.map((name) => [name, member(name)])), required, additionalProperties: false };
 }
 
-/** These names with all that they refer to, but for what lies behind `apart`. */
+/** These names and all to which they refer, without those that are only reached through `apart`. */
 function reached(schemas, from, apart = []) {
   const names = new Set();
   const take = (part) => {

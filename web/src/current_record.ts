@@ -1,8 +1,8 @@
-// The recorded test that is being looked at outlives a reload of its tab, if the browser has room for it.
+// The current recorded test survives a reload of its tab, if the browser has room for it.
 import type { IdentifyRequest } from "./api/types.ts";
 
 const STORED_AS = "tunewright-record";
-/** Browsers give a page about 5 MB. */
+/** Browsers allow a page about 5 MB. */
 const MAX_CHARACTERS = 2_000_000;
 
 export function rememberTest(test: IdentifyRequest | null): void {
@@ -11,7 +11,7 @@ export function rememberTest(test: IdentifyRequest | null): void {
     const text = JSON.stringify(test);
     if (test && text.length <= MAX_CHARACTERS) sessionStorage.setItem(STORED_AS, text);
   } catch {
-    // A browser without storage, or without room, forgets the record; nothing else depends on it.
+    // Without storage or room the record is lost on a reload; nothing else depends on it.
   }
 }
 
@@ -25,7 +25,7 @@ export function rememberedTest(): IdentifyRequest | null {
 
 const isObject = (value: unknown): value is Record<string, unknown> => typeof value === "object" && value !== null;
 
-/** What stands in the storage may be an older page's, or anybody's. */
+/** The stored text may come from an older page, or from elsewhere. */
 export function readTest(data: unknown): IdentifyRequest | null {
   return isObject(data) && isObject(data["record"]) ? (data as unknown as IdentifyRequest) : null;
 }

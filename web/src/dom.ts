@@ -1,4 +1,5 @@
-// Elements without a framework: made once, then written to. Text only ever enters as text nodes (Trusted Types stay empty).
+// Elements without a framework: created once, then updated. Text only ever enters as text nodes (no Trusted Types
+// policy is needed).
 
 export type Child = Node | string | number | null | undefined | false | Child[];
 type AttributeValue = string | number | boolean | null | undefined | ((event: never) => void);
@@ -14,7 +15,8 @@ function append(parent: Element, children: Child[]): void {
   }
 }
 
-/** An HTML element. Functions are listeners (`onclick`), `true` a bare attribute, `false` and null none. */
+/** An HTML element. Functions are listeners (`onclick`), `true` is a bare attribute, `false` and null leave the
+    attribute out. */
 export function h<K extends keyof HTMLElementTagNameMap>(
   tag: K,
   attributes: Record<string, AttributeValue> = {},
@@ -30,14 +32,14 @@ export function h<K extends keyof HTMLElementTagNameMap>(
   return element;
 }
 
-/** The focus of an element that is about to go, or to be disabled, passes to the first of these that can take it: else
-    the keyboard would begin again at the top of the page. */
+/** Moves the focus of an element that is about to be removed or disabled to the first of these that can take it:
+    otherwise the keyboard would start again at the top of the page. */
 export function passFocus(from: Element, ...to: (HTMLElement | null)[]): void {
   if (!from.contains(document.activeElement)) return;
   to.find((element) => element && !element.matches(":disabled") && element.getClientRects().length > 0)?.focus();
 }
 
-/** A menu that opens from its summary closes when the focus leaves it, or by Escape. */
+/** A menu under a summary element closes when the focus leaves it, or by Escape. */
 export function closesItself(menu: HTMLDetailsElement): HTMLDetailsElement {
   menu.addEventListener("focusout", (event) => {
     if (!(event.relatedTarget instanceof Node && menu.contains(event.relatedTarget))) menu.open = false;
@@ -50,7 +52,7 @@ export function closesItself(menu: HTMLDetailsElement): HTMLDetailsElement {
   return menu;
 }
 
-/** A description of a node outside HTML: what formulas and plots are made of before they touch the page. */
+/** A description of a node outside HTML: formulas and plots are built from it before they enter the page. */
 export interface TreeNode {
   tag: string;
   attributes?: Record<string, string | number>;
@@ -76,8 +78,8 @@ function build(tree: TreeNode, namespace: string): Element {
 export const svgElement = (tree: TreeNode): SVGElement => build(tree, SVG) as SVGElement;
 export const mathElement = (tree: TreeNode): MathMLElement => build(tree, MATHML) as MathMLElement;
 
-/** Writes descriptions into an SVG element, one after another: what is as it was is not touched, so that nothing but what
-    moves is laid out again. */
+/** Writes descriptions into an SVG element, one after another: unchanged nodes are not touched, so that only moving
+    parts are laid out again. */
 export function svgWriter(parent: Element): (children: TreeNode[]) => void {
   let before: (TreeNode | string)[] = [];
   return (children) => {
@@ -104,23 +106,23 @@ function rewriteNode(element: Element, before: TreeNode, after: TreeNode): void 
   rewrite(element, before.children ?? [], after.children ?? []);
 }
 
-/** Sets a text that may be there already: the same text set again would be laid out again. */
+/** Sets a text only if it has changed: setting the same text would cause a new layout. */
 export function say(element: Element, text: string): void {
   if (element.textContent !== text) element.textContent = text;
 }
 
-/** The same of an attribute. */
+/** Sets an attribute only if it has changed. */
 export function setAttribute(element: Element, name: string, value: string): void {
   if (element.getAttribute(name) !== value) element.setAttribute(name, value);
 }
 
 let counter = 0;
-/** An id that no other element of the page has. */
+/** An id that is unique in the page. */
 export function uniqueId(prefix: string): string {
   counter += 1;
   return `${prefix}-${counter}`;
 }
 
-/** Long names of parameters, which may be broken where their parts meet. */
+/** Long names of parameters, which may be broken between their parts. */
 export const breakable = (name: string): (string | HTMLElement)[] =>
   name.split(/(?<=[._])/).flatMap((part, index) => (index === 0 ? [part] : [h("wbr", {}), part]));

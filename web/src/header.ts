@@ -1,4 +1,4 @@
-// The head of every screen: where one can go, and the colours.
+// The head of every screen: links to the screens, and the colour theme.
 import { h } from "./dom.ts";
 import { addressOfJob, formatRoute, showsJob } from "./routes.ts";
 import type { Route } from "./routes.ts";
@@ -6,7 +6,7 @@ import { shown } from "./store.ts";
 import type { Store } from "./store.ts";
 import { themeButton } from "./theme.ts";
 
-/** Marks the screen that is shown, and leads to those of the last job that was. */
+/** Marks the current screen, and links to the screens of the last job. */
 export function header(store: Store): HTMLElement {
   const links = {
     start: h("a", { href: "#/" }, "Start"),
@@ -18,13 +18,13 @@ export function header(store: Store): HTMLElement {
     jobs: h("a", { href: "#/jobs" }, "Jobs"),
     methods: h("a", { href: "#/methods" }, "Methods"),
   };
-  /** With its sliders where they were left. */
+  /** With the last positions of its sliders. */
   let design: Extract<Route, { screen: "design" }> | null = null;
   const nav = h("nav", { "aria-label": "Screens" }, Object.values(links));
   const route = store.pick((workspace) => workspace.route);
   shown(() => route.value, mark);
 
-  /** On a phone the row is longer than the screen; the page itself stays where it is. */
+  /** On a phone the row is wider than the screen; only the row scrolls. */
   function reveal(link: HTMLElement): void {
     const row = nav.getBoundingClientRect();
     const { left, right } = link.getBoundingClientRect();

@@ -1,4 +1,4 @@
-// The job that the page follows: started, shown, replaced by another one in its place.
+// The job that the page follows: started, shown, replaced by another one.
 import { postJob, postJobAndWait, watchJob } from "./api/jobs.ts";
 import { newest } from "./api/latest.ts";
 import { isFinal } from "./api/types.ts";
@@ -11,16 +11,16 @@ import type { Store } from "./store.ts";
 export interface JobFlow {
   /** Shows a job on that screen. */
   open(job: Job, screen?: JobScreen): void;
-  /** A job of this request, shown as soon as it is accepted. */
+  /** Starts a job for this request, shown as soon as it is accepted. */
   tune(request: TuningRequest): Promise<void>;
-  /** Every method on what this request is about. */
+  /** Tunes the subject of this request by every method. */
   compareAll(request: TuningRequest): Promise<void>;
   /**
-   * A job in the place of the one that is shown: the screen stays, and Back leads to the design before, as its job has it.
-   * Throws where the entry of that index gets no answer. Answers the job, null where another one has taken its place.
+   * Replaces the shown job: the screen stays, and Back leads to the previous design with its job. Throws if the entry
+   * with that index gets no answer. Returns the job, null if another one has replaced it meanwhile.
    */
   retune(request: TuningRequest, index: number): Promise<Job | null>;
-  /** Reports what becomes of a job until it has ended or another one is followed. */
+  /** Reports the state of a job until it has ended or another one is followed. */
   follow(id: string): void;
   take(job: Job): void;
   stop(): void;
@@ -38,7 +38,7 @@ export function jobFlow(store: Store): JobFlow {
     location.hash = addressOfJob(job.id, screen);
   }
 
-  /** The newest one counts: what an older one comes to is told to nobody. */
+  /** The newest call counts: results of older ones are dropped. */
   async function retune(request: TuningRequest, index: number): Promise<Job | null> {
     const from = store.get().route;
     const isNewest = beginRetune();
@@ -49,7 +49,7 @@ export function jobFlow(store: Store): JobFlow {
     const failure = job.error ?? job.result?.controllers[index]?.error;
     if (failure) throw new Error(failure.detail ?? failure.title ?? "There is no such design.");
     const now = store.get().route;
-    // The same job's screen: a slider that has moved since writes its own address.
+    // The same job's screen: a slider that has moved since then writes its own address.
     if (from.screen !== "design" || now.screen !== "design" || now.job !== from.job) return null;
     const { values: _modified, ...before } = now;
     const route: Route = { ...before, job: job.id, entry: index };

@@ -1,4 +1,4 @@
-// Starts the page: its state, its head, the screen of the address, and what happens when something unforeseen goes wrong.
+// Starts the page: its state, its head, the screen of the address, and the handling of unexpected errors.
 import { sentenceOf, waitAfter } from "./api/client.ts";
 import { getExamples, getMethods } from "./api/jobs.ts";
 import { askForKeyWith } from "./api/key.ts";
@@ -40,7 +40,7 @@ const stage = h("div", { class: "stage" });
 
 const NO_METHODS = "The service's list of methods could not be read; the default method is used.";
 
-/** Asked for until it can be had: a service that starts anew must not cost the reader what was typed. */
+/** Repeated until it succeeds: a restart of the service must not lose typed text. */
 async function readList<T>(ask: () => Promise<T>, take: (list: T) => void, trouble = ""): Promise<void> {
   const say = (before: string, now: string): void =>
     store.set((workspace) =>
@@ -59,9 +59,9 @@ async function readList<T>(ask: () => Promise<T>, take: (list: T) => void, troub
   }
 }
 
-/** Ends when methods and examples are known. */
+/** Resolves when methods and examples are known. */
 async function loadLists(): Promise<void> {
-  // Without this list a controller cannot be chosen; everything else works as before.
+  // Without this list no product can be chosen; everything else works.
   void readList(getProducts, (products) => store.set((workspace) => ({ ...workspace, products })));
   await Promise.all([
     readList(getMethods, (methods) => store.set((workspace) => ({ ...workspace, methods })), NO_METHODS),

@@ -1,26 +1,26 @@
-// The user's own controller: which product, with which spans and sample time. The browser keeps it for later designs.
+// The user's own controller: its product, spans and sample time. The browser stores it for later designs.
 import type { Implement, Need, ProductSummary, SettingValue, Span, TypedBaseline } from "./api/types.ts";
 import type { UnitNames } from "./words/numbers.ts";
 import { productTitle } from "./words/products.ts";
 
 export interface MyController {
   product: string;
-  /** As it is listed. */
+  /** Its name in the list. */
   name: string;
   needs: Need[];
   y_span?: Span;
   u_span?: Span;
   sample_time?: number;
-  /** What ranges and sample time are in. */
+  /** The units of ranges and sample time. */
   units?: UnitNames;
 }
 
 const KEY = "tunewright-controller";
 
-/** What of its needs nobody has given yet. */
+/** The needs that are not given yet. */
 export const missingOf = (mine: MyController): Need[] => mine.needs.filter((need) => mine[need] === undefined);
 
-/** As a request says it; null while something is missing. Spans that the product does not need stay away. */
+/** The member of a request; null while something is missing. Spans that the product does not need are left out. */
 export function implementOf(mine: MyController | null): (Implement & { product: string }) | null {
   if (!mine || missingOf(mine).length > 0) return null;
   const { product, needs, y_span, u_span, sample_time } = mine;
@@ -41,7 +41,8 @@ export function sameImplement(a: Implement | null | undefined, b: Implement | nu
   return told(a) === told(b);
 }
 
-/** What a request was made for; the one at hand where it names none. A request knows neither name nor needs. */
+/** The controller for which a request was made; the current one if it names none. A request contains neither name
+    nor needs. */
 export function mineOfRequest(implement: Implement | undefined, mine: MyController | null): MyController | null {
   const { product, y_span, u_span, sample_time } = implement ?? {};
   if (product === undefined) return mine;
@@ -53,7 +54,7 @@ export function mineOfRequest(implement: Implement | undefined, mine: MyControll
   };
 }
 
-/** Ranges that the product does not need are in no request, and are known all the same. */
+/** Ranges that the product does not need are in no request, but are kept. */
 function unasked({ product, name, needs, y_span, u_span, units }: MyController): MyController {
   return {
     ...(units ? { units } : {}),
@@ -65,7 +66,7 @@ function unasked({ product, name, needs, y_span, u_span, units }: MyController):
   };
 }
 
-/** For a loop in these units: numbers that were given in others are not known for it. A unit that nobody named may be any. */
+/** For a loop in these units: numbers given in other units are dropped. An unnamed unit may be any. */
 export function inUnits(mine: MyController | null, units: UnitNames): MyController | null {
   const { y_span, u_span, sample_time, units: given, ...rest } = mine ?? {};
   if (!mine || !given) return mine;
@@ -79,7 +80,7 @@ export function inUnits(mine: MyController | null, units: UnitNames): MyControll
   };
 }
 
-/** With name and needs as they are listed. */
+/** With name and needs from the list. */
 export function named(mine: MyController | null, products: readonly ProductSummary[]): MyController | null {
   const product = products.find((item) => item.id === mine?.product);
   if (!mine || !product) return mine;
@@ -88,7 +89,7 @@ export function named(mine: MyController | null, products: readonly ProductSumma
   return same ? mine : { ...mine, name, needs: product.needs as Need[] };
 }
 
-/** Today's settings in it: a baseline names spans and sample time as `implement` does. */
+/** Today's settings in it: a baseline has spans and sample time like `implement`. */
 export function typedBaseline(
   { product, y_span, u_span, sample_time }: Pick<MyController, "product" | "y_span" | "u_span" | "sample_time">,
   settings: Record<string, SettingValue>,
@@ -107,7 +108,7 @@ export function rememberMine(mine: MyController | null): void {
     if (mine) localStorage.setItem(KEY, JSON.stringify(mine));
     else localStorage.removeItem(KEY);
   } catch {
-    // A browser without storage forgets the choice; nothing else depends on it.
+    // Without storage the browser forgets the choice; nothing else depends on it.
   }
 }
 
@@ -121,7 +122,7 @@ export function rememberedMine(): MyController | null {
 
 const NEEDS: readonly string[] = ["y_span", "u_span", "sample_time"];
 
-/** What stands in the storage may be an older page's, or anybody's. */
+/** The stored text may come from an older page, or from elsewhere. */
 export function readMine(data: unknown): MyController | null {
   if (typeof data !== "object" || data === null) return null;
   const { product, name, needs, y_span, u_span, sample_time, units } = data as Record<string, unknown>;

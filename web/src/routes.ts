@@ -1,27 +1,27 @@
-// Hash routes: nothing for the server to rewrite, and a plant never appears in an access log.
+// Hash routes: the server needs no rewriting, and a plant never appears in an access log.
 
 export type Route =
   | { screen: "start" }
   | { screen: "new"; plant: string; values: Record<string, string> }
   | { screen: "example"; id: string }
   | { screen: "edit"; job: string }
-  /** A recorded test: of that job, or the one at hand. */
+  /** A recorded test: of that job, or the current one. */
   | { screen: "identify"; job: string | null }
-  /** An operating range: of an example, of that job, or what stands there. */
+  /** An operating range: of an example, of that job, or the current content. */
   | { screen: "range"; example: string; job: string | null }
   | { screen: "relay"; plant: string; values: Record<string, string> }
-  /** `values`: where its sliders stand, where that is not the proposal. */
+  /** `values`: the positions of its sliders, if they differ from the proposal. */
   | { screen: "design"; job: string; entry: number | null; values?: Record<string, string> }
   /**
-   * The comparison of a job. `sort`: a column's id, with a minus where it falls; "" is the ranking. `rankMs`: the
-   * limit on Ms below which it ranks, where that is not the request's.
+   * The comparison of a job. `sort`: a column's id, with a minus for descending order; "" is the ranking. `rankMs`: the
+   * limit on Ms for the ranking, if it differs from the request's.
    */
   | { screen: "compare"; job: string; sort: string; rows: number[] | null; rankMs?: number | null }
   /** The jobs that have this text in their name, id or method. */
   | { screen: "jobs"; text: string }
   /** The loops of a batch, in an order as in compare. */
   | { screen: "batch"; id: string; sort: string }
-  /** What the service can do, or one method of it. */
+  /** The methods of the service, or one of them. */
   | { screen: "methods"; id: string };
 
 export type JobScreen = "design" | "compare";
@@ -29,14 +29,14 @@ export type JobRoute = Extract<Route, { screen: JobScreen }>;
 
 export const showsJob = (route: Route): route is JobRoute => route.screen === "design" || route.screen === "compare";
 
-/** Start's own addresses: as it stands, or filled in from somewhere. */
+/** Start's own addresses: with its current content, or filled from elsewhere. */
 export const showsStart = (route: Route): boolean => ["start", "new", "example", "edit"].includes(route.screen);
 
-/** A job's screen as it is when nothing was chosen on it yet. */
+/** A job's screen before anything was chosen on it. */
 export const addressOfJob = (job: string, screen: JobScreen): string =>
   formatRoute(screen === "design" ? { screen, job, entry: null } : { screen, job, sort: "", rows: null });
 
-/** The route of a location hash; anything unknown is the start. */
+/** The route of a location hash; an unknown one leads to Start. */
 export function parseRoute(hash: string): Route {
   const [path = "", query = ""] = hash.replace(/^#\/?/, "").split("?", 2);
   const parts = path.split("/").filter(Boolean).map(decode);
@@ -117,8 +117,8 @@ export function formatRoute(route: Route): string {
 }
 
 /**
- * After Back or a link the address is another screen's before the page follows: then it stays, or that step of the history
- * would be lost.
+ * After Back or a link, the address belongs to another screen before the page follows: it must not be rewritten then,
+ * or that step of the history would be lost.
  */
 function stillAt(from: Route): boolean {
   const now = parseRoute(location.hash);
@@ -126,12 +126,12 @@ function stillAt(from: Route): boolean {
   return same && (!showsJob(from) || !showsJob(now) || from.job === now.job);
 }
 
-/** Writes the address anew, as no step of its own. `from`: what the page shows. */
+/** Rewrites the address without a step in the history. `from`: the screen that the page shows. */
 export function rewriteAddress(from: Route, next: Route): void {
   if (stillAt(from)) history.replaceState(null, "", formatRoute(next));
 }
 
-/** A step of its own, without leaving the screen: Back leads to `before`. */
+/** Adds a step to the history without leaving the screen: Back leads to `before`. */
 export function stepAddress(from: Route, before: Route, next: Route): void {
   if (!stillAt(from)) return;
   history.replaceState(null, "", formatRoute(before));

@@ -1,4 +1,4 @@
-// Which screen belongs to the address: made, kept or made anew, and what they hand to each other.
+// The screen for the address: created, kept or created again, and the data that screens pass to each other.
 import { notConnected, sentenceOf, whenBack } from "./api/client.ts";
 import { getJob, getRecentJobs, postJob } from "./api/jobs.ts";
 import { isRangeRequest } from "./api/range.ts";
@@ -20,19 +20,19 @@ import { startView } from "./views/start.ts";
 import type { StartView, View } from "./views/start.ts";
 
 export interface Screens {
-  /** Shows what the address names. `first`: nothing was shown before, and the focus stays where it is. */
+  /** Shows the screen of the address. `first`: nothing was shown before, and the focus stays. */
   go(first: boolean): void;
   focusHeading(): void;
 }
 
-/** A screen whose part of the page could not be fetched. */
+/** Shown if the code of a screen could not be loaded. */
 function awayView(title: string): View {
   const heading = h("h1", { tabindex: -1 }, title);
   const trouble = h("p", { class: "trouble", role: "status" }, sentenceOf(notConnected()));
   return { element: h("main", { id: "main" }, heading, trouble), heading, dispose: () => undefined };
 }
 
-/** `listed`: when methods and examples are known. */
+/** `listed`: resolves when methods and examples are known. */
 export function screens(
   store: Store,
   flow: JobFlow,
@@ -44,12 +44,12 @@ export function screens(
   let start: StartView | null = null;
   let relay: RelayView | null = null;
   let range: RangeView | null = null;
-  /** The loop on Start whose plant the relay test is on; null: it has one of its own. */
+  /** The loop on Start whose plant the relay test uses; null: it has one of its own. */
   let relayOf: { units: Units | undefined; loop: number } | null = null;
   const ofStart = (): boolean => relayOf !== null && relayOf.loop === startScreen().loops();
   /** How often the form of Start was filled from elsewhere. */
   let fills = 0;
-  /** What was chosen on Identify, of the record at that address. */
+  /** The choice on Identify, for the record at that address. */
   let remembered: { address: string; choice: CandidateChoice } | null = null;
 
   function mount(next: View, title: string, focus: boolean): void {
@@ -63,7 +63,7 @@ export function screens(
     document.title = title;
   }
 
-  /** A plant that was typed goes into the address, if its screen is still shown when the service has read it. */
+  /** A typed plant is written to the address, if its screen is still shown when the service has parsed it. */
   function typed(own: (route: Route) => boolean, route: Route): void {
     const from = store.get().route;
     if (!own(from)) return;
@@ -71,7 +71,7 @@ export function screens(
     rewriteAddress(from, route);
   }
 
-  /** The start screen is kept: what was typed is still there when one comes back. */
+  /** The start screen is kept: typed text is still there on return. */
   function startScreen(): StartView {
     start ??= startView(store, {
       onJob: (job, all) => flow.open(job, all ? "compare" : "design"),
@@ -85,7 +85,7 @@ export function screens(
     return start;
   }
 
-  /** Kept too, with what was typed. */
+  /** Kept too, with its typed text. */
   function relayScreen(): RelayView {
     relay ??= relayView(announce, {
       units: () => (ofStart() ? relayOf!.units : startScreen().typedUnits()),
@@ -98,7 +98,8 @@ export function screens(
     return relay;
   }
 
-  /** A screen in a file of its own, which most visits do not need; null where another is shown by now, or it cannot be had. */
+  /** A screen in a file of its own, which most visits do not need; null if another is shown by now, or if it cannot
+      be loaded. */
   async function later<Part>(load: Promise<Part>, route: Route, title: string, focus: boolean): Promise<Part | null> {
     const part = await load.catch(() => null);
     if (store.get().route !== route) return null;
@@ -129,7 +130,7 @@ export function screens(
     else location.hash = address;
   }
 
-  /** What Identify found goes to the tuner with the methods and settings that stand on Start. */
+  /** The result of Identify is tuned with the methods and settings of Start. */
   async function tuneSubject(subject: TuneSubject, all: boolean): Promise<FieldError[]> {
     const { request, faults } = startScreen().compose(subject, all);
     if (faults.length > 0) return faults;
@@ -181,7 +182,7 @@ export function screens(
       const recent = await getRecentJobs(6);
       store.set((workspace) => ({ ...workspace, recent }));
     } catch {
-      // The list is a convenience: without it the page works as before.
+      // The list is optional: without it the page still works.
     }
   }
 
@@ -190,10 +191,10 @@ export function screens(
     startScreen().load(request, example);
   }
 
-  /** Of what stands in the form; a reload of the page begins anew. */
+  /** Identifies the content of the form; a reload of the page starts again. */
   const fillMark = (): string => `${performance.timeOrigin}/${fills}`;
 
-  /** An entry of the history remembers what it filled the form with: Back finds what was typed since. */
+  /** An entry of the history remembers how it filled the form: Back finds the text typed since then. */
   function fillForEntry(request: TuningRequest, example: boolean): void {
     fillForm(request, example);
     history.replaceState({ fill: fillMark() }, "");
@@ -235,7 +236,7 @@ export function screens(
     }
   }
 
-  /** What is typed or sorted there goes into the address, but is no step of its own. */
+  /** Search and order are written to the address, without a step in the history. */
   async function openList(route: Extract<Route, { screen: "jobs" | "batch" }>, focus: boolean): Promise<void> {
     const rename = (next: Route): void => rewriteAddress(route, next);
     const onBatch = (batch: Batch): void => {
@@ -272,7 +273,7 @@ export function screens(
       sort: route.screen === "compare" ? route.sort : kept.sort,
       rankMs: (route.screen === "compare" ? route.rankMs : null) ?? kept.rankMs,
     }));
-    // A link to the table alone leads to what was chosen there; so does its address then.
+    // A link to the table alone shows the earlier choices; its address then contains them.
     const { drawn: rows, rankMs } = store.get();
     if (route.screen === "compare") rewriteAddress(route, { ...route, rows, rankMs });
     if (route.screen === "design") {
@@ -293,7 +294,7 @@ export function screens(
     if (route.screen === "identify") {
       if (route.job !== null) return void openJobRecord(route.job, !first);
       const test = before.test;
-      // After a reload: name, units and record go on from here with the form's.
+      // After a reload, name, units and record come from the form's.
       if (first && test) fillForm({ ...test });
       mount(test ? identifyScreen(test) : noRecordView(), "Identify · Tunewright", !first);
       return;
@@ -312,7 +313,7 @@ export function screens(
     void refreshRecent();
   }
 
-  // The address follows what is chosen, and the title the loop's name.
+  // The address follows the choices, and the title follows the loop's name.
   store.subscribe((workspace, previous) => {
     const route = workspace.route;
     if (!showsJob(route)) return;

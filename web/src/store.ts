@@ -1,5 +1,5 @@
-// The page's state: one immutable workspace in a signal. Every change is a function from one workspace to the next; what is
-// shown of it follows once per frame, and only where the part that it shows has changed.
+// The page's state: one immutable workspace in a signal. Every change is a function from one workspace to the next; the
+// display is updated once per frame, and only if its part of the workspace has changed.
 import { computed, effect, signal, untracked } from "@preact/signals-core";
 import type { ReadonlySignal } from "@preact/signals-core";
 import type { Example, IdentifyRequest, Job, Method, ProductSummary } from "./api/types.ts";
@@ -9,33 +9,33 @@ import type { Route } from "./routes.ts";
 export interface Workspace {
   route: Route;
   job: Job | null;
-  /** Why the job cannot be shown or followed at the moment, or "". */
+  /** The reason why the job cannot be shown or followed at the moment, or "". */
   jobTrouble: string;
-  /** Whose settings and verdict are shown; null: the one that the answer says to take. */
+  /** The entry whose settings and verdict are shown; null: the one that the answer proposes. */
   selected: number | null;
   /** Indices of the entries drawn, at most four. Null: the default choice. */
   drawn: number[] | null;
-  /** Order of the comparison: a column's id, with a minus where it falls; "" is the ranking. */
+  /** Order of the comparison: a column's id, with a minus for descending order; "" is the ranking. */
   sort: string;
   /** The limit on Ms below which rows are ranked, as typed; null: the request's. */
   rankMs: number | null;
-  /** The recorded test that is being looked at. */
+  /** The current recorded test. */
   test: IdentifyRequest | null;
   methods: Method[];
-  /** Controllers as they are built. */
+  /** Products. */
   products: ProductSummary[];
-  /** The one that the user has; the browser remembers it. */
+  /** The user's own product; the browser stores it. */
   mine: MyController | null;
   examples: Example[];
   recent: Job[];
-  /** Why methods or examples could not be had, or "". */
+  /** The reason why methods or examples could not be loaded, or "". */
   serviceTrouble: string;
 }
 
 export interface Store {
   get(): Workspace;
   set(change: (workspace: Workspace) => Workspace): void;
-  /** A part of the workspace, or what follows from it, as a signal: equal values are no change. */
+  /** A part of the workspace, or a value derived from it, as a signal: equal values are not a change. */
   pick<T>(select: (workspace: Workspace) => T): ReadonlySignal<T>;
   subscribe(listener: (workspace: Workspace, previous: Workspace) => void): () => void;
 }
@@ -62,7 +62,7 @@ export function createStore(initial: Workspace): Store {
   };
 }
 
-/** Shows a value now, and again in the frame after it has changed. Returns how to stop. */
+/** Shows a value now, and again in the frame after each change. Returns a function that stops it. */
 export function shown<T>(read: () => T, show: (value: T) => void): () => void {
   let pending = false;
   let stopped = false;
@@ -88,7 +88,7 @@ export function shown<T>(read: () => T, show: (value: T) => void): () => void {
   };
 }
 
-/** A hidden tab gets no frames; its state must still be painted when it is looked at. */
+/** A hidden tab gets no frames; its state must still be updated before it is shown. */
 function nextFrame(work: () => void): void {
   if (document.hidden) setTimeout(work, 0);
   else requestAnimationFrame(work);

@@ -1,4 +1,4 @@
-// Light or dark: as the system says, unless the reader chose.
+// Light or dark: the system's setting, unless the reader chose.
 import { h } from "./dom.ts";
 
 type Theme = "system" | "light" | "dark";
@@ -22,7 +22,7 @@ export function applyTheme(): void {
   else document.documentElement.dataset["theme"] = current;
 }
 
-/** One button that goes through system, light and dark. */
+/** A button that cycles through system, light and dark. */
 export function themeButton(): HTMLButtonElement {
   const button = h("button", { type: "button" }, TEXT[current]);
   button.addEventListener("click", () => {
@@ -30,7 +30,7 @@ export function themeButton(): HTMLButtonElement {
     try {
       localStorage.setItem(KEY, current);
     } catch {
-      // A browser without storage forgets the choice; nothing else depends on it.
+      // Without storage the browser forgets the choice; nothing else depends on it.
     }
     button.textContent = TEXT[current];
     applyTheme();

@@ -49,7 +49,7 @@ void Heartbeats::beat() {
     queue_.beat({settings_.worker, settings_.now(), settings_.lease, notes(asked)}, [this, asked](const auto& outcome) {
         if (const auto* fault = std::get_if<StoreFault>(&outcome)) {
             resend_ = true;
-            outage_.failed("no sign of life can be given", *fault);
+            outage_.failed("no heartbeat can be sent", *fault);
         } else {
             outage_.worked();
             heard(asked, std::get<std::vector<Holding>>(outcome));

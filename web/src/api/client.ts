@@ -1,4 +1,4 @@
-// Calls to the service. Every failure becomes an ApiError with a sentence that can be shown as it is.
+// Calls to the service. Every failure becomes an ApiError with a sentence that can be shown directly.
 import { currentKey, otherKey } from "./key.ts";
 import { untilReleased } from "./press.ts";
 import type { Problem } from "./types.ts";
@@ -13,12 +13,12 @@ export class ApiError extends Error {
   }
 }
 
-/** What went wrong, as a sentence to show. */
+/** The failure as a sentence for the reader. */
 export const sentenceOf = (error: unknown): string => (error instanceof Error ? error.message : String(error));
 
 const LOST_WAIT_MS = 2000;
 
-/** How long to wait before what failed is asked for again; null where the answer would be the same. */
+/** The time to wait before a failed call is repeated; null if the answer would be the same. */
 export function waitAfter(error: unknown): number | null {
   if (!(error instanceof ApiError)) return LOST_WAIT_MS;
   if (error.status >= 400 && error.status < 500 && error.status !== 429) return null;
@@ -27,7 +27,7 @@ export function waitAfter(error: unknown): number | null {
 
 const isLost = (error: unknown): boolean => error instanceof ApiError && error.status === 0;
 
-/** Goes when the service answers again, where this was the failure of a call that did not reach it. */
+/** Calls `go` when the service answers again, if `error` is that of a call that did not reach it. */
 export async function whenBack(error: unknown, go: () => void): Promise<void> {
   if (!isLost(error)) return;
   for (;;) {
@@ -46,7 +46,7 @@ export interface Reply {
   etag: string | null;
 }
 
-/** `signal` ends the call before its answer is there. */
+/** `signal` aborts the call. */
 export async function call(
   method: string,
   path: string,
@@ -65,11 +65,11 @@ export async function call(
 
 export interface TextFile {
   text: string;
-  /** As the service names it; "" where it does not. */
+  /** The file name that the service gives; "" if it gives none. */
   name: string;
 }
 
-/** A file of text; a refusal is a problem as everywhere. */
+/** A text file; a refusal is a problem, as with other calls. */
 export async function getText(path: string): Promise<TextFile> {
   const { response, text } = await answerOf("GET", path, undefined, { Accept: "text/*, application/problem+json" });
   if (!response.ok) throw new ApiError(problemOf(parse(text), response.status), response.status, retryAfter(response));
@@ -82,7 +82,7 @@ interface Answer {
   text: string;
 }
 
-/** Asks for the service's key where it wants one, and calls again. */
+/** Asks for the service's key if it is required, and repeats the call. */
 async function answerOf(
   method: string,
   path: string,
@@ -100,7 +100,7 @@ async function answerOf(
   return answer;
 }
 
-/** Addresses are relative to the page, so that a prefix before it does not matter. */
+/** Addresses are relative to the page, so that it works behind a path prefix. */
 async function send(
   method: string,
   path: string,

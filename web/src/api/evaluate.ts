@@ -1,9 +1,9 @@
-// Figures of given controllers on a plant, at once; and what a method does over its whole range.
+// Evaluates given controllers on a plant, synchronously, and a method over its whole range.
 import { call } from "./client.ts";
 import { deleteJob, postJobAndWait } from "./jobs.ts";
 import type { Controller, Entry, Plant, Tradeoff } from "./types.ts";
 
-/** What the service adds to a controller is not part of its settings. */
+/** Settings without the members that the service adds to a controller. */
 export const settingsOf = ({ action: _action, ...settings }: Controller): Omit<Controller, "action"> => settings;
 
 /** The figures and responses of one controller for this set-point step, to that horizon. */
@@ -19,7 +19,7 @@ export async function stepOf(
   return answer.controllers[0]!;
 }
 
-/** The servo/regulation trade-off of controllers, without traces; in their order. */
+/** The servo/regulation trade-off of controllers, without traces, in their order. */
 export async function tradeoffsOf(plant: Plant, controllers: Controller[]): Promise<(Tradeoff | undefined)[]> {
   const given = controllers.map(settingsOf);
   const request = { plant, controllers: given, evaluate: { points: 0, tradeoff: true } };
@@ -31,7 +31,7 @@ const SLIDER_POINTS = 200;
 const PROFILE_METHOD = "arrieta_ms";
 const LONGEST_WAIT_S = 20;
 
-/** What the trade-off's tuning rule does on this plant over its range. The job that finds it out leaves no trace. */
+/** The behaviour of the trade-off's tuning rule on this plant over its range. The job for it is deleted. */
 export async function tradeoffProfile(plant: Plant): Promise<Tradeoff["profile"]> {
   const tune = [{ method: PROFILE_METHOD, profile: true }];
   const job = await postJobAndWait({ plant, tune, evaluate: { points: 0 } }, LONGEST_WAIT_S);

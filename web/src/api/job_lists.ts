@@ -24,7 +24,7 @@ export async function listBatches(): Promise<Batch[]> {
 
 export const getBatch = async (id: string): Promise<Batch> => (await call("GET", batchPath(id))).data as Batch;
 
-/** Its jobs in their order, at most so many. */
+/** Its jobs in their order, at most `max`. */
 export async function jobsOfBatch(id: string, max: number): Promise<ListedJob[]> {
   const found: ListedJob[] = [];
   let address: string | null = `v1/jobs?batch=${encodeURIComponent(id)}&limit=${PAGE}`;
@@ -40,20 +40,20 @@ export async function cancelBatch(id: string): Promise<void> {
   await call("POST", `${batchPath(id)}/cancel`);
 }
 
-/** One that has ended, with its jobs. */
+/** Deletes a batch that has ended, with its jobs. */
 export async function deleteBatch(id: string): Promise<void> {
   await call("DELETE", batchPath(id));
 }
 
 export const batchCsv = (id: string): Promise<TextFile> => getText(`${batchPath(id)}/results?format=csv`);
 
-/** A CSV with a loop a line. `options`: of the method, and the batch's name. */
+/** A CSV with one loop per line. `options`: of the method, and the batch's name. */
 export async function postLoops(file: Blob, options: Record<string, string>): Promise<Batch> {
   const query = new URLSearchParams(options).toString();
   return (await call("POST", `v1/batches?${query}`, file, { "Content-Type": "text/csv" })).data as Batch;
 }
 
-/** The jobs of a batch that failed or were cancelled, as a batch of their own; those without a request cannot run. */
+/** The jobs of a batch that failed or were cancelled, as a new batch; jobs without a request are left out. */
 export async function postAgain(batch: Batch, rows: ListedJob[]): Promise<Batch | null> {
   const requests: TuningRequest[] = [];
   for (const row of rows) {

@@ -10,7 +10,7 @@ export async function postJob(request: TuningRequest): Promise<Job> {
   return (await call("POST", "v1/jobs", withTraces(request))).data as Job;
 }
 
-/** The job as it stands when it has ended, or after so many seconds. */
+/** The job when it has ended, or after this number of seconds. */
 export async function postJobAndWait(request: TuningRequest, seconds: number): Promise<Job> {
   return (await call("POST", "v1/jobs", withTraces(request), { Prefer: `wait=${seconds}` })).data as Job;
 }
@@ -19,7 +19,7 @@ export async function cancelJob(id: string): Promise<Job> {
   return (await call("POST", `${jobPath(id)}/cancel`)).data as Job;
 }
 
-/** A job that has ended. */
+/** Deletes a job that has ended. */
 export async function deleteJob(id: string): Promise<void> {
   await call("DELETE", jobPath(id));
 }
@@ -28,7 +28,7 @@ export async function getJob(id: string): Promise<Job> {
   return (await call("GET", jobPath(id))).data as Job;
 }
 
-/** A list that may come bare or under its name, as collections with a `next` link do. */
+/** A list that may be a bare array or a member with that name, as in collections with a `next` link. */
 function listOf<T>(data: unknown, name: string): T[] {
   if (Array.isArray(data)) return data as T[];
   const list = (data as Record<string, unknown> | null)?.[name];
@@ -49,11 +49,11 @@ export async function getRecentJobs(limit: number): Promise<Job[]> {
 
 export interface Watcher {
   onJob(job: Job): void;
-  /** The connection is lost or the job is gone; "" when it is back. */
+  /** Reports that the connection is lost or the job was deleted; "" when it is back. */
   onTrouble(sentence: string): void;
 }
 
-/** Reports the job now and at every change until it has ended. Returns how to stop. */
+/** Reports the job now and at every change until it has ended. Returns a function that stops it. */
 export function watchJob(id: string, watcher: Watcher): () => void {
   return poll(id, watcher);
 }

@@ -1,7 +1,7 @@
-// The key that a service may ask for: kept for this tab alone, asked for once however many calls wait for it.
+// The key of a service that requires one: stored for this tab only, asked for once however many calls wait for it.
 const STORED_AS = "tunewright-key";
 
-/** Asks the person for a key; null where he does not give one. `refused`: the last one was not known. */
+/** Asks the user for a key; null if none is given. `refused`: the last one was wrong. */
 export type AskForKey = (refused: boolean) => Promise<string | null>;
 
 let ask: AskForKey = () => Promise.resolve(null);
@@ -23,11 +23,11 @@ function keep(key: string): void {
   try {
     sessionStorage.setItem(STORED_AS, key);
   } catch {
-    // Without storage the key is asked for again with the next call.
+    // Without storage the key is asked for again at the next call.
   }
 }
 
-/** Another key than `tried`, which was refused: the one that has come meanwhile, or one that is asked for now. */
+/** A key other than `tried`, which was refused: one that was entered meanwhile, or one that is asked for now. */
 export async function otherKey(tried: string | null): Promise<string | null> {
   const known = currentKey();
   if (known !== null && known !== tried) return known;

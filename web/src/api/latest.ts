@@ -1,11 +1,12 @@
-// Latest wins: a few calls under way so that a slow network does not slow the answers down, at most one request waiting (the
-// newest), and every answer reported as it arrives unless a newer one was reported before. What came between is never sent.
+// Latest wins: a few calls in progress, so that a slow network does not reduce the rate of answers; at most one request
+// waiting (the newest); and every answer reported as it arrives unless a newer one was reported before. Requests in
+// between are never sent.
 
 export interface Latest<Request, Answer> {
   send(request: Request): void;
-  /** Reports an answer that is at hand; what is still on its way is older than it. */
+  /** Reports an answer that is already known; answers in progress are older. */
   give(answer: Answer, request: Request): void;
-  /** Nothing that is still on its way is wanted any more: its calls are ended and nothing of them is reported. */
+  /** Aborts all calls in progress; none of their answers is reported. */
   drop(): void;
 }
 
@@ -15,7 +16,7 @@ export interface LatestEvents<Request, Answer> {
   onError(error: unknown, request: Request): void;
 }
 
-/** With 60 ms to the service and back three calls give some 40 answers a second; a service at hand never sees more than one. */
+/** With a round trip of 60 ms, three calls give about 40 answers a second; a local service never gets more than one. */
 const UNDER_WAY = 3;
 
 export function latest<Request, Answer>(
@@ -34,7 +35,8 @@ export function latest<Request, Answer>(
     const number = ++sent;
     running += 1;
     if (running === 1) events.onBusy(true);
-    // An answer that comes after a newer one is old; one that comes while a newer request waits is the best there is.
+    // An answer that comes after a newer one is outdated; one that comes while a newer request waits is still the best
+    // available.
     const report = (tell: () => void): void => {
       if (mine !== calls || number < reported) return;
       reported = number;
@@ -73,7 +75,8 @@ export function latest<Request, Answer>(
   };
 }
 
-/** For work that is not repeated: each call begins one, and answers whether it is still the newest that was begun. */
+/** For work that is not repeated: each call begins one, and returns a function that tells whether it is still the
+    newest. */
 export function newest(): () => () => boolean {
   let begun = 0;
   return () => {

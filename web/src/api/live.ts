@@ -1,13 +1,15 @@
-// What is asked while a hand moves: a design, one controller's figures, the front of robust optima. Nothing of it is kept.
+// Calls during the movement of a slider: a design, one controller's figures, the frontier of robust optima. They store
+// nothing.
 import { call } from "./client.ts";
 import { settingsOf } from "./evaluate.ts";
 import { deleteJob, postJobAndWait } from "./jobs.ts";
 import type { Controller, Entry, Frontier, Implement, Model, Plant, Result, TuningRequest } from "./types.ts";
 
-/** What a call is about: a plant, or the model of a record with its region, so that the record is not identified again. */
+/** The subject of a call: a plant, or the model of a record with its region, so that the record is not identified
+    again. */
 export type CallSubject = { plant: Plant } | { model: Partial<Model> };
 
-/** Members of a model that a design depends on. */
+/** Members of a model on which a design depends. */
 const SENT_BACK = [
   "plant",
   "fit_percent",
@@ -19,13 +21,13 @@ const SENT_BACK = [
   "warnings",
 ] as const;
 
-/** The model as it can be sent back; null where it was made by a service that does not tell all of its region. */
+/** The model in the form for a request; null if it comes from a service that does not return all of its region. */
 function sentBack(model: Model | undefined): Partial<Model> | null {
   if (!model?.alternatives) return null;
   return Object.fromEntries(SENT_BACK.flatMap((name) => (model[name] === undefined ? [] : [[name, model[name]]])));
 }
 
-/** Null where there is no plant. */
+/** Null if there is no plant. */
 export function callSubject(request: TuningRequest, result: Result): CallSubject | null {
   const model = sentBack(result.model);
   if (model) return { model };
@@ -33,7 +35,8 @@ export function callSubject(request: TuningRequest, result: Result): CallSubject
   return plant ? { plant } : null;
 }
 
-/** A job's request as POST /v1/design takes it: without the terms on which a job is run, and with its record's model. */
+/** The body of POST /v1/design for a job's request: without the terms on which a job is run, and with its record's
+    model. */
 export function designBody(request: TuningRequest, result: Result): Record<string, unknown> {
   const { timeout_s: _timeout, priority: _priority, notify: _notify, ...asked } = request;
   const model = asked.record ? sentBack(result.model) : null;
@@ -42,7 +45,7 @@ export function designBody(request: TuningRequest, result: Result): Record<strin
   return { ...rest, model };
 }
 
-/** Given controllers on what the request is about, as POST /v1/evaluate takes them. */
+/** The body of POST /v1/evaluate for given controllers on the subject of the request. */
 export function evaluateBody(
   request: TuningRequest,
   subject: CallSubject,
@@ -59,7 +62,7 @@ export function evaluateBody(
   };
 }
 
-/** While a slider is held half the samples are enough; let go, the request's own number is answered. */
+/** While a slider is held half the samples are sufficient; after its release the request's own number is used. */
 const HELD_POINTS = 200;
 
 export const withHeldPoints = (body: Record<string, unknown>): Record<string, unknown> => ({
@@ -76,7 +79,7 @@ export const designOf = async (body: unknown, signal: AbortSignal): Promise<Desi
 export const entriesOf = async (body: unknown, signal?: AbortSignal): Promise<Entry[]> =>
   ((await call("POST", "v1/evaluate", body, {}, signal)).data as { controllers: Entry[] }).controllers;
 
-/** A controller judged on the user's own, under the steps of its request, without traces. */
+/** Evaluates a controller on the user's own product, with the steps of its request, without traces. */
 export async function evaluateAsBuilt(
   subject: CallSubject,
   controller: Controller,
@@ -90,7 +93,7 @@ export async function evaluateAsBuilt(
 
 export interface FrontTerms {
   controller: "PI" | "PID";
-  /** The limit on Mt, or as that on Ms. */
+  /** The limit on Mt; "tied": the same as on Ms. */
   Mt: number | "tied";
   filter?: unknown;
 }
@@ -103,8 +106,7 @@ export async function frontOf(plant: Plant, terms: FrontTerms, signal: AbortSign
 const LONGEST_WAIT_S = 20;
 
 /**
- * Fronts that the plant may not have, each null then, and every rule's entry where they are wanted. The job that finds them
- * out leaves no trace.
+ * Frontiers, each null if the plant has none, and every rule's entry if they are wanted. The job for them is deleted.
  */
 export async function besideOf(
   plant: Plant,

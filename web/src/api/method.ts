@@ -1,6 +1,6 @@
-// The options of a tuning method, as GET /v1/methods describes them.
+// The options of a tuning method, in the form of GET /v1/methods.
 
-/** A JSON Schema, as far as method options use it. */
+/** A JSON Schema, restricted to the parts that method options use. */
 export interface Schema {
   type?: string | string[];
   title?: string;
@@ -20,18 +20,18 @@ export interface Schema {
   $ref?: string;
   $defs?: Record<string, Schema>;
   "x-unit"?: string;
-  /** An option that decides what comes out. */
+  /** An option that affects the result strongly. */
   "x-main"?: boolean;
-  /** It adds what a page draws. */
+  /** An option that adds data for a drawing. */
   "x-draws"?: boolean;
   "x-slider"?: OptionSlider;
 }
 
-/** How an option is moved by hand. */
+/** The slider of an option. */
 export interface OptionSlider {
   from: number;
   to: number;
-  /** Ends are factors of the value. */
+  /** The ends are factors of the value. */
   relative?: boolean;
   logarithmic?: boolean;
   step?: number;

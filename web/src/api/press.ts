@@ -1,5 +1,5 @@
-// A button that is pressed stays under the pointer. Leaving a field for it judges what stands there and asks the service
-// anew; what that changes above the button would move it, and the press that began on it would end beside it and do nothing.
+// Keeps a pressed button under the pointer. Leaving a field for it checks the text and calls the service; a change
+// above the button would move it, and the press would end next to it and do nothing.
 
 let pressed = false;
 let waiting: (() => void)[] = [];
@@ -20,12 +20,12 @@ export function watchPresses(page: Document): void {
     },
     true,
   );
-  // The click follows in the same turn.
+  // The click follows in the same task.
   for (const name of ["pointerup", "pointercancel"]) page.addEventListener(name, () => setTimeout(release), true);
   page.defaultView?.addEventListener("blur", release);
 }
 
-/** Goes at once, unless a button is pressed: then when it has been let go. */
+/** Calls `go` now, or if a button is pressed, after its release. */
 export function whenReleased(go: () => void): void {
   if (pressed) waiting.push(go);
   else go();

@@ -1,5 +1,4 @@
-// Controllers as their makers build them: what there is, what to type into them, and what that makes of a loop; and a
-// controller as source text, for who builds his own.
+// Products: the list, the settings to type, and the effect on a loop; and a controller as source text.
 import { call, getText } from "./client.ts";
 import type { TextFile } from "./client.ts";
 import { settingsOf } from "./evaluate.ts";
@@ -12,7 +11,7 @@ export async function getProducts(): Promise<ProductSummary[]> {
 
 const details = new Map<string, Promise<Product>>();
 
-/** Asked for once; a failure is not kept. */
+/** Requested once; a failure is not cached. */
 export function getProduct(id: string): Promise<Product> {
   let detail = details.get(id);
   if (!detail) {
@@ -23,7 +22,7 @@ export function getProduct(id: string): Promise<Product> {
   return detail;
 }
 
-/** What to type for a controller: the nearest where the block cannot be it. */
+/** The settings to type for a controller: the nearest ones if the block cannot represent it. */
 export async function settingsFor(
   { product, y_span, u_span, sample_time }: Implement & { product: string },
   controller: Controller,
@@ -48,7 +47,7 @@ export type Language = "st" | "c" | "python";
 
 export interface CodeQuestion {
   job: string;
-  /** Of the entry in the result; the schedule of a range. */
+  /** Of the entry in the result; "schedule": the schedule of a range. */
   index: number | "schedule";
   language: Language;
   sample_time?: number | undefined;

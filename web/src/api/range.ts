@@ -1,10 +1,10 @@
-// A loop over its whole operating range: what POST /v1/range takes and answers, and which jobs are about one.
+// A loop over its whole operating range: the request and the answer of POST /v1/range, and the jobs about one.
 import { call } from "./client.ts";
 import type { Plant, RangeContent, RecordedTest, ScheduleRow, Units } from "./types.ts";
 
 export interface RangePoint {
   at: number;
-  /** A model, or its text as somebody would write it. */
+  /** A model, or its text as typed. */
   plant?: Plant | string;
   record?: RecordedTest;
 }
@@ -59,7 +59,7 @@ export async function getRangeExamples(): Promise<RangeExample[]> {
   return ((await call("GET", "v1/examples")).data as { ranges?: RangeExample[] }).ranges ?? [];
 }
 
-/** As the service tells requests of POST /v1/jobs apart. */
+/** The same criterion as the service's for requests of POST /v1/jobs. */
 export const isRangeRequest = (request: unknown): request is RangeRequest =>
   typeof request === "object" &&
   request !== null &&

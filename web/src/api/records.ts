@@ -1,4 +1,4 @@
-// What a file of a recorded test is read as: the service tells it before anything is computed.
+// Preview of a file of a recorded test: the service reads it before anything is computed.
 import { call } from "./client.ts";
 import type { Preview, RecordedTest } from "./types.ts";
 
@@ -12,12 +12,12 @@ const previewed = (data: unknown): Preview => {
 };
 
 export interface FileRead {
-  /** In the encoding that the service found. */
+  /** Decoded with the encoding that the service found. */
   text: string;
   preview: Preview;
 }
 
-/** The file goes as it is: its encoding is the service's to find. */
+/** The file is sent unchanged: the service finds its encoding. */
 export async function previewFile(file: Blob): Promise<FileRead> {
   const [{ data }, bytes] = await Promise.all([
     call("POST", "v1/records/preview", file, { "Content-Type": "text/csv" }),
@@ -27,7 +27,7 @@ export async function previewFile(file: Blob): Promise<FileRead> {
   return { text: new TextDecoder(preview.encoding).decode(bytes), preview };
 }
 
-/** A record's text with what was chosen of it. */
+/** A record's text with the choices for reading it. */
 export async function previewRecord({ csv, columns, dt, time_unit, u_step, run }: RecordedTest): Promise<Preview> {
   const chosen = Object.entries({ columns, dt, time_unit, u_step, run }).filter(([, value]) => value !== undefined);
   const request = { csv, ...Object.fromEntries(chosen) };

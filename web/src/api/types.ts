@@ -1,5 +1,5 @@
-// The page's names for what the contract describes (contract.gen.ts): where a name means something else in a browser, where the
-// page makes an answer up from several, and what it fills by a description and reads by name.
+// The page's names for the types of the contract (contract.gen.ts): for names that mean something else in a browser,
+// for answers that the page combines from several, and for types that it fills from a description and reads by name.
 import type * as Contract from "./contract.gen.ts";
 import type { Schema } from "./method.ts";
 
@@ -66,25 +66,25 @@ export type Column = (number | null)[];
 export type SettingValue = number | string | boolean;
 
 export type Need = "y_span" | "u_span" | "sample_time";
-/** Settings that are sought. */
+/** Settings that a search determines. */
 export type Tuned = "Kp" | "Ti" | "Td" | "Tf";
-/** A point of what the trade-off's rule does, by what it was asked for. */
+/** A point of the trade-off's rule, by the quantity that was given. */
 export type TradeoffPoint = Contract.TradeoffAtMs | Contract.TradeoffAtLevel;
 export type Span = [number, number];
 
-/** Members of an answer by their names. */
+/** Members of an answer by name. */
 export type Figures = { why_null?: WhyNull } & Record<string, number | null | WhyNull | undefined>;
 /** Any plant, read by the names of its parameters. */
 export type Plant = Contract.PlantModel & { L?: number };
-/** A method with options as it describes them. */
+/** A method with the options that it describes. */
 export type TuneEntry = Contract.Method;
 /** The user's own controller. */
 export type Implement = Pick<Contract.Implement, "product" | "y_span" | "u_span" | "sample_time"> & Record<string, unknown>;
-/** Today's settings as they stand in a product. */
+/** Today's settings as typed into a product. */
 export type TypedBaseline = Contract.BaselineSettings;
 export type Baseline = ({ form: string; product?: undefined } & Record<string, unknown>) | TypedBaseline;
 
-/** A request as the page's forms, and files of others, fill it. */
+/** A request as filled by the page's forms, or by files. */
 export interface TuningRequest extends Pick<Contract.TuningRequest, "name" | "units" | "record"> {
   plant?: Plant;
   identify?: Record<string, unknown>;
@@ -96,13 +96,13 @@ export interface TuningRequest extends Pick<Contract.TuningRequest, "name" | "un
 }
 export type IdentifyRequest = Pick<TuningRequest, "name" | "units" | "identify"> & Pick<Contract.IdentifyRequest, "record">;
 
-/** Of the service, or of the page where there is no service. */
+/** From the service, or from the page if the service cannot be reached. */
 export type Problem = Partial<Contract.Problem>;
 /** A structure that was tried, or the model itself. */
 export type Candidate = Omit<Contract.Candidate, "criterion">;
-/** Of a method, or named by the page. */
+/** An entry of a method, or one that the page names. */
 export type Entry = Contract.Entry & { method: string };
-/** Of a job about one loop or a range, or made up from the answers to what a slider asks. */
+/** The result of a job about one loop or a range, or a combination of the answers to a slider. */
 export type Result = Partial<Omit<Contract.TuningResult, "controllers">> & { controllers: Entry[]; range?: Contract.Range };
 export type Job = Omit<Contract.Job, "request" | "result"> & { request?: TuningRequest; result?: Result };
 export type Example = Omit<Contract.Example, "request"> & { request: TuningRequest };

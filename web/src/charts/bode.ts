@@ -1,4 +1,4 @@
-// |L| and its phase over frequency, with the margins where they are read.
+// |L| and its phase over frequency, with marks at the margins.
 import type { FrequencyTraces, TuningRequest } from "../api/types.ts";
 import { extent } from "../plot/axis.ts";
 import type { Range } from "../plot/axis.ts";
@@ -8,7 +8,7 @@ import type { Drawn } from "./drawn.ts";
 
 /** Decades shown on both sides of the gain crossover. */
 const DECADES = 2;
-/** Phases below it say nothing more about the loop, degrees. */
+/** Lower phases give no further information about the loop, degrees. */
 const LOWEST_PHASE = -540;
 
 export function bodeFrame(drawn: Drawn[], request: TuningRequest | undefined): Frame {
@@ -49,7 +49,7 @@ export function bodeFrame(drawn: Drawn[], request: TuningRequest | undefined): F
   };
 }
 
-/** Two decades to both sides of the first loop's crossover, as far as there are curves. */
+/** Two decades on both sides of the first loop's crossover, as far as the curves extend. */
 export function aroundCrossover(drawn: Drawn[]): Range | null {
   const entry = drawn.find((item) => item.entry.frequency && item.entry.robustness?.gain_crossover)?.entry;
   const crossover = entry?.robustness?.gain_crossover;
@@ -60,7 +60,7 @@ export function aroundCrossover(drawn: Drawn[]): Range | null {
   return hi > lo ? [lo, hi] : null;
 }
 
-/** What a trace has within the range of x. */
+/** The part of a trace within the range of x. */
 const within = (traces: Trace[], range: Range | null): (number | null)[][] =>
   traces.map(({ x, y }) => y.filter((_, i) => !range || (x[i]! >= range[0] && x[i]! <= range[1])));
 
@@ -74,7 +74,8 @@ function phaseRange(traces: Trace[], range: Range | null): Range {
   return [Math.max(lo, LOWEST_PHASE) - 10, Math.max(hi, -90) + 10];
 }
 
-/** Where |L| = 1 and where the phase is -180 degrees, of the first loop: the margins are read there. */
+/** The frequencies at which |L| = 1 and at which the phase is -180 degrees, for the first loop: the margins belong
+    to them. */
 function crossovers(drawn: Drawn[], pane: "gain" | "phase"): Mark[] {
   const robustness = drawn.find((item) => item.entry.robustness?.stable)?.entry.robustness;
   if (!robustness) return [];

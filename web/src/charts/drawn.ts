@@ -1,4 +1,4 @@
-// Which entries are drawn, and how each one looks everywhere.
+// The entries that are drawn, and their look in all plots.
 import type { Entry, Result } from "../api/types.ts";
 import type { Look } from "../plot/frame.ts";
 
@@ -33,13 +33,13 @@ export function entryNames(entries: Entry[]): string[] {
   });
 }
 
-/** What stands in the last brackets of a title: which of a method's variants the entry is. */
+/** The text in the last brackets of a title: the variant of the method. */
 const variantOf = (entry: Entry): string => /\(([^()]*)\)$/.exec(entry.title ?? "")?.[1] ?? "";
 
 export const drawable = (entry: Entry | undefined): boolean =>
   Boolean(entry && !entry.error && (entry.responses || entry.frequency));
 
-/** Entries to draw, the best first: what oscillates without settling only where nothing settles. */
+/** Entries to draw, the best first: one that oscillates without settling only if none settles. */
 function worthDrawing(result: Result): number[] {
   const every = [...new Set([...(result.ranking ?? []), ...result.controllers.keys()])];
   const drawn = every.filter((index) => drawable(result.controllers[index]));
@@ -47,7 +47,8 @@ function worthDrawing(result: Result): number[] {
   return calm.length > 0 ? calm : drawn;
 }
 
-/** The entry that is shown first, as the answer says; of an older answer the one that its verdict names, or the first without an error. */
+/** The entry that is shown first, according to the answer; for an older answer the one that its verdict names, or
+    the first without an error. */
 export const proposedEntry = ({ proposed, verdict, controllers }: Result): number =>
   proposed ?? verdict?.[0]?.figures?.["entry"] ?? Math.max(0, controllers.findIndex((entry) => !entry.error));
 
@@ -63,7 +64,7 @@ export function defaultDrawn(result: Result): number[] {
   return [...chosen].sort((a, b) => a - b);
 }
 
-/** The two best of the ranking, or the best beside today's settings. */
+/** The two best of the ranking, or the best and today's settings. */
 export function defaultOverlay(result: Result): number[] {
   const best = worthDrawing(result);
   const today = best.find((index) => result.controllers[index]!.method === "baseline");
@@ -72,7 +73,7 @@ export function defaultOverlay(result: Result): number[] {
   return chosen.sort((a, b) => a - b);
 }
 
-/** Looks: today's settings are always series 2, the others take 1, 3, 4 (and 2 if it is free) in order. */
+/** Looks: today's settings are always series 2; the others take 1, 3, 4 (and 2 if it is free) in order. */
 export function drawnEntries(result: Result, indices: number[]): Drawn[] {
   const names = entryNames(result.controllers);
   const shown = indices.filter((index) => drawable(result.controllers[index])).slice(0, MAX_DRAWN);

@@ -1,4 +1,4 @@
-// What the PID follows and how: y and u under the nonlinear controller, the emulating PID and chosen classical settings.
+// The result of the emulation: y and u under the nonlinear controller, the emulating PID and chosen classical settings.
 import type { EmulatedScenario, Emulation, Plant } from "../api/types.ts";
 import { extent } from "../plot/axis.ts";
 import type { Frame, Look, Mark, Trace } from "../plot/frame.ts";
@@ -11,14 +11,14 @@ import { interpolate } from "./rimc.ts";
 /** Looks of the classical settings, in the order in which they were chosen. */
 export const LEVEL_ONE_LOOKS: Look[] = [4, "data"];
 
-/** A run with settings of one's own: absolute values. */
+/** A run with the user's own settings: absolute values. */
 export interface OwnRun {
   t: number[];
   y: (number | null)[];
   u: (number | null)[];
 }
 
-/** `chosen`: indices in level1. Null where there is nothing to draw. */
+/** `chosen`: indices in level1. Null if there is nothing to draw. */
 export function emulationFrame(
   emulation: Emulation,
   scenario: number,
@@ -65,13 +65,13 @@ export function emulationFrame(
   };
 }
 
-/** Of an answer that gives the nonlinear controller's run alone. */
+/** For an answer that has only the nonlinear controller's run. */
 function onlyScenario(emulation: Emulation): EmulatedScenario | null {
   const { t, y_nl, u_nl } = emulation;
   return t && y_nl && u_nl ? { setpoint_step: NaN, y_rest: NaN, u_rest: NaN, limited: false, t, y_nl, u_nl } : null;
 }
 
-/** Limits of the input that u comes near; others would squeeze its movement. */
+/** Limits of the input that u approaches; others would compress its curve. */
 function limitsNear(plant: Plant | undefined, traces: Trace[]): Mark[] {
   const input = inputOf(plant);
   const [lo, hi] = extent(
@@ -85,7 +85,8 @@ function limitsNear(plant: Plant | undefined, traces: Trace[]): Mark[] {
   );
 }
 
-/** The cost of a run beside the nonlinear controller's in one scenario, by the trapezoidal rule; null where samples are missing. */
+/** The cost of a run, compared with that of the nonlinear controller in one scenario, by the trapezoidal rule; null
+    if samples are missing. */
 export function costOf(emulation: Emulation, scenario: EmulatedScenario, run: OwnRun): number | null {
   const { wy = 1, wu = 1 } = emulation.weights ?? {};
   const { t = [], y_nl = [], u_nl = [] } = scenario;

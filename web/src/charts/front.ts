@@ -1,4 +1,4 @@
-// Robustness against speed: the least load IAE under each limit on Ms, and where designs and rules lie beside it.
+// Robustness against speed: the least load IAE under each limit on Ms, with the designs and rules as points.
 import type { Entry, Frontier } from "../api/types.ts";
 import type { Frame, Mark, Trace } from "../plot/frame.ts";
 import { formatNumber, product, withUnit } from "../words/numbers.ts";
@@ -6,10 +6,10 @@ import type { UnitNames } from "../words/numbers.ts";
 import { entryNames } from "./drawn.ts";
 
 export interface FrontShown {
-  /** By the controllers that may be had; null where there is none or it is not known yet. */
+  /** Null if there is none or it is not known yet. */
   PID: Frontier | null;
   PI: Frontier | null;
-  /** The design; `at`: the limit that it was made for, null for settings by hand and rules. */
+  /** The design; `at`: the limit for which it was made, null for settings by hand and rules. */
   here: { entry: Entry; at: number | null };
   today: Entry | null;
   rules: Entry[];
@@ -64,7 +64,7 @@ export function frontFrame(shown: FrontShown, units: UnitNames): Frame {
   };
 }
 
-/** Fronts are of unit steps. */
+/** Frontiers are for unit steps. */
 const scaled = (IAE: number | null, load: number): number | null => (IAE === null ? null : IAE * Math.abs(load));
 
 function pointOf(entry: Entry, at: number | null): { x: number; y: number } | null {
@@ -72,7 +72,7 @@ function pointOf(entry: Entry, at: number | null): { x: number; y: number } | nu
   return typeof x === "number" && y !== null ? { x, y } : null;
 }
 
-/** The curves and the two designs that matter; rules far above are left outside. */
+/** The range of the curves and the two main designs; rules far above are not in view. */
 function rangeOf(traces: Trace[], ...points: ({ y: number } | null)[]): [number, number] {
   const values = [
     ...traces.flatMap((trace) => trace.y.filter((y): y is number => typeof y === "number")),

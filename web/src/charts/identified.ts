@@ -1,4 +1,4 @@
-// A recorded test with a candidate's model: y, u and the residual on one time axis, the used part marked.
+// A recorded test with a candidate's model: y, u and the residual on one time axis, with the used part marked.
 import type { Candidate, Model } from "../api/types.ts";
 import { extent } from "../plot/axis.ts";
 import type { Range } from "../plot/axis.ts";
@@ -8,7 +8,7 @@ import type { UnitNames } from "../words/numbers.ts";
 import { recordFramed, recordPanes, unnamed } from "./record.ts";
 import type { Column, Samples } from "./record.ts";
 
-/** `whole`: the record beyond the used part, where it is known; `part`: the used part, as it is being chosen. */
+/** `whole`: the record beyond the used part, if it is known; `part`: the used part as it is being chosen. */
 export function identifiedFrame(
   model: Model,
   candidate: Candidate | null,
@@ -34,13 +34,14 @@ export function identifiedFrame(
   return recordFramed(panes, "Record and model", `The model reproduces ${percent} % of the record's movement.`, units);
 }
 
-/** A record for which there is no model. */
+/** A record without a model. */
 export function bareRecordFrame(record: Samples, units: UnitNames, part: { from: number; to: number } | null): Frame {
   const marks: Mark[] = part ? [{ kind: "band", ...part, label: "used" }] : [];
   return recordFramed(recordPanes(record, units, marks), "Record", "There is no model of it.", units);
 }
 
-/** A residual below a thousandth of y's movement is not blown up to fill its pane: rounding would look like a signal. */
+/** A residual below a thousandth of y's movement is not enlarged to the height of its pane: rounding would look like
+    a signal. */
 function wideRange(residual: Column, y: Column): Range | null {
   const [lo, hi] = extent([residual], "linear");
   const [min, max] = extent([y], "linear");

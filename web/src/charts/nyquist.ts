@@ -5,12 +5,12 @@ import { formatNumber, unitNames } from "../words/numbers.ts";
 import type { Drawn } from "./drawn.ts";
 import type { Limits } from "../words/limits.ts";
 
-/** Where |S| = Ms: centre -1, radius 1/Ms. */
+/** The circle |S| = Ms: centre -1, radius 1/Ms. */
 function sensitivityCircle(Ms: number): { x: number; radius: number } {
   return { x: -1, radius: 1 / Ms };
 }
 
-/** Where |T| = Mt > 1: centre -Mt^2/(Mt^2 - 1), radius Mt/(Mt^2 - 1). */
+/** The circle |T| = Mt > 1: centre -Mt^2/(Mt^2 - 1), radius Mt/(Mt^2 - 1). */
 function complementaryCircle(Mt: number): { x: number; radius: number } {
   return { x: -(Mt * Mt) / (Mt * Mt - 1), radius: Mt / (Mt * Mt - 1) };
 }
@@ -61,10 +61,11 @@ export function nyquistFrame(drawn: Drawn[], limits: Limits, request: TuningRequ
 }
 
 const TURN_DEG = 360;
-/** A wider ring of turns is worth seeing. */
+/** A wider ring of turns is drawn. */
 const WIDEST = 0.6;
 
-/** Where L has made a whole turn beyond its last gain of one and will make at least another: a dead time's. */
+/** The point from which L has made a whole turn beyond its last gain of one and will make at least another: the
+    effect of a dead time. */
 export function windingOf(frequency: FrequencyTraces): { from: number; radius: number } | null {
   const { re, im, phase_deg: phase } = frequency.L;
   if (!phase) return null;

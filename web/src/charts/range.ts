@@ -1,4 +1,4 @@
-// What an operating range looks like over its scheduling variable: Ms and IAE, the settings, the plant; and the runs over
+// Plots of an operating range over its scheduling variable: Ms and IAE, the settings, the plant; and the runs over
 // time.
 import type { Column, RangeContent, RangePassage, RangeRun, RangeTraces, ScheduleRow } from "../api/types.ts";
 import type { Range } from "../plot/axis.ts";
@@ -6,7 +6,7 @@ import type { Frame, Mark, Pane, Trace } from "../plot/frame.ts";
 import { formatNumber, quotient, withUnit } from "../words/numbers.ts";
 import type { UnitNames } from "../words/numbers.ts";
 
-/** What is drawn: what was designed, the rows in the hand, and the curves of these if they were moved. */
+/** The drawn data: the design, the current rows, and the curves of these if they were moved. */
 export interface RangeShown {
   designed: RangeContent;
   moved: RangeContent | null;
@@ -18,7 +18,7 @@ export interface RangeShown {
 }
 
 const LINK = "range";
-/** Curves that leave the picture by more than that much of what is asked say no more than that they leave it. */
+/** Factor of the limit beyond which curves may leave the picture. */
 const MAX_OVER_LIMIT = 2.5;
 
 const scheduledCurves = ({ designed, moved }: RangeShown) => (moved ?? designed).curves;
@@ -34,7 +34,7 @@ function traceOf(shown: RangeShown, quantity: "Ms" | "relative_IAE"): Trace[] {
   ];
 }
 
-/** From the least that is possible to what is drawn, the limit in view. */
+/** From the smallest possible value to the drawn ones, with the limit in view. */
 function rangeOfMs(traces: Trace[], limit: number | null): Range {
   const values = traces.flatMap(({ y }) => y.filter((value): value is number => typeof value === "number"));
   const over = 1 + MAX_OVER_LIMIT * ((limit ?? 1) - 1);
@@ -45,7 +45,7 @@ function rangeOfMs(traces: Trace[], limit: number | null): Range {
 const limitLine = (limit: number | null): Mark[] =>
   limit === null ? [] : [{ kind: "level", value: limit, role: "limit", label: `limit ${formatNumber(limit)}` }];
 
-/** One setting may cost many times as much as the schedule: on a logarithmic axis both can be read. */
+/** One setting may have many times the IAE of the schedule: a logarithmic axis shows both. */
 const MAX_IAE = 100;
 
 function rangeOfIAE(traces: Trace[]): Range {
@@ -73,7 +73,7 @@ const largest = (traces: RangeTraces | null | undefined, quantity: "Ms" | "relat
   return formatNumber(values.length > 0 ? Math.max(...values) : null);
 };
 
-/** Ms over IAE; the rows stand in both. */
+/** Ms over IAE; the rows are marked in both. */
 export function robustnessFrame(shown: RangeShown): Frame {
   const [Ms, IAE] = [traceOf(shown, "Ms"), traceOf(shown, "relative_IAE")];
   const scheduled = scheduledCurves(shown).schedule;
@@ -114,7 +114,7 @@ export function robustnessFrame(shown: RangeShown): Frame {
   };
 }
 
-/** Kp, Ti and Td in use; null without a schedule and one setting. */
+/** Kp, Ti and Td in use; null if there is neither a schedule nor one setting. */
 export function settingsFrame(shown: RangeShown): Frame | null {
   const scheduled = scheduledCurves(shown);
   const { designed, units } = shown;
@@ -145,7 +145,7 @@ export function settingsFrame(shown: RangeShown): Frame | null {
 
 const known = (values: Column): boolean => values.some((value) => typeof value === "number" && value !== 0);
 
-/** Gain, lags and dead time of the plant; what is nowhere known, or 0 everywhere, is not drawn. */
+/** Gain, lags and dead time of the plant; a parameter that is unknown or 0 everywhere is not drawn. */
 export function plantFrame(shown: RangeShown): Frame | null {
   const { curves } = shown.designed;
   const { units } = shown;
@@ -169,7 +169,7 @@ export function plantFrame(shown: RangeShown): Frame | null {
   };
 }
 
-/** What ran a passage, each with its name and look; a nonlinear controller has no gain. */
+/** The runs of a passage, each with its name and look; a nonlinear controller has no gain. */
 export function runsOf(passage: RangePassage): { name: string; look: 1 | 2 | 3; run: Partial<RangeRun> }[] {
   const runs = [
     { name: "schedule", look: 1 as const, run: passage.schedule },
@@ -179,7 +179,8 @@ export function runsOf(passage: RangePassage): { name: string; look: 1 | 2 | 3; 
   return runs.flatMap(({ name, look, run }) => (run ? [{ name, look, run }] : []));
 }
 
-/** A passage across the range: the output with its target, the input, the gain in use. `parameter`: what moves is one. */
+/** A passage across the range: the output with its target, the input, the gain in use. `parameter`: a parameter
+    moves instead of the set point. */
 export function passageFrame(passage: RangePassage, parameter: string | null, units: UnitNames): Frame {
   const traces = (signal: "y" | "u" | "Kp"): Trace[] =>
     runsOf(passage).flatMap(({ name, look, run }) => {

@@ -1,4 +1,4 @@
-// A recorded test as panes of y and u, and beside it the output of the model that was identified from it.
+// A recorded test as panes of y and u, with the output of the model identified from it.
 import type { Model, TuningRequest } from "../api/types.ts";
 import { extent } from "../plot/axis.ts";
 import type { Frame, Mark, Pane } from "../plot/frame.ts";
@@ -13,7 +13,7 @@ export interface Samples {
   u?: Column;
 }
 
-/** What a job's record and model show; null without a record. */
+/** The plot of a job's record and model; null without a record. */
 export function recordFrame(model: Model, request: TuningRequest | undefined): Frame | null {
   const fit = model.fit;
   if (!fit || fit.t.length === 0) return null;
@@ -59,7 +59,7 @@ export function recordFramed(panes: Pane[], title: string, description: string, 
   };
 }
 
-/** The moves of u beyond 2 % of its range, each from half of the rest before it to the next. */
+/** The moves of u beyond 2 % of its range, each from the middle of the rest before it to the next one. */
 export function stepParts(t: readonly number[], u: Column): { at: number; from: number; to: number }[] {
   const [min, max] = extent([u], "linear");
   const range = max - min;
@@ -75,11 +75,11 @@ export function stepParts(t: readonly number[], u: Column): { at: number; from: 
   });
 }
 
-/** Bands without their names: these stand in the first pane. */
+/** Bands without their names, which are shown in the first pane. */
 export const unnamed = (marks: Mark[]): Mark[] =>
   marks.map((mark) => (mark.kind === "band" ? { kind: "band", from: mark.from, to: mark.to } : mark));
 
-/** u holds from its sample to the next: corners instead of slopes. */
+/** u holds from one sample to the next: corners instead of slopes. */
 export function held(t: readonly number[], u: readonly (number | null)[]): { x: number[]; y: Column } {
   const x: number[] = [];
   const y: Column = [];

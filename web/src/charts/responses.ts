@@ -6,17 +6,17 @@ import { formatNumber, unitNames, withUnit } from "../words/numbers.ts";
 import { inputOf } from "../words/plant.ts";
 import type { Drawn } from "./drawn.ts";
 
-/** With more entries than these the linear counterparts of all would be a thicket. */
+/** With more entries the linear counterparts of all would be too many curves. */
 const MAX_WITH_LINEAR = 2;
 
-/** Whether the responses are those of a nonlinear plant, with the linearised loop's beside them. */
+/** True if the responses are those of a nonlinear plant, drawn with the linearised loop's. */
 export const hasLinear = (drawn: Drawn[]): boolean => drawn.some((item) => item.entry.linear?.responses);
 
-/** What stands above such plots. */
+/** The sentence above such plots. */
 export const BESIDE_LINEAR =
   "Responses are those of the equations; thin and dotted: the same controller on their linear model.";
 
-/** `selected`: whose linear counterpart is drawn where many are. */
+/** `selected`: the entry whose linear counterpart is drawn if there are many. */
 export function responseFrame(
   kind: "setpoint" | "load",
   drawn: Drawn[],
@@ -58,7 +58,7 @@ export function responseFrame(
   };
 }
 
-/** Limits of u as deviations: the request's, and of a nonlinear plant's own those that u comes near. */
+/** Limits of u as deviations: those of the request, and for a nonlinear plant its own if u approaches them. */
 function limitMarks(request: TuningRequest | undefined, traces: Trace[]): Mark[] {
   const actuator = request?.evaluate?.actuator;
   const input = inputOf(request?.plant);

@@ -1,10 +1,11 @@
-// Revised IMC: what the parameter lambda buys. The load response's peak and Ms over lambda/tau, the present design marked.
+// Revised IMC: the effect of the parameter lambda. The load response's peak and Ms over lambda/tau, with the current
+// design marked.
 import type { Entry, Response, Rimc } from "../api/types.ts";
 import type { Frame, Mark, Trace } from "../plot/frame.ts";
 import { formatNumber, product, quotient, withUnit } from "../words/numbers.ts";
 import type { UnitNames } from "../words/numbers.ts";
 
-/** `tau`: of the model that the design rests on. `lambda`: what is marked. Null without a curve. */
+/** `tau`: of the model of the design. `lambda`: the marked value. Null without a curve. */
 export function rimcFrame(rimc: Rimc, tau: number, lambda: number, units: UnitNames): Frame | null {
   const curve = rimc.disturbance_peak_curve;
   if (!curve || curve.lambda_over_tau.length < 2 || !(tau > 0)) return null;
@@ -45,7 +46,7 @@ export function rimcFrame(rimc: Rimc, tau: number, lambda: number, units: UnitNa
   };
 }
 
-/** The load response of the PID beside that of the controller it approximates; null where one of them is missing. */
+/** The load response of the PID and that of the controller it approximates; null if one of them is missing. */
 export function fullControllerFrame(rimc: Rimc, pid: Response | undefined, units: UnitNames): Frame | null {
   const full = rimc.full_controller?.responses?.load;
   if (!full || !pid) return null;
@@ -69,7 +70,7 @@ export function fullControllerFrame(rimc: Rimc, pid: Response | undefined, units
   };
 }
 
-/** Between the samples that are numbers; null outside them. `x` rises. */
+/** Interpolates between the samples that are numbers; null outside them. `x` increases. */
 export function interpolate(x: readonly number[], y: readonly (number | null)[], at: number): number | null {
   for (let index = 1; index < x.length; index += 1) {
     const [x0, x1] = [x[index - 1]!, x[index]!];
@@ -85,11 +86,11 @@ export interface RimcRow {
   meaning: string;
   pid: number | null;
   full: number | null;
-  /** Why the PID has no figure, or "". */
+  /** The reason why the PID has no figure, or "". */
   why: string;
 }
 
-/** Figures of the PID and of the full controller, side by side. */
+/** Figures of the PID and of the full controller, in columns. */
 export function rimcRows(entry: Entry, units: UnitNames): RimcRow[] {
   const rimc = entry.rimc;
   if (!rimc) return [];

@@ -1,4 +1,4 @@
-// |S|, |T| and |CS| over frequency, one pane each so that up to four entries stay apart, with the limits they were designed for.
+// |S|, |T| and |CS| over frequency, in one pane each so that up to four entries remain distinct, with their limits.
 import type { FrequencyTraces, TuningRequest } from "../api/types.ts";
 import { extent } from "../plot/axis.ts";
 import type { Range } from "../plot/axis.ts";
@@ -46,7 +46,7 @@ export function sensitivityFrame(drawn: Drawn[], limits: Limits, request: Tuning
   };
 }
 
-/** The top of the data and so many decades below it: what lies deeper says nothing about robustness. */
+/** The maximum of the data and this number of decades below it: deeper values do not concern robustness. */
 function topDecades(traces: Trace[], limit: number | null, decades: number): Range {
   const [lo, hi] = extent([...traces.map((trace) => trace.y), limit === null ? [] : [limit]], "log");
   // Room for the limit's name above its line.

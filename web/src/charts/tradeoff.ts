@@ -1,4 +1,5 @@
-// Servo against regulation: what a controller pays for robustness, beside what the tuning rule of Arrieta et al. does on this plant.
+// Servo against regulation: the cost of robustness for a controller, compared with the tuning rule of Arrieta et al. on
+// this plant.
 import type { Tradeoff, TradeoffFigures, TradeoffPoint } from "../api/types.ts";
 import { extent } from "../plot/axis.ts";
 import type { Range } from "../plot/axis.ts";
@@ -17,18 +18,18 @@ const at = (point: TradeoffPoint, name: Name): number | null => (point as Partia
 
 const column = (points: TradeoffPoint[], name: Name): (number | null)[] => points.map((point) => at(point, name));
 
-/** What the curves are drawn on: the first-order model; the plant's own figures where there is no model. */
+/** The figures for the curves: of the first-order model; of the plant itself if there is no model. */
 export const figuresOf = (item: TradeoffItem): TradeoffFigures | undefined =>
   item.tradeoff?.model ?? item.tradeoff?.plant;
 
 const hasIndices = (figures: TradeoffFigures | undefined): boolean =>
   typeof figures?.J_r === "number" || typeof figures?.J_d === "number";
 
-/** Whether there is anything to show of it. */
+/** True if it has data to show. */
 export const isKnown = ({ tradeoff }: TradeoffItem): boolean =>
   hasIndices(tradeoff?.model) || hasIndices(tradeoff?.plant);
 
-/** Why an answer holds no indices; "" where it does, or where none was asked for. */
+/** The reason why an answer has no indices; "" if it has, or if none were asked for. */
 export function whyUnknown(item: TradeoffItem): string {
   const { tradeoff } = item;
   if (!tradeoff || isKnown(item)) return "";
@@ -36,7 +37,7 @@ export function whyUnknown(item: TradeoffItem): string {
   return reasons[0] ?? "There is no trade-off of this controller.";
 }
 
-/** The rule's behaviour, from whichever entry brings it. */
+/** The rule's behaviour, from any entry that has it. */
 export const profileOf = (items: TradeoffItem[]): Profile | null =>
   items.map((item) => item.tradeoff?.profile).find((profile) => profile !== undefined) ?? null;
 
@@ -53,7 +54,7 @@ function rangeOf(traces: Trace[], marks: Mark[], axis: "x" | "y", margin: number
   return extent([...traces.map((trace) => trace[axis]), marked], "linear", margin);
 }
 
-/** J_d over J_r: the rule's curve, the controllers, and the corner that none can reach with both at once. */
+/** J_d over J_r: the rule's curve, the controllers, and the corner that no controller reaches in both at once. */
 export function tradeoffFrame(items: TradeoffItem[], time: string): Frame | null {
   const profile = profileOf(items);
   const known = items.map(figuresOf).find((figures) => figures !== undefined);
@@ -98,7 +99,7 @@ export function tradeoffFrame(items: TradeoffItem[], time: string): Frame | null
   };
 }
 
-/** How much optimality is given up at each Ms. */
+/** The degradation at each Ms. */
 export function degradationFrame(items: TradeoffItem[]): Frame | null {
   const profile = profileOf(items);
   if (!profile) return null;
@@ -130,7 +131,7 @@ export function degradationFrame(items: TradeoffItem[]): Frame | null {
   };
 }
 
-/** What becomes of each degradation that one allows: the degradation itself, J_rd, Ms. */
+/** The effect of each allowed degradation: the degradation itself, J_rd, Ms. */
 export function levelsFrame(items: TradeoffItem[], time: string): Frame | null {
   const levels = profileOf(items)?.by_degradation ?? [];
   if (levels.length < 2) return null;
@@ -171,7 +172,7 @@ const plain = (name: string, look: Trace["look"], list: TradeoffPoint[], x: Name
   y: column(list, y),
 });
 
-/** A curve in the plane, run through by a parameter; points without one are left out. */
+/** A parametric curve in the plane; points without the parameter are left out. */
 function curve(name: string, look: Trace["look"], list: TradeoffPoint[], x: Name, y: Name, along: Name): Trace {
   const kept = list.filter((point) => at(point, along) !== null);
   return { ...plain(name, look, kept, x, y), parameter: kept.map((point) => at(point, along)!) };

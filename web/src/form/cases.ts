@@ -1,10 +1,11 @@
-// A list of cases on one line: "10; -5 initial.T 380; 10 parameters.k0 5e8" is three objects, a number in front of each.
+// A list of cases on one line: "10; -5 initial.T 380; 10 parameters.k0 5e8" is three objects, each beginning with a
+// number.
 import { parseNumber } from "./number.ts";
 import type { Parsed } from "./number.ts";
 
 type Case = Record<string, unknown>;
 
-/** `lead`: the member that the number in front is. Others follow as name and number, members of members with a point. */
+/** `lead`: the member for the leading number. Others follow as name and number, nested members with a point. */
 export function parseCases(text: string, name: string, lead: string): Parsed<Case[]> {
   const cases: Case[] = [];
   for (const part of text.split(/[;\n]/)) {
@@ -28,7 +29,7 @@ export function parseCases(text: string, name: string, lead: string): Parsed<Cas
   return { ok: true, value: cases };
 }
 
-/** The cases as they would be typed. */
+/** The cases as typed. */
 export function writeCases(value: unknown, lead: string): string {
   if (!Array.isArray(value)) return "";
   return value
@@ -44,7 +45,7 @@ function pairsOf(entry: Case, lead: string, above = ""): string[] {
   });
 }
 
-/** Puts a value at its path; undefined puts nothing. */
+/** Puts a value at its path; undefined is not put. */
 export function place(target: Record<string, unknown>, path: string[], value: unknown): void {
   if (value === undefined) return;
   let at = target;

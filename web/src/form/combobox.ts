@@ -1,4 +1,4 @@
-// A text field that finds one of a long list: the combobox pattern, so that it is worked with the keyboard alone.
+// A text field that finds one item of a long list: the combobox pattern, which can be used with the keyboard alone.
 import { h, uniqueId } from "../dom.ts";
 import { textField } from "./controls.ts";
 import type { ControlOptions, Field } from "./controls.ts";
@@ -6,23 +6,23 @@ import type { FormErrors } from "./errors.ts";
 
 export interface Choice {
   id: string;
-  /** What stands in the field once it is chosen. */
+  /** The text of the field once the item is chosen. */
   text: string;
-  /** Beside the text in the list. */
+  /** Shown next to the text in the list. */
   aside: string;
 }
 
 export interface Combobox {
   element: HTMLElement;
   field: Field<HTMLInputElement>;
-  /** What is shown as chosen, without reporting; null empties the field. */
+  /** Shows a choice without reporting it; null empties the field. */
   set(choice: Choice | null): void;
-  /** The list has changed: found anew if it stands open. */
+  /** The list has changed: searched again if it is open. */
   refresh(): void;
 }
 
 export interface ComboboxOptions extends ControlOptions {
-  /** Those that what is typed may mean, best first. */
+  /** The items that match the typed text, best first. */
   find(typed: string): Choice[];
   /** null: the field was emptied. */
   onChoose(choice: Choice | null): void;
@@ -40,7 +40,7 @@ export function combobox(options: ComboboxOptions, errors: FormErrors): Combobox
   const none = h("p", { class: "finds none", hidden: true });
   const element = h("div", { class: "combobox" }, field.element, count);
   list.hidden = true;
-  // The focus stays in the field, which would close the list; the click then takes the option.
+  // Losing the focus would close the list; it stays in the field, and the click then takes the option.
   list.addEventListener("mousedown", (event) => event.preventDefault());
   // The list hangs below the field, above its hint.
   input.after(h("div", { class: "hanger" }, list, none));
@@ -78,7 +78,7 @@ export function combobox(options: ComboboxOptions, errors: FormErrors): Combobox
     return item;
   }
 
-  /** `all`: whatever is typed, as when the list is opened on what was chosen. */
+  /** `all`: shows all items whatever is typed, as when the list is opened on a chosen item. */
   function open(all: boolean): void {
     found = options.find(all ? "" : input.value);
     list.replaceChildren(...found.map(optionOf));
@@ -112,7 +112,7 @@ export function combobox(options: ComboboxOptions, errors: FormErrors): Combobox
   input.addEventListener("blur", () => {
     close();
     if (input.value.trim() === "") return take(null);
-    // Half a name chooses nothing: what was chosen stands there again.
+    // An incomplete name chooses nothing: the previous choice is shown again.
     input.value = chosen?.text ?? "";
   });
   input.addEventListener("keydown", (event) => {

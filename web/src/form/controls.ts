@@ -1,4 +1,4 @@
-// Labelled controls: text fields with unit and hint, choices, check boxes. All of them can carry an error sentence.
+// Labelled controls: text fields with unit and hint, choices, check boxes. Each can show an error sentence.
 import { whenReleased } from "../api/press.ts";
 import { h, uniqueId } from "../dom.ts";
 import type { Control, FormErrors } from "./errors.ts";
@@ -10,7 +10,7 @@ export interface ControlOptions {
   value?: string;
   placeholder?: string;
   wide?: boolean;
-  /** The label is there for those who do not see the row's heading. */
+  /** The label is only for readers who do not see the row's heading. */
   bare?: boolean;
   rows?: number;
   pointer: () => string | null;
@@ -19,7 +19,7 @@ export interface ControlOptions {
 export interface Field<T extends Control["input"]> {
   element: HTMLElement;
   input: T;
-  /** What the form's errors know this field by. */
+  /** The field for the form's errors. */
   control: Control;
   setUnit(unit: string): void;
   setLabel(label: string): void;
@@ -46,7 +46,7 @@ function assemble<T extends Control["input"]>(input: T, options: ControlOptions,
     element,
     input,
     control,
-    // A longer label may need another line, which moves what is being pressed below it.
+    // A longer label may need another line, which would move a button that is being pressed below it.
     setUnit: (text) => whenReleased(() => (unit.textContent = text ? ` (${text})` : "")),
     setLabel(text) {
       label.textContent = text;
@@ -54,7 +54,7 @@ function assemble<T extends Control["input"]>(input: T, options: ControlOptions,
   };
 }
 
-/** A text field: numbers are text too, read by our own parser. */
+/** A text field: numbers are text too, read by the page's own parser. */
 export function textField(options: ControlOptions, errors: FormErrors): Field<HTMLInputElement> {
   const input = h("input", {
     type: "text",

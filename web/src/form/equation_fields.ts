@@ -1,4 +1,4 @@
-// Equations to enter: rows of states and parameters that can be added and taken away, the input, the output.
+// Fields for equations: rows of states and parameters that can be added and removed, the input, the output.
 import type { Plant } from "../api/types.ts";
 import { h } from "../dom.ts";
 import type { Child } from "../dom.ts";
@@ -14,14 +14,14 @@ import type { Row } from "./row_list.ts";
 export interface EquationFields {
   element: HTMLElement;
   read: () => ReturnType<typeof readEquations>;
-  /** False where these fields cannot show such a plant. */
+  /** False if these fields cannot show such a plant. */
   load(plant: Plant): boolean;
   show(texts: EquationTexts): void;
   texts(): EquationTexts;
   setUnits(units: UnitNames): void;
 }
 
-/** `active`: whether a request that is sent now is about these equations. */
+/** `active`: returns true if a request that is sent now is about these equations. */
 export function equationFields(errors: FormErrors, active: () => boolean, onChange: () => void): EquationFields {
   const own = (pointer: () => string) => (): string | null => (active() ? pointer() : null);
   const single = singleFields(errors, own);
@@ -91,7 +91,7 @@ export function equationFields(errors: FormErrors, active: () => boolean, onChan
   };
 }
 
-/** What a row is called where it is taken away. */
+/** The name of a row in its button to remove it. */
 const nameOf = ({ name }: { name: string }): string => name || "without a name";
 
 type Own = (pointer: () => string) => () => string | null;

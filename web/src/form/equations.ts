@@ -1,4 +1,4 @@
-// A plant given by equations: from the texts of its rows to the plant, back, and to what an address keeps. No DOM.
+// A plant given by equations: conversions between the texts of its rows, the plant, and the address. No DOM.
 import type { FieldError, Plant } from "../api/types.ts";
 import { parseNumber } from "./number.ts";
 import { exactText } from "../words/numbers.ts";
@@ -17,7 +17,7 @@ export interface ParameterTexts {
   value: string;
 }
 
-/** Fields of which there is one each. */
+/** Fields that occur once. */
 export const SINGLE_FIELDS = ["input", "nominal", "min", "max", "output", "L"] as const;
 export type SingleField = (typeof SINGLE_FIELDS)[number];
 
@@ -30,7 +30,7 @@ export interface EquationTexts {
 /** A name as one part of a JSON Pointer. */
 const part = (name: string): string => name.replaceAll("~", "~0").replaceAll("/", "~1");
 
-/** Where the fields' values go in the request. A name's own field has a place of the form's only. */
+/** Pointers of the fields' values in the request. The pointer of a name's field exists only in the form. */
 export const pointers = {
   state: (name: string): string => `/plant/states/${part(name)}`,
   rate: (name: string): string => `/plant/equations/${part(name)}`,
@@ -47,10 +47,10 @@ export const pointers = {
   } satisfies Record<SingleField, string>,
 };
 
-/** An expression on one line: new lines in the field are the reader's comfort. */
+/** An expression on one line: line breaks in the field are only for readability. */
 const oneLine = (text: string): string => text.replace(/\s+/g, " ").trim();
 
-/** The rows that say anything; a name that is missing or stands twice is a fault. */
+/** The rows that are not empty; a name that is missing or occurs twice is a fault. */
 function namedRows<Row extends { name: string }>(
   rows: Row[],
   what: string,
@@ -74,7 +74,7 @@ function namedRows<Row extends { name: string }>(
   });
 }
 
-/** The plant as typed, and what is missing from it, each fault with its pointer. */
+/** The plant as typed, and its faults, each with its pointer. */
 export function readEquations(texts: EquationTexts): { plant: Plant; errors: FieldError[] } {
   const errors: FieldError[] = [];
   const states: Record<string, number> = {};
@@ -127,13 +127,13 @@ const record = (value: unknown): Record<string, unknown> =>
 const written = (value: unknown): string =>
   typeof value === "number" ? shortest(value) : typeof value === "string" ? value : "";
 
-/** Every digit, but no rows of zeros: 4.71e8. */
+/** Every digit, but no series of zeros: 4.71e8. */
 function shortest(value: number): string {
   const size = Math.abs(value);
   return size >= 1e6 || (size < 1e-3 && size > 0) ? value.toExponential().replace("e+", "e") : exactText(value);
 }
 
-/** The texts that show a plant; null where it is of another kind or has parts without a field. */
+/** The texts that show a plant; null if it is of another kind or has parts without a field. */
 export function writeEquations(plant: Plant): EquationTexts | null {
   if (plant.type !== "nonlinear" || !Object.keys(plant).every((key) => KNOWN.has(key))) return null;
   const [values, rates, input] = [record(plant["states"]), record(plant["equations"]), record(plant["input"])];
@@ -151,7 +151,7 @@ export function writeEquations(plant: Plant): EquationTexts | null {
   };
 }
 
-/** What an address keeps of the texts: rows under x.name, dx.name and p.name. */
+/** The part of the texts in the address: rows under x.name, dx.name and p.name. */
 export function equationsAddress(texts: EquationTexts): Record<string, string> {
   const rows = texts.states.flatMap(({ name, value, rate }) => [
     [`x.${name}`, value],

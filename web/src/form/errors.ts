@@ -1,4 +1,4 @@
-// Faults at their fields: one sentence beside the field, the same in a summary that takes the focus.
+// Faults at their fields: one sentence next to the field, and the same in a summary that takes the focus.
 import { ApiError, sentenceOf, whenBack } from "../api/client.ts";
 import { whenReleased } from "../api/press.ts";
 import type { FieldError } from "../api/types.ts";
@@ -6,15 +6,15 @@ import { h } from "../dom.ts";
 
 export interface Control {
   input: HTMLInputElement | HTMLSelectElement | HTMLTextAreaElement;
-  /** The element beside the field that holds its sentence. */
+  /** The element next to the field that holds its sentence. */
   error: HTMLElement;
-  /** What is wrong with its text by itself: it stands beside the field for as long as the text does. */
+  /** The fault of the text itself: it is shown as long as the text is there. */
   fault?: string;
-  /** JSON Pointer of the value in the request as it would be sent now; null: not part of it. */
+  /** JSON Pointer of the value in the current request; null: not part of it. */
   pointer(): string | null;
 }
 
-/** The control that a pointer belongs to: its own, else that of the nearest enclosing value, else one inside it. */
+/** The control for a pointer: its own, else that of the nearest enclosing value, else one inside it. */
 export function matchPointer(pointer: string, known: readonly (string | null)[]): number {
   let best = -1;
   let length = -1;
@@ -41,7 +41,7 @@ export class FormErrors {
     tabindex: -1,
     hidden: true,
   });
-  /** With what is said beside each. */
+  /** Each control with its displayed sentence. */
   private readonly controls = new Map<Control, string>();
 
   add(control: Control): void {
@@ -50,13 +50,13 @@ export class FormErrors {
     control.input.addEventListener("change", () => this.settle(control));
   }
 
-  /** Its text cannot be used, whatever the rest of the form says. */
+  /** Shows that the text cannot be used, whatever the rest of the form contains. */
   refuse(control: Control, sentence: string): void {
     control.fault = sentence;
     this.clearControl(control);
   }
 
-  /** Another text stands in the field: what was wrong with the one before is over. */
+  /** The field has another text: the fault of the previous one is removed. */
   settle(control: Control): void {
     delete control.fault;
     this.clearControl(control);
@@ -72,7 +72,8 @@ export class FormErrors {
     for (const control of this.controls.keys()) this.clearControl(control);
   }
 
-  /** The faults below a pointer as they are now, each at its field, without taking the focus; answers those that have none. */
+  /** Shows the current faults below a pointer at their fields, without taking the focus; returns those without a
+      field. */
   mark(scope: string, errors: FieldError[]): FieldError[] {
     for (const control of this.controls.keys()) if (control.pointer()?.startsWith(`${scope}/`)) this.clearControl(control);
     return errors.filter((error) => !this.place(error));
@@ -100,7 +101,8 @@ export class FormErrors {
     this.summary.scrollIntoView({ block: "nearest" });
   }
 
-  /** A call that failed: what it says of fields, and in general. A service that was away is no problem once it is back. */
+  /** A failed call: its faults at fields, and its general sentence. A lost connection is no longer shown once it is
+      back. */
   fail(error: unknown, listed: FieldError[] = error instanceof ApiError ? (error.problem.errors ?? []) : []): void {
     this.show(listed, sentenceOf(error));
     const said = this.summary.firstElementChild;
@@ -132,7 +134,7 @@ export class FormErrors {
     this.say(control, control.fault ?? "");
   }
 
-  /** A sentence comes and goes beside its field, and moves what lies below. */
+  /** A sentence appears and disappears next to its field, which moves the content below. */
   private say(control: Control, words: string): void {
     if (!this.controls.has(control)) return;
     this.controls.set(control, words);
@@ -150,11 +152,12 @@ const parentOf = (pointer: string): string => pointer.slice(0, pointer.lastIndex
 const memberOf = (pointer: string): string => pointer.slice(pointer.lastIndexOf("/") + 1);
 const labelOf = ({ input }: Control): string => input.labels?.[0]?.firstElementChild?.textContent ?? "";
 
-/** With the page's labels where the service writes names of members: `own` is that of the fault's field, `labels` those
-    of its neighbours by their members. A name that may be a word or a signal, such as y, stays within a sentence. */
+/** Replaces names of members in the service's sentences by the page's labels: `own` is that of the fault's field,
+    `labels` those of its neighbours by member. A name that may be a word or a signal, such as y, stays within a
+    sentence. */
 export function inLabels({ pointer, detail }: FieldError, own: string, labels: ReadonlyMap<string, string>): string {
   const member = memberOf(pointer);
-  // A field to paste into is called by what to do, not by what stands in it.
+  // The label of a field for pasting is an instruction and does not name its content.
   const subject = member === "csv" ? "The text" : own;
   const named = subject !== "" && [" is ", " has "].some((verb) => detail.startsWith(member + verb));
   const [head, rest] = named ? [subject, detail.slice(member.length)] : ["", detail];
@@ -165,14 +168,14 @@ export function inLabels({ pointer, detail }: FieldError, own: string, labels: R
   return head + words;
 }
 
-/** Opens the folded parts of the page that an element is in. */
+/** Opens the folded parts of the page that contain an element. */
 export function openAround(element: Element): void {
   for (let at = element.closest("details"); at; at = at.parentElement?.closest("details") ?? null) at.open = true;
 }
 
 const WHOSE = "These results belong to the last answered request, not to the present form.";
 
-/** Said above results that stand beside a form whose last request was refused; they lose their colours meanwhile. */
+/** The note above results next to a form whose last request was refused; they lose their colours meanwhile. */
 export interface StaleMark {
   element: HTMLElement;
   set(stale: boolean): void;

@@ -1,30 +1,31 @@
-// From a method's JSON Schema to form fields, and from what was typed back to values. No DOM.
+// Conversion of a method's JSON Schema to form fields, and of typed texts to values. No DOM.
 import type { Schema } from "../api/types.ts";
 import { parseCases, writeCases } from "./cases.ts";
 import { parseNumber, parseNumbers, parseRoots, writeRoots } from "./number.ts";
 import type { Parsed } from "./number.ts";
 
-/** "spread": a number, or two between which it may lie; "roots": numbers or complex pairs; "cases": a list of objects. */
+/** "spread": a number, or an interval; "roots": numbers or complex pairs; "cases": a list of objects. */
 export type FieldKind =
   "number" | "integer" | "boolean" | "choice" | "numbers" | "spread" | "roots" | "cases" | "names" | "text";
 
 export interface FieldSpec {
-  /** Where the value goes inside the object, e.g. ["filter", "Tf"]. */
+  /** Path of the value inside the object, e.g. ["filter", "Tf"]. */
   path: string[];
   label: string;
   hint: string;
   unit: string;
   kind: FieldKind;
   choices: string[];
-  /** Words that a number field also takes, e.g. "free". */
+  /** Words that a number field also accepts, e.g. "free". */
   words: string[];
-  /** Of cases: the member that stands first without its name. */
+  /** Of cases: the member that comes first without its name. */
   lead: string;
-  /** What is used when the field is left empty, as text; "" if nothing is. */
+  /** The value of an empty field, as text; "" if there is none. */
   defaultText: string;
 }
 
-/** One field for each simple property, nested objects opened up. Properties of a shape that no field can hold are left out. */
+/** One field for each simple property, with nested objects expanded. Properties that no field can represent are left
+    out. */
 export function fieldsOf(
   schema: Schema | undefined,
   root: Schema | undefined = schema,
@@ -61,7 +62,7 @@ function resolve(schema: Schema | undefined, root: Schema | undefined): Schema |
   return match ? { ...root?.$defs?.[match[1]!], ...schema } : schema;
 }
 
-/** Members of an object, or of whichever of several objects is given. */
+/** Members of an object, or of the alternative that is an object. */
 function membersOf(schema: Schema, root: Schema | undefined): Record<string, Schema> | null {
   if (schema.properties) return schema.properties;
   const objects = (schema.oneOf ?? schema.anyOf ?? [])
@@ -110,7 +111,7 @@ function fieldOf(schema: Schema, root: Schema | undefined): Shape | null {
 
 const isNumber = (schema: Schema): boolean => schema.type === "number" || schema.type === "integer";
 
-/** A list of numbers, of numbers or pairs, of names, or of objects with a number in front. */
+/** A list of numbers, of numbers or pairs, of names, or of objects with a leading number. */
 function listOf(item: Schema | undefined, root: Schema | undefined): Shape | null {
   if (!item) return null;
   if (isNumber(item)) return shape("numbers");
@@ -123,7 +124,7 @@ function listOf(item: Schema | undefined, root: Schema | undefined): Shape | nul
   return lead === undefined ? null : shape("cases", { lead });
 }
 
-/** "a number or one of these words" and "one of these words" are the unions that options have. */
+/** Options have two kinds of unions: "a number or one of these words" and "one of these words". */
 function combined(alternatives: Schema[], root: Schema | undefined): Shape | null {
   const words = alternatives.flatMap((item) =>
     typeof item.const === "string" ? [item.const] : (item.enum ?? []).map(String),
@@ -136,7 +137,7 @@ function combined(alternatives: Schema[], root: Schema | undefined): Shape | nul
   return shapes[0] ? { ...shapes[0], words } : null;
 }
 
-/** The typed text as a value; undefined: left empty, the default holds. */
+/** The typed text as a value; undefined: empty, so that the default applies. */
 export function readField(spec: FieldSpec, typed: string): Parsed<unknown> {
   const text = typed.trim();
   if (text === "") return { ok: true, value: undefined };
@@ -169,7 +170,7 @@ export function readField(spec: FieldSpec, typed: string): Parsed<unknown> {
   }
 }
 
-/** A value as it would be typed. */
+/** A value as typed. */
 export function typedText(value: unknown, spec?: Pick<FieldSpec, "kind" | "lead">): string {
   if (value === undefined || value === null) return "";
   if (spec?.kind === "roots") return writeRoots(value);

@@ -1,4 +1,4 @@
-// Formulas of plants and methods as the service writes them: MathML text to plain nodes, because the page takes no
+// Formulas of plants and methods from the service: MathML text is converted to plain nodes, because the page accepts no
 // markup from text.
 import { formulaText } from "../api/plants.ts";
 import type { Plant } from "../api/types.ts";
@@ -9,13 +9,13 @@ const TAGS = new Set("math mrow mi mn mo mtext msub msup msubsup msqrt mfrac mta
 const PIECE = /<(\/?)([a-z]+)((?:\s[^<>]*)?)>|([^<>]+)/y;
 const ENTITIES: Record<string, string> = { amp: "&", lt: "<", gt: ">", quot: '"', apos: "'" };
 
-/** Of all attributes none comes in but these. */
+/** Only these attributes are accepted. */
 function attributesOf(tag: string, written: string | undefined): Record<string, string> {
   if (tag === "math") return { display: "block" };
   return tag === "mo" && written?.trim() === 'stretchy="false"' ? { stretchy: "false" } : {};
 }
 
-/** The tree of a formula; null where the text is anything else than elements of formulas and their texts. */
+/** The tree of a formula; null if the text contains anything other than elements of formulas and their texts. */
 export function parseMathml(text: string): TreeNode | null {
   const open: TreeNode[] = [node("formula")];
   PIECE.lastIndex = 0;
@@ -40,7 +40,7 @@ export function parseMathml(text: string): TreeNode | null {
   return open.length === 1 && others.length === 0 && typeof math === "object" ? math : null;
 }
 
-/** Nothing where the text is no formula. */
+/** Empty if the text is not a formula. */
 export function formulaNodes(mathml: string | undefined): MathMLElement[] {
   const tree = mathml ? parseMathml(mathml) : null;
   return tree ? [mathElement(tree)] : [];
@@ -49,11 +49,11 @@ export function formulaNodes(mathml: string | undefined): MathMLElement[] {
 const round = (value: unknown): unknown =>
   typeof value === "number" ? Number(value.toPrecision(4)) : Array.isArray(value) ? value.map(round) : value;
 
-/** Identified numbers are known to a few digits only; the formula shows no more. */
+/** Identified numbers are known to a few digits only; the formula shows only these. */
 export const rounded = (plant: Plant): Plant =>
   Object.fromEntries(Object.entries(plant).map(([name, value]) => [name, round(value)])) as Plant;
 
-/** A place for the formula, which comes with the service's answer; it stays empty where the plant has none. */
+/** A container for the formula, which is filled by the service's answer; it stays empty if the plant has none. */
 export function plantFormula(plant: Plant, tag: "div" | "span" = "div", small = false): HTMLElement {
   const element = h(tag, { class: small ? "formula small" : "formula" });
   formulaText(plant).then(

@@ -1,15 +1,15 @@
-// What a loaded request has and no field shows: it is sent as it came, so it is said, and can be left out.
+// The members of a loaded request that no field shows: they are sent unchanged, listed here, and can be removed.
 import { h } from "../dom.ts";
 
 export interface KeptNote {
   element: HTMLElement;
-  /** Hides itself where there is nothing. */
+  /** Hides itself if there are none. */
   show(parts: Record<string, unknown>): void;
 }
 
 const LONGEST_VALUE = 40;
 
-/** "evaluate.horizon 77" of each value, by its place in the request. */
+/** "evaluate.horizon 77" for each value, by its place in the request. */
 export function keptWords(parts: Record<string, unknown>): string[] {
   return Object.entries(parts).flatMap(([name, value]) => {
     if (value === undefined) return [];
@@ -20,7 +20,7 @@ export function keptWords(parts: Record<string, unknown>): string[] {
   });
 }
 
-/** `about`: what the parts belong to, for those who hear the button alone. */
+/** `about`: the owner of the members, for screen readers, which may read the button alone. */
 export function keptNote(about: string, onForget: () => void): KeptNote {
   const words = h("span", {});
   const forget = h(

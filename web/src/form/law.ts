@@ -1,11 +1,11 @@
-// A product's law, which the service tells as text, as MathML: "out = K [ 1 + 1/(Ti s) ] (SP - PV), K = 100/PB".
-// A product of symbols binds tighter than the slash: Td s/(Tf s + 1) is Td s over Tf s + 1.
+// Conversion of a product's law from the service's text to MathML: "out = K [ 1 + 1/(Ti s) ] (SP - PV), K = 100/PB". A
+// product of symbols has precedence over the slash: Td s/(Tf s + 1) is Td s over Tf s + 1.
 import { node } from "../dom.ts";
 import type { TreeNode } from "../dom.ts";
 
 type Token = { kind: "number" | "symbol" | "sign"; text: string };
 
-/** null: a character that no law has. */
+/** null: a character that cannot occur in a law. */
 function tokens(text: string): Token[] | null {
   const found: Token[] = [];
   const pattern = /\s*(?:(\d+(?:\.\d+)?)|([A-Za-z][A-Za-z0-9_]*)|([-+/^()[\]=]))/y;
@@ -27,11 +27,11 @@ const mo = (sign: string): TreeNode => node("mo", {}, sign);
 const times = (): TreeNode => node("mo", { lspace: "0", rspace: "0.22em" }, "\u2062");
 const row = (children: TreeNode[]): TreeNode => (children.length === 1 ? children[0]! : node("mrow", {}, ...children));
 
-/** What stands between two brackets, and they themselves where they must stay. */
+/** The content of two brackets, with the brackets if they must stay. */
 interface Factor {
   inside: TreeNode;
   brackets: [string, string] | null;
-  /** A fraction keeps what it holds together without brackets. */
+  /** A fraction groups its content without brackets. */
   holds: boolean;
 }
 
@@ -39,7 +39,7 @@ class Parser {
   private at = 0;
   constructor(private readonly tokens: Token[]) {}
 
-  /** left = right; null where this is no equation. */
+  /** left = right; null if this is not an equation. */
   equation(): TreeNode[] | null {
     const left = this.sum();
     if (!left || !this.take("=")) return null;
@@ -65,7 +65,7 @@ class Parser {
     }
   }
 
-  /** Factors, each slash dividing what stands before it by the one product that follows. */
+  /** Factors; each slash divides the preceding factors by the one product that follows. */
   private quotient(): TreeNode[] | null {
     const top = this.factors();
     if (!top) return null;
@@ -121,18 +121,19 @@ const raised = (base: Factor, power: Factor): Factor => ({
   holds: false,
 });
 
-/** Above or below a fraction's line, where the line replaces the brackets of a lone factor. */
+/** Above or below a fraction's line, which replaces the brackets of a single factor. */
 const bare = (factors: Factor[]): TreeNode[] =>
   factors.length === 1 ? [factors[0]!.inside] : product(factors);
 
-/** Commas outside brackets separate equations; a last remark in brackets is words. */
+/** Commas outside brackets separate equations; a final remark in brackets is words. */
 function parts(law: string): string[] {
   const remark = /^(.*\S)\s+\(([a-z][a-z ]{3,})\)$/.exec(law);
   const [text, words] = remark ? [remark[1]!, [remark[2]!]] : [law, []];
   return [...text.split(/,\s+/), ...words];
 }
 
-/** The law's equations; words among them stay words. Null where its first part is no equation: then the text is shown. */
+/** The law's equations; words among them stay words. Null if its first part is not an equation: then the text is
+    shown. */
 export function lawFormulas(law: string): (TreeNode | string)[] | null {
   const list = parts(law).map((part): TreeNode | string => {
     const read = tokens(part);

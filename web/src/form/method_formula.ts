@@ -1,10 +1,10 @@
-// A method's formula as the service writes it, a table of lines, laid out so that a narrow window breaks it between its
-// equations: MathML itself has no line breaks.
+// A method's formula from the service, a table of lines, in a layout that a narrow window can break between equations:
+// MathML itself has no line breaks.
 import { h, mathElement, node } from "../dom.ts";
 import type { TreeNode } from "../dom.ts";
 import { parseMathml } from "./formula.ts";
 
-/** What stands in a cell, in order: words, and formulas as nodes. */
+/** The content of a cell, in order: words, and formulas as nodes. */
 export type CellPart = string | TreeNode;
 
 export interface FormulaLine {
@@ -15,13 +15,13 @@ export interface FormulaLine {
 const inside = (tree: TreeNode): TreeNode[] =>
   (tree.children ?? []).filter((child): child is TreeNode => typeof child !== "string");
 
-/** Words lose the spaces that hold them off in a lone MathML document; here the page's layout does that. */
+/** Words lose the spaces that separate them in a MathML document; the page's layout replaces these. */
 const cellParts = (cell: TreeNode): CellPart[] =>
   inside(cell).map((part) =>
     part.tag === "mtext" ? (part.children ?? []).join("").replaceAll("\u00a0", " ").trim() : part,
   );
 
-/** Null where the text is no such table. */
+/** Null if the text is not such a table. */
 export function formulaLines(mathml: string | undefined): FormulaLine[] | null {
   const tree = mathml ? parseMathml(mathml) : null;
   const [table, ...others] = tree ? inside(tree) : [];
@@ -40,7 +40,7 @@ const shown = (parts: CellPart[]): (HTMLElement | MathMLElement | string)[] =>
       : mathElement(node("math", { displaystyle: "true" }, part)),
   ]);
 
-/** Null where there is no MathML to show: then the text is. */
+/** Null if there is no MathML: then the text is shown. */
 export function methodFormula(mathml: string | undefined): HTMLElement[] | null {
   const lines = formulaLines(mathml);
   if (!lines) return null;

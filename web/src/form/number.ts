@@ -1,4 +1,4 @@
-// Numbers as people type them: "2,5", "1e-3", "−4". Text is never changed; what cannot be read says why.
+// Numbers as typed: "2,5", "1e-3", "−4". The text is never changed; a text that cannot be read gives a sentence.
 
 export type Parsed<T> = { ok: true; value: T } | { ok: false; sentence: string };
 
@@ -7,7 +7,7 @@ const NUMBER = /^[+-]?(\d+([.,]\d*)?|[.,]\d+)(e[+-]?\d+)?$/i;
 
 const plain = (text: string): string => text.trim().replaceAll("−", "-");
 
-/** One number. Decimal point or comma; no grouping, because "1,234" may mean two things: it is read as 1.234. */
+/** One number. Decimal point or comma; no grouping, because "1,234" is ambiguous: it is read as 1.234. */
 export function parseNumber(text: string, name: string): Parsed<number> {
   const tidy = plain(text);
   if (tidy === "") return fail(`${name} is empty. Write a number, for example 1.25.`);
@@ -46,7 +46,7 @@ export function parseNumbers(text: string, name: string): Parsed<number[]> {
   return { ok: true, value: values };
 }
 
-/** Ranges by name, ended by semicolons: K 0.8 1.2; L 0.9 1.2. */
+/** Intervals by name, separated by semicolons: K 0.8 1.2; L 0.9 1.2. */
 export function parseRanges(text: string, name: string): Parsed<Record<string, [number, number]>> {
   const ranges: Record<string, [number, number]> = {};
   for (const part of plain(text).split(/[;\n]/)) {
@@ -61,7 +61,7 @@ export function parseRanges(text: string, name: string): Parsed<Record<string, [
   return { ok: true, value: ranges };
 }
 
-/** A matrix: rows on lines of their own or ended by semicolons, numbers separated by spaces. */
+/** A matrix: rows on separate lines or separated by semicolons, numbers separated by spaces. */
 export function parseMatrix(text: string, name: string): Parsed<number[][]> {
   const rows = plain(text)
     .replace(/^\[|\]$/g, "")
@@ -114,7 +114,7 @@ export function parseRoots(text: string, name: string): Parsed<(number | [number
   return { ok: true, value: roots };
 }
 
-/** Roots as they would be typed. */
+/** Roots as typed. */
 export const writeRoots = (value: unknown): string =>
   Array.isArray(value)
     ? value

@@ -1,4 +1,4 @@
-// The model card's fields: which plants can be entered, and how their parameters are written.
+// The model card's fields: the plants that can be entered, and the notation of their parameters.
 import type { Plant } from "../api/types.ts";
 import { parseMatrix, parseNumber, parseNumbers, parseRanges, parseRoots, writeRoots } from "./number.ts";
 import type { Parsed } from "./number.ts";
@@ -8,7 +8,7 @@ export interface PlantField {
   /** Name in the contract. */
   name: string;
   hint: string;
-  /** Which unit stands behind it. */
+  /** The unit behind it. */
   unit: "gain" | "slope" | "time" | "";
   optional?: boolean;
   example: string;
@@ -17,7 +17,7 @@ export interface PlantField {
 }
 
 export interface PlantForm {
-  /** The form's own key; several forms may write one type. */
+  /** The form's own key; several forms may represent one type. */
   id: string;
   type: string;
   title: string;
@@ -78,7 +78,7 @@ const gain = numberField("K", "steady-state change in y per unit of u", "gain", 
 const deadTime = numberField("L", "dead time: nothing happens before it", "time", "8");
 const optionalDeadTime = numberField("L", "dead time; empty is 0", "time", "", true);
 
-/** Factors of the parameters between which the plant may lie. */
+/** Factors of the parameters that bound the plant. */
 const uncertainty: PlantField = {
   name: "uncertainty",
   hint: "least and largest factor, as K 0.8 1.2; L 0.9 1.2. Empty: known exactly",

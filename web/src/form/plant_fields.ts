@@ -1,5 +1,5 @@
-// A plant to enter: in one line as people write it, or by its kind and parameters; each shows what the other says. The
-// service reads the line and writes the formula. On Start and on the relay test's screen.
+// Fields for a plant: one line of text, or its kind and parameters; each shows the content of the other. The service
+// parses the line and returns the formula. Used on Start and on the relay test's screen.
 import { ApiError, whenBack } from "../api/client.ts";
 import { latest } from "../api/latest.ts";
 import { parsePlant } from "../api/plants.ts";
@@ -17,28 +17,28 @@ import type { PlantForm, PlantReading } from "./plant.ts";
 export interface PlantFields {
   elements: HTMLElement[];
   read(): PlantReading;
-  /** When the service has said what the line that was typed means. */
+  /** Resolves when the service has parsed the typed line. */
   settled(): Promise<void>;
-  /** False where these fields cannot show such a plant. */
+  /** False if these fields cannot show such a plant. */
   load(plant: Plant): boolean;
   loadTyped(form: string, values: Record<string, string>): void;
-  /** Another loop: its plant is known exactly until somebody says otherwise. */
+  /** A new loop: its plant counts as exactly known until uncertainty is entered. */
   beginLoop(): void;
-  /** True if this is the line in which another plant is typed, not a parameter. */
+  /** True if this input is the line for a plant, not a parameter. */
   isLine(input: EventTarget | null): boolean;
-  /** The form's id and the texts as typed: what an address keeps. */
+  /** The form's id and the texts as typed, for the address. */
   typed(): { form: string; values: Record<string, string> };
   setUnits(units: UnitNames): void;
 }
 
 const INCOMPLETE = "The formula appears when the numbers are complete.";
 
-/** `active`: whether a request that is sent now is about these fields' plant. */
+/** `active`: returns true if a request that is sent now is about these fields' plant. */
 export function plantFields(errors: FormErrors, active: () => boolean, onChange: () => void): PlantFields {
   let form: PlantForm = PLANT_FORMS[0]!;
   let units: UnitNames = { time: "s", u: "", y: "" };
   let fields: { name: string; unit: "gain" | "slope" | "time" | ""; field: Field<HTMLInputElement> }[] = [];
-  // What the line says cannot be used until the service has read it.
+  // The content of the line cannot be used until the service has parsed it.
   let fault: string | null = null;
   let waiting: (() => void)[] = [];
   let busy = false;
@@ -93,7 +93,7 @@ export function plantFields(errors: FormErrors, active: () => boolean, onChange:
       const sentence = error instanceof ApiError ? error.message : String(error);
       if (question.text !== undefined) fault = sentence;
       say(sentence);
-      // Asked again while nothing else was: what stands there may be another text by then.
+      // Repeated only if no other call was made: the text may have changed by then.
       const said = formula.firstChild;
       void whenBack(error, () => {
         if (formula.firstChild !== said) return;
@@ -116,7 +116,7 @@ export function plantFields(errors: FormErrors, active: () => boolean, onChange:
     calls.send({ text: line.input.value, units: { time: units.time } });
   }
 
-  /** The formula and the line of what stands in the fields. */
+  /** Requests the formula and the line for the content of the fields. */
   function askFields(): void {
     fromLine = false;
     fault = null;
@@ -128,7 +128,7 @@ export function plantFields(errors: FormErrors, active: () => boolean, onChange:
     say(INCOMPLETE);
   }
 
-  /** The plant that was typed; what a line cannot say, the parameters' uncertainty, stays. */
+  /** Shows the typed plant; the parameters' uncertainty, which a line cannot express, is kept. */
   function showPlant(plant: Plant): void {
     const match = formOf(plant);
     if (!match) return;
@@ -214,7 +214,7 @@ export function plantFields(errors: FormErrors, active: () => boolean, onChange:
       const changed = next.time !== units.time;
       units = next;
       for (const item of fields) item.field.setUnit(unitText(item.unit));
-      // A line with units of its own means other numbers now.
+      // A line with its own units now has other numbers.
       if (changed && fromLine) askText();
     },
   };

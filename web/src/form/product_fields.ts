@@ -1,4 +1,4 @@
-// Today's settings in a product's own form: its parameters as fields, named and united as in the maker's software.
+// Today's settings in a product's own form: its parameters as fields, with the names and units of the maker's software.
 import type { Product, SettingValue } from "../api/types.ts";
 import { h } from "../dom.ts";
 import { choiceField, textField } from "./controls.ts";
@@ -9,7 +9,7 @@ import type { SettingField, SettingsReading } from "./product_settings.ts";
 
 export interface ProductFields {
   element: HTMLElement;
-  /** Other fields where the product is another; what was typed into parameters of the same name stays. */
+  /** Replaces the fields for another product; texts of parameters with the same name are kept. */
   setProduct(product: Product | null): void;
   load(settings: Record<string, SettingValue>): void;
   read(): SettingsReading;

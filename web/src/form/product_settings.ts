@@ -1,4 +1,4 @@
-// Settings of a product as its parameters' fields have them: which fields there are, what is typed as values, and back.
+// Settings of a product in the fields of its parameters: list of fields, and conversions between texts and values.
 import type { FieldError, Product, ProductParameter, SettingValue } from "../api/types.ts";
 import { exactText } from "../words/numbers.ts";
 import { parseNumber } from "./number.ts";
@@ -7,19 +7,19 @@ export interface SettingField {
   name: string;
   label: string;
   unit: string;
-  /** The values it may have; empty: a number, or a code that is typed. */
+  /** The allowed values; empty: a number, or a code that is typed. */
   choices: SettingValue[];
-  /** The maker's, in whose place an empty field stands; "" where it is not known. */
+  /** The maker's default, used for an empty field; "" if it is unknown. */
   standard: string;
-  /** Among those that are always typed. */
+  /** Always shown, not folded away. */
   main: boolean;
   hint: string;
 }
 
-/** Roles that say nothing of today's linear law. */
+/** Roles of parameters that do not affect today's linear law. */
 const ASIDE = ["limit", "fixed"];
 
-/** One field a parameter, and one for the direction where a switch sets it. */
+/** One field per parameter, and one for the direction if a switch sets it. */
 export function settingFields(product: Product): SettingField[] {
   const fields = product.parameters.map(fieldOf);
   const { by, name, direct, text } = product.action;
@@ -36,7 +36,7 @@ function fieldOf(parameter: ProductParameter): SettingField {
     name,
     label: label || name,
     unit,
-    // A switch that this entry has in one position only is a choice of one.
+    // A switch that has only one position in this product is a choice among one.
     choices: choices?.map((choice) => choice.value) ?? (typeof standard === "boolean" ? [standard] : []),
     standard: standard === undefined ? "" : String(standard),
     main: written && !ASIDE.includes(role),
@@ -45,12 +45,12 @@ function fieldOf(parameter: ProductParameter): SettingField {
 }
 
 export interface SettingsReading {
-  /** Undefined: nothing is typed. */
+  /** Undefined: all fields are empty. */
   settings: Record<string, SettingValue> | undefined;
   errors: FieldError[];
 }
 
-/** What is typed by field name, as values. Empty fields are left to the maker's default. */
+/** The typed texts by field name, as values. Empty fields get the maker's default. */
 export function readSettings(product: Product, typed: Record<string, string>): SettingsReading {
   const settings: Record<string, SettingValue> = {};
   const errors: FieldError[] = [];
@@ -74,6 +74,6 @@ export function readSettings(product: Product, typed: Record<string, string>): S
   return { settings: Object.keys(settings).length === 0 ? undefined : settings, errors };
 }
 
-/** Values as they would be typed. */
+/** Values as typed. */
 export const typedSettings = (settings: Record<string, SettingValue>): Record<string, string> =>
   Object.fromEntries(Object.entries(settings).map(([name, value]) => [name, typeof value === "number" ? exactText(value) : String(value)]));

@@ -1,4 +1,4 @@
-// How a record is to be read and identified: columns, kind, model, method. The same fields on Start and on Identify.
+// Options for reading and identifying a record: columns, kind, model, method. The same fields on Start and on Identify.
 import type { FieldError, Preview, RecordedTest } from "../api/types.ts";
 import { h } from "../dom.ts";
 import { choiceField, textField } from "./controls.ts";
@@ -11,12 +11,12 @@ export type Identify = Record<string, unknown>;
 
 export interface RecordFields {
   elements: HTMLElement[];
-  /** What the fields add to a record and to `identify`. */
+  /** The members that the fields add to a record and to `identify`. */
   read(): { record: RecordedTest; identify: Identify; errors: FieldError[] };
   load(record: RecordedTest, identify: Identify | undefined): void;
-  /** The columns to choose among, and what was found of them. */
+  /** The columns to choose from, and the roles that were found. */
   offer(preview: Preview): void;
-  /** Leads to the choice of the times' unit, wherever it is folded away. */
+  /** Shows the choice of the times' unit, even if it is folded away. */
   askUnit(): void;
 }
 
@@ -39,7 +39,7 @@ const TIME_UNITS = [
   ["d", "days"],
 ] as const;
 
-/** A column is chosen by its heading; by its number where it has none, or one that is there twice. */
+/** A column is chosen by its heading; by its number if it has none, or one that occurs twice. */
 export function columnChoices(preview: Preview): [value: string, text: string][] {
   return preview.columns.map(({ heading, first }, index) => {
     const twice = preview.columns.filter((other) => other.heading === heading).length > 1;
@@ -49,7 +49,7 @@ export function columnChoices(preview: Preview): [value: string, text: string][]
   });
 }
 
-/** The runs of a file whose times begin again. */
+/** The runs of a file whose times start again. */
 const runChoices = ({ runs }: Preview): [value: string, text: string][] =>
   runs.map(({ first_line, last_line, rows, tests }, index) => [
     String(index + 1),
@@ -81,13 +81,13 @@ const METHODS = [
 
 const FOUND = "detected";
 const COLUMN_NAMES = ["t", "u", "y", "r", "d"] as const;
-/** Words for an unchosen column where nothing was found. */
+/** Words for an unchosen column if none was found. */
 const UNCHOSEN: Partial<Record<ColumnName, string>> = { r: "none, or detected", d: "none" };
 
 const known = (choices: readonly (readonly [string, string])[], value: unknown): string =>
   typeof value === "string" && choices.some(([id]) => id === value) ? value : "auto";
 
-/** `all`: also what only somebody who looks at the record can know. */
+/** `all`: also options that need knowledge of the record. */
 export function recordFields(errors: FormErrors, all: boolean): RecordFields {
   const column = (name: ColumnName): Field<HTMLSelectElement> =>
     choiceField(
@@ -124,11 +124,11 @@ export function recordFields(errors: FormErrors, all: boolean): RecordFields {
         shift: optional("Shift", "for relay formulas; 1/Pu if empty", "/identify/shift"),
       }
     : { dt };
-  // Parts of a loaded request that have no field here: sent back as they came.
+  // Parts of a loaded request that have no field here: sent unchanged.
   let rest: { record: Partial<RecordedTest>; identify: Identify } = { record: {}, identify: {} };
   let moreDisturbances: (string | number)[] = [];
 
-  /** A record may have several disturbances: the field is the first, those of a loaded request follow it. */
+  /** A record may have several disturbances: the field shows the first; those of a loaded request follow it. */
   const asChosen = (name: string, value: string | number): string | number | (string | number)[] =>
     name === "d" ? [value, ...moreDisturbances] : value;
 
@@ -232,7 +232,7 @@ export function recordFields(errors: FormErrors, all: boolean): RecordFields {
   };
 }
 
-/** What a request names is a choice too, whether or not the file has been looked at. */
+/** A name in the request is a choice too, even before the file has been previewed. */
 function choose(select: HTMLSelectElement, value: string): void {
   if (![...select.options].some((option) => option.value === value)) select.append(h("option", { value }, value));
   select.value = value;
@@ -244,7 +244,7 @@ const defined = (values: Identify): Identify =>
 /** A column is named by its heading, or by its number from 1. */
 const columnOf = (text: string): string | number => (/^[1-9]\d*$/.test(text) ? Number(text) : text);
 
-/** A record given as numbers, as the text that a field shows. */
+/** A record given as numbers, converted to the text that a field shows. */
 export function csvOf(record: RecordedTest): string {
   if (record.csv !== undefined) return record.csv;
   const { t, u = [], y = [], r, dt = 1 } = record;
@@ -255,7 +255,7 @@ export function csvOf(record: RecordedTest): string {
   return [r ? "t,u,y,r" : "t,u,y", ...rows].join("\n");
 }
 
-/** The samples of a record without how it is to be read. */
+/** The samples of a record without the options for reading it. */
 export function samplesOf(record: RecordedTest): RecordedTest {
   const { csv, t, dt, u, y, r } = record;
   if (csv !== undefined) return { csv };

@@ -1,4 +1,4 @@
-// What a file was read as, before anything is computed: its columns with what they hold, its times, the lines passed over.
+// The preview of a file before anything is computed: its columns with their contents, its times, the skipped lines.
 import type { Preview, PreviewColumn } from "../api/types.ts";
 import { h, svgElement } from "../dom.ts";
 import { extent } from "../plot/axis.ts";
@@ -17,7 +17,7 @@ const SEPARATORS: Record<string, string> = { tab: "tabs", blanks: "blanks", ",":
 
 const LARGEST_BYTES = 8 * 1024 * 1024;
 
-/** Why a file cannot be sent; "" where it can. */
+/** The reason why a file cannot be sent; "" if it can. */
 export const tooLarge = ({ name, size }: File): string =>
   size > LARGEST_BYTES
     ? `${name} has ${(size / 1024 / 1024).toFixed(1)} MiB; at most 8 MiB can be sent. Cut the record to the test itself.`
@@ -33,7 +33,7 @@ export function formWords(preview: Preview): string {
   return `${preview.rows} rows, ${form}${decimal}, ${preview.encoding.toUpperCase()}.`;
 }
 
-/** The times as read; "" where there are none yet. */
+/** The times as read; "" if there are none yet. */
 export function timeWords({ time }: Preview): string {
   if (!time) return "";
   const parts = [`One row every ${formatParameter(time.dt)} ${time.unit}, over ${formatParameter(time.to - time.from)} ${time.unit}`];

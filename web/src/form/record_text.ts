@@ -1,20 +1,20 @@
-// The text of a record, to paste and to edit; of a long one only the beginning is laid out, which takes no time.
+// The text of a record, for pasting and editing; only the beginning of a long one is laid out, to save time.
 import type { FieldError } from "../api/types.ts";
 import { h } from "../dom.ts";
 import { areaField } from "./controls.ts";
 import type { ControlOptions } from "./controls.ts";
 import type { FormErrors } from "./errors.ts";
 
-/** What the service says of the columns of a record stands at its text. */
+/** Faults of the columns of a record are shown at its text. */
 export const atRecordText = (errors: FieldError[]): FieldError[] =>
   errors.map((error) => (/^\/record\/[tuyr](\/|$)/.test(error.pointer) ? { ...error, pointer: "/record/csv" } : error));
 
 export interface RecordText {
   element: HTMLElement;
-  /** All of it, whatever is shown. */
+  /** The whole text, even if only a part is shown. */
   read(): string;
   write(text: string): void;
-  /** What is pasted or edited, once it is complete. */
+  /** Reports pasted or edited text, once it is complete. */
   onChange(act: () => void): void;
 }
 

@@ -1,4 +1,4 @@
-// Rows under a line of headings that can be added and taken away: states, parameters, points of a range.
+// Rows under a line of headings that can be added and removed: states, parameters, points of a range.
 import { h } from "../dom.ts";
 
 export interface Row<Texts> {
@@ -15,7 +15,7 @@ export interface RowList<Texts> {
   add(texts: Texts): Row<Texts>;
 }
 
-/** `nameOf`: how a row is called where it is taken away; whoever takes one away stands on the next one. */
+/** `nameOf`: the name of a row in its button to remove it; after a removal the focus moves to the next row. */
 export function rowList<Texts>(
   what: string,
   headings: string[],

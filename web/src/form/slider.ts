@@ -1,4 +1,5 @@
-// A quantity to drag or to type: a slider and a text field under one label. The step limits dragging, never typing.
+// A quantity to drag or to type: a slider and a text field under one label. The step applies to dragging, never to
+// typing.
 import { h } from "../dom.ts";
 import { textField } from "./controls.ts";
 import type { Field } from "./controls.ts";
@@ -9,24 +10,25 @@ export interface SliderOptions {
   label: string;
   unit?: string;
   hint?: string;
-  /** Even steps of the logarithm; both ends have one sign. */
+  /** Even steps of the logarithm; both ends have the same sign. */
   log?: boolean;
-  /** What an arrow key is worth, as a share of the value where the slider is logarithmic; without it a thousandth of the range. */
+  /** The step of an arrow key, relative to the value if the slider is logarithmic; by default a thousandth of the
+      range. */
   step?: number;
-  /** What its ends mean. */
+  /** The meaning of its ends. */
   ends?: [string, string];
   pointer: () => string | null;
-  /** Why a typed value is none; "" where it is one. */
+  /** The reason why a typed value is not valid; "" if it is. */
   wrong?(value: number): string;
-  /** What is spoken for a value; it must name the quantity. */
+  /** The spoken text for a value; it must name the quantity. */
   spoken(value: number): string;
   /** While it is dragged. */
   onMove(value: number): void;
-  /** A hand comes near it. */
+  /** The pointer or the focus approaches it. */
   onTouch?(): void;
   /** Released, or typed and left. */
   onRelease(value: number): void;
-  /** Double click and Delete: back to where it came from. */
+  /** Double click and Delete: returns to the initial value. */
   onHome?(): void;
 }
 
@@ -34,19 +36,20 @@ export interface Slider {
   element: HTMLElement;
   field: Field<HTMLInputElement>;
   value(): number;
-  /** Moves it without reporting. A value outside stretches the limits. Null: a choice that is not told stands in the middle. */
+  /** Moves it without reporting. A value outside extends the limits. Null: an unknown value is shown in the middle. */
   set(value: number | null): void;
   setLimits(lo: number, hi: number): void;
-  /** Where it may go next: so many positions to both sides, the nearest first, those ahead before those behind. */
+  /** The values it may take next: this number of positions on both sides, the nearest first, those ahead before
+      those behind. */
   near(most?: number): Iterable<number>;
-  /** Writes again what is spoken: it depends on more than the value. */
+  /** Updates the spoken text: it depends on more than the value. */
   speak(): void;
-  /** The value reached, under its field; "" for as much as is asked. `missed`: a limit that does not hold. */
+  /** The value reached, under its field; "" if it is the requested one. `missed`: a limit that does not hold. */
   setReached(text: string, missed: boolean): void;
 }
 
 const STEPS = 1000;
-/** Of keys that go further: Shift with an arrow, Page up and down. */
+/** Factor for keys with larger steps: Shift with an arrow, Page up and down. */
 const MANY = 10;
 
 export function slider(options: SliderOptions, errors: FormErrors): Slider {
@@ -75,12 +78,12 @@ export function slider(options: SliderOptions, errors: FormErrors): Slider {
     return Math.max(1, Math.round(Math.abs(count)));
   };
 
-  /** Rounding leaves no limit behind: beyond one a method may have no answer. */
+  /** Rounding must not exceed a limit: beyond one a method may have no answer. */
   const within = (rounded: number): number => Math.min(Math.max(lo, hi), Math.max(Math.min(lo, hi), rounded));
 
   const fourDigits = (exact: number): number => Number(exact.toPrecision(4));
 
-  /** No more digits than a hand can set: those of the slider's step, at its ends the ends themselves. */
+  /** Only the digits of the slider's step; at its ends the ends themselves. */
   function reachable(wanted: number): number {
     if (options.log) return within(fourDigits(wanted));
     const near = (end: number): boolean => Math.abs(wanted - end) < (hi - lo) / (2 * steps());
@@ -94,7 +97,7 @@ export function slider(options: SliderOptions, errors: FormErrors): Slider {
     range.max = String(steps());
     range.value = String(Math.round(steps() * share(value)));
     speak();
-    // A limit that was computed has all its digits; nobody types them.
+    // A computed limit has all its digits; they are not shown for typing.
     if (texts) field.input.value = String(options.log ? fourDigits(value) : reachable(value));
   }
 
@@ -111,7 +114,8 @@ export function slider(options: SliderOptions, errors: FormErrors): Slider {
     options.onRelease(value);
   }
 
-  /** By a key or a text: moved and let go in one. What stands there already is no move: nothing would let it go. */
+  /** By a key or a text: moved and released in one event. An unchanged value is not a move: it would never be
+      released. */
   function report(): void {
     if (value === reported) return;
     options.onMove(value);
@@ -133,7 +137,7 @@ export function slider(options: SliderOptions, errors: FormErrors): Slider {
     options.onMove(value);
   });
   if (options.onTouch) for (const event of ["pointerenter", "focus"]) range.addEventListener(event, () => options.onTouch!());
-  // A drag that ends where it began is over too.
+  // A drag that ends where it began also ends the hold.
   range.addEventListener("change", release);
   range.addEventListener("keydown", (event) => {
     if (event.key === "Delete" && options.onHome) {
@@ -196,7 +200,7 @@ export function slider(options: SliderOptions, errors: FormErrors): Slider {
     },
     setLimits(from, to) {
       if (!(options.log ? from / to > 0 && from !== to : to > from)) return;
-      // Nothing was set yet: it stands at its least.
+      // Nothing was set yet: it is at its minimum.
       if (Number.isNaN(reported)) value = from;
       [lo, hi] = [from, to];
       stretch(value);

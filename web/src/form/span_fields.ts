@@ -1,4 +1,4 @@
-// A range as its two ends, each a field of its own under one name.
+// A range as its two ends, in two fields with a common name.
 import type { FieldError, Span } from "../api/types.ts";
 import { h } from "../dom.ts";
 import { textField } from "./controls.ts";
@@ -52,7 +52,7 @@ export function spanFields(
   };
 }
 
-/** The two ends as typed; an empty one is no fault yet. */
+/** The two ends as typed; an empty one is not a fault yet. */
 export function readSpan(typed: readonly [string, string], label: string, pointer: string): SpanReading {
   const ends = typed.map((text, index): Parsed<number> | null =>
     text.trim() === "" ? null : parseNumber(text, `${label}, ${index === 0 ? "from" : "to"}`),

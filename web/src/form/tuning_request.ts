@@ -1,8 +1,9 @@
-// Tuning requests that the page makes from answers: a candidate of Identify as what is to be tuned, the same request with
-// another lambda for one of its entries, and the same subject by every method.
+// Tuning requests that the page makes from answers: for a candidate of Identify, for the same request with another
+// lambda for one of its entries, and for the same subject with every method.
 import type { Candidate, Entry, IdentifyRequest, Implement, Model, Plant, Result, TuneEntry, TuningRequest, TypedBaseline } from "../api/types.ts";
 
-/** What a candidate that was chosen on Identify is tuned as: its record where that leads to the same model again, else its plant. */
+/** The subject for a candidate that was chosen on Identify: its record if that leads to the same model again, else
+    its plant. */
 export type TuneSubject =
   /** `uncertainty` "identified": limits hold for every model consistent with the record. */
   (Pick<IdentifyRequest, "record" | "identify"> & { uncertainty?: "identified" | undefined }) | { plant: Plant };
@@ -32,50 +33,50 @@ export function tuneSubject(request: IdentifyRequest, model: Model, chosen: Cand
 export function withImplement(request: TuningRequest, implement: Implement | null): TuningRequest {
   const { implement: before, ...rest } = request;
   if (!implement) return rest;
-  // What the page has no field for, such as a computation delay, belongs to that product.
+  // Members without a field on the page, such as a computation delay, belong to that product.
   const { y_span: _y, u_span: _u, sample_time: _time, ...others } = before ?? {};
   return { ...rest, implement: before?.product === implement.product ? { ...others, ...implement } : implement };
 }
 
-/** The same request beside today's settings. */
+/** The same request with today's settings. */
 export const withBaseline = (request: TuningRequest, baseline: TypedBaseline): TuningRequest => ({
   ...request,
   baseline,
 });
 
-/** The entry stands behind the one that holds on the record's region, which the same row of the request has made. */
+/** True if the entry follows the one that holds on the record's region, made by the same row of the request. */
 function isSibling(entry: Entry, before: Entry | undefined): boolean {
   return Boolean(before?.over_region) && before?.method === entry.method && same(before?.options, entry.options);
 }
 
-/** The method of every row of the request: as it was sent, or what "all" came to. */
+/** The method of every row of the request: as sent, or the expansion of "all". */
 function rowsAsked(request: TuningRequest, result: Result): TuneEntry[] {
   const all = request.tune === undefined || asksForAll(request.tune);
   return all ? everyMethod(result) : (request.tune as TuneEntry[]);
 }
 
-/** For every entry the row of the request that has made it; -1 for today's settings. */
+/** The row of the request for every entry; -1 for today's settings. */
 export function rowsOf(request: TuningRequest, result: Result): number[] {
   const asked = rowsAsked(request, result);
   let row = -1;
   return result.controllers.map((entry, index) => {
     if (entry.method === "baseline") return -1;
     if (isSibling(entry, result.controllers[index - 1])) return row;
-    // A job that was stopped early has no entries of some rows.
+    // A job that was stopped early has no entries for some rows.
     const next = asked.findIndex((tune, at) => at > row && tune.method === entry.method);
     if (next >= 0) row = next;
     return next;
   });
 }
 
-/** The method and options that made the entry of that index; null for today's settings. */
+/** The method and options of the entry with that index; null for today's settings. */
 export function tuneEntryOf(request: TuningRequest, result: Result, index: number): TuneEntry | null {
   const entry = result.controllers[index];
   if (!entry || entry.method === "baseline") return null;
   return rowsAsked(request, result)[rowsOf(request, result)[index] ?? -1] ?? { method: entry.method };
 }
 
-/** The same request with the row of one of its entries made by other options. */
+/** The same request with other options in the row of one of its entries. */
 export function withTune(request: TuningRequest, result: Result, index: number, tune: TuneEntry): TuningRequest {
   const row = rowsOf(request, result)[index];
   return { ...request, tune: rowsAsked(request, result).map((entry, at) => (at === row ? tune : entry)) };
@@ -88,7 +89,7 @@ export function withOptions(request: TuningRequest, method: string | null, optio
   return { ...request, tune };
 }
 
-/** Options that say the same as lambda in another way. */
+/** Options that replace lambda. */
 const IN_PLACE_OF_LAMBDA = ["Ms", "disturbance_peak", "dead_time_error"];
 
 /** `index`: of the entry in the result. */
@@ -99,7 +100,7 @@ export function withLambda(request: TuningRequest, result: Result, index: number
   return withTune(request, result, index, { ...Object.fromEntries(kept), method: entry.method, lambda, curve: true });
 }
 
-/** "all" as the list that it stood for, each variant with its options. */
+/** "all" as an explicit list, each variant with its options. */
 const everyMethod = (result: Result): TuneEntry[] =>
   result.controllers
     .filter((entry, index) => entry.method !== "baseline" && !isSibling(entry, result.controllers[index - 1]))
@@ -108,11 +109,11 @@ const everyMethod = (result: Result): TuneEntry[] =>
       ...Object.fromEntries(Object.entries(entry.options ?? {}).filter(([, value]) => value !== null)),
     }));
 
-/** Whether every method was asked for, in a word or as a method among others. */
+/** True if every method was requested, as a word or as one of the methods. */
 export const asksForAll = (tune: TuningRequest["tune"]): boolean =>
   typeof tune === "string" || (tune ?? []).some((entry) => entry.method === "all");
 
 export const EVERY_METHOD: TuneEntry[] = [{ method: "all" }];
 
-/** The same subject, tuned by every method there is. */
+/** The same subject, tuned by every method. */
 export const byAllMethods = (request: TuningRequest): TuningRequest => ({ ...request, tune: EVERY_METHOD });

@@ -1,23 +1,24 @@
-// Answers to where a slider may go next, asked for while nothing else is: they are drawn in the frame of the move itself.
+// Answers for the slider's possible next positions, requested while nothing else is: they are drawn in the frame of the
+// move itself.
 
 export interface Ahead<Question, Answer> {
-  /** The answer that is at hand. */
+  /** The answer, if it is known. */
   known(question: Question): Answer | undefined;
   keep(question: Question, answer: Answer): void;
-  /** Where it may go, the likeliest first; what was wanted before is not any more. */
+  /** The possible next questions, the likeliest first; earlier ones are dropped. */
   towards(questions: Iterable<Question>): void;
-  /** Nothing else is asked at the moment. */
+  /** No other call is in progress. */
   resume(): void;
-  /** The questions mean something else from now on. */
+  /** The questions have a new meaning from now on. */
   drop(): void;
 }
 
-/** One at the service, one on its way: what is really asked never waits for more. */
+/** One at the service, one on its way: real calls never wait for more. */
 const UNDER_WAY = 2;
-/** Two long sliders in whole. */
+/** Sufficient for two long sliders. */
 const MAX_KEPT = 700;
 
-/** `work` as for a question that is really asked; `busy`: such a question is under way, and comes first. */
+/** `work` as for a real question; `busy`: such a question is in progress, and has priority. */
 export function ahead<Question, Answer>(
   work: (question: Question, signal: AbortSignal) => Promise<Answer>,
   busy: () => boolean,
@@ -59,7 +60,7 @@ export function ahead<Question, Answer>(
       const answer = await work(question, mine.signal);
       if (mine === calls) keep(question, answer);
     } catch {
-      // Too many questions, or no connection: the hand does not need these answers.
+      // Too many requests, or no connection: these answers are optional.
       if (mine === calls) wanted = null;
     }
     if (mine !== calls) return;

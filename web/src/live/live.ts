@@ -1,4 +1,4 @@
-// The design that moves: what was turned last, the newest answer to it, and how it is asked. No element of the page.
+// The modified design: the last slider move, its newest answer, and how it is requested. No element of the page.
 import { batch, computed, signal } from "@preact/signals-core";
 import type { ReadonlySignal } from "@preact/signals-core";
 import { ApiError } from "../api/client.ts";
@@ -11,45 +11,45 @@ import type { Point, Steps } from "./point.ts";
 import { costOfRow, designShown, manualQuestion, manualShown, questionOf } from "./shown.ts";
 import type { Shown, Modifiable } from "./shown.ts";
 
-/** What the sliders start from: an entry of a job. */
+/** The start of the sliders: an entry of a job. */
 export interface Proposal {
   from: Modifiable;
   point: Point;
-  /** Today's settings in the ideal form, where they could be read so. */
+  /** Today's settings in the ideal form, if they could be converted. */
   today: Controller | null;
 }
 
-/** A point as it is shown. */
+/** The answer for a point, as shown. */
 export interface Answer extends Shown {
   point: Point;
   entry: Entry;
 }
 
 export interface Live {
-  /** Where the sliders stand; null before there is a proposal. */
+  /** The positions of the sliders; null before there is a proposal. */
   readonly point: ReadonlySignal<Point | null>;
   /** The newest answer; null while the proposal itself is shown. */
   readonly answer: ReadonlySignal<Answer | null>;
   /** A slider or a mark is held. */
   readonly held: ReadonlySignal<boolean>;
-  /** No answer has come for a while. */
+  /** No answer has arrived for a while. */
   readonly late: ReadonlySignal<boolean>;
-  /** The design takes too long to follow a hand: it is asked for when it is let go. Its time in ms; 0: it follows. */
+  /** The design is too slow to follow a slider: it is requested on release. Its duration in ms; 0: it follows. */
   readonly waits: ReadonlySignal<number>;
-  /** Why there is no newer answer, or "". */
+  /** The reason why there is no newer answer, or "". */
   readonly trouble: ReadonlySignal<string>;
   readonly canUndo: ReadonlySignal<boolean>;
   readonly canRedo: ReadonlySignal<boolean>;
   readonly steps: ReadonlySignal<Steps | null>;
-  /** Starts from an entry; `at`: where its sliders stand, as the address or the steps that led there say. */
+  /** Starts from an entry; `at`: the positions of its sliders, from the address or the steps that led there. */
   start(proposal: Proposal, at: Steps): void;
-  /** There is nothing to turn. */
+  /** There is nothing to adjust. */
   stop(): void;
-  /** While something is held. */
+  /** During a hold. */
   move(point: Point): void;
-  /** Where the hand may go next, the likeliest first. */
+  /** The possible next points, the likeliest first. */
   expect(points: Iterable<Point>): void;
-  /** It was let go, or a value typed: one step. */
+  /** Released, or a value typed: one step. */
   settle(point: Point): void;
   undo(): void;
   redo(): void;
@@ -70,7 +70,7 @@ interface Question {
   held: boolean;
 }
 
-/** `onSettled`: a step was made, forth, back or to the proposal. */
+/** `onSettled`: a step was made, forward, back or to the proposal. */
 export function liveDesign(onSettled: (point: Point) => void): Live {
   const proposal = signal<Proposal | null>(null);
   const steps = signal<Steps | null>(null);
@@ -83,7 +83,8 @@ export function liveDesign(onSettled: (point: Point) => void): Live {
   let retryTimer: ReturnType<typeof setTimeout> | undefined;
 
   const waits = signal(0);
-  /** Time of the last design of this proposal, ms; by hand nothing is searched unless it is made for a product. */
+  /** Duration of the last design of this proposal, ms; settings by hand need no search unless they are for a
+      product. */
   const cost = { design: 0, manual: 0 };
   const costs = (asked: Point): "design" | "manual" => (asked.manual ? "manual" : "design");
   const waitsFor = (asked: Point): number => {
@@ -101,7 +102,7 @@ export function liveDesign(onSettled: (point: Point) => void): Live {
     return manualShown(from, asked, body, await entriesOf(coarse ? withHeldPoints(body) : body, abort));
   }
 
-  /** A design that does not follow the slider is not asked for ahead of it either. */
+  /** A design that does not follow the slider is not requested ahead either. */
   function* following(points: Iterable<Point>): Generator<Point> {
     for (const ahead of points) {
       if (waitsFor(ahead) > 0) return;
@@ -191,7 +192,7 @@ export function liveDesign(onSettled: (point: Point) => void): Live {
     onSettled(to.now);
   }
 
-  /** Whatever is still asked for. */
+  /** Drops all calls in progress. */
   function forget(): void {
     calls.drop();
     next.drop();

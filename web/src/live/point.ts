@@ -1,12 +1,13 @@
-// A design as it was turned: the method's options, or settings by hand; its steps back and forth, and its place in the address.
+// A modified design: the method's options, or settings by hand; its steps for undo and redo, and its form in the
+// address.
 import type { Controller, Method, TuneEntry } from "../api/types.ts";
 import { MANUAL, manualValue, isTied, withManual, withOption } from "./sliders.ts";
 import type { ManualName, SliderSpec } from "./sliders.ts";
 
 export interface Point {
-  /** The method with its options; null where there is none, as for today's settings. */
+  /** The method with its options; null if there is none, as for today's settings. */
   tune: TuneEntry | null;
-  /** Settings that were moved by hand; they leave what the method says. */
+  /** Settings that were moved by hand; they deviate from the method's result. */
   manual: Controller | null;
 }
 
@@ -22,7 +23,7 @@ export interface Steps {
 
 export const firstStep = (now: Point): Steps => ({ past: [], now, future: [] });
 
-/** A step on; what was undone before is gone. */
+/** Adds a step; undone steps are removed. */
 export function stepTo(steps: Steps, next: Point): Steps {
   if (samePoint(steps.now, next)) return steps;
   return { past: [...steps.past, steps.now].slice(-MAX_STEPS), now: next, future: [] };
@@ -38,16 +39,16 @@ export function stepForward(steps: Steps): Steps {
   return after ? { past: [...steps.past, steps.now], now: after, future: rest } : steps;
 }
 
-/** What no slider by hand moves and a modified design may have otherwise than the proposal. */
+/** Parts that no slider by hand moves, and that may differ from the proposal in a modified design. */
 const BESIDE_MANUAL = ["b", "c", "delta_r", "filter.type", "setpoint_filter.T"];
 
 const at = (whole: TuneEntry | Controller | null | undefined, id: string): unknown =>
   id.split(".").reduce<unknown>((value, part) => (value as Record<string, unknown> | undefined)?.[part], whole ?? {});
 
-/** What an address may name of a method's options. */
+/** The options of a method that an address may contain. */
 const idsOf = (sliders: readonly SliderSpec[]): string[] => [...new Set(sliders.flatMap(({ id, along = [] }) => [id, ...along]))];
 
-/** What of a point differs from the proposal and its controller, for the address; with all its digits. */
+/** The difference of a point from the proposal and its controller, for the address; with all digits. */
 export function valuesOf(
   point: Point,
   proposal: Point,
@@ -71,7 +72,7 @@ export function valuesOf(
   return values;
 }
 
-/** The same controller with a part that the address writes; an empty text is none. */
+/** The same controller with a part from the address; an empty text removes it. */
 function withPart(controller: Controller, id: string, text: string): Controller {
   const [name = id, part] = id.split(".");
   const { [name as keyof Controller]: _before, ...others } = controller;
@@ -85,7 +86,7 @@ const numberIn = (values: Record<string, string>, id: string): number | null => 
   return Number.isFinite(value) ? value : null;
 };
 
-/** The settings by hand that an address means; null where it names none. */
+/** The settings by hand in an address; null if there are none. */
 function manualOf(values: Record<string, string>, controller: Controller): Controller | null {
   const has = (name: ManualName): boolean =>
     manualValue(controller, name) !== null || (name === "Tf" && "filter.type" in values);
@@ -95,7 +96,7 @@ function manualOf(values: Record<string, string>, controller: Controller): Contr
   return given.reduce((to, name) => withManual(to, name, numberIn(values, name)!), base);
 }
 
-/** The point that an address means; what it does not name is as proposed. */
+/** The point of an address; parts that are missing are as proposed. */
 export function pointOf(
   values: Record<string, string>,
   proposal: Point,
@@ -110,5 +111,5 @@ export function pointOf(
   return { tune, manual: (controller && manualOf(values, controller)) ?? proposal.manual };
 }
 
-/** Whether options that may move with another one do. */
+/** True if options that may move together with another one do so. */
 export const tiedAt = (point: Point, method: Method | undefined): boolean => point.tune === null || isTied(point.tune, method);

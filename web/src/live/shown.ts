@@ -1,11 +1,11 @@
-// A modified design: one request with one member altered, and the result that belongs to it. No element of the page.
+// A modified design: one request with one member changed, and its result. No element of the page.
 import { callSubject, designBody, evaluateBody, withHeldPoints } from "../api/live.ts";
 import type { DesignAnswer } from "../api/live.ts";
 import type { Controller, Entry, Result, TuneEntry, TuningRequest } from "../api/types.ts";
 import { rowsOf, withTune } from "../form/tuning_request.ts";
 import type { Point } from "./point.ts";
 
-/** A job's entry that is turned. */
+/** A job's entry that is modified. */
 export interface Modifiable {
   request: TuningRequest;
   result: Result;
@@ -13,34 +13,34 @@ export interface Modifiable {
 }
 
 export interface Shown {
-  /** The call that gives it: a job for a design, the figures of settings by hand. */
+  /** The call for it: a job for a design, an evaluation for settings by hand. */
   path: "v1/jobs" | "v1/evaluate";
   request: unknown;
   result: Result;
-  /** Index of the entry that is turned. */
+  /** Index of the modified entry. */
   index: number;
-  /** Index in the result of the job that is turned, of each entry here. */
+  /** For each entry here, its index in the result of the modified job. */
   origin: number[];
-  /** Time to compute what follows the slider, ms. */
+  /** Duration of the computation that follows the slider, ms. */
   cost: number;
-  /** False: what is said over all entries, and their figures beside each other, waits until the hand lets go. */
+  /** False: statements over all entries, and comparisons of their figures, are delayed until the slider is released. */
   whole: boolean;
 }
 
-/** The job's request with the one member altered that a slider moves. */
+/** The job's request with the one member changed that a slider moves. */
 export const alteredBy = ({ request, result, index }: Modifiable, tune: TuneEntry): TuningRequest =>
   withTune(request, result, index, tune);
 
-/** Rows of the request; one is asked for as a whole while a slider is held. */
+/** Rows of the request; a single one is computed completely while a slider is held. */
 const rowCount = (request: TuningRequest): number => (Array.isArray(request.tune) ? request.tune.length : 1);
 
-/** The body for POST /v1/design; `held`: of the turned row alone, with few samples. */
+/** The body for POST /v1/design; `held`: only the modified row, with few samples. */
 export function questionOf(from: Modifiable, tune: TuneEntry, held: boolean): Record<string, unknown> {
   const body = designBody(alteredBy(from, tune), from.result);
   return held ? { ...withHeldPoints(body), tune: [tune] } : body;
 }
 
-/** The entries of the job that the same row of its request has made. */
+/** The entries of the job made by the same row of its request. */
 function rowMates({ request, result, index }: Modifiable): number[] {
   const rows = rowsOf(request, result);
   return rows.flatMap((row, at) => (row === rows[index] && row >= 0 ? [at] : []));
@@ -48,17 +48,17 @@ function rowMates({ request, result, index }: Modifiable): number[] {
 
 const todaysOf = (entries: readonly Entry[]): Entry | undefined => entries.find((entry) => entry.method === "baseline");
 
-/** Which of a row's new entries is the one that was turned: held on the region before the model alone. */
+/** The index of the modified entry among a row's new ones: the one with limits over the region comes first. */
 const sameKind = (modified: Entry, made: readonly Entry[]): number =>
   Math.max(0, made.findIndex((entry) => Boolean(entry.over_region) === Boolean(modified.over_region)));
 
-/** Without what is said over all entries. */
+/** Without statements over all entries. */
 function withoutComparison(result: Result): Result {
   const { verdict: _verdict, ranking: _ranking, ranking_by: _by, rank_limits: _limits, proposed: _proposed, request_hash: _hash, ...kept } = result;
   return kept;
 }
 
-/** An answer of the turned row alone, among the job's other entries, which it does not touch. */
+/** An answer for the modified row only, combined with the job's other entries, which are unchanged. */
 function amongOthers(from: Modifiable, answer: DesignAnswer): Pick<Shown, "result" | "index" | "origin"> {
   const { result, index } = from;
   const mates = rowMates(from);
@@ -82,7 +82,7 @@ function amongOthers(from: Modifiable, answer: DesignAnswer): Pick<Shown, "resul
   };
 }
 
-/** A design's answer as it is shown. */
+/** A design's answer in its displayed form. */
 export function designShown(from: Modifiable, tune: TuneEntry, answer: DesignAnswer, held: boolean): Shown {
   const request = alteredBy(from, tune);
   const row = rowsOf(from.request, from.result)[from.index]!;
@@ -105,8 +105,8 @@ export function designShown(from: Modifiable, tune: TuneEntry, answer: DesignAns
   return { path, request, result, index: at, origin, cost: costOf(made), whole: true };
 }
 
-/** The body for POST /v1/evaluate; null if there is no plant. The settings are held to the limit on Ms of the design that
- * they leave. */
+/** The body for POST /v1/evaluate; null if there is no plant. The settings are compared with the limit on Ms of the
+ * design from which they deviate. */
 export function manualQuestion(from: Modifiable, { tune, manual }: Point, today: Controller | null): Record<string, unknown> | null {
   const subject = callSubject(from.request, from.result);
   const Ms = tune?.["Ms"] ?? from.result.controllers[from.index]?.options?.["Ms"];
@@ -114,7 +114,7 @@ export function manualQuestion(from: Modifiable, { tune, manual }: Point, today:
   return subject && evaluateBody({ ...from.request, evaluate }, subject, [manual!, ...(today ? [today] : [])]);
 }
 
-/** Settings by hand as they are shown: the job's other entries stay, without a verdict over all of them. */
+/** Settings by hand in their displayed form: the job's other entries stay, without a verdict over all of them. */
 export function manualShown(from: Modifiable, point: Point, body: unknown, [entry, today]: Entry[]): Shown {
   const kept = withoutComparison(from.result);
   const controllers = kept.controllers.map((other, at) =>
@@ -129,13 +129,13 @@ export function manualShown(from: Modifiable, point: Point, body: unknown, [entr
   return { path: "v1/evaluate", request: body, result, index: from.index, origin, cost: costOf([entry!]), whole: true };
 }
 
-/** Settings by hand keep the name of what they were moved from, and its limits to be drawn. */
+/** Settings by hand keep the name of the entry from which they were moved, and its limits for the plots. */
 function manualEntry(entry: Entry, from: Entry, { tune }: Point): Entry {
   const limits = Object.entries({ ...from.options, ...tune }).filter(([name]) => name === "Ms" || name === "Mt");
   return { ...entry, method: from.method, options: Object.fromEntries(limits), title: `${from.title ?? from.method}, by hand` };
 }
 
-/** How long the row that is turned took to compute, ms. */
+/** The duration of the computation of the modified row, ms. */
 const costOf = (entries: readonly Entry[]): number =>
   entries.reduce((sum, entry) => sum + (entry.method === "baseline" ? 0 : (entry.compute_ms ?? 0)), 0);
 

@@ -1,10 +1,10 @@
-// What can be moved on a design: the options that its method describes with sliders, and the settings themselves.
+// The sliders of a design: the options for which its method describes one, and the settings themselves.
 import type { Controller, Entry, Method, OptionSlider, Schema, TuneEntry } from "../api/types.ts";
 import type { UnitNames } from "../words/numbers.ts";
 import { namedUnit, quotient } from "../words/numbers.ts";
 
 export interface SliderSpec {
-  /** Its option with dots between the parts, or the setting's name; stands in the address too. */
+  /** Its option with dots between the parts, or the setting's name; also used in the address. */
   id: string;
   label: string;
   unit: string;
@@ -12,17 +12,17 @@ export interface SliderSpec {
   hi: number;
   /** Even steps of the logarithm. */
   log: boolean;
-  /** What one press of an arrow key is worth; 1 % where it is logarithmic. */
+  /** The step of an arrow key; 1 % if it is logarithmic. */
   step?: number;
-  /** What its ends mean. */
+  /** The meaning of its ends. */
   ends?: [string, string];
-  /** Null: the method's own choice, which it does not tell. */
+  /** Null: the method's own choice, which it does not state. */
   value: number | null;
-  /** What the method says of the option's values. */
+  /** The method's description of the option's values. */
   schema?: Schema;
   /** Options that have the same value as long as they are tied to it. */
   along?: readonly string[];
-  /** The value of the same quantity that a design came to: less or more than was asked for. */
+  /** The value of this quantity that a design reached: less or more than requested. */
   reached?(entry: Entry): number | null;
   /** Its name. */
   figure?: OptionSlider["value_of"];
@@ -31,10 +31,10 @@ export interface SliderSpec {
 export type ManualName = "Kp" | "Ti" | "Td" | "Tf";
 export const MANUAL: readonly ManualName[] = ["Kp", "Ti", "Td", "Tf"];
 
-/** A setting by hand is moved between these parts and multiples of it. */
+/** Settings by hand range from this part to this multiple of the value. */
 const SPREAD = 5;
 
-/** Why a typed value cannot be asked for; "" where it can. */
+/** The reason why a typed value cannot be requested; "" if it can. */
 export function wrongValue({ label, schema }: SliderSpec, value: number): string {
   const { minimum, exclusiveMinimum, maximum, exclusiveMaximum } = schema ?? {};
   const rules = [
@@ -57,17 +57,17 @@ interface Movable {
   slider: OptionSlider;
 }
 
-/** The options that the method says are moved, parts of an option included. */
+/** The options with a slider, including parts of an option. */
 const movable = (properties: Record<string, Schema> | undefined, prefix = ""): Movable[] =>
   Object.entries(properties ?? {}).flatMap(([name, schema]) => [
     ...(schema["x-slider"] ? [{ id: prefix + name, schema, slider: schema["x-slider"] }] : []),
     ...movable(schema.properties, `${prefix}${name}.`),
   ]);
 
-/** What was asked for, else the method's default. */
+/** The requested value, else the method's default. */
 const askedOf = (tune: TuneEntry, { id, schema }: Movable): number | null => at(tune, id) ?? given(schema.default);
 
-/** Whether the options that may move with another one have its value. */
+/** True if the options that may move together with another one have its value. */
 export function isTied(tune: TuneEntry, method: Method | undefined): boolean {
   const options = movable(method?.options?.properties);
   return options.every((option) => {
@@ -76,8 +76,8 @@ export function isTied(tune: TuneEntry, method: Method | undefined): boolean {
   });
 }
 
-/** The same options with one of them changed, and with it those that go `along`; parts of an option that exclude each
- * other are replaced by it. */
+/** The same options with one of them changed, and those in `along` with it; parts of an option that exclude each other
+ * are replaced. */
 export function withOption(tune: TuneEntry, id: string, value: number, along: readonly string[] = []): TuneEntry {
   const [name = id, part] = id.split(".");
   const next: TuneEntry = { ...tune, [name]: part ? { [part]: value } : value };
@@ -86,8 +86,8 @@ export function withOption(tune: TuneEntry, id: string, value: number, along: re
 
 const filterTime = ({ controller }: Entry): number | null => controller?.filter?.Tf ?? null;
 
-/** Where a design's figures stand. The overshoot is that of the loop that runs: in the user's own controller where the
- * request names one. */
+/** The place of a design's figures. The overshoot is that of the implemented loop if the request names the user's own
+ * controller. */
 const FIGURES: Record<NonNullable<OptionSlider["value_of"]>, (entry: Entry) => number | null> = {
   Mks: ({ robustness }) => robustness?.Mks ?? null,
   Tf: filterTime,
@@ -98,7 +98,7 @@ const FIGURES: Record<NonNullable<OptionSlider["value_of"]>, (entry: Entry) => n
 
 const quotientOf = (a: number | null, b: number): number | null => (a === null ? null : a / b);
 
-/** `tied`: without those that move with another one. */
+/** `tied`: without those that move together with another one. */
 export function optionSliders(tune: TuneEntry, entry: Entry, method: Method | undefined, units: UnitNames, tied = isTied(tune, method)): SliderSpec[] {
   const options = movable(method?.options?.properties);
   const valueOf = (option: Movable): number | null =>
@@ -138,14 +138,14 @@ export function optionSliders(tune: TuneEntry, entry: Entry, method: Method | un
 }
 
 const given = (value: unknown): number | null => (typeof value === "number" ? value : null);
-/** Words in full, symbols as they are written. */
+/** Words in full, symbols unchanged. */
 const nameOf = (name: string): string => (name.length < SYMBOL_LENGTH ? name : name.replaceAll("_", " ").replace(/ deg$/, ""));
 const SYMBOL_LENGTH = 7;
 
-/** The schema of the number that an option may be. */
+/** The number schema of an option that may be a number. */
 const numberSchema = (schema: Schema): Schema => schema.oneOf?.find((item) => item.type === "number") ?? schema;
 
-/** Relative ones about the value, else about the loop's own time. */
+/** Relative ends around the value, else around the loop's own time. */
 function endsOf(schema: Schema, { from, to, relative }: OptionSlider, value: number | null, entry: Entry): Pick<SliderSpec, "lo" | "hi"> | null {
   if (!relative) return { lo: from, hi: to };
   const crossover = entry.robustness?.gain_crossover;
@@ -162,7 +162,7 @@ export function withManual(controller: Controller, name: ManualName, value: numb
     : { ...controller, [name]: value };
 }
 
-/** The settings that a controller has, each about the proposal's. */
+/** The settings of a controller, with ranges around the proposal's. */
 export function manualSliders(controller: Controller, units: UnitNames): SliderSpec[] {
   return MANUAL.flatMap((name) => {
     const value = manualValue(controller, name);

@@ -1,4 +1,5 @@
-// Ranges, scales, ticks and their texts, linear and logarithmic. Every function returns for every input: no data, one value, or nonsense.
+// Ranges, scales, ticks and their texts, linear and logarithmic. Every function returns for every input: no data, one
+// value, or values that are not valid.
 
 export type ScaleKind = "linear" | "log";
 export type Range = readonly [number, number];
@@ -69,7 +70,7 @@ export function makeScale(kind: ScaleKind, range: Range, pixels: Range): Scale {
   };
 }
 
-/** Tick values inside the range, about `count` of them, at least three where the numbers allow it. */
+/** Tick values inside the range, about `count` of them, at least three if the numbers allow it. */
 export function ticks(kind: ScaleKind, range: Range, count: number): number[] {
   const [lo, hi] = usableRange(range[0], range[1], kind);
   const wanted = Math.max(3, Math.min(20, Math.round(count) || 3));
@@ -95,19 +96,19 @@ function linearTicks(lo: number, hi: number, wanted: number): number[] {
   return chosen;
 }
 
-/** index * step without the rounding dust of a decimal step. */
+/** index * step without the rounding error of a decimal step. */
 function clean(index: number, step: number): number {
   return Number((index * step).toPrecision(12));
 }
 
-/** Every so-maniest decade, those whose exponent it divides where three of them are left. */
+/** Every `every`-th decade: the exponents that are multiples of it, if there are three of them. */
 function thinned(decades: number[], every: number): number[] {
   const round = decades.filter((value) => Math.round(Math.log10(value)) % every === 0);
   if (round.length >= 3) return round;
   return every > 2 ? thinned(decades, every - 1) : decades.filter((_, index) => index % 2 === 0);
 }
 
-/** So much room for a decade, in ticks, lets 1, 2 and 5 stand apart. */
+/** With this number of ticks of room per decade, 1, 2 and 5 do not overlap. */
 const FINE_PER_DECADE = 1.3;
 
 /** `room`: how many ticks fit; `wanted`: the same, and at least three. */
@@ -139,14 +140,14 @@ const MINUS = "−";
 const isLong = (size: number): boolean => size !== 0 && (size >= 1e5 || size < 1e-3);
 const written = (text: string): string => text.replaceAll("-", MINUS);
 
-/** A number's text: no dust, true minus, powers of ten where plain digits would be long. */
+/** The text of a number: no rounding errors, true minus, powers of ten if plain digits would be long. */
 export function tickText(value: number): string {
   if (value === 0) return "0";
   const text = isLong(Math.abs(value)) ? value.toExponential().replace("e+", "e") : String(Number(value.toPrecision(10)));
   return written(text);
 }
 
-/** The texts of an axis' ticks, in one notation. */
+/** The texts of an axis's ticks, in one notation. */
 export function tickTexts(values: readonly number[]): string[] {
   if (!values.some((value) => isLong(Math.abs(value)))) return values.map(tickText);
   return values.map((value) => (value === 0 ? "0" : value === 1 ? "1" : written(value.toExponential().replace("e+", "e"))));

@@ -1,15 +1,15 @@
-// Cursors that move together, and stretches that are looked at together: plots with the same link name share them.
+// Shared cursors and zoom ranges: plots with the same link name share them.
 import type { Range } from "./axis.ts";
 
 export interface CursorPosition {
   value: number | null;
-  /** Who moved it: that plot shows the figures. */
+  /** The plot that moved it, which shows the figures. */
   source: object | null;
 }
 
 export interface Listener {
   onCursor(position: CursorPosition): void;
-  /** Another plot shows that stretch, or everything. */
+  /** Another plot shows that range, or everything. */
   onZoom(stretch: Range | null): void;
 }
 
@@ -29,12 +29,12 @@ export function moveCursor(name: string, position: CursorPosition): void {
   for (const listener of links.get(name) ?? []) listener.onCursor(position);
 }
 
-/** `mine`: who shows it already. */
+/** `mine`: the plot that shows it already. */
 export function zoomTogether(name: string, stretch: Range | null, mine: Listener): void {
   for (const listener of links.get(name) ?? []) if (listener !== mine) listener.onZoom(stretch);
 }
 
-/** Index of the sample nearest to the value; -1 for an empty list. The list rises, or falls. */
+/** Index of the sample nearest to the value; -1 for an empty list. The list increases or decreases. */
 export function nearestIndex(list: readonly (number | null)[], value: number): number {
   let best = -1;
   let distance = Infinity;

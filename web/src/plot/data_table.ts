@@ -1,4 +1,4 @@
-// A plot's data as a table to read: every sample of short traces, evenly chosen rows of long ones (exports have them all).
+// A plot's data as a table: every sample of short traces, evenly chosen rows of long ones (exports have all).
 import { h } from "../dom.ts";
 import { tickText } from "./axis.ts";
 import type { Frame } from "./frame.ts";

@@ -1,4 +1,4 @@
-// Long traces: what a screen can show of them.
+// Reduction of long traces to the points that a screen can show.
 
 /** Index runs of consecutive samples that can be drawn, as [first, last]. */
 export function drawableRuns(
@@ -30,8 +30,8 @@ export function drawableRuns(
 }
 
 /**
- * The samples that matter when many fall on one pixel column: first, least, greatest and last of each column.
- * `columns` holds the pixel column of each sample of the run, not falling. Returns indices in order.
+ * The relevant samples if many fall on one pixel column: first, minimum, maximum and last of each column. `columns`
+ * holds the pixel column of each sample of the run, not decreasing. Returns indices in order.
  */
 export function columnExtremes(columns: readonly number[], values: readonly number[]): number[] {
   const kept: number[] = [];

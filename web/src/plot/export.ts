@@ -1,4 +1,4 @@
-// A plot as a file: SVG without any class, style or variable left, PNG drawn from it, CSV of its data.
+// A plot as a file: SVG without classes, styles and variables, PNG drawn from it, CSV of its data.
 import { node } from "../dom.ts";
 import type { TreeNode } from "../dom.ts";
 import type { Frame } from "./frame.ts";
@@ -6,7 +6,7 @@ import { layoutFrame } from "./layout.ts";
 import type { View } from "./layout.ts";
 import { drawLayout, lineOf } from "./marks.ts";
 
-/** Colour of a token, e.g. of "--series-1". */
+/** The colour of a token, e.g. of "--series-1". */
 export type Palette = (token: string) => string;
 
 const FONTS = "system-ui, Segoe UI, DejaVu Sans, sans-serif";
@@ -16,7 +16,7 @@ const escapeText = (text: string): string =>
   text.replaceAll("&", "&amp;").replaceAll("<", "&lt;").replaceAll(">", "&gt;");
 const escapeValue = (text: string): string => escapeText(text).replaceAll('"', "&quot;");
 
-/** Markup of a node, colours put in for their tokens. */
+/** Markup of a node, with colours in place of their tokens. */
 export function toMarkup(tree: TreeNode, palette: Palette): string {
   const attributes = Object.entries(tree.attributes ?? {})
     .map(
@@ -44,7 +44,7 @@ function legend(frame: Frame, width: number): TreeNode[] {
   return nodes;
 }
 
-/** A whole SVG document of the plot as it is zoomed, with title, description, legend and background. */
+/** A complete SVG document of the plot with its zoom, title, description, legend and background. */
 export function frameToSvg(frame: Frame, view: View, width: number, height: number, palette: Palette): string {
   const layout = layoutFrame(frame, width, height, view);
   const document = node(
@@ -67,7 +67,7 @@ export function frameToSvg(frame: Frame, view: View, width: number, height: numb
   return toMarkup(document, palette);
 }
 
-/** One table of all traces: x (and the parameter), then y; rows of different traces are told apart by the first columns. */
+/** One table of all traces: x (and the parameter), then y; the first columns identify the trace of a row. */
 export function frameToRows(frame: Frame): { header: string[]; rows: (string | number | null)[][] } {
   const parametric = frame.panes.some((pane) => pane.traces.some((trace) => trace.parameter));
   const header = ["trace", "axis", ...(parametric ? [frame.cursorLabel] : []), frame.x.label, "value"];
@@ -132,7 +132,7 @@ export async function svgToPng(svg: string, width: number, height: number): Prom
 
 export const exportHeight = (height: number): number => height + HEADER;
 
-/** The light colours, whatever the page shows: exports go on paper. */
+/** The light colours, whatever the page shows: exports are for paper. */
 export function lightPalette(): Palette {
   const colours = getComputedStyle(document.documentElement);
   const read = new Map<string, string>();
@@ -150,7 +150,7 @@ export function lightPalette(): Palette {
     "series-3",
     "series-4",
   ]) {
-    // A token reads "light-dark(#2363c5, #5b95f5)".
+    // A token has the form "light-dark(#2363c5, #5b95f5)".
     const first = /#[0-9a-f]{3,6}/i.exec(colours.getPropertyValue(`--${token}`));
     if (first) read.set(`--${token}`, first[0]);
   }

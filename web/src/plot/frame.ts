@@ -1,19 +1,20 @@
-// What a plot shows, as plain data: charts make frames, the plot draws them. Nothing here knows the page or the subject.
+// The content of a plot as plain data: charts make frames, the plot draws them. Independent of the page and the
+// subject.
 import type { Range, ScaleKind } from "./axis.ts";
 
-/** How a line looks. 1 to 4 are the series of a comparison; "data" are measured samples. */
+/** The look of a line. 1 to 4 are the series of a comparison; "data" are measured samples. */
 export type Look = 1 | 2 | 3 | 4 | "data";
 
 export interface Trace {
   name: string;
   look: Look;
-  /** Thin and dotted, in the look's colour: what stands beside a line of the same look. */
+  /** Thin and dotted, in the look's colour: a companion of a line with the same look. */
   thin?: boolean;
   x: readonly (number | null)[];
   y: readonly (number | null)[];
-  /** The cursor's variable where it is not x: a curve in a plane run through by a parameter. */
+  /** The cursor's variable if it is not x: a parametric curve in a plane. */
   parameter?: readonly number[];
-  /** From that sample on it winds about the origin, turn upon turn, within that radius. */
+  /** From that sample on it winds around the origin, turn after turn, within that radius. */
   winding?: { from: number; radius: number };
 }
 
@@ -27,11 +28,11 @@ export type Mark =
       x: number;
       y: number;
       label: string;
-      /** Its colour; the colour of what must be avoided by itself. */
+      /** Its colour; by default the colour of a forbidden region. */
       look?: Look;
-      /** Its name shows while it is pointed at: for points that stand close. */
+      /** Its name is shown only under the pointer: for points that are close together. */
       quiet?: boolean;
-      /** It can be taken and moved. */
+      /** It can be dragged. */
       handle?: boolean;
     };
 
@@ -39,7 +40,7 @@ export type Point = Extract<Mark, { kind: "point" }>;
 
 export interface Axis {
   kind: ScaleKind;
-  /** Name with its unit, as written beside the axis. */
+  /** Name with its unit, as written next to the axis. */
   label: string;
   /** The range to show first; taken from the data if absent. */
   range?: Range;
@@ -55,22 +56,22 @@ export interface Pane {
 
 export interface Frame {
   title: string;
-  /** One or two sentences with the main figures: the plot's text for those who do not see it. */
+  /** One or two sentences with the main figures: the plot's text for readers who do not see it. */
   description: string;
   x: Axis;
   panes: Pane[];
-  /** A unit of x is as long as a unit of y. For one pane. */
+  /** The units of x and y have the same length. For plots with one pane. */
   equal?: boolean;
-  /** Names its own traces; else they stand in a legend that several plots share. */
+  /** Has a legend of its own; otherwise several plots share one. */
   ownLegend?: boolean;
-  /** Plots with the same link move their cursors together. */
+  /** Plots with the same link share their cursor. */
   link: string;
   /** The cursor's variable with its unit, e.g. "time (s)". */
   cursorLabel: string;
   cursorKind: ScaleKind;
-  /** What dragging over the plot does instead of zooming: it chooses a stretch of x. Shift and drag zooms. */
+  /** Dragging over the plot chooses a range of x instead of zooming. Shift and drag zooms. */
   brush?: (from: number, to: number) => void;
-  /** The same subject drawn in another way, which a button shows in its place. */
+  /** Another view of the same subject, which a button shows instead. */
   alternative?: Frame;
   /** File name of exports, without ending. */
   fileName: string;

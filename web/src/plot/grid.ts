@@ -1,4 +1,4 @@
-// Several plots side by side, each known by a key: made when it is first shown, written to afterwards.
+// Several plots side by side, each with a key: created when first shown, updated afterwards.
 import { h } from "../dom.ts";
 import type { Frame } from "./frame.ts";
 import { createPlot } from "./plot.ts";
@@ -6,11 +6,11 @@ import type { Announce, Plot } from "./plot.ts";
 
 export interface PlotGrid {
   element: HTMLElement;
-  /** Null takes the plot away. */
+  /** Null removes the plot. */
   show(key: string, frame: Frame | null): void;
-  /** While something that changes the frames is held their axes only grow. */
+  /** While a control that changes the frames is held, their axes only grow. */
   hold(held: boolean): void;
-  /** The frames are old: newer ones are on their way. */
+  /** The frames are outdated: newer ones are on their way. */
   setBusy(busy: boolean): void;
   dispose(): void;
 }

@@ -1,4 +1,4 @@
-// Where the names of marks stand, and what a cursor reads: where the fewest curves run, and not on one another.
+// Places of the names of marks and of a cursor's figures: those with the fewest curves, without overlap.
 import { node } from "../dom.ts";
 import type { TreeNode } from "../dom.ts";
 import type { Mark, Point } from "./frame.ts";
@@ -16,7 +16,7 @@ export const GLYPH_PX = 6.4;
 const LINE_PX = 14;
 const BASE_PX = 11;
 const SMALL_CIRCLE_PX = 36;
-/** What standing on another name counts, in samples of curves. */
+/** The penalty of overlapping another name, in samples of curves. */
 const COLLISION = 1000;
 
 const round = (value: number): number => Math.round(value * 10) / 10;
@@ -24,7 +24,7 @@ const round = (value: number): number => Math.round(value * 10) / 10;
 const overlap = (a: Rectangle, b: Rectangle): boolean =>
   a.left < b.left + b.width && b.left < a.left + a.width && a.top < b.top + b.height && b.top < a.top + a.height;
 
-/** How many samples of the pane's curves lie in each rectangle. */
+/** Number of samples of the pane's curves in each rectangle. */
 function samplesUnder(box: PaneBox, places: readonly Rectangle[]): number[] {
   const counts = places.map(() => 0);
   for (const trace of box.pane.traces)
@@ -63,7 +63,7 @@ interface Place extends Rectangle {
   anchor: Anchor;
 }
 
-/** The places that a mark's name may have, the usual one first. */
+/** The possible places of a mark's name, the usual one first. */
 function placesOf(box: PaneBox, mark: Mark): Place[] {
   const text = mark.label ?? "";
   const right = box.left + box.width;
@@ -83,7 +83,7 @@ function placesOf(box: PaneBox, mark: Mark): Place[] {
       ]);
     }
     case "circle": {
-      // Inside, where the curves that respect the circle never are; a small circle has no room for it.
+      // Inside the circle, where allowed curves never are; a small circle has no room for it.
       const radius = Math.abs(box.y.toPixel(mark.y + mark.radius) - box.y.toPixel(mark.y));
       const inside = radius > SMALL_CIRCLE_PX;
       const [x, y] = [box.x.toPixel(mark.x), box.y.toPixel(mark.y)];
@@ -109,7 +109,7 @@ function textAt(text: string, { x, base, anchor }: Place): TreeNode {
   return node("text", { ...place, fill: "var(--text)", "font-size": 12 }, text);
 }
 
-/** The names of a pane's marks; quiet ones are not told. */
+/** The names of a pane's marks, without those of quiet ones. */
 export function markLabels(box: PaneBox): TreeNode[] {
   const taken: Rectangle[] = [];
   return (box.pane.marks ?? []).filter(named).map((mark) => {
@@ -120,7 +120,7 @@ export function markLabels(box: PaneBox): TreeNode[] {
   });
 }
 
-/** A point's name beside it. */
+/** A point's name next to it. */
 export function pointLabel(box: PaneBox, mark: Point): TreeNode {
   const places = placesOf(box, mark);
   return textAt(mark.label, places[freest(box, places, [])]!);

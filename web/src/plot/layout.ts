@@ -1,4 +1,4 @@
-// From a frame and a size to rectangles and scales. Pure: the page and the exports share it.
+// Converts a frame and a size to rectangles and scales. Pure: shared by the page and the exports.
 import { extent, makeScale, ticks, tickTexts, usableRange } from "./axis.ts";
 import type { Range, Scale } from "./axis.ts";
 import type { Frame, Pane } from "./frame.ts";
@@ -19,7 +19,7 @@ export interface Layout {
   boxes: PaneBox[];
 }
 
-/** What the user zoomed to; null: everything. */
+/** The user's zoom; null: everything. */
 export interface View {
   x: Range | null;
   y: (Range | null)[];
@@ -28,7 +28,7 @@ export interface View {
 export const wholeView = (frame: Frame): View => ({ x: null, y: frame.panes.map(() => null) });
 
 const LEFT = 54;
-/** Tick texts longer than these need room on their left. */
+/** Longer tick texts need additional room on their left. */
 const USUAL_TICK_LENGTH = 4;
 const TICK_GLYPH_PX = 7;
 /** Between the ticks of a y axis. */
@@ -40,7 +40,7 @@ const TOP = 8;
 const BOTTOM = 38;
 const GAP = 14;
 
-/** `atLeast`: a layout whose ranges this one's must not fall short of, where the user did not zoom. */
+/** `atLeast`: a layout whose ranges are included in this one's, unless the user has zoomed. */
 export function layoutFrame(
   frame: Frame,
   width: number,
@@ -83,7 +83,7 @@ export function layoutFrame(
   return { width, height, boxes };
 }
 
-/** As much as the longest tick text takes, so that no axis name stands on it. */
+/** The width of the longest tick text, so that it does not overlap the axis name. */
 function leftOf(frame: Frame, ranges: Range[], heights: number[]): number {
   const lengths = frame.panes.flatMap((pane, index) =>
     tickTexts(ticks(pane.y.kind, ranges[index]!, heights[index]! / TICK_PX)).map((text) => text.length),
@@ -91,7 +91,7 @@ function leftOf(frame: Frame, ranges: Range[], heights: number[]): number {
   return LEFT + TICK_GLYPH_PX * Math.max(0, Math.max(0, ...lengths) - USUAL_TICK_LENGTH);
 }
 
-/** Half of the last tick's text, which may stand at the very end. */
+/** Half of the last tick's text, which may be at the very end. */
 function rightOf(frame: Frame, range: Range, width: number): number {
   const last = tickTexts(ticks(frame.x.kind, range, width / X_TICK_PX)).at(-1) ?? "";
   return Math.max(RIGHT, Math.ceil((TICK_GLYPH_PX * last.length) / 2));
@@ -103,7 +103,7 @@ const dataRangeOfX = (frame: Frame): Range =>
     frame.x.kind,
   );
 
-/** The range, widened to what was shown before. */
+/** The range, extended to the one shown before. */
 const covering = (range: Range, before: Scale | undefined): Range =>
   before ? [Math.min(range[0], before.range[0]), Math.max(range[1], before.range[1])] : range;
 
@@ -114,7 +114,7 @@ function dataRange(pane: Pane): Range {
   return extent([...pane.traces.map((trace) => trace.y), levels], pane.y.kind, pane.y.kind === "linear" ? 0.06 : 0.03);
 }
 
-/** Of what lies in view, and a step to both sides of it. */
+/** The range of the visible samples, and one sample on both sides. */
 function rangeWithin(pane: Pane, [from, to]: Range): Range {
   const inView = pane.traces.map(({ x, y }) => {
     const inside = (index: number): boolean => typeof x[index] === "number" && x[index]! >= from && x[index]! <= to;
@@ -124,7 +124,7 @@ function rangeWithin(pane: Pane, [from, to]: Range): Range {
   return extent(inView, pane.y.kind, pane.y.kind === "linear" ? 0.06 : 0.03);
 }
 
-/** Widens the narrower of two ranges about its middle until a unit is as long on both axes. */
+/** Extends the narrower of two ranges around its middle until units have the same length on both axes. */
 export function equalRanges(x: Range, y: Range, width: number, height: number): [Range, Range] {
   const unitsPerPixel = Math.max((x[1] - x[0]) / width, (y[1] - y[0]) / height);
   const about = (range: Range, length: number): Range => {

@@ -1,5 +1,5 @@
-// From a layout to SVG nodes. Looks are presentation attributes over colour tokens, var(--name): no class and no style,
-// so the same nodes serve the page (which follows the theme) and the exports (which put the colours in).
+// Converts a layout to SVG nodes. Looks are presentation attributes with colour tokens, var(--name): no class and no
+// style, so the same nodes are used by the page (which follows the theme) and the exports (which insert the colours).
 import { node, svgElement } from "../dom.ts";
 import type { TreeNode } from "../dom.ts";
 import { ticks, tickTexts } from "./axis.ts";
@@ -31,12 +31,12 @@ export const lineOf = (look: Look, thin = false): Attributes => (thin ? { ...LIN
 
 const FONT = { "font-size": 12 };
 const FAR = 20000;
-/** Radius below which turns of a curve about the origin run into each other. */
+/** Below this radius the turns of a curve around the origin cannot be distinguished. */
 const SMEARED_PX = 90;
 
 const round = (value: number): number => Math.round(value * 10) / 10;
 
-/** Everything but the cursor. `clip` makes ids of clip paths unique in the document. */
+/** Everything except the cursor. `clip` makes ids of clip paths unique in the document. */
 export function drawLayout(frame: Frame, layout: Layout, clip: string): TreeNode[] {
   return layout.boxes.flatMap((box, index) =>
     drawBox(frame, box, `${clip}-${index}`, index === layout.boxes.length - 1),
@@ -121,13 +121,13 @@ function drawAxisNames(frame: Frame, box: PaneBox, last: boolean): TreeNode[] {
 
 const lengthX = (box: PaneBox, units: number): number => Math.abs(box.x.toPixel(units) - box.x.toPixel(0));
 
-/** Turns about the origin that nobody could tell apart; enlarged, they are drawn. */
+/** Turns around the origin that cannot be distinguished; they are drawn after zooming in. */
 function smeared(box: PaneBox, trace: Trace): { from: number; radius: number } | null {
   const { winding } = trace;
   return winding && lengthX(box, winding.radius) < SMEARED_PX ? winding : null;
 }
 
-/** The path of a trace in pixels; long traces keep their extremes of each pixel column. */
+/** The path of a trace in pixels; for long traces the extremes of each pixel column. */
 export function tracePath(box: PaneBox, trace: Trace): string {
   const near = (pixel: number): number => Math.max(-FAR, Math.min(FAR, pixel));
   const last = smeared(box, trace)?.from ?? Infinity;
@@ -215,7 +215,7 @@ function drawMark(box: PaneBox, mark: Mark): TreeNode[] {
   }
 }
 
-/** The point of a pane that is meant by a place in pixels: the nearest that is so near, of those that qualify. */
+/** The nearest suitable point of a pane within a distance of a place in pixels. */
 export function pointNear(
   box: PaneBox,
   place: { x: number; y: number },

@@ -15,21 +15,21 @@ import { stretchOf, zoomAbout, zoomToRectangle } from "./zoom.ts";
 export interface Plot {
   element: HTMLElement;
   update(frame: Frame): void;
-  /** While something that changes the frame is held its axes only grow; they settle when it is let go. */
+  /** While a control that changes the frame is held, its axes only grow; they settle on release. */
   hold(held: boolean): void;
   dispose(): void;
 }
 
-/** A point that is a handle was taken and moved to there, in the axes' units; `released`: it was let go. */
+/** A handle was dragged to this point, in the axes' units; `released`: the drag has ended. */
 export type OnDrag = (x: number, y: number, released: boolean) => void;
 
-/** Elements that stand on the drawing, over its upper left corner, and follow its layout. */
+/** Elements on top of the drawing, positioned from its upper left corner, which follow its layout. */
 export interface PlotHandles {
   element: HTMLElement;
   place(layout: Layout): void;
 }
 
-/** Says a sentence to those who cannot see the plot. */
+/** Announces a sentence to readers who do not see the plot. */
 export type Announce = (sentence: string) => void;
 
 const KEYS =
@@ -53,7 +53,7 @@ export function createPlot(
   let layout: Layout = layoutFrame(frame, 480, 300, view);
   let cursor: CursorPosition = { value: null, source: null };
   let held = false;
-  /** As it stands on the page: asking for it while drawing would lay the page out once a plot. */
+  /** The last measured size: measuring while drawing would cause one layout per plot. */
   let size = { width: 480, height: 300 };
   const self = {};
   const clip = uniqueId("pane");
@@ -176,7 +176,7 @@ export function createPlot(
   const moveTo = (value: number | null): void =>
     moveCursor(frame.link, { value, source: value === null ? null : self });
 
-  /** The box under a point of the SVG, or the nearest. */
+  /** The box at a vertical position of the SVG, or the nearest one. */
   const boxAt = (y: number): PaneBox =>
     layout.boxes.find((box) => y <= box.top + box.height + 7) ?? layout.boxes[layout.boxes.length - 1]!;
   const pointOf = (event: PointerEvent): { x: number; y: number } => {
@@ -184,13 +184,13 @@ export function createPlot(
     return { x: event.clientX - rectangle.left, y: event.clientY - rectangle.top };
   };
 
-  /** Where a handle that was taken has been moved to. */
+  /** Reports the position of a dragged handle. */
   function moveHandle(point: { x: number; y: number }, released: boolean): void {
     const box = boxAt(point.y);
     onDrag?.(box.x.toValue(point.x), box.y.toValue(point.y), released);
   }
 
-  /** The name of a quiet point under the pointer. */
+  /** Shows the name of a quiet point under the pointer. */
   function showName(point: { x: number; y: number }): void {
     const box = boxAt(point.y);
     const named = pointNear(box, point, NAME_PX, (mark) => mark.quiet === true);
@@ -388,7 +388,7 @@ export function createPlot(
   };
 }
 
-/** The names of a frame's first pane with their lines; for plots whose traces stand in no other legend. */
+/** The names of a frame's first pane with their lines; for plots whose traces are in no other legend. */
 function paneLegend(frame: Frame): HTMLElement {
   const traces = frame.panes[0]?.traces ?? [];
   return h(

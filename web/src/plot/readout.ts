@@ -1,4 +1,4 @@
-// What a cursor shows: where it may stand, its line and dots, and the figures beside it.
+// The cursor: its allowed positions, its line and dots, and its figures.
 import { node } from "../dom.ts";
 import type { TreeNode } from "../dom.ts";
 import { extent, tickText } from "./axis.ts";
@@ -9,7 +9,7 @@ import { freest } from "./labels.ts";
 import type { Layout, PaneBox } from "./layout.ts";
 import { lineOf } from "./marks.ts";
 
-/** The cursor's range: what is in view for plain plots, the whole parameter for curves in a plane. */
+/** The cursor's range: the visible range for plain plots, the whole parameter for curves in a plane. */
 export function cursorRange(frame: Frame, layout: Layout): Range {
   const parameters = frame.panes.flatMap((pane) =>
     pane.traces.flatMap((trace) => (trace.parameter ? [trace.parameter] : [])),
@@ -28,14 +28,14 @@ export function cursorScale(frame: Frame, [lo, hi]: Range): Pick<Scale, "toPixel
   return { toPixel: (value) => (value - lo) / (hi - lo), toValue: (share) => lo + share * (hi - lo) };
 }
 
-/** The cursor's value for a point of the drawing; null where no curve is near. */
+/** The cursor's value for a point of the drawing; null if no curve is near. */
 export function valueAt(box: PaneBox, point: { x: number; y: number }): number | null {
   const parametric = box.pane.traces.filter((trace) => trace.parameter);
   if (parametric.length > 0) return nearestOnCurve(box, parametric, point);
   return snap(box.pane.traces, box.x.toValue(point.x));
 }
 
-/** The sample of the first trace nearest to the value: a cursor never stands between samples. */
+/** The sample of the first trace nearest to the value: a cursor is never between samples. */
 function snap(traces: Trace[], value: number): number {
   const x = traces[0]?.x ?? [];
   const index = nearestIndex(x, value);
@@ -123,7 +123,7 @@ export function cursorNodes(frame: Frame, box: PaneBox, value: number, figures: 
 const READ_PX = 6.6;
 const ROW_PX = 16;
 
-/** The figures in one line, or one under the other, in the corner where they hide the least. */
+/** The figures in one line, or one below the other, in the corner where they hide the least. */
 function readoutNodes(box: PaneBox, parts: string[]): TreeNode[] {
   const width = (lines: string[]): number => Math.max(...lines.map((line) => line.length * READ_PX)) + 10;
   const choices = [[parts.join(" · ")], parts]

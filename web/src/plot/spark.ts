@@ -9,7 +9,7 @@ import { lineOf, tracePath } from "./marks.ts";
 export interface SparkScale {
   x: Range;
   y: Range;
-  /** Drawn as a thin line across. */
+  /** Drawn as a thin horizontal line. */
   level: number;
 }
 
@@ -17,7 +17,7 @@ const WIDTH = 76;
 const HEIGHT = 26;
 const MARGIN = 2;
 
-/** What lies outside the scale is cut off. The figures stand beside it: it has no text of its own. */
+/** Values outside the scale are cut off. The figures are next to it: it has no text of its own. */
 export function spark(trace: Trace, scale: SparkScale): TreeNode {
   const x = makeScale("linear", scale.x, [0, WIDTH]);
   const y = makeScale("linear", scale.y, [HEIGHT - MARGIN, MARGIN]);

@@ -1,9 +1,10 @@
-// Zooming, in pixels so that linear and logarithmic axes behave alike. Equal axes stay equal: the layout widens the narrower.
+// Zooming in pixels, so that linear and logarithmic axes behave alike. Equal axes stay equal: the layout extends the
+// narrower one.
 import type { Range, Scale } from "./axis.ts";
 import type { Frame } from "./frame.ts";
 import type { Layout, PaneBox, View } from "./layout.ts";
 
-/** Below this vertical movement a drag zooms time alone. */
+/** With less vertical movement a drag zooms time only. */
 const TALL_PX = 16;
 const NARROWEST = 1e-6;
 
@@ -14,7 +15,7 @@ const ordered = (scale: Scale, a: number, b: number): Range => {
 
 const tooNarrow = ([lo, hi]: Range): boolean => !(hi - lo > NARROWEST * Math.max(Math.abs(lo), Math.abs(hi)));
 
-/** What lies between two pixels, within the box. */
+/** The range between two pixels, within the box. */
 export function stretchOf(box: PaneBox, a: number, b: number): Range {
   const inside = (pixel: number): number => Math.max(box.left, Math.min(box.left + box.width, pixel));
   return ordered(box.x, inside(a), inside(b));
@@ -38,7 +39,7 @@ export function zoomToRectangle(
   return { x, y: view.y.map((old, at) => (at === index && y !== null ? y : old)) };
 }
 
-/** Scales the x range (and y, where axes are equal) about a pixel: factor < 1 zooms in. */
+/** Scales the x range (and y, if the axes are equal) around a pixel: factor < 1 zooms in. */
 export function zoomAbout(frame: Frame, layout: Layout, view: View, pixel: number, factor: number): View {
   const box = layout.boxes[0]!;
   const around = (scale: Scale, centre: number, low: number, high: number): Range =>

@@ -1,4 +1,4 @@
-// The form of a range: points or equations, the way the plant varies, what is asked.
+// The form of a range: points or equations, the variation of the plant, the requested design.
 import { parsePlant } from "../api/plants.ts";
 import type { RangeExample, RangeRequest } from "../api/range.ts";
 import type { FieldError, Method, Preview } from "../api/types.ts";
@@ -21,7 +21,7 @@ export interface RangeForm {
   load(request: RangeRequest): void;
   setExamples(examples: RangeExample[]): void;
   setMethods(methods: readonly Method[]): void;
-  /** Which example the form was filled from; "" where from none. */
+  /** The example from which the form was filled; "" for none. */
   choose(id: string): void;
   setBusy(busy: boolean): void;
 }
@@ -33,7 +33,7 @@ export interface RangeFormEvents {
   onExample(id: string): void;
 }
 
-/** A tank that drains by itself: the least that shows every field. */
+/** A tank with an outflow of its own: the smallest example that uses every field. */
 const FIRST_EQUATIONS = {
   type: "nonlinear",
   states: { h: 20 },
@@ -111,7 +111,7 @@ export function rangeForm(errors: FormErrors, events: RangeFormEvents): RangeFor
     errors.fail(error);
   }
 
-  /** The service writes a plant that came as parameters as one would type it. */
+  /** The service writes a plant given by parameters as a text. */
   async function writeOut(shown: PointTexts[]): Promise<void> {
     const texts = await Promise.all(shown.map(textByService));
     const untouched = JSON.stringify(points.read()) === JSON.stringify(shown);
@@ -121,7 +121,7 @@ export function rangeForm(errors: FormErrors, events: RangeFormEvents): RangeFor
   async function textByService(point: PointTexts): Promise<PointTexts> {
     const plant = point.given?.plant;
     if (point.text !== "" || plant === undefined || typeof plant === "string") return point;
-    // Without a text the plant stays as it came.
+    // Without a text the plant stays unchanged.
     const text = (await parsePlant({ plant }).catch(() => null))?.text ?? "";
     return text === "" ? point : { ...point, text, given: { text, plant } };
   }

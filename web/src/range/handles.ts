@@ -1,4 +1,4 @@
-// Handles of a schedule's rows on a plot: each a slider along the axis, for the pointer, the finger and the keys.
+// Handles of a schedule's rows on a plot: each a slider along the axis, for mouse, touch and keyboard.
 import type { RangeTraces, ScheduleRow } from "../api/types.ts";
 import { interpolate } from "../charts/rimc.ts";
 import { h, setAttribute } from "../dom.ts";
@@ -10,9 +10,9 @@ import type { Extent } from "./schedule.ts";
 export interface HandlesShown {
   rows: readonly ScheduleRow[];
   extent: Extent;
-  /** The curve that they ride on: of the first pane. */
+  /** The curve on which they are placed: of the first pane. */
   curve: { at: readonly number[]; value: RangeTraces["Ms"] } | null;
-  /** What is heard of each. */
+  /** The spoken text of each. */
   words(row: ScheduleRow, index: number): string;
 }
 
@@ -22,7 +22,7 @@ export interface RangeHandles extends PlotHandles {
 
 export interface HandleEvents {
   onHold(held: boolean): void;
-  /** A row was brought to that place, or nearer to it; `released`: it was let go, or moved by a key. */
+  /** A row was moved to that place, or closer to it; `released`: the drag has ended, or a key was used. */
   onMove(index: number, at: number, released: boolean): void;
 }
 
@@ -53,7 +53,7 @@ export function rangeHandles(events: HandleEvents): RangeHandles {
       if (taken !== index) return;
       taken = null;
       events.onHold(false);
-      // A touch that the browser takes away ends where the handle stands.
+      // A touch that the browser cancels ends at the handle's place.
       events.onMove(index, event.type === "pointerup" ? placeUnder(event) : shown!.rows[index]!.at, true);
     };
     handle.addEventListener("pointerup", release);
@@ -75,7 +75,7 @@ export function rangeHandles(events: HandleEvents): RangeHandles {
     return handle;
   }
 
-  /** On the curve; where that is not known, or out of sight, at the edge. */
+  /** On the curve; at the edge if that is unknown or not visible. */
   function heightOf(row: ScheduleRow): number {
     const at = shown?.curve ? interpolate(shown.curve.at, shown.curve.value, row.at) : null;
     const y = at === null ? box!.top : box!.y.toPixel(at);

@@ -1,4 +1,4 @@
-// A job about an operating range, on the job's screen: its schedule as a table and the way to its own screen.
+// A job about an operating range, on the job's screen: its schedule as a table and the link to its own screen.
 import type { Job, RangeContent } from "../api/types.ts";
 import { h, uniqueId } from "../dom.ts";
 import { formatRoute } from "../routes.ts";

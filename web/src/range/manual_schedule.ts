@@ -1,4 +1,4 @@
-// A schedule that a hand moves: its rows now, the newest curves of them, and the way back to the design.
+// A schedule that is moved by hand: its current rows, their newest curves, and the return to the design.
 import type { RangeContent, ScheduleRow } from "../api/types.ts";
 import { latest } from "../api/latest.ts";
 import { designRange } from "../api/range.ts";
@@ -7,23 +7,23 @@ import { givenRequest, movedRow, overRegion, sameRows } from "./schedule.ts";
 import type { ShownRange } from "./schedule.ts";
 
 export interface ManualSchedule {
-  /** A design, and what it was asked by. */
+  /** A design, and its request. */
   start(request: RangeRequest, designed: RangeContent): void;
   shown(): ShownRange | null;
   rows(): readonly ScheduleRow[];
-  /** What the curves that are shown were asked by. */
+  /** The request of the shown curves. */
   asked(): RangeRequest | null;
   move(index: number, at: number, released: boolean): void;
   change(index: number, row: ScheduleRow): void;
   back(): void;
-  /** The runs across the range with the rows as they stand. */
+  /** Runs across the range with the current rows. */
   runAgain(): void;
 }
 
 export interface ManualScheduleEvents {
-  /** A row stands elsewhere; its curves are on their way. */
+  /** A row was moved; its curves are on their way. */
   onRows(): void;
-  /** Curves of the rows, or the design again; `settled`: no hand is on it. */
+  /** Curves of the rows, or the design again; `settled`: nothing is held. */
   onCurves(settled: boolean): void;
   onBusy(busy: boolean): void;
   onError(error: unknown): void;
@@ -42,12 +42,12 @@ export function manualSchedule(events: ManualScheduleEvents): ManualSchedule {
   const calls = latest<Question, RangeContent>(({ request }, signal) => designRange(request, signal), {
     onBusy: events.onBusy,
     onAnswer(content, question) {
-      // Runs that were made stay until the rows have moved.
+      // Existing runs stay until the rows are moved.
       moved = content;
       asked = question.request;
       events.onCurves(question.settled);
     },
-    // Under the hand the next answer mends it.
+    // While the handle is held the next answer corrects this.
     onError(error, { settled }) {
       if (settled) events.onError(error);
     },

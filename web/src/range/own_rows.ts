@@ -1,4 +1,5 @@
-// The schedule in the form of the user's own controller: for each row what is typed, and how the product goes between them.
+// The schedule in the form of the user's own controller: the settings to type for each row, and the product's
+// interpolation.
 import { ApiError, sentenceOf } from "../api/client.ts";
 import { latest } from "../api/latest.ts";
 import { getProduct, scheduleSettingsFor } from "../api/products.ts";
@@ -141,7 +142,7 @@ export function ownRows(store: Store, announce: (sentence: string) => void): Own
     answer.hidden = false;
   }
 
-  /** Numbers that were given in other units are not known here. */
+  /** Drops numbers that were given in other units. */
   function take(next: MyController | null): void {
     mine = shown ? inUnits(next, shown.units) : next;
     picker.set(mine);
@@ -149,7 +150,7 @@ export function ownRows(store: Store, announce: (sentence: string) => void): Own
 
   const leave = store.subscribe((workspace, previous) => {
     if (workspace.products !== previous.products) picker.setProducts(workspace.products);
-    // Chosen on another screen, while this one is kept.
+    // Chosen on another screen, while this one is hidden.
     if (workspace.mine === previous.mine || workspace.mine === mine) return;
     take(workspace.mine);
     ask();

@@ -13,18 +13,18 @@ export interface PointFields {
   element: HTMLElement;
   read(): PointTexts[];
   show(points: PointTexts[]): void;
-  /** Each file becomes a row; its place is typed by hand. */
+  /** Each file becomes a row; the user types its place. */
   takeFiles(files: Iterable<File>): Promise<void>;
 }
 
 export interface PointEvents {
   onChange(): void;
-  /** A file was read as this. */
+  /** Reports the preview of a file. */
   onPreview(preview: Preview): void;
   onError(error: unknown): void;
 }
 
-/** What each file was read as, while the page stands. */
+/** The preview of each file, until the page is closed. */
 const previews = new WeakMap<object, Preview>();
 
 export function pointFields(errors: FormErrors, active: () => boolean, events: PointEvents): PointFields {
@@ -75,7 +75,7 @@ export function pointFields(errors: FormErrors, active: () => boolean, events: P
       return null;
     });
     if (!read) return;
-    // Rows that nobody has begun to fill make room.
+    // Empty rows are removed.
     const filled = list.texts().filter((point) => point.at.trim() !== "" || point.text.trim() !== "" || point.record);
     if (filled.length < list.texts().length) list.show(filled);
     const record = { csv: read.text };

@@ -1,10 +1,10 @@
-// What stands in the form of a range as a request, and back. No DOM.
+// Conversion of the form of a range to a request, and back. No DOM.
 import type { Along, RangePoint, RangeRequest } from "../api/range.ts";
 import type { FieldError, Plant, RecordedTest, Units } from "../api/types.ts";
 import { parseNumber } from "../form/number.ts";
 import { plainSetting } from "../words/numbers.ts";
 
-/** One point as typed. A plant that nobody has typed over, and a record, are sent as they came. */
+/** One point as typed. A plant that was not changed, and a record, are sent unchanged. */
 export interface PointTexts {
   at: string;
   text: string;
@@ -19,7 +19,7 @@ export interface TermTexts {
   Ms: string;
   Mt: string;
   interpolation: string;
-  /** "" is the fewest. */
+  /** "": the smallest number. */
   rows: string;
   /** In percent. */
   allowance: string;
@@ -42,11 +42,11 @@ export interface RangeTexts {
   points: PointTexts[];
   way: WayTexts;
   terms: TermTexts;
-  /** What has no field here: sent back as it came. */
+  /** Members without a field here: sent unchanged. */
   rest: RangeRequest;
 }
 
-/** What fields of their own have read: equations, and how records are read. */
+/** Parts that other fields have read: equations, and options for reading records. */
 export interface ReadParts {
   equations: { plant: Plant; errors: FieldError[] };
   records: { record: RecordedTest; identify: Record<string, unknown>; errors: FieldError[] };
@@ -67,7 +67,7 @@ const named = <T extends Record<string, string>>(texts: T): Partial<T> =>
       .map(([key, text]) => [key, text.trim()]),
   ) as Partial<T>;
 
-/** Of a text that was changed it alone counts. */
+/** If the text was changed, only the text counts. */
 function plantOf(point: PointTexts): Plant | string {
   return point.given && point.given.text === point.text ? point.given.plant : point.text.trim();
 }
@@ -135,13 +135,13 @@ export function readRange(texts: RangeTexts, parts: ReadParts): { request: Range
     request.range = readWay(texts.way, errors);
   }
   if (withRecords) request.identify = parts.records.identify;
-  // Said either way: the service has a default of its own.
+  // Sent in both cases: the service has a default of its own.
   if (withRecords) request.uncertainty = texts.terms.identified ? "identified" : "none";
   request.schedule = { ...kept, ...readTerms(texts.terms, errors) };
   return { request, errors };
 }
 
-/** A plant as one would type it; "" where only the service can write it. */
+/** A plant as typed; "" if only the service can write it. */
 export function plantText(plant: Plant | string | undefined): string {
   if (typeof plant === "string") return plant;
   if (plant?.type !== "fopdt" || Object.keys(plant).some((key) => !["type", "K", "T", "L"].includes(key))) return "";
@@ -164,7 +164,7 @@ export const EMPTY_POINTS: PointTexts[] = [
 const written = (value: unknown, fallback: string): string =>
   typeof value === "number" ? plainSetting(value) : typeof value === "string" ? value : fallback;
 
-/** The texts that show a request; what a schedule was given is not part of a design. */
+/** The texts that show a request; given rows of a schedule are not part of a design. */
 export function textsOf(request: RangeRequest): RangeTexts {
   const {
     name,
@@ -180,7 +180,7 @@ export function textsOf(request: RangeRequest): RangeTexts {
   } = request;
   const { controller, Ms, Mt, interpolation, allowance, rows, given: _given, ...kept } = schedule ?? {};
   const share = typeof allowance === "number" ? allowance : 0.05;
-  // On what terms a job runs is no part of what is asked here.
+  // The terms on which a job is run are not part of this form.
   const { notify: _notify, priority: _priority, timeout_s: _timeout, runs: _runs, ...others } = rest;
   return {
     mode: range ? "equations" : "points",
@@ -208,7 +208,7 @@ export function textsOf(request: RangeRequest): RangeTexts {
   };
 }
 
-/** How records are read has one set of fields for all of them: a fault of a record's column stands there. */
+/** All records share one set of fields for reading them: a fault of a record's column is shown there. */
 export function atSharedFields(errors: FieldError[]): FieldError[] {
   return errors.map(({ pointer, detail }) => {
     const [, row, below] = /^\/points\/(\d+)\/record\/(columns.*|time_unit|dt|kind)$/.exec(pointer) ?? [];

@@ -1,5 +1,5 @@
-// What a range's design shows: verdict, plots with the rows as handles, schedule, one setting, runs, points. A row that
-// is moved is answered while it moves.
+// The result of a range's design: verdict, plots with the rows as handles, schedule, one setting, runs, points. The
+// answer for a row is updated while it moves.
 import type { RangeContent } from "../api/types.ts";
 import type { RangeRequest } from "../api/range.ts";
 import { plantFrame, robustnessFrame, settingsFrame } from "../charts/range.ts";
@@ -21,19 +21,19 @@ import { scheduleCard } from "./schedule_card.ts";
 
 export interface RangeResultView {
   element: HTMLElement;
-  /** `typed`: what the form says of the request, where it came from elsewhere. */
+  /** `typed`: the request in the form, if the shown one came from elsewhere. */
   show(request: RangeRequest, content: RangeContent, typed?: RangeRequest): void;
-  /** With the rows as they stand, where a hand moved them; null where they are of another design than the request's. */
+  /** With the current rows, if they were moved by hand; null if they belong to another design than the request's. */
   withMoved(request: RangeRequest): RangeRequest | null;
-  /** The verdict as it stands, to be spoken. */
+  /** The current verdict, for speech. */
   sentence(): string;
   clear(): void;
-  /** The form was refused: what is shown is of the request before. */
+  /** The form was refused: the shown result belongs to the previous request. */
   setStale(stale: boolean): void;
   dispose(): void;
 }
 
-/** `onAsked`: the curves that are shown were asked by this. */
+/** `onAsked`: receives the request of the shown curves. */
 export function rangeResult(
   store: Store,
   announce: (sentence: string) => void,
@@ -49,7 +49,7 @@ export function rangeResult(
     onCurves(settled) {
       draw();
       showMoving();
-      // What is not under the eye waits until the hand lets go.
+      // Parts outside the view are updated on release.
       if (!settled || held) return;
       showCards();
       announce(sentence());
@@ -121,7 +121,7 @@ export function rangeResult(
     });
   }
 
-  /** At once, before the answer: the handle, its line, its place in the table. */
+  /** Immediately, before the answer: the handle, its line, its place in the table. */
   function follow(): void {
     const shown = drawn();
     showHandles(shown);
@@ -168,7 +168,7 @@ export function rangeResult(
       const { designed } = manual.shown() ?? {};
       if (!designed || element.hidden) return request;
       const rows = [...manual.rows()];
-      // A job may have been given its rows: they are no more the form's design than those that were moved here.
+      // A job may have been given its rows: like moved ones, they are not the form's design.
       const given = about.schedule?.given !== undefined || !sameRows(rows, designed.schedule?.rows ?? []);
       if (!given) return request;
       return sameDesign(request, form) ? givenRequest(request, designed, rows, { runs: true, quick: false }) : null;
@@ -188,7 +188,7 @@ export function rangeResult(
   };
 }
 
-/** As the answer states it. */
+/** The limit that the answer states. */
 const limitOn = (quantity: string, { worst }: RangeContent): number | undefined =>
   [...(worst.schedule ?? []), ...(worst.one ?? [])].find((place) => place.quantity === quantity)?.limit;
 

@@ -1,4 +1,4 @@
-// What a range comes to besides its schedule: the verdict, the one setting, its price at each point, remarks.
+// The result of a range without its schedule: the verdict, the one setting, its cost at each point, remarks.
 import type { OneSetting, Plant, RangeContent } from "../api/types.ts";
 import { h, uniqueId } from "../dom.ts";
 import { DASH, formatNumber, formatSetting, product, withMinus, withUnit } from "../words/numbers.ts";
@@ -12,11 +12,12 @@ export interface ResultCards {
   one: HTMLElement;
   points: HTMLElement;
   warnings: HTMLElement;
-  /** All but the verdict, which moves with the rows. `moved`: of rows that were moved, whose remarks then stand. */
+  /** All except the verdict, which changes with the rows. `moved`: the result of moved rows, whose remarks then
+      replace the others. */
   show(designed: RangeContent, moved: RangeContent | null, units: UnitNames): void;
 }
 
-/** The verdict of a range, in the place of a tuning's. */
+/** The verdict of a range, in the place of the verdict on one loop. */
 export function showRangeVerdict(card: HTMLElement, content: RangeContent): void {
   const finding = verdictOf(content);
   const [head, ...rest] = withMinus(finding.text).split(/(?<=\.)\s+(?=[A-Z])/);
@@ -85,7 +86,7 @@ function oneSetting(one: OneSetting, { scheduling }: RangeContent, units: UnitNa
   ];
 }
 
-/** What each point would have by itself, and what one setting costs there. */
+/** The optimum of each point by itself, and the cost of the one setting there. */
 export function pointRows(content: RangeContent, units: UnitNames): { head: string[]; rows: string[][] } {
   const { name, unit } = content.scheduling;
   const IAE = product(units.y, units.time);
@@ -110,7 +111,7 @@ export function pointRows(content: RangeContent, units: UnitNames): { head: stri
   return { head, rows };
 }
 
-/** Of a plant without a gain and times of its own those that the curves have there. */
+/** For a plant without a gain and times of its own, those of the curves at that place. */
 function placePlant({ curves }: RangeContent, at: number, plant: Plant, units: UnitNames): string {
   const words = plantWords(plant, units);
   const index = curves.at.indexOf(at);

@@ -1,4 +1,4 @@
-// The runs of equations across their range: one passage at a time, by the schedule and by one setting.
+// The runs of equations across their range: one passage at a time, with the schedule and with one setting.
 import type { RangeContent, RangePassage } from "../api/types.ts";
 import { passageFrame, runsOf } from "../charts/range.ts";
 import { h, uniqueId } from "../dom.ts";
@@ -12,7 +12,8 @@ import { runFacts } from "../words/range.ts";
 
 export interface RunsCard {
   element: HTMLElement;
-  /** Of moved rows the runs are those of the last time they were made; `parameter`: what moves, if it is one. */
+  /** For moved rows the runs are those of the last simulation; `parameter`: the name of the parameter that moves, if
+      it is one. */
   show(designed: RangeContent, moved: RangeContent | null, parameter: string | null, units: UnitNames): void;
   dispose(): void;
 }
@@ -87,7 +88,7 @@ export function runsCard(announce: (sentence: string) => void, onAgain: () => vo
     show(designed, moved, parameter, units) {
       about = { parameter, units };
       const base = designed.runs ?? [];
-      // Of moved rows there is no run with one setting: that stays the design's.
+      // For moved rows there is no run with one setting: that of the design stays.
       passages = moved?.runs
         ? moved.runs.map((run) => ({ ...run, one: base.find(({ name }) => name === run.name)?.one }))
         : base;

@@ -1,10 +1,10 @@
-// A schedule in the hand: where its rows may go, what is asked while one moves, and what is said of it. No DOM.
+// A schedule moved by hand: allowed places of its rows, requests during a move, and sentences. No DOM.
 import type { RangeContent, ScheduleRow } from "../api/types.ts";
 import type { RangeRequest } from "../api/range.ts";
 import { formatNumber } from "../words/numbers.ts";
 import { placeWords } from "../words/range.ts";
 
-/** The least distance of two rows, as a part of the range. */
+/** The smallest distance of two rows, as a part of the range. */
 const APART = 0.005;
 
 export interface Extent {
@@ -12,7 +12,7 @@ export interface Extent {
   to: number;
 }
 
-/** Where a row may stand: within the range, between its neighbours. */
+/** The allowed places of a row: within the range, between its neighbours. */
 export function reachOf(rows: readonly ScheduleRow[], index: number, { from, to }: Extent): [number, number] {
   const gap = APART * (to - from);
   const before = rows[index - 1];
@@ -20,13 +20,13 @@ export function reachOf(rows: readonly ScheduleRow[], index: number, { from, to 
   return [before ? before.at + gap : from, after ? after.at - gap : to];
 }
 
-/** No more digits than a hand can set. */
+/** Only the digits that a drag can set. */
 const settable = (at: number, { from, to }: Extent): number => {
   const decimals = Math.max(0, Math.min(12, 3 - Math.floor(Math.log10(to - from))));
   return Number(at.toFixed(decimals));
 };
 
-/** The rows with one of them at another place, or as near to it as its neighbours let it; its settings stay. */
+/** The rows with one of them at another place, or as near to it as its neighbours allow; its settings stay. */
 export function movedRow(rows: readonly ScheduleRow[], index: number, at: number, extent: Extent): ScheduleRow[] {
   const [lo, hi] = reachOf(rows, index, extent);
   const place = Math.min(hi, Math.max(lo, settable(at, extent)));
@@ -37,7 +37,7 @@ export function movedRow(rows: readonly ScheduleRow[], index: number, at: number
 const STEP = 0.005;
 const FAR_STEP = 0.05;
 
-/** Where a key takes a handle; null: it is none of its keys. */
+/** The place to which a key moves a handle; null for another key. */
 export function keyedPlace(
   key: string,
   shift: boolean,
@@ -56,7 +56,7 @@ export function keyedPlace(
 export const sameRows = (a: readonly ScheduleRow[], b: readonly ScheduleRow[]): boolean =>
   JSON.stringify(a) === JSON.stringify(b);
 
-/** Whether two requests ask for the same design: names and units of what is shown, and rows that were given, aside. */
+/** True if two requests ask for the same design, apart from names, units and given rows. */
 export function sameDesign(a: RangeRequest, b: RangeRequest): boolean {
   const bare = (request: RangeRequest): string => {
     const { name: _name, units: _units, scheduling: _scheduling, schedule = {}, ...others } = request;
@@ -66,11 +66,12 @@ export function sameDesign(a: RangeRequest, b: RangeRequest): boolean {
   return bare(a) === bare(b);
 }
 
-/** Whether limits hold over what each record leaves open, which takes longer than a hand waits. */
+/** True if limits hold over the region of each record, which takes too long for a drag. */
 export const overRegion = ({ points, uncertainty }: RangeRequest): boolean =>
   uncertainty !== "none" && Boolean(points?.some((point) => point.record));
 
-/** The question about given rows. `quick`: of records the models that they gave are asked about, as a hand needs it. */
+/** The request about given rows. `quick`: replaces records by the models identified from them, which is fast enough
+    for a drag. */
 export function givenRequest(
   request: RangeRequest,
   designed: RangeContent,
@@ -87,14 +88,14 @@ export function givenRequest(
   return { ...known, points };
 }
 
-/** What a design says of one setting stays; the schedule and its curves are those of the rows in the hand. */
+/** The design's result for one setting stays; the schedule and its curves are those of the current rows. */
 export interface ShownRange {
   designed: RangeContent;
-  /** Of the rows that were moved; null: none was. */
+  /** Of the moved rows; null: none was moved. */
   moved: RangeContent | null;
 }
 
-/** What is heard of a handle. */
+/** The spoken text of a handle. */
 export function handleWords(row: ScheduleRow, index: number, { designed, moved }: ShownRange): string {
   const worst = (moved ?? designed).worst.schedule?.find((place) => place.quantity === "Ms");
   const Ms = worst ? `, largest Ms ${formatNumber(worst.value)}` : "";

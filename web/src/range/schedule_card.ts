@@ -1,4 +1,4 @@
-// The schedule as a table: its rows can be typed over; how it stands is said above it.
+// The schedule as a table: its rows can be edited; its state is shown above.
 import type { RangeContent, ScheduleRow } from "../api/types.ts";
 import { h, passFocus, uniqueId } from "../dom.ts";
 import { textField } from "../form/controls.ts";
@@ -15,9 +15,9 @@ type Cells = Record<Column, Field<HTMLInputElement>>;
 
 export interface ScheduleCard {
   element: HTMLElement;
-  /** The rows in the hand, and what was answered of them; `moved`: they are not the design's. */
+  /** The current rows, and their answer; `moved`: they differ from the design's. */
   show(content: RangeContent, rows: readonly ScheduleRow[], moved: boolean, units: UnitNames): void;
-  /** While a row is moved its place alone changes. */
+  /** While a row is moved only its place changes. */
   follow(rows: readonly ScheduleRow[]): void;
   complain(error: unknown): void;
 }
@@ -62,7 +62,7 @@ export function scheduleCard(events: ScheduleEvents): ScheduleCard {
   let cells: Cells[] = [];
   let rows: readonly ScheduleRow[] = [];
 
-  /** What is typed counts when all of its row can be read. */
+  /** Typed texts count once the whole row can be read. */
   function take(index: number): void {
     const row = { ...rows[index]! };
     const faults = COLUMNS.flatMap((name) => {

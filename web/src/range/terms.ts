@@ -1,4 +1,5 @@
-// What is asked of a range: the limits, how the controller follows its schedule, and what loop and signals are called.
+// The requirements for a range: the limits, the controller's interpolation of its schedule, and names of loop and
+// signals.
 import type { Method, Units } from "../api/types.ts";
 import { h, uniqueId } from "../dom.ts";
 import { choiceField, textField } from "../form/controls.ts";
@@ -11,9 +12,9 @@ export interface TermFields {
   element: HTMLElement;
   read(): TermTexts;
   show(terms: TermTexts): void;
-  /** Limits over what records leave open belong to records. */
+  /** Limits over the region of records are offered only for records. */
   offerRegion(records: boolean): void;
-  /** What holds where a limit is left empty. */
+  /** The defaults of empty limits. */
   setDefaults(method: Method | undefined): void;
 }
 
@@ -106,7 +107,7 @@ const ALONG = [
   ["parameter", "a parameter"],
 ] as const;
 
-/** The way of equations through their steady states. */
+/** The path of equations through their steady states. */
 export function wayFields(errors: FormErrors, active: () => boolean): WayFields {
   const own = (name: string) => (): string | null => (active() ? `/range/${name}` : null);
   const along = choiceField({ label: "Along", choices: ALONG, pointer: own("along") }, errors);
@@ -155,7 +156,7 @@ export function wayFields(errors: FormErrors, active: () => boolean): WayFields 
 type Labels = Pick<RangeTexts, "name" | "scheduling" | "units">;
 
 export interface LabelFields {
-  /** The scheduling variable: needed to read a place. */
+  /** The scheduling variable: needed to interpret a place. */
   scheduling: HTMLElement;
   others: HTMLElement;
   read(): Labels;

@@ -1,4 +1,5 @@
-// Range: a loop over its whole operating range. Points or equations in; one setting, a schedule to move, and runs out.
+// Range: a loop over its whole operating range. Input: points or equations. Output: one setting, a schedule that can be
+// moved, and runs.
 import type { RangeContent } from "../api/types.ts";
 import { ApiError } from "../api/client.ts";
 import { getJob } from "../api/jobs.ts";
@@ -16,7 +17,7 @@ import { atSharedFields } from "./request.ts";
 import { rangeResult } from "./result.ts";
 
 export interface RangeView extends View {
-  /** An example by its id, a job's request and result, or what stands there; the first example where nothing does. */
+  /** An example by its id, a job's request and result, or the current content; the first example if there is none. */
   open(what: { example: string; job: string | null }): void;
 }
 
@@ -27,7 +28,7 @@ export interface RangeEvents {
   onJob(request: RangeRequest): Promise<void>;
 }
 
-/** Rows that are shown are not dropped, nor sent with what they were not made for. */
+/** Displayed rows are neither dropped nor sent with a request for which they were not made. */
 const ANOTHER_DESIGN =
   "The rows belong to an earlier request; the form has changed since. Press Design for new rows, or undo the change.";
 
@@ -85,7 +86,7 @@ export function rangeView(store: Store, announce: (sentence: string) => void, ev
     errors.fail(error, atSharedFields(problem.errors ?? []));
   }
 
-  /** The request as typed; null where it cannot be sent, which the form then says. */
+  /** The request as typed; null if it cannot be sent, which the form then shows. */
   function compose(): RangeRequest | null {
     const { request, errors: faults } = form.read();
     errors.clear();
@@ -115,7 +116,7 @@ export function rangeView(store: Store, announce: (sentence: string) => void, ev
     else complain(new Error(ANOTHER_DESIGN));
   }
 
-  /** Examples are asked for once; another try follows where they could not be had. */
+  /** Examples are requested once; the request is repeated if it failed. */
   function list(): Promise<void> {
     listed ??= getRangeExamples().then(
       (known) => {
@@ -175,7 +176,7 @@ export function rangeView(store: Store, announce: (sentence: string) => void, ev
     },
     open({ example, job }) {
       const what = `${job ?? ""}/${example}`;
-      // Whoever comes back finds what stood there.
+      // A user who returns finds the previous content.
       if (opened !== "" && (what === "/" || what === opened)) return;
       opened = what;
       void (job === null ? openExample(example) : openJob(job));

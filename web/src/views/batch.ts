@@ -1,4 +1,4 @@
-// A batch: how far it is, and a line for each of its loops, in the order of what should be looked at first.
+// A batch: its progress, and a line for each of its loops, those that need attention first.
 import { batchCsv, cancelBatch, getBatch, hasEnded, jobsOfBatch, postAgain } from "../api/job_lists.ts";
 import type { Batch, ListedJob } from "../api/types.ts";
 import { h } from "../dom.ts";
@@ -11,12 +11,12 @@ import { jobTable, reader, troubleLine } from "./job_actions.ts";
 import type { View } from "./start.ts";
 
 export interface BatchEvents {
-  /** Its loops stand in another order: a column's id, with a minus where it falls. */
+  /** Its loops were sorted: a column's id, with a minus for descending order. */
   onSort(sort: string): void;
   onBatch(batch: Batch): void;
 }
 
-/** So many loops are listed; the CSV has all of them. */
+/** Loops in the list; the CSV has all of them. */
 const MAX_LISTED = 2000;
 /** A batch of more loops is read again only when it has ended. */
 const MAX_FOLLOWED = 400;
@@ -84,7 +84,7 @@ export function batchView(id: string, sort: string, announce: (sentence: string)
     return { column, element: h("button", { type: "button", class: "quiet", onclick: act }, label) };
   }
 
-  /** Heads are made anew where the loops have other columns, such as settings once the first is tuned. */
+  /** The headings are rebuilt if the loops have new columns, such as settings once the first is tuned. */
   function showHeads(): void {
     const next = batchColumns(jobs);
     const same = next.length === columns.length && next.every(({ id, label }, at) => columns[at]!.id === id && columns[at]!.label === label);

@@ -1,4 +1,4 @@
-// Compare: every method on this plant as a comparison, and the chosen rows together in every plot.
+// Compare: every method on this plant in one table, and the chosen rows together in every plot.
 import { isFinal } from "../api/types.ts";
 import type { Job, Result } from "../api/types.ts";
 import { defaultOverlay, drawnEntries } from "../charts/drawn.ts";

@@ -1,17 +1,17 @@
-// What stands above the comparison: the limit on Ms, only rows that settle, which columns, the table as a file.
+// Controls above the comparison: the limit on Ms, only rows that settle, columns, the table as a file.
 import { closesItself, h, uniqueId } from "../dom.ts";
 import { parseNumber } from "../form/number.ts";
 import type { ComparisonColumn } from "../words/comparison.ts";
 
 export interface ComparisonControls {
   element: HTMLElement;
-  /** Null: as the answer ranks. */
+  /** Null: the limit in the answer. */
   limit(): number | null;
   /** Without reporting. */
   setLimit(Ms: number | null): void;
   onlySettled(): boolean;
   setColumns(columns: ComparisonColumn[]): void;
-  /** Whether a column is to be seen. */
+  /** True if a column is shown. */
   shows(id: string): boolean;
 }
 
@@ -25,7 +25,7 @@ export interface ComparisonControlEvents {
 
 export function comparisonControls(events: ComparisonControlEvents): ComparisonControls {
   let limit: number | null = null;
-  /** What the reader chose otherwise than it stands at first. */
+  /** The reader's deviations from the initial choice. */
   const chosen = new Map<string, boolean>();
   let columns: ComparisonColumn[] = [];
   const input = h("input", {

@@ -1,5 +1,5 @@
-// The comparison on the page: rows to sort and to choose for the plots. Rows are made once for a result and a choice of
-// columns; sorting moves them, choosing writes into them.
+// The comparison on the page: rows to sort and to choose for the plots. Rows are created once for a result and a choice
+// of columns; sorting moves them, choosing updates them.
 import type { Entry, Result } from "../api/types.ts";
 import { drawable, MAX_DRAWN } from "../charts/drawn.ts";
 import type { Drawn } from "../charts/drawn.ts";
@@ -15,10 +15,10 @@ import { DASH } from "../words/numbers.ts";
 
 export interface ComparisonTable {
   element: HTMLElement;
-  /** Anew for this result and these columns. `step`: of the set point. */
+  /** Creates the rows for this result and these columns. `step`: of the set point. */
   build(result: Result, columns: ComparisonColumn[], step: number, address: (index: number) => string): void;
   arrange(order: ComparisonOrder, limit: number | null, onlySettled: boolean): void;
-  /** Which rows the plots show. */
+  /** Marks the rows that the plots show. */
   mark(drawn: Drawn[]): void;
 }
 
@@ -39,7 +39,7 @@ interface TableRow {
   look: Look | null | undefined;
 }
 
-/** More reasons than these are folded; each also stands at its dash. */
+/** More reasons than this are folded; each is also at its dash. */
 const FOOTNOTES_OPEN = 3;
 
 export function comparisonTable(events: ComparisonEvents): ComparisonTable {
@@ -127,7 +127,7 @@ export function comparisonTable(events: ComparisonEvents): ComparisonTable {
     notes.replaceChildren(...footnotes.map((note) => h("li", {}, note)));
   }
 
-  /** Rows that stand right stay untouched: one that is moved loses the focus. */
+  /** Rows that are in the right place are not moved: a moved row loses the focus. */
   function place(body: HTMLElement, list: ComparisonRow[]): void {
     const elements = list.map(({ index }) => rows.get(index)!.element);
     const same = body.children.length === elements.length && elements.every((row, at) => body.children[at] === row);
@@ -159,7 +159,7 @@ export function comparisonTable(events: ComparisonEvents): ComparisonTable {
     }
   }
 
-  /** `name`: what the plots call it. */
+  /** `name`: its name in the plots. */
   function draw(row: TableRow, look: Look | null, name: string): void {
     if (row.look === look) return;
     row.look = look;
@@ -202,7 +202,7 @@ function notesCell(entry: Entry): HTMLElement {
   );
 }
 
-/** One scale for all: that of the better three quarters, so that what swings wildly does not flatten the others. */
+/** One scale for all: that of the better three quarters, so that large oscillations do not flatten the others. */
 function sparkScales(rows: ComparisonRow[], step: number): Record<Signal, SparkScale> | null {
   const good = rows.filter(({ entry }) => entry.robustness?.stable && entry.responses);
   const better = good.slice(0, Math.max(1, Math.ceil(0.75 * good.length)));

@@ -1,10 +1,10 @@
-// Buttons that put a text on the clipboard and say so.
+// Buttons that copy a text to the clipboard and confirm it.
 import { h } from "../dom.ts";
 
 export interface CopyOptions {
-  /** What stands on the button. */
+  /** The text of the button. */
   label: string;
-  /** What a screen reader says where the label alone says too little. */
+  /** The text for a screen reader if the label alone is not sufficient. */
   spoken?: string;
   look?: string;
   /** Null: there is nothing to copy now. */
@@ -45,7 +45,7 @@ async function toClipboard(text: string): Promise<boolean> {
   }
 }
 
-/** The old way: pages that do not come over TLS or from this machine have no clipboard object. */
+/** The old method: pages without TLS from another machine have no clipboard object. */
 function copyBySelection(text: string): boolean {
   const area = h("textarea", { class: "visually-hidden", "aria-hidden": "true", tabindex: -1 });
   area.value = text;

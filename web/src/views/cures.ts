@@ -1,4 +1,4 @@
-// Buttons that do what a refusal names as its cure.
+// Buttons that apply the cure of a refusal.
 import type { Job, TuningRequest } from "../api/types.ts";
 import { h } from "../dom.ts";
 import { withOptions } from "../form/tuning_request.ts";
@@ -8,7 +8,7 @@ interface Cured {
   request: TuningRequest;
 }
 
-/** Of the whole job, and of each method that got no controller; every text once. */
+/** The cures of the whole job, and of each method without a controller; every text once. */
 function curesOf(job: Job): Cured[] {
   const request = job.request;
   if (!request) return [];
@@ -27,7 +27,7 @@ export interface CureButtons {
   show(job: Job | null): void;
 }
 
-/** `run` tunes the changed request; what it throws is shown by who gave it. */
+/** `run` tunes the changed request; its caller shows its exceptions. */
 export function cureButtons(run: (request: TuningRequest) => Promise<void>): CureButtons {
   const element = h("p", { class: "actions", hidden: true });
   let shown: Job | null = null;

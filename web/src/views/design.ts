@@ -37,10 +37,10 @@ import type { View } from "./start.ts";
 import { modifiedDesign } from "./modified_design.ts";
 import type { OnScreen } from "./modified_design.ts";
 
-/** From so many entries on the figures stand below the plots, across the page. */
+/** From this number of entries on, the figures are below the plots, across the page. */
 const BROAD_FROM = 3;
 
-/** A job of more entries than these shows here those that are drawn or chosen: its comparison has them all. */
+/** For a job with more entries only those that are drawn or chosen are listed here: its comparison has them all. */
 const MAX_LISTED = 8;
 
 function listedEntries(count: number, drawn: Drawn[], selected: number): number[] {
@@ -52,7 +52,7 @@ function listedEntries(count: number, drawn: Drawn[], selected: number): number[
 export interface DesignEvents extends JobEvents {
   /** Tunes another request and shows that job. */
   onTune(request: TuningRequest): Promise<void>;
-  /** Tunes again and shows the answer in this one's place; throws where the entry of that index gets none. */
+  /** Tunes again and replaces this result; throws if the entry with that index gets none. */
   onRetune(request: TuningRequest, index: number): Promise<Job | null>;
 }
 
@@ -85,7 +85,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
   const linearNote = h("p", { class: "hint", hidden: true }, BESIDE_LINEAR);
   let finished: { job: Job; result: Result } | null = null;
   let screen: OnScreen | null = null;
-  /** The job that the cards are of. */
+  /** The job on the cards. */
   let screenOf = "";
   const modified = modifiedDesign(store, announce, {
     onAnswer: showModified,
@@ -118,7 +118,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     return Math.min(workspace.selected ?? proposedEntry(result), result.controllers.length - 1);
   }
 
-  /** The request of what is shown: a job's, or that with the member altered that was turned last. */
+  /** The request for the displayed result: that of a job, or the same with the member that was changed last. */
   function requestShown(job: Job, { path, request }: OnScreen): TuningRequest {
     return path === "v1/jobs" ? (request as TuningRequest) : (job.request ?? {});
   }
@@ -147,14 +147,14 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     const main = figuresTable("Main figures", columns, groups.filter((group) => group.main));
     mainFigures.replaceWith(main);
     mainFigures = main;
-    // What is folded away waits until the slider is let go.
+    // Folded parts are updated on release.
     if (held) return;
     const others = figuresTable("All other figures", columns, groups.filter((group) => !group.main));
     otherFigures.replaceWith(others);
     otherFigures = others;
   }
 
-  /** What moves with a slider: verdict, settings, figures and plots. */
+  /** Updates the parts that follow a slider: verdict, settings, figures and plots. */
   function showMoving(job: Job, whole: Result, workspace: Workspace, held: boolean): Drawn[] {
     screen = modified.onScreen(job, whole, selectedEntry(whole, workspace));
     const { result, index, origin } = screen;
@@ -173,7 +173,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     return drawn;
   }
 
-  /** Entries of the job as they stand in what is shown; of two in the place of one the first. */
+  /** Indices in the displayed result for entries of the job; if two replace one, the first. */
   const drawnOf = (chosen: number[], origin: number[]): number[] =>
     chosen.flatMap((index) => (origin.includes(index) ? [origin.indexOf(index)] : []));
 
@@ -187,11 +187,11 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     const entries = result.controllers;
     const names = entryNames(entries);
     const units = unitNames(job.request?.units);
-    // The record stands still while a slider moves.
+    // The record does not change while a slider moves.
     plots.show("record", result.model ? recordFrame(result.model, job.request) : null);
     const listed = listedEntries(entries.length, drawn, index);
     element.classList.toggle("broad", listed.length >= BROAD_FROM);
-    // Rules and robustness of a nonlinear plant rest on its linear model.
+    // Rules and robustness of a nonlinear plant use its linear model.
     const linear = result.model?.plant ?? result.linear_model ?? job.request?.plant;
     const reported = { name: names[index]!, entry: entries[index]!, model: linear, request: job.request, units };
     for (const card of reports) card.show(reported);
@@ -211,7 +211,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     legend.show(entries, listed, names, drawn, index, origin);
   }
 
-  /** An answer to the sliders is drawn when it arrives, not in a later frame; what stands below waits for the hand. */
+  /** An answer to the sliders is drawn when it arrives, not in a later frame; parts below are updated on release. */
   function showModified(held: boolean): void {
     if (!finished) return;
     const { job, result } = finished;
@@ -239,7 +239,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     range.element.hidden = !job.result?.range;
     finished = null;
     if (!isFinal(job.status)) {
-      // The cards still show the job before.
+      // The cards still show the previous job.
       if (screenOf !== job.id) for (const part of bodyParts) part.remove();
       progress.show(job);
     } else if (job.result?.range) {

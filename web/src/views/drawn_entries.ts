@@ -1,4 +1,4 @@
-// The legend above the plots: which controllers are drawn, and whose settings and verdict are shown.
+// The legend above the plots: the drawn controllers, and the one whose settings and verdict are shown.
 import type { Entry, TuningRequest } from "../api/types.ts";
 import { bodeFrame } from "../charts/bode.ts";
 import { MAX_DRAWN } from "../charts/drawn.ts";
@@ -15,7 +15,8 @@ import { commonLimits } from "../words/limits.ts";
 
 export interface Legend {
   element: HTMLElement;
-  /** `listed`: indices of the entries that have a place here. `origin`: where each of all entries stands in the job's result. */
+  /** `listed`: indices of the entries that have a place here. `origin`: for each of all entries, its index in the
+      job's result. */
   show(entries: Entry[], listed: number[], names: string[], drawn: Drawn[], selected: number, origin?: number[]): void;
 }
 
@@ -57,7 +58,7 @@ export function createLegend(store: Store): Legend {
     element,
     show(entries, listed, names, drawn, selected, origin) {
       placeOf = (index) => origin?.[index] ?? index;
-      // The controls are made anew; whoever stood on one stands on it again.
+      // The controls are created again; the focus is restored.
       const focused = controls().findIndex((control) => control === document.activeElement);
       const indices = drawn.map((item) => item.index);
       element.hidden = entries.length === 1;
@@ -86,7 +87,8 @@ export function createLegend(store: Store): Legend {
   };
 }
 
-/** The plots of the drawn entries, one trace each. `selected`: the entry whose linearised response is drawn too where there are many. */
+/** The plots of the drawn entries, one trace each. `selected`: the entry whose linearised response is also drawn if
+    there are many. */
 export function showEntryPlots(
   plots: PlotGrid,
   drawn: Drawn[],

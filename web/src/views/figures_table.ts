@@ -1,4 +1,4 @@
-// The figures, one column per entry. What has no number is a dash, and below the table stands why.
+// The figures, one column per entry. A figure without a number is a dash, with the reason below the table.
 import type { Entry } from "../api/types.ts";
 import { h } from "../dom.ts";
 import type { FigureGroup } from "../words/figures.ts";

@@ -1,4 +1,4 @@
-// Identify: a recorded test, the models that explain it, whether it was good enough, and which part of it counts.
+// Identify: a recorded test, the models that explain it, its quality, and the part of it that is used.
 import { ApiError } from "../api/client.ts";
 import { identify } from "../api/plants.ts";
 import { previewRecord } from "../api/records.ts";
@@ -27,20 +27,20 @@ import { qualityCard } from "./cards/quality_card.ts";
 import { requestMenu } from "./request_menu.ts";
 import type { View } from "./start.ts";
 
-/** How the record will be tuned. */
+/** Options for tuning the record. */
 export interface TuningChoice {
-  /** Names of the methods that stand on Start. */
+  /** Names of the methods chosen on Start. */
   methods: string[];
   first: CandidateChoice;
 }
 
 export interface IdentifyEvents {
-  /** The record and how it is read, each time the reader changes something. */
+  /** The record and the options for reading it, whenever the reader changes something. */
   onChange(request: IdentifyRequest): void;
-  /** Starts a tuning job; returns what keeps it from starting. */
+  /** Starts a tuning job; returns the faults that prevent it. */
   /** `all`: by every method. */
   onTune(subject: TuneSubject, all: boolean): Promise<FieldError[]>;
-  /** What was chosen of what it found. */
+  /** The choice among its results. */
   onRemember(choice: CandidateChoice): void;
 }
 
@@ -53,13 +53,13 @@ export function identifyView(
   const units = unitNames(given.units);
   const errors = new FormErrors();
   let model: Model | null = null;
-  // What the model on the screen was asked by; the fields may have been typed over since.
+  // The request of the displayed model; the fields may have changed since.
   let answered: IdentifyRequest | null = null;
   // The record beyond the used part, from the answer about all of it.
   let whole: Samples | null = null;
   let samples = samplesOf(given.record);
   const givenText = csvOf(given.record);
-  /** The request that the extent to choose from belongs to; null before anything was asked. */
+  /** The request for the current extent; null before any request. */
   let askedExtent: string | null = null;
   let plot: Plot | null = null;
   let plotTitle = "";
@@ -134,7 +134,7 @@ export function identifyView(
   function request(): { request: IdentifyRequest; errors: FieldError[] } {
     const read = fields.read();
     const chosen = part.read();
-    // Text that nobody touched stands for the record as it came.
+    // Unchanged text stands for the record as received.
     const base = text.read() === givenText ? samples : { csv: text.read() };
     return {
       request: { ...given, record: { ...base, ...read.record, ...(chosen ?? {}) }, identify: read.identify },
@@ -182,13 +182,13 @@ export function identifyView(
     },
   });
 
-  /** The record and what decides its times. */
+  /** The record and the options that determine its times. */
   function extentKey(): string {
     const { run, columns, time_unit, dt } = fields.read().record;
     return JSON.stringify([text.read(), run, columns?.t, time_unit, dt]);
   }
 
-  /** Another record, or run, has another extent: what was chosen of the one before means nothing in it. */
+  /** Another record, or run, has another extent: a part chosen in the previous one is not meaningful in it. */
   function forgetPart(): void {
     const key = extentKey();
     if (askedExtent !== null && key !== askedExtent) {
@@ -207,7 +207,7 @@ export function identifyView(
     calls.send(now.request);
   }
 
-  /** What the text is read as, once somebody wants to know. */
+  /** Requests the preview of the text, when it is needed. */
   async function look(): Promise<void> {
     const isNewest = beginLook();
     if (text.read().trim() === "") return;
@@ -217,7 +217,7 @@ export function identifyView(
       shown.replaceChildren(previewPanel(preview));
       fields.offer(preview);
     } catch {
-      // Identifying it says what is wrong.
+      // The identification reports the fault.
     }
   }
 
@@ -241,7 +241,7 @@ export function identifyView(
       draw();
       ask();
     };
-    // With and without a model they are two different plots: other panes, another legend.
+    // With and without a model they are different plots: other panes, another legend.
     if (plot && plotTitle === frame.title) return plot.update(frame);
     plot?.dispose();
     plot = createPlot(frame, announce);
@@ -268,7 +268,7 @@ export function identifyView(
   }
 
   fields.load(given.record, given.identify);
-  // A choice acts at once; what is typed waits until it is complete.
+  // A choice applies at once; typed text waits until it is complete.
   reading.addEventListener("change", (event) => {
     void look();
     if (event.target instanceof HTMLSelectElement) ask();
@@ -285,13 +285,13 @@ export function identifyView(
   if (from !== undefined || to !== undefined) void askWithPart(from, to);
   else ask();
 
-  /** A record that comes with its part chosen: all of it is asked for first, so that it can be drawn. */
+  /** A record with a chosen part: all of it is requested first, so that it can be drawn. */
   async function askWithPart(start: number | undefined, end: number | undefined): Promise<void> {
     const { from: _from, to: _to, ...record } = given.record;
     try {
       takeWhole((await identify({ ...given, record })).fit);
     } catch (error) {
-      // All of it cannot be identified; the part may be.
+      // The whole record cannot be identified, but the part may be.
       if (error instanceof ApiError) takeWhole(error.problem.record);
     }
     if (!whole) part.setExtent({ from: start ?? 0, to: end ?? (start ?? 0) + 1 });

@@ -1,4 +1,4 @@
-// What the screens of a job have in common: stopping it, comparing all methods on its plant, saying what went wrong.
+// Common parts of a job's screens: stopping it, comparing all methods on its plant, showing errors.
 import { sentenceOf, waitAfter } from "../api/client.ts";
 import { cancelJob } from "../api/jobs.ts";
 import type { Job, TuningRequest } from "../api/types.ts";
@@ -18,7 +18,7 @@ export interface JobActions {
   cancel(): Promise<void>;
 }
 
-/** Where a screen says what went wrong. */
+/** The line of a screen for errors. */
 export interface TroubleLine {
   element: HTMLElement;
   complain(error: unknown): void;
@@ -38,13 +38,13 @@ export function troubleLine(role: "status" | "alert"): TroubleLine {
 const LOOK_AGAIN_MS = 1000;
 
 export interface Reader {
-  /** Reads now, or after so many milliseconds; what was planned before is dropped. */
+  /** Reads now, or after this number of milliseconds; an earlier plan is dropped. */
   look(wait?: number): void;
   stop(): void;
 }
 
-/** Reads a list again while it moves (`read` answers that), and after a failure until it can be had: the line says so
-    meanwhile. */
+/** Reads a list again while it changes (`read` returns that), and after a failure until it succeeds: the line shows
+    the failure meanwhile. */
 export function reader(read: () => Promise<boolean>, trouble: TroubleLine): Reader {
   let timer: ReturnType<typeof setTimeout> | undefined;
   let round = 0;
@@ -54,7 +54,7 @@ export function reader(read: () => Promise<boolean>, trouble: TroubleLine): Read
     let wait: number | null = null;
     try {
       if (await read()) wait = LOOK_AGAIN_MS;
-      // What went wrong with something else stays said.
+      // An error of another action stays visible.
       if (lost !== "" && trouble.element.textContent === lost) trouble.element.hidden = true;
       lost = "";
     } catch (error) {
@@ -82,7 +82,7 @@ export function reader(read: () => Promise<boolean>, trouble: TroubleLine): Read
   };
 }
 
-/** A table with a line for each job, which scrolls by itself where it is wide. */
+/** A table with a line for each job, which scrolls on its own if it is wide. */
 export function jobTable(label: string, heads: HTMLElement[], rows: HTMLElement): HTMLElement {
   const table = h("table", { class: "figures job-list" }, h("thead", {}, h("tr", {}, heads)), rows);
   return h("div", { class: "scroll", role: "region", "aria-label": label, tabindex: 0 }, table);

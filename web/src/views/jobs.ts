@@ -1,4 +1,4 @@
-// Jobs: what the service keeps, to be found again, duplicated, tried again or deleted; batches, and a CSV of loops as one.
+// Jobs: the stored jobs, to find, duplicate, repeat or delete them; batches, and a CSV of loops as a batch.
 import { ApiError, sentenceOf } from "../api/client.ts";
 import { deleteBatch, hasEnded, listBatches, listJobs, nextJobs, postLoops } from "../api/job_lists.ts";
 import type { Batch, Job, JobList, ListedJob } from "../api/types.ts";
@@ -19,14 +19,14 @@ import type { View } from "./start.ts";
 export interface JobsEvents {
   onJob(job: Job): void;
   onBatch(batch: Batch): void;
-  /** The text that is searched for, for the address. */
+  /** The search text, for the address. */
   onSearch(text: string): void;
 }
 
 const SEARCH_WAIT_MS = 150;
 const COLUMNS = ["Name", "Plant", "Method", "Load IAE", "Ms", "Age", "Status"];
 
-/** A button that asks once: the first press asks, the second does it, leaving it takes the question back. */
+/** A button with a confirmation: the first press asks, the second one acts, and leaving it cancels the question. */
 export function askingButton(label: string, spoken: string, sure: string, act: () => void): HTMLButtonElement {
   let asked = false;
   const button = h("button", { type: "button", class: "quiet", "aria-label": spoken, onclick: press }, label);
@@ -95,7 +95,7 @@ export function jobsView(store: Store, text: string, announce: (sentence: string
     loops.element,
   );
 
-  /** Does something to a job, then looks what the list is now. */
+  /** Changes a job, then reads the list again. */
   async function change(work: () => Promise<void>, done: string): Promise<void> {
     trouble.hidden = true;
     try {
@@ -171,7 +171,7 @@ export function jobsView(store: Store, text: string, announce: (sentence: string
     );
   }
 
-  /** Rows that have not changed stay as they are, with the focus in them. */
+  /** Unchanged rows stay as they are, with their focus. */
   function show(jobs: ListedJob[]): void {
     const elements = jobs.map((job) => {
       const words = JSON.stringify([job, age(job.created_at, Date.now())]);
@@ -270,7 +270,7 @@ export function jobsView(store: Store, text: string, announce: (sentence: string
   };
 }
 
-/** A CSV of loops, let go of here or chosen, becomes a batch. */
+/** A CSV of loops, dropped here or chosen, becomes a batch. */
 function loopsCard(
   store: Store,
   announce: (sentence: string) => void,
@@ -321,7 +321,7 @@ function loopsCard(
       name: chosen.name.replace(/\.\w+$/, ""),
     };
     if (method.value === "robust" && limit.value.trim() !== "") {
-      // Both limits are set from the one field: what is wrong with it is said here, once and by its name.
+      // Both limits are set from the one field: its fault is shown here, once and under its label.
       const Ms = parseNumber(limit.value, "Largest Ms");
       if (!Ms.ok) return refuse(Ms.sentence);
       if (Ms.value <= 1) return refuse(`Largest Ms is ${limit.value.trim()}; it must be above 1.`);

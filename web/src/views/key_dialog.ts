@@ -1,4 +1,4 @@
-// Asks for the service's key, over whatever is on the screen.
+// Asks for the service's key, on top of any screen.
 import { h } from "../dom.ts";
 
 export function askInDialog(refused: boolean): Promise<string | null> {

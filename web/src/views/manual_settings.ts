@@ -1,4 +1,4 @@
-// Settings to try by hand: sliders around an optimum, and what the plant answers while they move.
+// Settings to try by hand: sliders around an optimum, and the plant's response while they move.
 import { ApiError, sentenceOf } from "../api/client.ts";
 import { stepOf } from "../api/evaluate.ts";
 import { latest } from "../api/latest.ts";
@@ -14,11 +14,11 @@ import type { UnitNames } from "../words/numbers.ts";
 
 export interface ManualSettings {
   element: HTMLElement;
-  /** Back to the entry's own settings; hides itself where the service cannot try others. */
+  /** Returns to the entry's own settings; hides itself if the service cannot try others. */
   show(entry: Entry, plant: Plant | undefined, units: UnitNames): void;
-  /** Which set-point step is tried; one with its own start or parameters cannot be. */
+  /** The set-point step for the trial; one with its own start or parameters cannot be used. */
   setScenario(scenario: EmulatedScenario | undefined): void;
-  /** What the last settings did, in a sentence. */
+  /** The result of the last settings, in a sentence. */
   say(sentence: string): void;
   dispose(): void;
 }
@@ -31,10 +31,10 @@ interface Asked {
   horizon: number;
 }
 
-/** Null where nothing is tried any more. */
+/** Null if nothing is tried any more. */
 export interface ManualSettingsEvents {
   onRun(run: OwnRun | null): void;
-  /** What the sliders make of the controller, as soon as they move. */
+  /** The controller with the sliders' values, as soon as they move. */
   onTry(controller: Controller | null): void;
 }
 
@@ -151,11 +151,11 @@ export function manualSettings({ onRun, onTry }: ManualSettingsEvents): ManualSe
   };
 }
 
-/** What the controller has of the three. */
+/** The members of the controller among the three. */
 const soughtBy = (controller: Controller): Sought[] =>
   (["Kp", "Ti", "Td"] as const).filter((name) => typeof controller[name] === "number" && controller[name] !== 0);
 
-/** The search's own bounds, else a factor of five to both sides. */
+/** The search's own bounds, else a factor of five on both sides. */
 function limitsOf(emulation: Emulation | undefined, name: Tuned, value: number): [number, number] {
   const bounds = emulation?.bounds?.[name];
   if (bounds) return bounds;

@@ -1,4 +1,5 @@
-// Methods: what the service can tune by, each with its formula, source, range and options, as it says of itself.
+// Methods: all tuning methods of the service, each with its formula, source, range and options, from its own
+// description.
 import type { Method } from "../api/types.ts";
 import { h, uniqueId } from "../dom.ts";
 import { methodFormula } from "../form/method_formula.ts";

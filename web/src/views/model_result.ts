@@ -1,4 +1,4 @@
-// What was identified from the record: the model, how well it fits, the other candidates.
+// The identification from the record: the model, its fit, the other candidates.
 import type { Model } from "../api/types.ts";
 import { h } from "../dom.ts";
 import { plantFormula, rounded } from "../form/formula.ts";

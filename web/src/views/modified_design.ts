@@ -1,4 +1,4 @@
-// A job's entry that is turned by sliders: what they start from, and the job's result as it reads with the newest answer.
+// A job's entry that sliders modify: their start, and the job's result with the newest answer.
 import { sentenceOf } from "../api/client.ts";
 import { effect, untracked } from "@preact/signals-core";
 import { callSubject } from "../api/live.ts";
@@ -19,12 +19,12 @@ import { controlsCard } from "./cards/controls_card.ts";
 import { frontCard } from "./cards/front_card.ts";
 import type { FrontSubject } from "./cards/front_card.ts";
 
-/** A result as it is shown, and what gives it. */
+/** A displayed result, and the request for it. */
 export interface OnScreen {
   result: Result;
   /** Index of the entry that is shown. */
   index: number;
-  /** The entries' places in the job's own result. */
+  /** The indices of the entries in the job's own result. */
   origin: number[];
   path: string;
   request: unknown;
@@ -33,11 +33,11 @@ export interface OnScreen {
 export interface ModifiedDesign {
   controls: HTMLElement;
   front: HTMLElement;
-  /** Sliders for that entry of the job. */
+  /** Creates sliders for that entry of the job. */
   show(job: Job, result: Result, index: number): void;
-  /** With the newest answer, where the entry that is shown was turned; else as the job has it. */
+  /** With the newest answer, if the displayed entry was modified; otherwise the job's own result. */
   onScreen(job: Job, result: Result, index: number): OnScreen;
-  /** The newest answer, if the entry was turned. */
+  /** The newest answer, if the entry was modified. */
   answer(): Answer | null;
   dispose(): void;
 }
@@ -45,16 +45,17 @@ export interface ModifiedDesign {
 export interface ModifiedDesignEvents {
   /** A newer answer, or the proposal again; `held`: more will follow at once. */
   onAnswer(held: boolean): void;
-  /** Plots are old: an answer is awaited for long. */
+  /** The plots are outdated: the answer takes long. */
   onLate(late: boolean): void;
   onHold(held: boolean): void;
-  /** A job of what is shown; returns it with the place of the entry, null where another one has taken over. */
+  /** Creates a job for the displayed design; returns it with the index of the entry, null if another one has
+      replaced it. */
   onKeep(request: TuningRequest, index: number): Promise<{ job: Job; index: number } | null>;
 }
 
 const same = (a: unknown, b: unknown): boolean => JSON.stringify(a) === JSON.stringify(b);
 
-/** Measured points have no responses over time, hence no front. */
+/** Measured points have no responses over time, hence no frontier. */
 const hasFront = (plant: Plant): boolean => plant.type !== "frequency_response";
 
 export function modifiedDesign(
@@ -65,11 +66,11 @@ export function modifiedDesign(
   let shown: { job: Job; result: Result; index: number } | null = null;
   let sliders: SliderSpec[] = [];
   let proposal: Point | null = null;
-  /** The address speaks of the entry that is shown. */
+  /** The address describes the displayed entry. */
   let addressed = true;
-  /** Of the job's other entries: what was done to them before another one was chosen. */
+  /** For the job's other entries: their changes before another one was chosen. */
   const left = new Map<number, Steps>();
-  /** Where the design stood that is being kept. */
+  /** The point of the design that is being kept. */
   let kept: Point | null = null;
   const live = liveDesign(settled);
   const controls = controlsCard(live);
@@ -86,7 +87,7 @@ export function modifiedDesign(
   const todayOf = (result: Result): Entry | undefined =>
     result.controllers.find((entry) => entry.method === "baseline" && !entry.error);
 
-  /** One step was made: the address has it. */
+  /** After a step: writes it to the address. */
   function settled(point: Point): void {
     const route = store.get().route;
     if (route.screen !== "design" || !proposal) return;
@@ -98,13 +99,14 @@ export function modifiedDesign(
     showFront();
   }
 
-  /** The button goes with what it is about; the keyboard stays at the sliders. */
+  /** The button is removed; the focus stays at the sliders. */
   function keepIt(): void {
     passFocus(keep, controls.element.querySelector<HTMLElement>("input[type=range]"));
     void keepDesign();
   }
 
-  /** The job's report and code are the proposal's: a design that stays has a job of its own, of the request that is shown. */
+  /** The job's report and code belong to the proposal: a design that is kept gets its own job, with the displayed
+      request. */
   async function keepDesign(): Promise<void> {
     const shownNow = live.answer.peek();
     if (!shownNow || shownNow.path !== "v1/jobs") return;
@@ -128,14 +130,14 @@ export function modifiedDesign(
     trouble.hidden = false;
   }
 
-  /** The limit on Ms that a design was made for; null by hand and for rules. */
+  /** The limit on Ms for which a design was made; null by hand and for rules. */
   function limitAt(point: Point | null): number | null {
     const tune = point?.tune;
     if (!tune || point.manual || tune.method !== "robust") return null;
     return typeof tune["Ms"] === "number" ? tune["Ms"] : (sliders.find((spec) => spec.id === "Ms")?.value ?? null);
   }
 
-  /** What stands on the screen and not in the job, and what can be done about it. */
+  /** Shows how the displayed design differs from the job, and the possible actions. */
   function showAway(answer: Answer | null): void {
     away.hidden = !answer;
     if (!answer) return;
@@ -147,7 +149,7 @@ export function modifiedDesign(
       : "Report and code still describe the job's design. Keep this design to get its own.";
   }
 
-  /** What the curves hold to, besides Ms. */
+  /** The limits of the curves other than Ms. */
   function frontTerms({ tune }: Point): Pick<FrontSubject, "kind" | "terms"> {
     const onRegion = shown?.job.request?.["uncertainty"] === "identified" || base()?.over_region;
     if (tune?.method !== "robust" || onRegion) return { kind: null, terms: { Mt: "tied" } };
@@ -181,7 +183,7 @@ export function modifiedDesign(
     front.place(entry, limitAt(answered), todayOf(live.answer.peek()?.result ?? shown.result) ?? null);
   }
 
-  /** Entries of one row of the request are turned together. */
+  /** Entries of one row of the request are modified together. */
   function leave(index: number, steps: Steps): void {
     left.set(index, steps);
     const request = shown?.job.request;
@@ -222,7 +224,7 @@ export function modifiedDesign(
     effect(() => showAway(live.answer.value)),
   ];
 
-  /** Not where a text is typed: there it takes back letters. */
+  /** Not in a text field: there the key undoes typing. */
   function onKey(event: KeyboardEvent): void {
     if (!(event.ctrlKey || event.metaKey) || event.altKey || event.key.toLowerCase() !== "z") return;
     const target = event.target as HTMLElement | null;
@@ -235,7 +237,7 @@ export function modifiedDesign(
 
   const methodOf = (entry: Entry): Method | undefined => store.get().methods.find((item) => item.id === entry.method);
 
-  /** `to`: where the sliders go on from; else where the address says. */
+  /** `to`: the starting point of the sliders; by default that of the address. */
   function begin(to: Steps | null = null): void {
     const entry = base();
     if (!shown || !entry) return;
@@ -260,7 +262,7 @@ export function modifiedDesign(
     return pointOf(values, from, entry.controller, sliders);
   }
 
-  /** Where a slider went while the design was being kept; null: it stands where it was, or nothing was kept. */
+  /** The point to which a slider moved while the design was being kept; null: it has not moved, or nothing was kept. */
   function movedOn(job: Job): Point | null {
     const from = kept;
     if (!from || shown?.job.id === job.id) return null;
@@ -269,7 +271,7 @@ export function modifiedDesign(
     return now && !samePoint(now, from) ? now : null;
   }
 
-  // The sliders of a method need its options, which may come later than the job.
+  // The sliders of a method need its options, which may arrive after the job.
   const methods = store.pick((workspace) => workspace.methods);
   let known = methods.peek();
   leaving.push(
@@ -285,7 +287,7 @@ export function modifiedDesign(
     front: front.element,
     show(job, result, index) {
       if (shown?.result === result && shown.index === index) return;
-      // The same entry again, newly fetched, still stands where the address says.
+      // The same entry, loaded again, is still the one of the address.
       addressed = shown === null || (shown.job.id === job.id && shown.index === index);
       const moved = movedOn(job);
       const before = live.steps.peek();

@@ -1,4 +1,4 @@
-// What accompanies the figures: the methods' warnings, and how everything was computed and checked.
+// Notes on the figures: the methods' warnings, and how everything was computed and checked.
 import type { Entry, Result } from "../api/types.ts";
 import { h } from "../dom.ts";
 import { formatNumber } from "../words/numbers.ts";
@@ -29,7 +29,7 @@ function checkWords(value: unknown): string {
   return String(value);
 }
 
-/** Name and value of everything that says how an entry came about. */
+/** Name and value of the facts about an entry's computation. */
 function factsOf(result: Result, entry: Entry, names: string[], units: UnitNames): [string, string][] {
   const facts: [string, string][] = [];
   const add = (name: string, value: string | undefined | null): void => {

@@ -1,4 +1,4 @@
-// The user's own controller on Design: what is chosen, what to type into it, today's settings in it, its law, and the
+// The user's own controller on Design: its choice, the settings to type, today's settings in it, its law, and the
 // entry's controller as code.
 import { ApiError, sentenceOf } from "../api/client.ts";
 import { latest } from "../api/latest.ts";
@@ -22,19 +22,19 @@ import type { TypedAnswer, TypedQuestion } from "./typed_question.ts";
 
 interface Shown {
   job: Job;
-  /** That the result belongs to. */
+  /** The request of the result. */
   request: TuningRequest;
-  /** As it is shown, turned or not. */
+  /** As displayed, modified or not. */
   result: Result;
   index: number;
   name: string;
   units: UnitNames;
-  /** The entry of the job that the service can write as code; null where what is shown is not the job's own. */
+  /** The entry of the job that the service can write as code; null if the displayed design is not the job's own. */
   code: number | null;
 }
 
 export interface OwnController {
-  /** The cards beside the plots, and those below them. */
+  /** The cards next to the plots, and those below them. */
   side: HTMLElement;
   below: HTMLElement[];
   show(shown: Shown): void;
@@ -43,7 +43,7 @@ export interface OwnController {
   dispose(): void;
 }
 
-/** `retune`: designs anew in this job's place. */
+/** `retune`: designs again in this job's place. */
 export function ownController(
   store: Store,
   announce: (sentence: string) => void,
@@ -52,7 +52,7 @@ export function ownController(
   let shown: Shown | null = null;
   let mine: MyController | null = store.get().mine;
   let tried: Controller | null = null;
-  /** The question whose answer is shown or under way. */
+  /** The question whose answer is shown or in progress. */
   let asked = "";
   const errors = new FormErrors();
   const about = productCard();
@@ -94,7 +94,7 @@ export function ownController(
     typed.show({ product, name, entered, judged: tried ? null : judged, time: shown!.units.time });
   }
 
-  /** The product's own matters: its law, and today's settings in it. */
+  /** Shows the product's own cards: its law, and today's settings in it. */
   function showProduct(): void {
     const id = mine?.product;
     if (!id) {
@@ -132,14 +132,14 @@ export function ownController(
     ask();
   }
 
-  /** Another controller, or another job's. */
+  /** Updates for another controller, or another job's. */
   function showMine(): void {
     showProduct();
     code.propose(mine);
     update();
   }
 
-  /** The service writes what a job has, not what is tried. */
+  /** The service writes the controller of a job, not one that is tried by hand. */
   function showCode(): void {
     if (!shown) return;
     const { job, code: index, name, units, result } = shown;
@@ -222,7 +222,7 @@ export function ownController(
     nameMine();
   });
 
-  /** A request names its product by the id alone. */
+  /** A request names its product by the id only. */
   function nameMine(): void {
     const known = named(mine, store.get().products);
     if (known === mine) return;
@@ -263,7 +263,7 @@ export function ownController(
   };
 }
 
-/** Faults of a call about the controller alone, where a request has them. */
+/** Moves faults of a call about the controller alone to their place in a request. */
 const underImplement = ({ problem }: ApiError): { pointer: string; detail: string }[] =>
   (problem.errors ?? []).map((error) =>
     error.pointer.startsWith("/implement") ? error : { ...error, pointer: `/implement${error.pointer}` },

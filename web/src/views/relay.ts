@@ -1,4 +1,4 @@
-// Relay test: what one would show on a plant, how to make it, and its record for Identify.
+// Relay test: its simulation on a plant, a plan for it, and its record for Identify.
 import { simulateRelay } from "../api/plants.ts";
 import type { FieldError, IdentifyRequest, RelayAnswer, RelayPlan, RelayRequest, RelaySettings, Units } from "../api/types.ts";
 import { latest } from "../api/latest.ts";
@@ -17,7 +17,7 @@ import { requestMenu } from "./request_menu.ts";
 import type { View } from "./start.ts";
 
 export interface RelayEvents {
-  /** The labels of the units that stand on Start. */
+  /** The labels of the units on Start. */
   units(): Units | undefined;
   onIdentify(request: IdentifyRequest): void;
   /** The plant as typed, for the address. */
@@ -185,7 +185,7 @@ export function relayView(announce: (sentence: string) => void, events: RelayEve
   function use(plan: RelayPlan): void {
     for (const { name, field } of settings) {
       const value = (plan as Record<string, unknown>)[name];
-      // The relay of the plan writes its record as often as the plan says, unless it looks at y more rarely.
+      // The planned relay records at the interval of the plan, unless it samples y more slowly.
       if (typeof value === "number" && name !== "record_interval")
         field.input.value = String(Number(value.toPrecision(4)));
     }
@@ -206,7 +206,7 @@ export function relayView(announce: (sentence: string) => void, events: RelayEve
     const now = read();
     errors.clear();
     if (now.errors.length === 0) return calls.send(now.request);
-    // An answer under way would be of another request than the one refused here.
+    // An answer in progress would belong to an earlier request than the refused one.
     calls.drop();
     setBusy(false);
     errors.show(now.errors);
@@ -219,7 +219,7 @@ export function relayView(announce: (sentence: string) => void, events: RelayEve
 
   form.addEventListener("submit", (event) => {
     event.preventDefault();
-    // The service may still be reading the line that was typed.
+    // The service may still be parsing the typed line.
     void plant.settled().then(simulate);
   });
 

@@ -1,4 +1,5 @@
-// "Report": a job's page to print. The address has the entry, so that it is the same however the link is opened.
+// "Report": a job's page for printing. The address contains the entry, so that it is the same however the link is
+// opened.
 import { getText, sentenceOf } from "../api/client.ts";
 import { currentKey } from "../api/key.ts";
 import { h } from "../dom.ts";
@@ -6,7 +7,7 @@ import { download } from "../plot/export.ts";
 
 export interface ReportLink {
   element: HTMLAnchorElement;
-  /** Of this job; hidden where there is none with a result. `entry`: index of a controller; the best one without it. */
+  /** For this job; hidden if it has no result. `entry`: index of a controller; by default the best one. */
   show(id: string | null, entry?: number | null): void;
 }
 
@@ -14,7 +15,7 @@ export function reportLink(): ReportLink {
   let address = "";
   const element = h("a", { href: "#/", target: "_blank", hidden: true }, "Report");
 
-  /** A link carries no key: where the service asks for one, the page is fetched with it and saved. */
+  /** A link carries no key: if the service requires one, the page is downloaded with it and saved. */
   async function save(): Promise<void> {
     const { text } = await getText(address);
     download(new Blob([text], { type: "text/html" }), "report.html");

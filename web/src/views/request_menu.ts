@@ -1,4 +1,4 @@
-// The request behind what is shown, for programs: as JSON and as a call that can be pasted into a terminal.
+// The request for the displayed result, for programs: as JSON and as a call that can be pasted into a terminal.
 import { closesItself, h } from "../dom.ts";
 import { download } from "../plot/export.ts";
 import { copyButton } from "./copy.ts";
@@ -44,7 +44,7 @@ export function requestMenu(announce: (sentence: string) => void): RequestMenu {
     element: menu,
     show(path, request) {
       shown = request ?? null;
-      // Relative to the page, as every call is: a prefix before it stays.
+      // Relative to the page, like every call: a path prefix is kept.
       address = new URL(path, document.baseURI).href;
       menu.hidden = shown === null;
     },

@@ -1,4 +1,4 @@
-// Start: a record, a model, or an example; everything below is optional.
+// Start: a record, a model, or an example; all other fields are optional.
 import { ApiError } from "../api/client.ts";
 import { postJob } from "../api/jobs.ts";
 import type { FieldError, IdentifyRequest, Job, RecordedTest, TuningRequest, Units } from "../api/types.ts";
@@ -31,49 +31,49 @@ export interface View {
 }
 
 export interface StartEvents {
-  /** `all`: of every method. */
+  /** `all`: with every method. */
   onJob(job: Job, all: boolean): void;
   /** The model as typed, for the address. */
   onModel(form: string, values: Record<string, string>): void;
-  /** A record to look at. */
+  /** A record to show on Identify. */
   onRecord(request: IdentifyRequest): void;
-  /** A plant, as typed, to simulate a relay test on. */
+  /** A plant, as typed, for a simulated relay test. */
   onRelay(form: string, values: Record<string, string>): void;
 }
 
-/** Which card describes the loop. */
+/** The card that describes the loop. */
 export type LoopKind = "model" | "equations" | "record" | "ultimate";
 
 export interface StartView extends View {
   load(request: TuningRequest, example?: boolean): void;
   loadTyped(form: string, values: Record<string, string>): void;
   loadRecord(record: RecordedTest, identify: Record<string, unknown> | undefined): void;
-  /** Another loop, which comes from elsewhere. */
+  /** A new loop, from elsewhere. */
   beginLoop(kind: LoopKind): void;
-  /** A job was made of what stands in the form. */
+  /** A job was created from the content of the form. */
   endLoop(): void;
-  /** A tuning request about this, with the methods (or all of them), units and settings that stand in the form. */
+  /** A tuning request for this subject, with the methods (or all of them), units and settings of the form. */
   compose(subject: TuneSubject, all?: boolean): { request: TuningRequest; faults: FieldError[] };
   units(): Units | undefined;
-  /** Those that were typed for a loop that is not tuned yet. */
+  /** The units typed for a loop that is not tuned yet. */
   typedUnits(): Units | undefined;
-  /** How many loops stood in the form so far. */
+  /** The number of loops in the form so far. */
   loops(): number;
   /** Names of the chosen methods. */
   methods(): string[];
 }
 
-/** So many examples stand open; the others are folded. */
+/** Examples that are visible; the others are folded. */
 const EXAMPLES_SHOWN = 3;
 
 export function startView(store: Store, events: StartEvents): StartView {
   const errors = new FormErrors();
-  // Parts of a loaded request that have no field: sent back as they came.
+  // Parts of a loaded request without a field: sent unchanged.
   let base: TuningRequest = {};
-  // The kind of loop that the rest of the form is about; null: nothing was filled in or tuned yet.
+  // The kind of the current loop; null: nothing was filled in or tuned yet.
   let loop: LoopKind | null = null;
   let ofExample = false;
-  /** How many there were. */
+  /** Number of loops so far. */
   let loops = 0;
   const kept = keptNote("the request", () => {
     base = {};
@@ -83,7 +83,7 @@ export function startView(store: Store, events: StartEvents): StartView {
   let troubled = "";
   const heading = h("h1", { tabindex: -1 }, "What do you have?");
   const status = h("p", { class: "trouble", role: "status", hidden: true });
-  // Faults of a plant belong to the card that it was written on.
+  // Faults of a plant belong to the card in which it was written.
   let subject: LoopKind = "model";
   const model = modelCard(errors, () => subject === "model", {
     onTune: () => void tuneModel(false),
@@ -160,10 +160,10 @@ export function startView(store: Store, events: StartEvents): StartView {
 
   for (const [kind, card] of [["model", model], ["equations", equations], ["ultimate", ultimate]] as const)
     for (const event of ["input", "submit"]) card.element.addEventListener(event, () => turnTo(kind), true);
-  // Another model in the place of an example's is no variation of it.
+  // Another model that replaces an example's is not a variation of it.
   model.element.addEventListener("input", ({ target }) => ofExample && model.isLine(target) && beginLoop("model"), true);
 
-  /** Nothing of the loop before, or of what the form was filled with, belongs to another one; what was typed since does. */
+  /** A new loop does not inherit values of the previous loop or of a filled form; values typed since then are kept. */
   function beginLoop(kind: LoopKind): void {
     loops += 1;
     ofExample = false;
@@ -173,18 +173,18 @@ export function startView(store: Store, events: StartEvents): StartView {
     showMine(inUnits(store.get().mine, unitNames(today.readUnits())));
   }
 
-  /** The loop that was begun is described on another card now. */
+  /** The current loop is now described on another card. */
   function turnTo(kind: LoopKind): void {
     if (loop === null || loop === kind) loop = kind;
     else beginLoop(kind);
   }
 
-  /** A job was made of what stands here: all of it is that loop's. */
+  /** A job was created: the whole form belongs to that loop. */
   function endLoop(): void {
     for (const card of [today, methods, record]) card.endLoop();
   }
 
-  /** `own`: it is the form's. */
+  /** `own`: the request comes from the form. */
   async function send(request: TuningRequest, faults: FieldError[], all: boolean, own = true): Promise<void> {
     errors.clear();
     if (faults.length > 0) return errors.show(faults);
@@ -209,7 +209,7 @@ export function startView(store: Store, events: StartEvents): StartView {
     const chosen = all ? { tune: EVERY_METHOD, errors: [] } : methods.read();
     const { plant: _p, record: _r, identify: _i, uncertainty: _u, ultimate: _ultimate, ...kept } = base;
     const own = mineCard.read();
-    // A program that a loaded request names stays; it has no field here.
+    // A program named in a loaded request is kept; it has no field here.
     const request: TuningRequest = own.mine || kept.implement?.product ? withImplement(kept, implementOf(own.mine)) : kept;
     delete request.name;
     delete request.units;
@@ -229,7 +229,7 @@ export function startView(store: Store, events: StartEvents): StartView {
 
   function compose(subject: TuneSubject, all = false): { request: TuningRequest; faults: FieldError[] } {
     const { request, faults } = common(all);
-    // The region that a loaded request held its limits on belongs to its record; Identify has its own choice.
+    // The region over which a loaded request holds its limits belongs to its record; Identify has its own choice.
     const held = "record" in subject && base.record ? { uncertainty: base["uncertainty"] } : {};
     return { request: { ...request, ...defined({ ...held, ...subject }) }, faults };
   }
@@ -297,7 +297,7 @@ export function startView(store: Store, events: StartEvents): StartView {
     }
   }
 
-  /** Without reporting: what a request was made for is not remembered. */
+  /** Without reporting: the controller of a loaded request is not stored. */
   function showMine(next: MyController | null): void {
     mine = named(next, store.get().products);
     mineCard.set(mine);
@@ -388,6 +388,6 @@ function kindOf({ record, ultimate, plant }: TuningRequest): LoopKind {
   return plant?.type === "nonlinear" ? "equations" : "model";
 }
 
-/** JSON knows no undefined; neither does what is compared with it. */
+/** JSON has no undefined; the values for comparison must not have it either. */
 const defined = (values: Record<string, unknown>): Record<string, unknown> =>
   Object.fromEntries(Object.entries(values).filter(([, value]) => value !== undefined));

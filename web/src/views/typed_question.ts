@@ -1,4 +1,5 @@
-// What to ask the service for the settings of an entry, or of a controller that is tried by hand, in the user's own product.
+// The service's question for the settings of an entry, or of a controller that is tried by hand, in the user's own
+// product.
 import { evaluateAsBuilt } from "../api/live.ts";
 import { getProduct, settingsFor } from "../api/products.ts";
 import type { AsEntered, Controller, Entry, Implement, Product, TuningRequest } from "../api/types.ts";
@@ -6,9 +7,9 @@ import type { CallSubject } from "../api/live.ts";
 
 export interface TypedQuestion {
   implement: Implement & { product: string };
-  /** Of the entry, or as tried. */
+  /** The entry's controller, or the one that is tried. */
   controller: Controller;
-  /** Null: what is tried by hand, of which only the settings are asked. */
+  /** Null: a trial by hand, for which only the settings are requested. */
   subject: CallSubject | null;
   request: TuningRequest;
 }
@@ -16,11 +17,11 @@ export interface TypedQuestion {
 export interface TypedAnswer {
   product: Product;
   entered: AsEntered;
-  /** The entry judged on the product; null where only the settings could be had. */
+  /** The entry evaluated on the product; null if only the settings could be computed. */
   judged: Entry | null;
 }
 
-/** The settings with the loop as built; the settings alone where this plant cannot be judged so. */
+/** The settings with the implemented loop; only the settings if this plant cannot be evaluated so. */
 export async function askTyped({ implement, controller, subject, request }: TypedQuestion): Promise<TypedAnswer> {
   const product = await getProduct(implement.product);
   const judged = subject ? await evaluateAsBuilt(subject, controller, implement, request).catch(() => null) : null;

@@ -1,4 +1,4 @@
-// The comparison of a comparison as data: its rows in order, its columns with their figures. No DOM.
+// The comparison as data: its rows in order, its columns with their figures. No DOM.
 import type { Entry, Result, WhyNull } from "../api/types.ts";
 import { besideLimit } from "./figures.ts";
 import { formatNumber, formatPercent, product, quotient, withUnit } from "./numbers.ts";
@@ -9,17 +9,17 @@ export interface ComparisonRow {
   index: number;
   name: string;
   entry: Entry;
-  /** From 1 among the methods that hold their limits; null for others and for today's settings. */
+  /** From 1, among the methods that hold their limits; null for others and for today's settings. */
   rank: number | null;
-  /** Why there is no rank, or "". */
+  /** The reason why there is no rank, or "". */
   why: string;
 }
 
 export interface ComparisonFigure {
   value: number | null;
-  /** As it is read; "" where there is no number. */
+  /** As displayed; "" if there is no number. */
   text: string;
-  /** Why there is no number, or "". */
+  /** The reason why there is no number, or "". */
   why: string;
 }
 
@@ -48,17 +48,17 @@ function figureOf(part: Part, name: string, absent: string, format = (value: num
   return { value: null, text: "", why: part?.why_null?.[name] ?? absent };
 }
 
-/** "+12.3"; the optimum itself, to what its search leaves open, is "0". */
+/** "+12.3"; the optimum itself, within the accuracy of its search, is "0". */
 export function excessText(percent: number): string {
   const text = formatPercent(percent);
   return percent > 0 && text !== "0" ? `+${text}` : text;
 }
 
 const stable = (entry: Entry): boolean => entry.robustness?.stable === true;
-/** Both responses come to rest where they should. */
+/** True if both responses settle at their targets. */
 export const settles = (entry: Entry): boolean => entry.standing?.settles ?? stable(entry);
 
-/** Every column but rank, method and notes, in the order in which they stand. */
+/** Every column except rank, method and notes, in their order. */
 export function comparisonColumns(units: UnitNames): ComparisonColumn[] {
   const gain = quotient(units.u, units.y);
   const error = product(units.y, units.time);
@@ -151,7 +151,7 @@ function filterTime(entry: Entry): ComparisonFigure {
   return value === null ? { value, text: "", why: "no filter" } : { value, text: formatNumber(value), why: "" };
 }
 
-/** Names as the table writes them: the method's title with its variant, without what stands in brackets before that. */
+/** Names in the table: the method's title with its variant, without an earlier text in brackets. */
 export function comparisonNames(entries: Entry[]): string[] {
   const full = entries.map((entry) =>
     entry.method === "baseline" ? "Today's settings" : entry.title || entry.method.replaceAll("_", " "),
@@ -166,7 +166,7 @@ export function comparisonNames(entries: Entry[]): string[] {
   });
 }
 
-/** Whether the entry ranks under this limit on the Ms of all; null: the one that its own answer went by. */
+/** True if the entry ranks under this limit on Ms; null: the limit of its own answer. */
 function holds(entry: Entry, limit: number | null): boolean {
   const { standing, error } = entry;
   const { least_limit: least, group } = standing ?? {};
@@ -174,7 +174,8 @@ function holds(entry: Entry, limit: number | null): boolean {
   return least !== null && least <= limit;
 }
 
-/** Rows in the service's order: first what ranks under this limit on Ms, then the rest, then what has no answer. */
+/** Rows in the service's order: first those that rank under this limit on Ms, then the rest, then those without an
+    answer. */
 export function comparisonRows(result: Result, limit: number | null): ComparisonRow[] {
   const names = comparisonNames(result.controllers);
   const ranking = result.ranking ?? [];
@@ -199,7 +200,7 @@ function noRank({ error, standing }: Entry, held: boolean, limit: number | null)
 
 const compare = (a: number, b: number): number => (a === b ? 0 : a < b ? -1 : 1);
 
-/** The rows that have an answer, by a column; rows without a number there stand last in either direction. */
+/** The rows with an answer, sorted by a column; rows without a number are last in either direction. */
 export function sortRows(rows: ComparisonRow[], order: ComparisonOrder, columns: ComparisonColumn[]): ComparisonRow[] {
   const sign = order.falling ? -1 : 1;
   if (order.column === "rank") return order.falling ? [...rows].reverse() : rows;
@@ -214,13 +215,13 @@ export function sortRows(rows: ComparisonRow[], order: ComparisonOrder, columns:
   });
 }
 
-/** "outside validity, no derivative": what the remarks of an entry are about; "unstable" first. */
+/** "outside validity, no derivative": the subjects of an entry's remarks; "unstable" first. */
 export function notesSummary(entry: Entry): string {
   const words = (entry.warnings ?? []).map((warning) => warning.code.replaceAll(/[-_]/g, " "));
   return [...new Set([...(entry.robustness && !stable(entry) ? ["unstable"] : []), ...words])].join(", ");
 }
 
-/** Why a method has no answer. */
+/** The reason why a method has no answer. */
 export const reasonOf = (entry: Entry): string => entry.error?.detail ?? entry.error?.title ?? "It gave no reason.";
 
 /** The whole table for a file: every column, all digits, remarks and reasons in words. */
@@ -240,7 +241,7 @@ export function comparisonTable(rows: ComparisonRow[], columns: ComparisonColumn
   ];
 }
 
-/** The order that an address names: "Ms" rises, "-Ms" falls, "" is the ranking. */
+/** The order in an address: "Ms" ascends, "-Ms" descends, "" is the ranking. */
 export function orderOf(text: string): ComparisonOrder {
   const falling = text.startsWith("-");
   return { column: (falling ? text.slice(1) : text) || "rank", falling };

@@ -1,4 +1,4 @@
-// The figures of a relay test's oscillation, in the order in which they are read.
+// The figures of a relay test's oscillation, in display order.
 import type { LimitCycle, UltimatePoint } from "../api/types.ts";
 import { formatNumber, quotient, withUnit } from "./numbers.ts";
 import type { UnitNames } from "./numbers.ts";

@@ -1,4 +1,4 @@
-// Two-level tuning in words: the settings of both levels, what the optimum costs and how sharp it is.
+// Two-level tuning in words: the settings of both levels, the cost of the optimum and its curvature.
 import type { EmulatedScenario, Emulation, Entry, LevelOneRow, Tuned } from "../api/types.ts";
 import { rootWords } from "./linear_model.ts";
 import { formatNumber, formatParameter, formatSetting, quotient } from "./numbers.ts";
@@ -6,13 +6,13 @@ import type { UnitNames } from "./numbers.ts";
 
 export interface LevelRow {
   title: string;
-  /** Where its model comes from, or "". */
+  /** The source of its model, or "". */
   origin: string;
   /** Index in level1; null for the tuned settings themselves. */
   level1: number | null;
   settings: Partial<Record<Tuned, number | null>>;
   J: number | null;
-  /** Why there are no settings or no J; "" if there are. */
+  /** The reason why there are no settings or no J; "" if there are. */
   why: string;
   /** Has responses to draw. */
   drawable: boolean;
@@ -29,7 +29,7 @@ function levelOneRow(item: LevelOneRow, index: number): LevelRow {
   const why = item.error || item.ended || item.why_null?.["J"] || "There is no J of these settings.";
   return {
     title: item.title ?? item.method.replaceAll("_", " "),
-    // Titles that end in brackets say it themselves.
+    // Titles that end in brackets contain it already.
     origin: item.title?.endsWith(")") ? "" : (ORIGINS[item.test ?? ""] ?? ""),
     level1: index,
     settings: controller ? { Kp: controller.Kp, Ti: controller.Ti, Td: controller.Td ?? 0 } : {},
@@ -39,7 +39,7 @@ function levelOneRow(item: LevelOneRow, index: number): LevelRow {
   };
 }
 
-/** The classical settings, and last what the optimum is. */
+/** The classical settings, and last the optimum. */
 export function levelRows(entry: Entry): LevelRow[] {
   const { emulation, controller } = entry;
   if (!emulation) return [];
@@ -59,7 +59,7 @@ export function levelRows(entry: Entry): LevelRow[] {
   ];
 }
 
-/** Which parameters were sought: those with bounds, else those that the controller has. */
+/** The tuned parameters: those with bounds, else those that the controller has. */
 export function tunedParameters(emulation: Emulation): Tuned[] {
   const every: Tuned[] = ["Kp", "Ti", "Td", "Tf"];
   const bounded = every.filter((name) => emulation.bounds?.[name]);
@@ -88,7 +88,7 @@ export function flatnessWords(emulation: Emulation): string {
   return alone ? `${first}; alone ${alone}.` : `${first}.`;
 }
 
-/** Name and value of what the optimum is made of. */
+/** Name and value of the facts about the optimum. */
 export function emulationFacts(emulation: Emulation, units: UnitNames): [string, string][] {
   const facts: [string, string][] = [];
   const { J, J_y, J_u, weights, horizon, relative_degree, zeros, target } = emulation;
@@ -139,7 +139,7 @@ export function scenarioWords(scenario: EmulatedScenario): string {
   return [`set point ${signed}`, ...others].join(", ");
 }
 
-/** What is special about a scenario's run, in sentences; "" for nothing. */
+/** Special features of a scenario's run, in sentences; "" for none. */
 export function scenarioNotes(scenario: EmulatedScenario): string {
   return [
     scenario.limited ? "A limit of the input clips the nonlinear controller here." : "",

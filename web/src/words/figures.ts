@@ -1,24 +1,24 @@
-// The figures of an entry, in the order and with the names and units in which they are read.
+// The figures of an entry, with their names and units, in display order.
 import type { Entry, Figures, WhyNull } from "../api/types.ts";
 import { formatNumber, formatPercent, formatShare, product, quotient, withUnit } from "./numbers.ts";
 import type { UnitNames } from "./numbers.ts";
 
 export interface FigureRow {
   label: string;
-  /** What the quantity is, for those who do not know it. */
+  /** Explanation of the quantity for readers who do not know it. */
   meaning: string;
   value(entry: Entry): FigureValue;
 }
 
 export interface FigureValue {
   text: string;
-  /** Why there is no number; "" if there is one. */
+  /** The reason why there is no number; "" if there is one. */
   why: string;
 }
 
 export interface FigureGroup {
   title: string;
-  /** Shown at once, or among "all figures". */
+  /** Shown directly, or under "all figures". */
   main: boolean;
   rows: FigureRow[];
 }
@@ -27,7 +27,7 @@ type Part = { why_null?: WhyNull } | undefined;
 
 const missing = (why: string): FigureValue => ({ text: "", why });
 
-/** A number of one of the entry's objects, with that object's reason where it is null. */
+/** A number of one of the entry's objects, with that object's reason if it is null. */
 function numeric(part: Part, name: string, absent: string): FigureValue {
   const value = (part as Record<string, unknown> | undefined)?.[name];
   if (typeof value === "number" && Number.isFinite(value)) {
@@ -38,13 +38,13 @@ function numeric(part: Part, name: string, absent: string): FigureValue {
 
 const NOT_GIVEN = "The service gave no figure.";
 
-/** "12.5 (asked 5.00)" where the loop has more than its design has as its limit. */
+/** "12.5 (asked 5.00)" if the loop exceeds the limit of its design. */
 function overshoot(entry: Entry): FigureValue {
   const reached = numeric(entry.performance?.["setpoint"], "overshoot_percent", NOT_GIVEN);
   return { ...reached, text: reached.text && reached.text + besideLimit(entry) };
 }
 
-/** The design's limit on the overshoot, in percent, where the verdict says that the loop has more. */
+/** The design's limit on the overshoot, in percent, if the verdict says that the loop exceeds it. */
 function missedOvershoot(entry: Entry): { who: "asked" | "design"; percent: number } | null {
   const figures = entry.verdict?.find(({ code }) => code === "overshoot")?.figures ?? {};
   for (const who of ["asked", "design"] as const) {
@@ -78,7 +78,8 @@ export function filterWords(type: string | undefined): string {
   }
 }
 
-/** `region`: with the figures of controllers that serve more than one plant; `nonlinear`: with those of nonlinear ones. */
+/** `region`: includes the figures of controllers for more than one plant; `nonlinear`: includes those of nonlinear
+    ones. */
 export function figureGroups(units: UnitNames, region = false, nonlinear = false): FigureGroup[] {
   const gain = quotient(units.u, units.y);
   const error = product(units.y, units.time);

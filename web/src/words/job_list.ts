@@ -1,4 +1,4 @@
-// Jobs in lists: their cells in words, and the orders that a batch can stand in.
+// Jobs in lists: their cells in words, and the orders of a batch.
 import type { Controller, ListedJob, Outline, Plant } from "../api/types.ts";
 import { DASH, formatNumber, formatParameter, formatSetting, quotient, unitNames, withUnit } from "./numbers.ts";
 import type { UnitNames } from "./numbers.ts";
@@ -8,7 +8,7 @@ const MINUTE = 60;
 const HOUR = 60 * MINUTE;
 const DAY = 24 * HOUR;
 
-/** "3 min": how long ago that was. */
+/** "3 min": the time since then. */
 export function age(created: string, now: number): string {
   const seconds = Math.max(0, (now - Date.parse(created)) / 1000);
   if (!Number.isFinite(seconds)) return DASH;
@@ -22,7 +22,7 @@ const lag = (value: unknown): string =>
   typeof value === "number" && value !== 0 ? `(${shownFactor(value)}s + 1)` : "";
 const shownFactor = (value: number): string => (value === 1 ? "" : formatParameter(value));
 
-/** "2 e^(−3s)/(10s + 1)"; of plants without a short formula their kind. */
+/** "2 e^(−3s)/(10s + 1)"; the kind of a plant without a short formula. */
 export function shortPlant(outline: Outline | undefined): string {
   const plant = outline?.plant;
   if (outline?.range) return rangeOutline(outline.range);
@@ -52,13 +52,13 @@ export function methodWords(outline: Outline | undefined): string {
   return (outline.entries ?? 1) > 1 ? `${name}, best of ${outline.entries}` : name;
 }
 
-/** By how much the load IAE falls from today's, in percent; null where it is not known. */
+/** The reduction of the load IAE from today's, in percent; null if it is not known. */
 export function gain(job: ListedJob): number | null {
   const [today, now] = [job.outline?.today?.load_IAE, job.outline?.load_IAE];
   return typeof today === "number" && typeof now === "number" && today > 0 ? 100 * (1 - now / today) : null;
 }
 
-/** The largest Ms on any plant that the loop may meet; a tuned loop without one is the greatest risk. */
+/** The largest Ms on any plant that the loop may meet; a tuned loop without one has the greatest risk. */
 export function risk(job: ListedJob): number | null {
   const outline = job.outline;
   if (job.status !== "succeeded" || !outline?.method) return null;
@@ -69,11 +69,11 @@ export function risk(job: ListedJob): number | null {
 export interface BatchColumn {
   id: string;
   label: string;
-  /** What stands in the cell. */
+  /** The text of the cell. */
   text(job: ListedJob): string;
-  /** What it is sorted by; null stands last in both directions. */
+  /** The value for sorting; null is last in both directions. */
   value(job: ListedJob): number | string | null;
-  /** The first press sorts with the largest on top. */
+  /** The first press sorts in descending order. */
   falls?: boolean;
 }
 
@@ -132,7 +132,7 @@ const LAST_COLUMNS: BatchColumn[] = [
   { id: "status", label: "Status", text: (job) => job.status, value: (job) => job.status },
 ];
 
-/** Settings of the controller to enter; times and gains have the units of the loops, where these have them in common. */
+/** Settings of the controller to enter; times and gains are in the units of the loops, if these are common. */
 const SETTINGS: { id: string; unit(units: UnitNames): string; read(controller: Controller): number | null | undefined }[] = [
   { id: "Kp", unit: (units) => quotient(units.u, units.y), read: ({ Kp }) => Kp },
   { id: "Ki", unit: () => "", read: ({ Ki }) => Ki },
@@ -165,7 +165,7 @@ function settingColumns(jobs: readonly ListedJob[]): BatchColumn[] {
   });
 }
 
-/** Columns of what to type into the product, one for each of its settings. */
+/** Columns of the settings to type into the product, one for each. */
 function typedColumns(jobs: readonly ListedJob[]): BatchColumn[] {
   const names = [...new Set(jobs.flatMap((job) => Object.keys(job.outline?.to_type ?? {})))];
   return names.map((name) => ({
@@ -182,7 +182,8 @@ function typedColumns(jobs: readonly ListedJob[]): BatchColumn[] {
 
 const ALWAYS = ["index", "name", "status"];
 
-/** The columns of these loops: what they are, the settings to enter, what they do; none that would hold dashes alone. */
+/** The columns for these loops: description, settings to enter, results; without columns that would hold only
+    dashes. */
 export function batchColumns(jobs: readonly ListedJob[]): BatchColumn[] {
   const typed = typedColumns(jobs);
   const settings = typed.length > 0 ? typed : settingColumns(jobs);

@@ -1,9 +1,9 @@
-// Compares a design that was kept with the one that was on the screen, and says what differs.
+// Compares a design that was kept with the one that was on the screen, and lists the differences.
 import { settingsOf } from "../api/evaluate.ts";
 import type { Entry, Job } from "../api/types.ts";
 import { formatSetting } from "./numbers.ts";
 
-/** Every setting by its name, those of a filter too, and what is typed into the product. */
+/** Every setting by its name, including those of a filter and those to type into the product. */
 function settingsByName(entry: Entry): Map<string, unknown> {
   const all = new Map<string, unknown>();
   const take = (prefix: string, values: object): void => {
@@ -19,7 +19,7 @@ function settingsByName(entry: Entry): Map<string, unknown> {
 const shown = (value: unknown): string =>
   typeof value === "number" ? formatSetting(value) : value === undefined || value === null ? "none" : String(value);
 
-/** "" where the job's entry has the same settings to the digit, or is not there yet. */
+/** "" if the job's entry has exactly the same settings, or is not there yet. */
 export function keptOtherwise(before: Entry, job: Job, index: number): string {
   const after = job.result?.controllers[index];
   if (!after?.controller) return "";

@@ -10,7 +10,7 @@ export interface Limits {
 const above = (value: unknown, floor: number): number | null =>
   typeof value === "number" && Number.isFinite(value) && value > floor ? value : null;
 
-/** What the entry's method was asked to hold, defaults included: the answer has them all among its options. */
+/** The limits for the entry's method, including defaults: the answer has them all among its options. */
 export function limitsOf(entry: Entry | undefined): Limits {
   const options = entry?.options ?? {};
   return {
@@ -28,11 +28,11 @@ export function commonLimits(entries: Entry[]): Limits {
   return limited ?? { Ms: null, Mt: null, Mks: null };
 }
 
-/** What an option is where a request leaves it out, as its method describes it; null where that is not known. */
+/** The value of an option that a request leaves out, from its method's description; null if it is not known. */
 export function defaultOf(method: Method | undefined, option: string): number | null {
   const value = method?.options?.properties?.[option]?.default;
   return typeof value === "number" ? value : null;
 }
 
-/** The method whose limits hold where nothing else is asked for. */
+/** The method whose limits apply by default. */
 export const robustOf = (methods: readonly Method[]): Method | undefined => methods.find(({ id }) => id === "robust");

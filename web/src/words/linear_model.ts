@@ -1,19 +1,20 @@
-// The linear model of a nonlinear plant as people read it: a transfer function of its state-space form, with poles and zeros.
+// The linear model of a nonlinear plant in the usual notation: a transfer function from its state-space form, with
+// poles and zeros.
 import type { Plant } from "../api/types.ts";
 import { formatParameter } from "./numbers.ts";
 
 export interface TransferFunction {
-  /** Falling powers of s. */
+  /** In descending powers of s. */
   num: number[];
   den: number[];
 }
 
-/** What is smaller than this beside what it was summed from is rounding. */
+/** A result that is smaller than this, relative to its terms, is rounding. */
 const ROUNDING = 1e-11;
-/** More states than these make no formula to read. */
+/** With more states there is no readable formula. */
 const MAX_STATES = 5;
 const MAX_PASSES = 500;
-/** Of a root's size: a double real root splits by the square root of rounding. */
+/** Relative to a root's size: rounding splits a double real root by its square root. */
 const NO_ANGLE = 1e-7;
 
 /** C (sI - A)^-1 B by Faddeev and LeVerrier's recursion; null for another plant or one of many states. */

@@ -1,4 +1,4 @@
-// What the service says of its methods, as text to read and to search. Nothing here knows any method.
+// The service's description of its methods, as text to read and to search. Independent of any method.
 import type { Method, Schema } from "../api/types.ts";
 
 export interface OptionRow {
@@ -61,7 +61,7 @@ function interval({ minimum, maximum, exclusiveMinimum, exclusiveMaximum }: Sche
   return "";
 }
 
-/** Whether every word that is searched for occurs in what is said of the method. */
+/** True if the description of the method contains every search word. */
 export function mentions(method: Method, search: string): boolean {
   const text = [method.id, method.title, method.source, method.needs, method.validity, method.formula]
     .join(" ")

@@ -1,9 +1,10 @@
-// Numbers and units as people read them: three digits, a true minus, a dash for what does not exist.
+// Numbers and units for display: three digits, a true minus, a dash for a missing value.
 
 export const DASH = "–";
 const MINUS = "−";
 
-/** `digits` significant digits; powers of ten outside 0.001 to 99999. Trailing zeros stay: they say how exact the figure is. */
+/** `digits` significant digits; powers of ten outside 0.001 to 99999. Trailing zeros stay: they show the accuracy of
+    the figure. */
 export function formatNumber(value: number | null | undefined, digits = 3): string {
   if (typeof value !== "number" || !Number.isFinite(value)) return DASH;
   if (value === 0) return "0";
@@ -17,16 +18,16 @@ export function formatNumber(value: number | null | undefined, digits = 3): stri
   return plain.replaceAll("-", MINUS);
 }
 
-/** A share below this is what rounding leaves. */
+/** A smaller share is rounding. */
 const NO_PERCENT = 0.005;
 
 export const formatPercent = (value: number): string => formatNumber(Math.abs(value) < NO_PERCENT ? 0 : value);
 
-/** A fraction as percent: never 100 for less than all, never 0 for more than nothing. */
+/** A fraction as percent: never 100 for less than all, never 0 for more than none. */
 export const formatShare = (fraction: number): string =>
   String(fraction > 0 ? Math.max(0.1, Math.floor(1000 * fraction + 1e-9) / 10) : 0);
 
-/** A sentence of the service, whose minus signs are hyphens. */
+/** A sentence of the service, whose hyphens become minus signs. */
 export const withMinus = (sentence: string): string => sentence.replace(/(^|[\s(])-(?=\d)/g, `$1${MINUS}`);
 
 /** A parameter in running text: four digits at most, no trailing zeros. */
@@ -36,10 +37,10 @@ export function formatParameter(value: number): string {
   return short !== 0 && (size < 1e-3 || size >= 1e5) ? formatNumber(short, 4) : String(short).replaceAll("-", MINUS);
 }
 
-/** A number for a field or an address, as it would be typed: without what arithmetic leaves in the 16th digit. */
+/** A number for a field or an address, as typed: without rounding errors in the 16th digit. */
 export const exactText = (value: number): string => String(Number(value.toPrecision(15)));
 
-/** An error below this share of the value says nothing. */
+/** An error below this share of the value is not shown. */
 const NEGLIGIBLE = 1e-6;
 
 /** "2.00003 ± 0.00048": the error with two digits, the value with as many decimals. */
@@ -59,7 +60,7 @@ export function formatSetting(value: number | null | undefined): string {
   return String(Number(value.toPrecision(5))).replaceAll("-", MINUS);
 }
 
-/** The same for machines and clipboards: ASCII minus. */
+/** For machines and clipboards: ASCII minus. */
 export const plainSetting = (value: number): string => String(Number(value.toPrecision(5)));
 
 export interface UnitNames {
@@ -72,7 +73,7 @@ export function unitNames(units: { time?: string; u?: string; y?: string } | und
   return { time: units?.time || "s", u: pretty(units?.u ?? ""), y: pretty(units?.y ?? "") };
 }
 
-/** degC and degF as they are printed. */
+/** degC and degF in their printed form. */
 function pretty(unit: string): string {
   return unit.replace(/^deg([CF])$/, "°$1");
 }
@@ -86,7 +87,7 @@ export function namedUnit(unit: string, units: UnitNames): string {
     : parts.map((part) => names[part] ?? part).join("");
 }
 
-/** "Ti (s)"; the bare name where there is no unit. */
+/** "Ti (s)"; the name alone if there is no unit. */
 export const withUnit = (name: string, unit: string): string => (unit ? `${name} (${unit})` : name);
 
 /** "%/°C"; empty unless at least one is known. */

@@ -28,7 +28,7 @@ export function inputOf(plant: Plant | undefined): PlantInput | null {
   return typeof input?.nominal === "number" ? { name: "u", ...input, nominal: input.nominal } : null;
 }
 
-/** What an identified model is called: its structure, and what is unusual about it. */
+/** The name of an identified model: its structure, and its special features. */
 export function structureTitle(plant: Plant): string {
   const T = plant["T"];
   if (plant.type === "fopdt" && typeof T === "number" && T < 0) return "unstable first order with dead time";
@@ -57,7 +57,7 @@ export function parameterUnit(plant: Plant, name: string, units: UnitNames): str
   return name === "zeta" ? "" : units.time;
 }
 
-/** "K 1.25 °C/%, T 40 s, L 8 s"; the plant's kind where it has no such parameters. */
+/** "K 1.25 °C/%, T 40 s, L 8 s"; the plant's kind if it has no such parameters. */
 export function plantWords(plant: Plant, units: UnitNames): string {
   if (plant.type === "nonlinear") return equationWords(plant, units);
   const parts = ["K", "T", "T1", "T2", "zeta", "L"].flatMap((name) => {
@@ -69,14 +69,14 @@ export function plantWords(plant: Plant, units: UnitNames): string {
   return parts.length > 0 ? parts.join(", ") : plantTitle(plant.type);
 }
 
-/** What is measured: the state, or "y" for an expression. */
+/** The measured quantity: the state, or "y" for an expression. */
 export const outputName = (plant: Plant | undefined): string => {
   const output = plant?.["output"];
   return typeof output === "string" && /^\w+$/.test(output) ? output : "y";
 };
 
 function equationWords(plant: Plant, units: UnitNames): string {
-  // A list of jobs knows the kind alone.
+  // A list of jobs has only the kind.
   if (plant["states"] === undefined) return "nonlinear plant";
   const states = Object.keys(plant["states"] as object).length;
   const parts = [

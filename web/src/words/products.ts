@@ -1,11 +1,12 @@
-// Controllers as they are built, in words: what a search finds, the rows to type, the loop beside the ideal one, evidence.
+// Products in words: results of a search, the rows to type, the implemented loop next to the ideal one, evidence.
 import type { AsEntered, Entry, Evidence, Implemented, Need, Notice, Product, ProductSummary } from "../api/types.ts";
 import { DASH, formatNumber, formatParameter, formatPercent } from "./numbers.ts";
 
-/** Lower case, without what separates words in names. */
+/** Lower case, without the signs that separate words in names. */
 const plain = (text: string): string => text.toLowerCase().replaceAll(/[^a-z0-9]+/g, " ");
 
-/** Those that have every typed word in maker, name, id or parameters; where the name begins with it first, then by maker. */
+/** Products with every typed word in maker, name, id or parameters; first those whose name begins with it, then by
+    maker. */
 export function findProducts(products: readonly ProductSummary[], typed: string): ProductSummary[] {
   const wanted = plain(typed).split(" ").filter(Boolean);
   const ranked = products.flatMap((product) => {
@@ -20,7 +21,7 @@ export function findProducts(products: readonly ProductSummary[], typed: string)
   return ranked.sort((a, b) => a.rank - b.rank || order(a.product, b.product)).map(({ product }) => product);
 }
 
-/** "Emerson DeltaV PID, FORM Series"; a maker that its product is named after is not said twice. */
+/** "Emerson DeltaV PID, FORM Series"; a maker whose name is part of the product's is not repeated. */
 export const productTitle = ({ maker, name }: Pick<ProductSummary, "maker" | "name">): string =>
   plain(name).startsWith(plain(maker).trim()) ? name : `${maker} ${name}`;
 
@@ -30,7 +31,7 @@ const NEED_WORDS: Record<Need, string> = {
   sample_time: "the sample time",
 };
 
-/** What is still to be given, and why; "" for nothing. */
+/** The missing facts, and the reason for each; "" for none. */
 export function needSentence(missing: readonly Need[]): string {
   if (missing.length === 0) return "";
   const list = missing.map((need) => NEED_WORDS[need]).join(" and ");
@@ -40,17 +41,17 @@ export function needSentence(missing: readonly Need[]): string {
   return `Give ${list}: ${missing.length === 1 ? why.replace("them", "it") : why}. Until then designs are made for an ideal controller.`;
 }
 
-/** A setting as it is typed. */
+/** A setting as typed. */
 export interface TypedRow {
   name: string;
   label: string;
   value: string;
   unit: string;
-  /** Range, step and remark, for those who wonder. */
+  /** Range, step and remark, as details. */
   about: string;
 }
 
-/** In the order of the product's own list; what else is set, such as the direction, after it. */
+/** In the order of the product's own list; other settings, such as the direction, after it. */
 export function typedRows(product: Product, entered: AsEntered): TypedRow[] {
   const names = [
     ...product.parameters.map((parameter) => parameter.name).filter((name) => name in entered.as_typed),
@@ -81,7 +82,7 @@ export function rangeWords({ low, high, resolution }: Pick<Product["parameters"]
   return [range, resolution === null ? "" : `step ${formatParameter(resolution)}`].filter(Boolean).join(", ");
 }
 
-/** What "Copy all" puts on the clipboard. */
+/** The text of "Copy all" for the clipboard. */
 export const typedText = (title: string, rows: readonly TypedRow[]): string =>
   [title, ...rows.map(({ label, value, unit }) => `${label} = ${value}${unit ? ` ${unit}` : ""}`)].join("\n");
 
@@ -90,7 +91,7 @@ export interface BuiltRow {
   ideal: string;
   built: string;
   difference: string;
-  /** So far away that it is another loop. */
+  /** The difference is so large that it is a different loop. */
   far: boolean;
 }
 
@@ -103,7 +104,7 @@ const LABELS: Record<BuiltFigure, [label: string, name: string]> = {
   overshoot: ["Overshoot (%)", "the overshoot"],
 };
 
-/** How far the loop as built lies above the ideal one: percent, of the overshoot percentage points. */
+/** The difference of the implemented loop from the ideal one: in percent, for the overshoot in percentage points. */
 function differenceOf({ difference }: Implemented, figure: BuiltFigure): number | null {
   if (figure === "overshoot") return difference.overshoot_points ?? null;
   return difference[`${figure}_percent`];
@@ -116,8 +117,8 @@ function figureText({ robustness, performance }: Pick<Entry, "robustness" | "per
   return typeof percent === "number" ? formatPercent(percent) : DASH;
 }
 
-/** Ms, load IAE and overshoot of the loop as built beside the ideal one's. A block without the design's set-point weight
- * or filter may overshoot by far more, at the same Ms. */
+/** Ms, load IAE and overshoot of the implemented loop next to those of the ideal one. A block without the design's
+ * set-point weight or filter may overshoot by far more, at the same Ms. */
 export function builtRows(ideal: Pick<Entry, "robustness" | "performance">, built: Implemented): BuiltRow[] {
   return FIGURES.flatMap((figure) => {
     const away = differenceOf(built, figure);
@@ -128,13 +129,14 @@ export function builtRows(ideal: Pick<Entry, "robustness" | "performance">, buil
   });
 }
 
-/** "+2.9", "−0.4", "0.0": tenths of a percent are as much as anybody wants to know. */
+/** "+2.9", "−0.4", "0.0": tenths of a percent are sufficient. */
 function signed(percent: number): string {
   const text = Math.abs(percent).toFixed(Math.abs(percent) >= 100 ? 0 : 1);
   return Number(text) === 0 ? text : `${percent > 0 ? "+" : "−"}${text}`;
 }
 
-/** How far the loop as built lies from the ideal one, where the service says that it is another loop; else "". */
+/** The difference of the implemented loop from the ideal one, if the service says that it is a different loop; else
+    "". */
 export function differenceSentence(built: Implemented): string {
   const parts = (built.difference.differs ?? []).map((figure) => {
     const away = differenceOf(built, figure)!;
@@ -144,11 +146,11 @@ export function differenceSentence(built: Implemented): string {
   return parts.length === 0 ? "" : `The implemented loop differs from the ideal one: ${parts.join(", ")}.`;
 }
 
-/** Of an entry's warnings those that leave no loop to compare: unstable as built, or not to be built at all. */
+/** The warnings of an entry that leave no loop to compare: unstable as implemented, or impossible to implement. */
 export const builtTroubles = (entry: Pick<Entry, "warnings">): Notice[] =>
   (entry.warnings ?? []).filter(({ code }) => code === "unstable-as-built" || code === "not-as-built");
 
-/** How the loop was reckoned, and how slow it may be sampled. */
+/** How the loop was computed, and its longest sample time. */
 export function samplingSentences(
   built: Implemented | undefined,
   longest: number | null | undefined,
@@ -177,19 +179,19 @@ const EVIDENCE: Record<string, string> = {
   unverified: "Not verified",
 };
 
-/** How much of a product's description was read: a few words. */
+/** The part of a product's description that was read: a few words. */
 export const evidenceWords = (level: string): string => EVIDENCE[level] ?? level;
 
-/** The same as a sentence, with what was not read by name. */
+/** The evidence as a sentence, with the names of the facts that were not read. */
 export function evidenceSentence({ level, unverified }: Evidence): string {
   const rest = unverified.length > 0 ? ` Not verified: ${unverified.join("; ")}.` : "";
   return `${evidenceWords(level)}.${rest}${level === "read" ? "" : " Check the settings against your manual before you use them."}`;
 }
 
-/** The rows name their own units; what the notes say is reckoned in the loop's. */
+/** The rows name their own units; times in the notes are in the loop's. */
 export const noteTimes = (time: string): string => `Times in these notes are in ${time}, the loop's unit of time.`;
 
-/** Notes on how it was reckoned and what to know; every other one says what the block cannot be. */
+/** Notes on the computation and other remarks; every other note is a deviation of the block. */
 const REMARKS = ["action", "clock", "default", "discretisation", "outside-the-twin", "unverified"];
 
 export function splitNotes(notes: readonly Notice[]): { deviations: Notice[]; remarks: Notice[] } {

@@ -1,4 +1,5 @@
-// "Was the test good enough?": what the service found in the record, in words. Figures that the page does not know are shown by their names.
+// "Was the test good enough?": the service's findings about the record, in words. Figures that the page does not know
+// are shown by their names.
 import type { Model, Notice, Plant } from "../api/types.ts";
 import { formatNumber, formatParameter, withUnit } from "./numbers.ts";
 import type { UnitNames } from "./numbers.ts";
@@ -9,7 +10,7 @@ export type Level = "good" | "warn" | "bad";
 export interface QualityWords {
   level: Level;
   head: string;
-  /** What was done to u. */
+  /** The moves of u. */
   input: string;
   rows: [name: string, text: string][];
   notes: string[];
@@ -40,7 +41,8 @@ function headOf(model: Model, level: Level, warnings: number, notes: number): st
   return notes > 0 ? `Good enough, with ${counted(notes, "remark")}.` : "Good enough.";
 }
 
-/** The unit of the record's times, where it may be another: every time and gain of the answer hangs on it. "" where it is named. */
+/** A question about the unit of the record's times, if it may be another one: every time and gain of the answer
+    depends on it. "" if it is named. */
 export function timeUnitDoubt(model: Model): string {
   const doubtful = model.warnings?.find((warning) => warning.code === "time-unit-doubtful");
   if (doubtful) return doubtful.detail;
@@ -97,7 +99,7 @@ function rowsOf(model: Model, units: UnitNames): [string, string][] {
   return rows;
 }
 
-/** "K 1.5, T 25 s, L 8 s; 49 % of what moves y": its own unit is not known. */
+/** "K 1.5, T 25 s, L 8 s; 49 % of the movement of y": its own unit is not known. */
 function disturbanceWords(plant: Plant, share: number | null, units: UnitNames): string {
   const part = share === null ? "" : `; ${formatNumber(100 * share, 2)} % of what moves y`;
   return `${plantWords(plant, { ...units, u: "", y: "" })}${part}`;

@@ -1,4 +1,4 @@
-// What an operating range comes to, in words: how its schedule stands, its settings, its points, its runs.
+// An operating range in words: the state of its schedule, its settings, its points, its runs.
 import type { RangeRequest } from "../api/range.ts";
 import type { Finding, OneSetting, RangeContent, RangeRun, Schedule, WorstPlace } from "../api/types.ts";
 import { DASH, formatNumber, formatSetting, product, quotient, withUnit } from "./numbers.ts";
@@ -12,7 +12,7 @@ export const INTERPOLATIONS = [
 
 export const interpolationWords = (id: string): string => INTERPOLATIONS.find(([known]) => known === id)?.[1] ?? id;
 
-/** A place with the name and the unit of what it is of: "load 60 %"; of a variable without a name the number. */
+/** A place with the name and unit of its variable: "load 60 %"; only the number for a variable without a name. */
 export function placeWords(at: number, { name, unit }: RangeContent["scheduling"], digits = 3): string {
   const named = name === "" || name === "at" ? "" : `${name} `;
   return `${named}${formatSetting(Number(at.toPrecision(digits)))}${unit ? ` ${unit}` : ""}`;
@@ -35,7 +35,7 @@ export function settingHead(name: string, units: UnitNames): string {
   return name === "b" ? name : withUnit(name, units.time);
 }
 
-/** "Kp 0.451, Ti 9.1 s, Td 1.2 s": a zero derivative is none. */
+/** "Kp 0.451, Ti 9.1 s, Td 1.2 s": a zero derivative is left out. */
 export function settingWords(settings: Settings, units: UnitNames): string {
   const times = (["Ti", "Td", "Tf"] as const).flatMap((name) =>
     settings[name] ? [`${name} ${formatSetting(settings[name])} ${units.time}`] : [],
@@ -43,7 +43,8 @@ export function settingWords(settings: Settings, units: UnitNames): string {
   return [`Kp ${formatSetting(settings.Kp)}`, ...times].join(", ");
 }
 
-/** A schedule that was moved by hand has no verdict of the service: how it stands is said from what it answers. */
+/** A schedule that was moved by hand has no verdict of the service: its state follows from the figures of the
+    answer. */
 export function manualVerdict(schedule: Schedule): Finding {
   const rows = counted(schedule.rows.length, "row");
   const IAE = schedule.worst_relative_IAE;
@@ -90,7 +91,7 @@ export function worstWords(places: WorstPlace[] | undefined, scheduling: RangeCo
   );
 }
 
-/** What a range's job is about, for its head. */
+/** The subject of a range's job, for its head. */
 export function rangeWords(request: RangeRequest): string {
   const { name, unit } = request.scheduling ?? {};
   const over = name ? ` over ${withUnit(name, unit ?? "")}` : "";
@@ -99,7 +100,7 @@ export function rangeWords(request: RangeRequest): string {
   return way ? `operating range${over} of equations, ${way.from} to ${way.to}` : `operating range${over}`;
 }
 
-/** Figures of a run, by name; what it has not is a dash. */
+/** Figures of a run, by name; a missing one is a dash. */
 export function runFacts(run: Partial<RangeRun>, units: UnitNames): [string, string][] {
   const yes = (is: boolean | undefined): string => (is === undefined ? DASH : is ? "yes" : "no");
   return [

@@ -1,4 +1,4 @@
-// The models that explain a record: one is chosen, with what speaks for it, and tuned.
+// The models that explain a record: each with its evidence; one is chosen and tuned.
 import type { Candidate, Model } from "../../api/types.ts";
 import { h, uniqueId } from "../../dom.ts";
 import { plantFormula, rounded } from "../../form/formula.ts";
@@ -10,14 +10,14 @@ import { parameterUnit, structureTitle } from "../../words/plant.ts";
 export interface CandidatesCard {
   element: HTMLElement;
   show(model: Model, units: UnitNames): void;
-  /** Null where the service lists no candidates. */
+  /** Null if the service lists no candidates. */
   chosen(): Candidate | null;
-  /** Whether limits shall hold for every model consistent with the record. */
+  /** True if limits must hold for every model consistent with the record. */
   onRegion(): boolean;
   setBusy(busy: boolean): void;
 }
 
-/** What the reader chose, to find it again. */
+/** The reader's choice, to restore it later. */
 export interface CandidateChoice {
   /** Title of the candidate's structure; "" for the service's choice. */
   structure: string;
@@ -32,7 +32,7 @@ export interface CandidatesEvents {
   onTune(all: boolean): void;
 }
 
-/** `methods`: names of those that Use and tune will use. `first`: what is chosen at first. */
+/** `methods`: names of the methods for tuning. `first`: the initial choice. */
 export function candidatesCard(methods: string[], first: CandidateChoice, events: CandidatesEvents): CandidatesCard {
   let structure = first.structure;
   let candidates: Candidate[] = [];
@@ -101,7 +101,7 @@ export function candidatesCard(methods: string[], first: CandidateChoice, events
       const preferred = serviceChoice(model);
       const t = model.fit?.t ?? [];
       duration = t.length > 1 ? t[t.length - 1]! - t[0]! : Infinity;
-      // The reader's own choice stays when the same record is identified again.
+      // The reader's choice is kept when the same record is identified again.
       const again = candidates.findIndex((candidate) => structureTitle(candidate.plant) === structure);
       index = again >= 0 ? again : Math.max(0, preferred);
       if (candidates.length === 0) index = -1;
@@ -134,7 +134,7 @@ export function candidatesCard(methods: string[], first: CandidateChoice, events
   };
 }
 
-/** So many per cent below the best fit a candidate is not worth a look at first. */
+/** A candidate whose fit is this much below the best, in per cent, is folded at first. */
 const WORSE_PERCENT = 3;
 
 function poor(candidates: Candidate[], at: number): boolean {
@@ -144,7 +144,7 @@ function poor(candidates: Candidate[], at: number): boolean {
 
 const capital = (text: string): string => text.charAt(0).toUpperCase() + text.slice(1);
 
-/** Of structures that their parameters alone do not tell. In a narrow card it scrolls, by the keyboard too. */
+/** For structures that their parameters alone do not describe. In a narrow card it scrolls, also with the keyboard. */
 function formulaOf(candidate: Candidate): HTMLElement | null {
   if (candidate.plant.type !== "transfer_function") return null;
   const formula = plantFormula(rounded(candidate.plant), "span", true);
@@ -154,8 +154,8 @@ function formulaOf(candidate: Candidate): HTMLElement | null {
 }
 
 /**
- * "K 1.25 ± 0.01 °C/%" of each parameter; of a transfer function only the errors of its coefficients. A time whose error
- * is longer than the record is not known from it.
+ * "K 1.25 ± 0.01 °C/%" for each parameter; for a transfer function only the errors of its coefficients. A time whose
+ * error is longer than the record is shown as unknown.
  */
 export function parameterTexts(candidate: Candidate, units: UnitNames, duration = Infinity): string[] {
   const errors = candidate.standard_errors ?? {};

@@ -1,4 +1,4 @@
-// The controller as a program: Structured Text, C or Python, to read, to copy and to save.
+// The controller as a program: Structured Text, C or Python, to read, copy and save.
 import type { TextFile } from "../../api/client.ts";
 import { ApiError, sentenceOf } from "../../api/client.ts";
 import { getCode } from "../../api/products.ts";
@@ -24,9 +24,9 @@ export interface CodeSubject {
 
 export interface CodeCard {
   element: HTMLElement;
-  /** null: there is no controller to write. */
+  /** null: there is no controller for a program. */
   show(subject: CodeSubject | null): void;
-  /** Sample time and limits that are known of the user's own controller. */
+  /** Proposes the sample time and limits of the user's own controller. */
   propose(mine: MyController | null): void;
   dispose(): void;
 }
@@ -98,7 +98,7 @@ export function codeCard(announce: (sentence: string) => void): CodeCard {
     if (file) download(new Blob([file.text], { type: "text/plain" }), file.name || "controller.txt");
   }
 
-  /** Only while the card is open: nobody waits for a text that is not looked at. */
+  /** Only while the card is open: otherwise nobody reads the text. */
   function ask(): void {
     if (!subject || !details.open) return;
     const faults: FieldError[] = [];

@@ -1,4 +1,4 @@
-// What can be turned on Design: the method's options, the settings by hand, and the way back and forth.
+// The controls on Design: the method's options, the settings by hand, and undo and redo.
 import { effect } from "@preact/signals-core";
 import type { Entry, Method } from "../../api/types.ts";
 import { h, passFocus, uniqueId } from "../../dom.ts";
@@ -16,20 +16,20 @@ import type { UnitNames } from "../../words/numbers.ts";
 
 export interface ControlsCard {
   element: HTMLElement;
-  /** Sliders for an entry of a job, at its own values; answers them. */
+  /** Creates sliders for an entry of a job, at its own values; returns them. */
   show(point: Point, entry: Entry, method: Method | undefined, units: UnitNames): SliderSpec[];
-  /** No limit on Ms below this is met. */
+  /** No design meets a limit on Ms below this. */
   setLowest(Ms: number | null): void;
-  /** Moves the limit on Ms, as its slider would. */
+  /** Moves the limit on Ms, like its slider. */
   turnMs(Ms: number, released: boolean): void;
-  /** What the newest answer came to: sliders of settings that were not moved by hand follow it. */
+  /** The result of the newest answer: sliders of settings that were not moved by hand follow it. */
   follow(entry: Entry): void;
   dispose(): void;
 }
 
 const RELATIVE_STEP = 0.01;
 
-/** Positions to both sides that are worth knowing before a slider moves. */
+/** Positions on both sides that are requested before a slider moves. */
 const AT_TOUCH = 12;
 
 type Modify = (spec: SliderSpec, value: number) => Point;
@@ -116,7 +116,7 @@ export function controlsCard(live: Live): ControlsCard {
     return { spec, slider: made };
   }
 
-  /** "Ms 1.60, load IAE 8.4". */
+  /** The spoken text, "Ms 1.60, load IAE 8.4". */
   function spoken(spec: SliderSpec, value: number): string {
     const IAE = (followed ?? shown?.entry)?.performance?.load?.["IAE"];
     const name = spec.label.replace(/^(Robustness|Noise filter|Noise limit|Set-point) /, "");
@@ -126,7 +126,7 @@ export function controlsCard(live: Live): ControlsCard {
     return `${name} ${formatNumber(value)}${unit}${reached ? `, ${reached}` : ""}${load}`;
   }
 
-  /** "reached 12.5 %" where the design on the screen has another value than is asked for; else "". */
+  /** "reached 12.5 %" if the displayed design has another value than requested; else "". */
   function reachedText({ reached, unit }: SliderSpec, asked: number | null): string {
     const entry = followed ?? shown?.entry;
     if (!reached || !entry) return "";
@@ -134,7 +134,7 @@ export function controlsCard(live: Live): ControlsCard {
     return asked !== null && text === formatNumber(asked) ? "" : `reached ${text}${unit ? ` ${unit}` : ""}`;
   }
 
-  /** The value asked of every option, and beside it that of the design on the screen. */
+  /** Shows the requested value of every option, with that of the displayed design. */
   function sayReached(): void {
     const entry = followed ?? shown?.entry;
     for (const { spec, slider: made } of options) {
@@ -144,7 +144,7 @@ export function controlsCard(live: Live): ControlsCard {
     }
   }
 
-  /** Null: nobody asked, and the method does not tell its choice. */
+  /** Null: none was requested, and the method does not state its choice. */
   function askedOf(spec: SliderSpec, { tune }: Point): number | null {
     const value = spec.id.split(".").reduce<unknown>((at, part) => (at as Record<string, unknown> | undefined)?.[part], tune ?? {});
     return typeof value === "number" ? value : spec.value;
@@ -178,7 +178,7 @@ export function controlsCard(live: Live): ControlsCard {
     }
   }
 
-  /** The slider with which others move. */
+  /** The slider with which other sliders move. */
   const leading = (): SliderControl | undefined => options.find(({ spec }) => spec.along?.length);
 
   tie.addEventListener("change", () => {
@@ -191,7 +191,7 @@ export function controlsCard(live: Live): ControlsCard {
     place(now());
   });
 
-  /** Sliders where the point is; the one that is being moved stands there already. */
+  /** Sets the sliders to the point; the one that is being moved is there already. */
   function place(point: Point): void {
     for (const { spec, slider: made } of options) {
       const at = askedOf(spec, point);
@@ -202,7 +202,7 @@ export function controlsCard(live: Live): ControlsCard {
 
   const firstSlider = (): HTMLElement | null => element.querySelector<HTMLElement>("input[type=range]");
 
-  /** A step that leads nowhere any more hands its focus to one that does. */
+  /** A button that becomes disabled passes its focus to one that is enabled. */
   function allow(steps: [HTMLButtonElement, boolean][]): void {
     for (const [button, useful] of steps) if (useful) button.disabled = false;
     const others = steps.flatMap(([button, useful]) => (useful ? [button] : []));

@@ -1,4 +1,4 @@
-// Two-level tuning on Design: the classical settings, the PID that follows the nonlinear controller, and how well it does.
+// Two-level tuning on Design: the classical settings, the PID that follows the nonlinear controller, and its quality.
 import type { Controller, EmulatedScenario, Entry, Plant, Tuned } from "../../api/types.ts";
 import { costOf, emulationFrame, LEVEL_ONE_LOOKS } from "../../charts/emulation.ts";
 import type { OwnRun } from "../../charts/emulation.ts";
@@ -24,12 +24,12 @@ const formatBound = (value: number): string => formatSetting(Number(value.toPrec
 
 export interface EmulationCard {
   element: HTMLElement;
-  /** Hides itself where the entry is of another method. */
+  /** Hides itself if the entry is of another method. */
   show(entry: Entry, plant: Plant | undefined, units: UnitNames): void;
   dispose(): void;
 }
 
-/** `onTry`: of settings that are tried by hand; null when they are no longer. */
+/** `onTry`: receives settings that are tried by hand; null when they are no longer tried. */
 export function emulationCard(
   announce: (sentence: string) => void,
   onTry: (controller: Controller | null) => void,
@@ -64,7 +64,7 @@ export function emulationCard(
   const scenarioShown = (): EmulatedScenario | undefined =>
     shown?.entry.emulation?.scenarios?.[Number(scenario.input.value) || 0];
 
-  /** Beside the same sum over the emulating PID's own samples, so that both are as exact. */
+  /** Compared with the same sum over the emulating PID's own samples, so that both have the same accuracy. */
   function sayCost(): void {
     const emulation = shown?.entry.emulation;
     const at = scenarioShown();
@@ -91,7 +91,7 @@ export function emulationCard(
     chosen = draws ? [...chosen, index] : chosen.filter((other) => other !== index);
     for (const box of table.querySelectorAll<HTMLInputElement>("input"))
       box.disabled = !box.checked && chosen.length >= LEVEL_ONE_LOOKS.length;
-    // Only the first scenario is run with them.
+    // Only the first scenario is simulated with them.
     if (scenario.input.value !== "0" && draws) {
       scenario.input.value = "0";
       manual.setScenario(scenarioShown());

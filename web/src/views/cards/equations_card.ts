@@ -11,9 +11,9 @@ import type { UnitNames } from "../../words/numbers.ts";
 export interface EquationsCard {
   element: HTMLFormElement;
   read(): PlantReading;
-  /** False where this card cannot show such a plant. */
+  /** False if this card cannot show such a plant. */
   load(plant: Plant): boolean;
-  /** True if it has other equations than before. */
+  /** True if its equations have changed. */
   loadTyped(values: Record<string, string>): boolean;
   setExamples(examples: Example[]): void;
   setUnits(units: UnitNames): void;
@@ -23,13 +23,13 @@ export interface EquationsCardEvents {
   onTune(): void;
   /** By every method. */
   onCompare(): void;
-  /** The texts as typed: what the address keeps. */
+  /** The texts as typed, for the address. */
   onChange(values: Record<string, string>): void;
-  /** A whole request: equations, units and methods. */
+  /** A complete request: equations, units and methods. */
   onExample(example: Example): void;
 }
 
-/** A tank that drains by itself: the least that shows every field. */
+/** A tank with an outflow of its own: the smallest example that uses every field. */
 const FIRST: Plant = {
   type: "nonlinear",
   states: { h: 1 },

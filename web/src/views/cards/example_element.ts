@@ -1,4 +1,4 @@
-// A ready-made request on Start: tuned as it is, or shown in the form.
+// An example on Start: tuned unchanged, or shown in the form.
 import type { Example } from "../../api/types.ts";
 import { h } from "../../dom.ts";
 import { formatRoute } from "../../routes.ts";

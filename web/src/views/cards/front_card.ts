@@ -1,4 +1,4 @@
-// The front under the sliders: the design is a point on it that can be dragged.
+// The frontier below the sliders: the design is a point on it that can be dragged.
 import { besideOf, frontOf } from "../../api/live.ts";
 import type { FrontTerms } from "../../api/live.ts";
 import type { Entry, Frontier, Plant } from "../../api/types.ts";
@@ -8,30 +8,31 @@ import { createPlot } from "../../plot/plot.ts";
 import type { Plot } from "../../plot/plot.ts";
 import type { UnitNames } from "../../words/numbers.ts";
 
-/** What the curves belong to; others make them anew. */
+/** The data on which the curves depend; a change makes new ones. */
 export interface FrontSubject {
   plant: Plant;
-  /** Of the design, whose front there is for sure; null where it is no robust optimum, or one under other limits. */
+  /** The kind of the design, whose frontier is known to exist; null if it is not a robust optimum, or one under
+      other limits. */
   kind: "PI" | "PID" | null;
   terms: Omit<FrontTerms, "controller">;
   load: number;
   units: UnitNames;
-  /** Entries of the job, where there are several; else every rule is asked. */
+  /** Entries of the job, if there are several; otherwise every rule is computed. */
   entries: Entry[];
 }
 
 export interface FrontCard {
   element: HTMLElement;
   show(subject: FrontSubject): void;
-  /** Where the design is; `at`: the limit on Ms that it was made for. */
+  /** The place of the design; `at`: the limit on Ms for which it was made. */
   place(entry: Entry, at: number | null, today: Entry | null): void;
   hold(held: boolean): void;
-  /** The lowest Ms that the plant allows, where that is known. */
+  /** The lowest Ms that the plant allows, if it is known. */
   lowest(): number | null;
   dispose(): void;
 }
 
-/** From so many entries on a job's own are the rules to compare with. */
+/** From this number of entries on, a job's own rules are used for the comparison. */
 const ENOUGH_ENTRIES = 6;
 
 export function frontCard(
@@ -39,7 +40,7 @@ export function frontCard(
   onDrag: (Ms: number, released: boolean) => void,
   onKnown: () => void,
 ): FrontCard {
-  // Every rule is a search or a formula of its own: about as much work as everything else of this screen together.
+  // Every rule is a search or a formula: together about as much work as the rest of this screen.
   const rulesButton = h("button", { type: "button", class: "quiet", onclick: () => void askRules() }, "Rules for comparison");
   const element = h("div", { class: "front" });
   let plot: Plot | null = null;
@@ -61,7 +62,7 @@ export function frontCard(
     plot.element.append(rulesButton);
   }
 
-  /** Curves and rules come after the screen is there; without them the point stands alone. */
+  /** Curves and rules are added after the screen is shown; without them the point stands alone. */
   async function ask(next: FrontSubject, ending: AbortSignal): Promise<void> {
     const take = (controller: "PI" | "PID", front: Frontier | null): void => {
       if (ending.aborted) return;
@@ -113,7 +114,8 @@ export function frontCard(
         rulesButton.hidden = own;
       }
       ruled = about;
-      // Without them the point stands alone: why there is no front is no news beside a design that is there.
+      // On a failure the point stands alone: the reason for a missing frontier is not important while there is a
+      // design.
       ask(next, calls.signal).catch(() => undefined);
     },
     place(entry, at, today) {

@@ -1,4 +1,4 @@
-// The choice of methods with their options, built from what GET /v1/methods says.
+// The choice of methods with their options, built from the answer of GET /v1/methods.
 import type { FieldError, Method, TuneEntry } from "../../api/types.ts";
 import { h, uniqueId } from "../../dom.ts";
 import { pick, place } from "../../form/cases.ts";
@@ -21,13 +21,13 @@ export interface MethodsCard {
   setUnits(units: UnitNames): void;
   read(): { tune: TuneEntry[]; errors: FieldError[] };
   load(tune: TuneEntry[] | string | undefined): void;
-  /** Another loop: the default again, unless methods were chosen for this one. */
+  /** A new loop: the default again, unless methods were chosen for this one. */
   beginLoop(): void;
-  /** Takes the choice that is shown for this loop's. */
+  /** The displayed choice belongs to this loop. */
   endLoop(): void;
 }
 
-/** More methods than these are searched, not looked through. */
+/** With more methods than this, there is a search field. */
 const SEARCHED_FROM = 10;
 
 interface Row {
@@ -35,7 +35,7 @@ interface Row {
   element: HTMLElement;
   chosen: HTMLInputElement;
   fields: { spec: FieldSpec; field: Field<Control["input"]> }[];
-  /** Options of a loaded request that have no field here: sent back as they came. */
+  /** Options of a loaded request that have no field here: sent unchanged. */
   rest: Record<string, unknown>;
   options: HTMLElement;
 }
@@ -46,7 +46,7 @@ export function methodsCard(errors: FormErrors): MethodsCard {
   /** Null: the default of the contract. */
   let given: TuneEntry[] | null = null;
   const list = h("div", { class: "methods" }, h("p", { class: "hint" }, "Asking the service for its methods..."));
-  /** The limits of the default are shown as its own. */
+  /** The default method is shown with its default limits. */
   function wanted(): TuneEntry[] {
     if (given) return given;
     const robust = robustOf(rows.map(({ method }) => method));
@@ -78,7 +78,7 @@ export function methodsCard(errors: FormErrors): MethodsCard {
   search.addEventListener("input", filter);
   const typed = typedParts(list);
 
-  /** What is chosen stays in sight, whatever is searched for. */
+  /** Chosen methods stay visible, whatever the search. */
   function filter(): void {
     const others = rows.slice(1);
     for (const row of others) row.element.hidden = !row.chosen.checked && !mentions(row.method, search.value);
@@ -86,7 +86,7 @@ export function methodsCard(errors: FormErrors): MethodsCard {
     found.textContent = `${others.filter((row) => !row.element.hidden).length} shown, ${chosen} chosen`;
   }
 
-  /** In the order of `tune`: as the loaded request had them, then as they stand here. */
+  /** In the order of `tune`: as in the loaded request, then as listed here. */
   function chosenRows(): Row[] {
     const place = (row: Row): number => {
       const at = wanted().findIndex((entry) => entry.method === row.method.id);
@@ -184,7 +184,7 @@ export function methodsCard(errors: FormErrors): MethodsCard {
 
   function load(tune: TuneEntry[] | string | undefined): void {
     typed.forget();
-    // A comparison of all methods is a button, not a choice of each.
+    // A comparison of all methods is a button; it does not choose each of them.
     given = tune === undefined || asksForAll(tune) ? null : (tune as TuneEntry[]);
     show();
   }
@@ -217,7 +217,7 @@ export function methodsCard(errors: FormErrors): MethodsCard {
       writeUnits();
     },
     read() {
-      // Without the service's list the default of the contract holds.
+      // Without the service's list the default of the contract applies.
       if (rows.length === 0) return { tune: wanted(), errors: [] };
       const faults: FieldError[] = [];
       const tune = chosenRows().map((row, index) => {
@@ -242,7 +242,7 @@ export function methodsCard(errors: FormErrors): MethodsCard {
   };
 }
 
-/** How lists are typed, where a number alone would not show it. */
+/** Notation of lists, if a number alone would not show it. */
 const HOW_TO_WRITE: Partial<Record<FieldKind, string>> = {
   spread: "One number, or two as limits.",
   roots: "As -4 -4, or -3±2i for a pair.",

@@ -1,4 +1,4 @@
-// "A model": in one line or by its kind and parameters, with the formula as it is typed.
+// "A model": in one line or by its kind and parameters, with its formula during typing.
 import type { Plant } from "../../api/types.ts";
 import { h } from "../../dom.ts";
 import type { FormErrors } from "../../form/errors.ts";
@@ -12,9 +12,9 @@ export interface ModelCard {
   settled(): Promise<void>;
   beginLoop(): void;
   isLine(input: EventTarget | null): boolean;
-  /** False where this card cannot show such a plant. */
+  /** False if this card cannot show such a plant. */
   load(plant: Plant): boolean;
-  /** True if it has another model than before. */
+  /** True if its model has changed. */
   loadTyped(form: string, values: Record<string, string>): boolean;
   setUnits(units: UnitNames): void;
 }
@@ -23,13 +23,13 @@ export interface ModelCardEvents {
   onTune(): void;
   /** By every method. */
   onCompare(): void;
-  /** The form's id and the texts as typed: what the address keeps. */
+  /** The form's id and the texts as typed, for the address. */
   onChange(form: string, values: Record<string, string>): void;
-  /** What a relay test on this plant would show. */
+  /** Simulates a relay test on this plant. */
   onRelay(form: string, values: Record<string, string>): void;
 }
 
-/** `active`: whether a request that is sent now is about this card's model. */
+/** `active`: returns true if a request that is sent now is about this card's model. */
 export function modelCard(errors: FormErrors, active: () => boolean, events: ModelCardEvents): ModelCard {
   const fields = plantFields(errors, active, () => {
     const { form, values } = fields.typed();

@@ -1,4 +1,4 @@
-// "My controller": which product, and what its formulas have to know of the loop.
+// "My controller": the product, and the facts about the loop that its formulas need.
 import type { FieldError, Need, ProductSummary } from "../../api/types.ts";
 import { h, uniqueId } from "../../dom.ts";
 import { combobox } from "../../form/combobox.ts";
@@ -18,11 +18,11 @@ export interface MyControllerCard {
   setUnits(units: UnitNames): void;
   /** Without reporting. */
   set(mine: MyController | null): void;
-  /** As it stands in the fields. What is still missing is no fault: it is said beside them. */
+  /** The content of the fields. A missing fact is not a fault: the card names it. */
   read(): { mine: MyController | null; errors: FieldError[] };
 }
 
-/** `onChange`: of what could be read, whether or not something is missing yet. */
+/** `onChange`: receives the readable part, whether or not something is missing yet. */
 export function myControllerCard(
   errors: FormErrors,
   onChange: (mine: MyController | null) => void,
@@ -85,7 +85,7 @@ export function myControllerCard(
     change();
   }
 
-  /** Asks for what the chosen product needs, and for nothing else. */
+  /** Shows the fields that the chosen product needs, and no others. */
   function show(): void {
     search.set(chosen ? { id: chosen.product, text: chosen.name, aside: "" } : null);
     const needs = (need: Need): boolean => chosen?.needs.includes(need) ?? false;

@@ -1,4 +1,4 @@
-// A nonlinear plant's operating point and the linear model there, on which methods and robustness rest.
+// A nonlinear plant's operating point and its linear model there, which methods and robustness use.
 import type { Plant, Result, TuningRequest } from "../../api/types.ts";
 import { h } from "../../dom.ts";
 import { plantFormula } from "../../form/formula.ts";
@@ -6,10 +6,10 @@ import { rootsOf, rootWords, transferFunction } from "../../words/linear_model.t
 import { formatNumber, unitNames, withUnit } from "../../words/numbers.ts";
 import { inputOf, outputName } from "../../words/plant.ts";
 
-/** So many digits show that a given state was only near the steady one. */
+/** Digits that show the difference of a given state from the steady one. */
 const DIGITS = 6;
 
-/** Null where the result is not of a nonlinear plant. */
+/** Null if the result is not of a nonlinear plant. */
 export function operatingCard(result: Result, request: TuningRequest | undefined): HTMLElement | null {
   const point = result.operating_point;
   if (!point) return null;
@@ -43,7 +43,7 @@ export function operatingCard(result: Result, request: TuningRequest | undefined
   );
 }
 
-/** "u: Tj"; "u" alone where it has no other name. */
+/** "u: Tj"; only "u" if it has no other name. */
 const named = (symbol: string, name: string): string => (name === symbol ? symbol : `${symbol}: ${name}`);
 
 function linearModel(model: Plant | undefined, time: string): HTMLElement[] {

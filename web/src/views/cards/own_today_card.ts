@@ -1,4 +1,4 @@
-// Today's settings as they stand in the user's own controller, to set a design against.
+// Today's settings in the user's own controller, for a comparison with the design.
 import type { Product, SettingValue, TypedBaseline } from "../../api/types.ts";
 import { h } from "../../dom.ts";
 import type { FormErrors } from "../../form/errors.ts";
@@ -6,13 +6,13 @@ import { productFields } from "../../form/product_fields.ts";
 
 export interface OwnTodayCard {
   element: HTMLElement;
-  /** The button that sets the design against them. */
+  /** The button that compares the design with them. */
   button: HTMLButtonElement;
   setProduct(product: Product | null): void;
   load(baseline: TypedBaseline): void;
 }
 
-/** `onSet`: undefined where nothing is typed. */
+/** `onSet`: undefined if nothing is typed. */
 export function ownTodayCard(
   errors: FormErrors,
   onSet: (settings: Record<string, SettingValue> | undefined) => void,

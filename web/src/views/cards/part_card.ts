@@ -1,4 +1,4 @@
-// Which part of a record counts: its start and its end, each a slider and a number.
+// The used part of a record: its start and its end, each with a slider and a number.
 import { h, uniqueId } from "../../dom.ts";
 import type { FieldError } from "../../api/types.ts";
 import type { FormErrors } from "../../form/errors.ts";
@@ -10,7 +10,7 @@ export interface Part {
   to: number;
 }
 
-/** A move of u, and the part of the record in which it is the only one. */
+/** A move of u, and the part of the record with no other move. */
 export interface Step extends Part {
   at: number;
 }
@@ -18,16 +18,16 @@ export interface Step extends Part {
 export interface PartCard {
   element: HTMLElement;
   setUnit(unit: string): void;
-  /** The record's whole extent. All of it is chosen at first, and stays so until a part is. */
+  /** The record's whole extent. All of it is chosen until the user chooses a part. */
   setExtent(whole: Part): void;
-  /** Of another record: nothing is known of its extent yet. */
+  /** For another record, whose extent is not known yet. */
   clear(): void;
   set(part: Part): void;
   /** The record's steps, each with the part that shows it alone. */
   setSteps(steps: Step[]): void;
   /** Null: all of it. */
   read(): Part | null;
-  /** What stands in its fields and cannot be read: their sliders are elsewhere. */
+  /** Faults of fields that cannot be read: their sliders have other values. */
   faults(): FieldError[];
 }
 
@@ -76,7 +76,7 @@ export function partCard(errors: FormErrors, onMove: () => void, onRelease: () =
   return {
     element,
     setSteps(list) {
-      // One step needs no choice, and very many are another kind of test.
+      // One step needs no choice, and very many steps are another kind of test.
       steps.hidden = list.length < 2 || list.length > MAX_STEPS;
       steps.replaceChildren(
         ...list.map((step) =>

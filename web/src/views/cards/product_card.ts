@@ -1,4 +1,4 @@
-// What is known of a product: its law as a formula, how it computes, what goes wrong easily, and where that was read.
+// The known facts about a product: its law as a formula, its computation, typical mistakes, and the sources.
 import type { Product, ProductParameter } from "../../api/types.ts";
 import { breakable, h, mathElement, uniqueId } from "../../dom.ts";
 import { lawFormulas } from "../../form/law.ts";
@@ -34,7 +34,7 @@ export function productCard(): ProductCard {
   };
 }
 
-/** The formula, or its text where it is none, with its sources. */
+/** The formula, or its text if there is no formula, with its sources. */
 function law({ law, evidence }: Product): HTMLElement {
   const formulas = lawFormulas(law) ?? [law];
   const { sources } = evidence;

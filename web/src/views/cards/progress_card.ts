@@ -1,4 +1,4 @@
-// A job on its way: fraction, stage, message, the best so far, and how to stop it.
+// A job in progress: fraction, stage, message, the best so far, and a button to stop it.
 import type { Job } from "../../api/types.ts";
 import { h } from "../../dom.ts";
 import { formatNumber } from "../../words/numbers.ts";
@@ -15,7 +15,7 @@ const STAGES: Record<string, string> = {
   evaluate: "Computing the figures",
 };
 
-/** Seconds between two spoken updates. */
+/** Time between two spoken updates. */
 const SPEAK_EVERY_MS = 5000;
 
 export function progressCard(announce: (sentence: string) => void, onCancel: () => void): ProgressCard {
@@ -53,7 +53,7 @@ export function progressCard(announce: (sentence: string) => void, onCancel: () 
   };
 }
 
-/** "Best so far: Kp 2.58, Ti 16.1, ..." of whatever figures there are. */
+/** "Best so far: Kp 2.58, Ti 16.1, ...", with the figures that are present. */
 export function bestWords(best: Record<string, unknown> | null | undefined): string {
   const parts: string[] = [];
   const collect = (value: unknown, name: string): void => {

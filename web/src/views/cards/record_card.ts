@@ -14,16 +14,16 @@ export interface RecordCard {
   element: HTMLFormElement;
   read(): { record: RecordedTest; identify: Identify; errors: FieldError[] };
   load(record: RecordedTest, identify: Identify | undefined): void;
-  /** Another loop, which is none of this record. */
+  /** The next loop does not belong to this record. */
   endLoop(): void;
 }
 
 export interface RecordCardEvents {
-  /** Look at the record first: also what a file that arrives does. */
+  /** Shows the record first; a new file does that too. */
   onIdentify(): void;
-  /** A record that is not the one before. */
+  /** A new record was given. */
   onNew(): void;
-  /** Straight to the controller. */
+  /** Tunes directly. */
   onTune(): void;
   /** By every method. */
   onCompare(): void;
@@ -105,7 +105,7 @@ export function recordCard(errors: FormErrors, events: RecordCardEvents): Record
       status.textContent = `${chosen.name} could not be read.`;
       return null;
     });
-    // Another file, or text, has come since.
+    // Another file, or text, was given since then.
     if (!read || !isNewest()) return;
     csv.write(read.text);
     begin({});
@@ -113,13 +113,13 @@ export function recordCard(errors: FormErrors, events: RecordCardEvents): Record
     if (show(read.preview)) events.onIdentify();
   }
 
-  /** Forgets the columns of another file; how to identify stays if it was chosen for this one. */
+  /** Forgets the columns of another file; options for the identification stay if they were chosen for this one. */
   function begin(record: RecordedTest): void {
     fields.load(record, typed.has("") ? fields.read().identify : {});
     events.onNew();
   }
 
-  /** Whether the record can be read as it is; else it says what is missing, where it can be chosen. */
+  /** True if the record can be read; otherwise it shows what is missing, and where to choose it. */
   function show(preview: Preview): boolean {
     beginLook();
     shown.replaceChildren(previewPanel(preview));
@@ -130,7 +130,7 @@ export function recordCard(errors: FormErrors, events: RecordCardEvents): Record
     return false;
   }
 
-  /** What is pasted, or read another way, is looked at again. */
+  /** Previews pasted text, or text with other reading options, again. */
   async function look(): Promise<void> {
     const isNewest = beginLook();
     if (csv.read().trim() === "") return shown.replaceChildren();
@@ -140,11 +140,11 @@ export function recordCard(errors: FormErrors, events: RecordCardEvents): Record
       shown.replaceChildren(previewPanel(preview));
       fields.offer(preview);
     } catch {
-      // Identifying it says what is wrong.
+      // The identification reports the fault.
     }
   }
 
-  /** A file that is still being read is wanted no more. */
+  /** A file that is still being read is dropped. */
   function forgetFile(): void {
     beginReading();
     status.textContent = "";
@@ -158,7 +158,7 @@ export function recordCard(errors: FormErrors, events: RecordCardEvents): Record
   reading.addEventListener("change", () => void look());
   const typed = typedParts(reading);
   file.addEventListener("change", () => void take(file.files?.[0]));
-  // The whole card takes the file: people do not aim.
+  // The whole card accepts a dropped file, because users do not aim.
   element.addEventListener("dragover", (event) => {
     event.preventDefault();
     drop.classList.add("over");

@@ -1,16 +1,16 @@
-// The cards of what methods tell beside their controllers: one line for each. A card hides itself where the entry has no
-// such report.
+// The cards for methods' reports in addition to the controller: one line for each. A card hides itself if the entry has
+// no such report.
 import type { Controller, Entry, Plant, TuningRequest } from "../../api/types.ts";
 import type { UnitNames } from "../../words/numbers.ts";
 import { emulationCard } from "./emulation_card.ts";
 import { rimcCard } from "./rimc_card.ts";
 import { tradeoffCard } from "./tradeoff_card.ts";
 
-/** An entry and what its reports are about. */
+/** An entry with the data for its reports. */
 export interface ReportedEntry {
   name: string;
   entry: Entry;
-  /** The linear plant that rules and robustness rest on. */
+  /** The linear plant that rules and robustness use. */
   model: Plant | undefined;
   request: TuningRequest | undefined;
   units: UnitNames;
@@ -18,7 +18,7 @@ export interface ReportedEntry {
 
 export interface ReportCard {
   element: HTMLElement;
-  /** Above the plots, or below them. */
+  /** Above or below the plots. */
   place: "above" | "below";
   show(shown: ReportedEntry): void;
   dispose(): void;

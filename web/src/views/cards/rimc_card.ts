@@ -1,4 +1,5 @@
-// Revised IMC on Design: its one parameter to drag, what it buys, its figures beside those of the full controller.
+// Revised IMC on Design: a slider for its one parameter, the effect of it, and its figures next to those of the full
+// controller.
 import { ApiError, sentenceOf } from "../../api/client.ts";
 import type { Entry, Plant } from "../../api/types.ts";
 import { fullControllerFrame, interpolate, rimcFrame, rimcRows } from "../../charts/rimc.ts";
@@ -11,7 +12,7 @@ import type { UnitNames } from "../../words/numbers.ts";
 
 export interface RimcCard {
   element: HTMLElement;
-  /** Hides itself where the entry is of another method. */
+  /** Hides itself if the entry is of another method. */
   show(entry: Entry, model: Plant | undefined, units: UnitNames): void;
   dispose(): void;
 }
@@ -54,7 +55,7 @@ export function rimcCard(announce: (sentence: string) => void, retune: (lambda: 
     charts.element,
   );
 
-  /** What the curve says of a lambda that was not designed yet. */
+  /** The figures of the curve at a lambda that was not designed yet. */
   function figuresAt(value: number): string {
     const curve = shown?.entry.rimc?.disturbance_peak_curve;
     if (!shown || !curve) return "";

@@ -1,4 +1,4 @@
-// "Settings to enter": the chosen controller in the form that the user's controller has.
+// "Settings to enter": the chosen controller in the form of the user's controller.
 import type { Entry, WhyNull } from "../../api/types.ts";
 import { h, uniqueId } from "../../dom.ts";
 import { filterWords } from "../../words/figures.ts";
@@ -17,7 +17,7 @@ export interface Setting {
 /** Of any form. */
 type EquivalentSettings = { b?: number; why_null?: WhyNull } & Partial<Record<"Kp" | "Ki" | "Kd" | "Ti" | "Td", number | null>>;
 
-/** The settings of one form, or the sentence why that form does not exist. */
+/** The settings of one form, or a sentence why that form does not exist. */
 export function settingsOf(entry: Entry, form: SettingsForm, units: UnitNames): Setting[] | string {
   const controller = entry.controller;
   if (!controller) return "There is no controller to enter.";
@@ -27,7 +27,7 @@ export function settingsOf(entry: Entry, form: SettingsForm, units: UnitNames): 
   const filter: Setting[] =
     typeof controller.filter?.Tf === "number" ? [{ name: "Tf", unit: units.time, value: controller.filter.Tf }] : [];
   const lag = controller.setpoint_filter?.T;
-  /** What acts on the set point alone, where it is not b = 1. */
+  /** Parts that act on the set point only, if b is not 1. */
   const weights = (b: number | undefined): Setting[] => [
     ...(typeof b === "number" && b !== 1 ? [{ name: "b", unit: "", value: b }] : []),
     ...(typeof lag === "number" ? [{ name: "Set-point filter", unit: units.time, value: lag }] : []),
@@ -73,7 +73,7 @@ export function settingsOf(entry: Entry, form: SettingsForm, units: UnitNames): 
   ];
 }
 
-/** What Copy puts on the clipboard. */
+/** The text for the clipboard. */
 export function settingsText(form: SettingsForm, settings: Setting[]): string {
   const lines = settings.map(
     (setting) =>
@@ -95,7 +95,7 @@ export interface SettingsCard {
 }
 
 export function settingsCard(announce: (sentence: string) => void): SettingsCard {
-  /** As chosen; a nonlinear controller has its own form only. */
+  /** The chosen form; a nonlinear controller has only its own. */
   let chosen: SettingsForm = "ideal";
   let shown: { entry: Entry; name: string; units: UnitNames } | null = null;
   const titleId = uniqueId("settings-title");

@@ -1,4 +1,4 @@
-// What a job is about: its name, its plant, and ways to go on from it. Head of every screen that shows a job.
+// The subject of a job: its name, its plant, and links to the next steps. Head of every screen that shows a job.
 import { isRangeRequest } from "../../api/range.ts";
 import type { Job, Plant } from "../../api/types.ts";
 import { h } from "../../dom.ts";
@@ -15,13 +15,13 @@ import { isOfUltimate } from "./ultimate_card.ts";
 export interface TitleCard {
   element: HTMLElement;
   heading: HTMLElement;
-  /** `entry`: the controller that the screen shows, if it shows one; the report is about it. */
+  /** `entry`: the controller on the screen, if there is one; the report is about it. */
   show(job: Job | null, entry?: number | null): void;
-  /** The request that gives what is shown, and whether that is the job's own, of which alone there is a report. */
+  /** The request that leads to the displayed result; `own`: it is the job's own, for which there is a report. */
   setShown(shown: { path: string; request: unknown }, own: boolean): void;
 }
 
-/** `screen`: the heading of a job without a name. `actions`: beside the links that every job has. */
+/** `screen`: the heading of a job without a name. `actions`: in addition to the links that every job has. */
 export function titleCard(screen: string, announce: (sentence: string) => void, ...actions: Child[]): TitleCard {
   const menu = requestMenu(announce);
   const heading = h("h1", { tabindex: -1 }, screen);
@@ -80,5 +80,5 @@ export function titleCard(screen: string, announce: (sentence: string) => void, 
   };
 }
 
-/** Plants whose one-line words say less than their formula. */
+/** Plants whose formula contains more than their description in words. */
 const hasFormulaOnly = (plant: Plant): boolean => ["transfer_function", "zpk", "state_space"].includes(plant.type);

@@ -16,25 +16,26 @@ export interface TodayCard {
   element: HTMLElement;
   /** Undefined: none is named. */
   readUnits(): Units | undefined;
-  /** Those that were typed since the loop began. */
+  /** The units that were typed since the loop began. */
   typedUnits(): Units | undefined;
   read(): { baseline: Baseline | undefined; errors: FieldError[] };
   load(units: Units | undefined, baseline: Baseline | undefined, name: string | undefined): void;
   readName(): string;
-  /** Another loop: what was filled in, or belonged to the loop before, is emptied; what was typed for this one stays. */
+  /** A new loop: values that were filled in, or belonged to the previous loop, are cleared; values typed for this
+      one stay. */
   beginLoop(): void;
-  /** Takes what is shown for this loop's: the next one has to be typed anew. */
+  /** The displayed values belong to this loop: they must be typed again for the next one. */
   endLoop(): void;
-  /** The user's own controller, whose own form is then one of the forms. */
+  /** The user's own controller, which adds a form of its own. */
   setMine(mine: MyController | null): void;
 }
 
 const DEFAULT_FILTER = "derivative";
 
-/** In place of a form: the settings as they stand in the user's own controller. */
+/** Instead of a form: the settings as typed into the user's own controller. */
 const OWN = "own";
 
-/** The part of the card that is no label. */
+/** The part of the card other than labels. */
 const BASELINE = "baseline";
 
 const FORMS = [
@@ -69,11 +70,11 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
     },
     errors,
   );
-  // A loaded request may have them in another product than the one that is chosen.
+  // A loaded request may have them in another product than the chosen one.
   let mine: MyController | null = null;
   const own = productFields(errors, () => isOwn());
   own.element.hidden = true;
-  // What a loaded request had and no field shows, e.g. set-point weights.
+  // Members of a loaded request that no field shows, e.g. set-point weights.
   let rest: Record<string, unknown> = {};
   let filterType = DEFAULT_FILTER;
   const kept = keptNote("today's settings", () => keep({}));
@@ -105,12 +106,12 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
         own.setProduct(product);
         if (settings) own.load(settings);
       },
-      // Without its parameters there are no fields, and the other forms are still there.
+      // Without its parameters there are no fields, but the other forms are still available.
       () => own.setProduct(null),
     );
   }
 
-  /** Its own form is offered while there is a controller. */
+  /** Its own form is offered if there is a controller. */
   function setMine(next: MyController | null, settings?: Record<string, SettingValue>): void {
     const chosen = form.input.value;
     mine = next;
@@ -162,7 +163,7 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
     const filtered = given && given.type !== "none" ? given : null;
     filter.input.value = text(filtered?.Tf);
     filterType = filtered?.type ?? DEFAULT_FILTER;
-    // A filter with its time has its field, and is gone when that is emptied.
+    // A filter with its time has a field, and is removed when that is cleared.
     const shown = ["form", "delta_r", ...names(), ...(filtered && filter.input.value === "" ? [] : ["filter"])];
     keep(Object.fromEntries(Object.entries(baseline ?? {}).filter(([key]) => !shown.includes(key))));
   }
@@ -179,7 +180,7 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
     h("div", { class: "fields" }, name.element, time.element, u.element, y.element),
   );
 
-  /** A unit that nobody has named is not sent: the service then says what it takes it for. */
+  /** A unit that was not named is not sent: the service then states its assumption. */
   function unitsOf(counts: (part: string) => boolean): Units | undefined {
     const named = Object.entries({ time, u, y }).flatMap(([part, field]) => {
       const text = field.input.value.trim();
@@ -201,7 +202,7 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
     read() {
       if (isOwn()) return readOwn();
       const typed = slots.map((slot) => slot.input.value.trim());
-      // A field of the others asks for Kp: what was typed is never passed over.
+      // Any other field requires Kp: typed values are never ignored.
       const others = [filter, ...(form.input.value === "npid" ? [delta] : [])].map((field) => field.input.value.trim());
       if ([...typed, ...others].every((text) => text === "")) return { baseline: undefined, errors: [] };
       const faults: FieldError[] = [];

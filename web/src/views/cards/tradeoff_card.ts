@@ -1,4 +1,5 @@
-// Servo against regulation on Design and Compare: charts and figures of controllers that have them, computed on request for others.
+// Servo against regulation on Design and Compare: charts and figures of controllers that have them, computed on request
+// for others.
 import { sentenceOf } from "../../api/client.ts";
 import { tradeoffProfile, tradeoffsOf } from "../../api/evaluate.ts";
 import type { Entry, Plant, Tradeoff } from "../../api/types.ts";
@@ -26,7 +27,7 @@ export function tradeoffCard(announce: (sentence: string) => void): TradeoffCard
   let shown: { name: string; entry: Entry }[] = [];
   let plant: Plant | undefined;
   let time = "s";
-  // What was computed here, for as long as the page shows this job.
+  // Figures computed here, as long as the page shows this job.
   const computed = new WeakMap<Entry, Tradeoff>();
   const profiles = new Map<string, Tradeoff["profile"]>();
   const title = h("h2", { id: uniqueId("tradeoff") }, "Set point against load");
@@ -109,7 +110,7 @@ export function tradeoffCard(announce: (sentence: string) => void): TradeoffCard
       time = unit;
       shown = next.filter(({ entry }) => entry.controller && !entry.error);
       plant = on;
-      // Without a model of first order there is nothing to compare with.
+      // Without a first-order model there is nothing to compare with.
       element.hidden = shown.length === 0 || !plant;
       trouble.hidden = true;
       draw();
@@ -120,7 +121,7 @@ export function tradeoffCard(announce: (sentence: string) => void): TradeoffCard
 
 const same = (a: unknown, b: unknown): boolean => JSON.stringify(a) === JSON.stringify(b);
 
-/** One column for each controller, two where its plant is not the model itself. */
+/** One column for each controller, two if its plant is not the model itself. */
 function figuresTable(items: TradeoffItem[], time: string): HTMLElement {
   const columns = items.flatMap(({ name, tradeoff }) => {
     const { model, plant } = tradeoff ?? {};

@@ -1,4 +1,4 @@
-// The settings as they stand in the product's own list: what to type, what the block makes of it, and what it cannot be.
+// The settings in the product's own list: the values to type, the effect in the block, and the deviations.
 import type { AsEntered, Entry, Notice, Product } from "../../api/types.ts";
 import { breakable, h, uniqueId } from "../../dom.ts";
 import {
@@ -18,10 +18,10 @@ import { copyButton } from "../copy.ts";
 
 export interface TypedSettings {
   product: Product;
-  /** Whose settings. */
+  /** The owner of the settings. */
   name: string;
   entered: AsEntered;
-  /** The ideal loop, and where it is known the loop as built; null for settings that are tried by hand. */
+  /** The ideal loop, and the implemented one if it is known; null for settings that are tried by hand. */
   judged: Pick<Entry, "robustness" | "performance" | "implemented" | "warnings" | "longest_sample_time"> | null;
   time: string;
 }
@@ -29,7 +29,7 @@ export interface TypedSettings {
 export interface TypedCard {
   element: HTMLElement;
   show(typed: TypedSettings): void;
-  /** Why there is nothing to type. */
+  /** The reason why there is nothing to type. */
   complain(sentence: string): void;
   hide(): void;
   setBusy(busy: boolean): void;
@@ -112,7 +112,7 @@ const noteItems = (notes: Notice[]): HTMLElement =>
 const noteList = (heading: string, notes: Notice[]): HTMLElement[] =>
   notes.length === 0 ? [] : [h("h3", {}, heading), noteItems(notes)];
 
-/** The loop as built beside the ideal one, with what has to be said of it first. */
+/** The implemented loop next to the ideal one, after the most important remarks. */
 function judgement(judged: TypedSettings["judged"], time: string): HTMLElement[] {
   if (!judged) return [h("p", { class: "hint" }, "Manual settings: the figures next to the sliders are those of the loop with an ideal controller.")];
   const { implemented } = judged;

@@ -1,5 +1,4 @@
-// "Only Ku and Pu": an experiment with a proportional controller, and nothing else known; and the settings that rules
-// make of it.
+// "Only Ku and Pu": the result of an experiment with a proportional controller, and the settings that rules make of it.
 import type { FieldError, Result, TuningRequest } from "../../api/types.ts";
 import { h } from "../../dom.ts";
 import { textField } from "../../form/controls.ts";
@@ -69,10 +68,10 @@ export function ultimateCard(errors: FormErrors, onTune: () => void): UltimateCa
   };
 }
 
-/** True if the answer is of Ku and Pu alone: settings without the figures of a loop. */
+/** True if the answer is for Ku and Pu alone: settings without the figures of a loop. */
 export const isOfUltimate = (request: TuningRequest | undefined): boolean => request?.["ultimate"] !== undefined;
 
-/** The settings of every rule in a table, and above it what cannot be known. */
+/** The settings of every rule in a table, below a sentence on what is unknown. */
 export function showUltimate(verdict: HTMLElement, result: Result, units: UnitNames): void {
   const heads = ["Rule", withUnit("Kp", quotient(units.u, units.y)), ...["Ti", "Td", "Tf"].map((name) => withUnit(name, units.time))];
   const cell = (value: unknown): string => (typeof value === "number" ? formatSetting(value) : "–");

@@ -1,20 +1,21 @@
-// The verdict of the chosen controller, or why a job has none.
+// The verdict on the chosen controller, or the reason why a job has none.
 import type { Finding, Job, Result } from "../../api/types.ts";
 import { h } from "../../dom.ts";
 import { reasonOf } from "../../words/comparison.ts";
 import { withMinus } from "../../words/numbers.ts";
 import { timeUnitDoubt } from "../../words/quality.ts";
 
-/** The classes of the levels; a note looks like any text. */
+/** The classes of the levels; a note looks like ordinary text. */
 export const LEVEL_CLASS: Record<Finding["level"], string> = { good: "good", note: "", warning: "warn", bad: "bad" };
 
-/** Of results that were kept before the service had verdicts. */
+/** For results that were stored before the service had verdicts. */
 const NO_VERDICT: Finding = { code: "none", level: "note", text: "Tuned by an older version: tune again for a verdict.", figures: {} };
 
 const said = (finding: Finding): HTMLElement =>
   h("span", { class: LEVEL_CLASS[finding.level], "data-code": finding.code }, `${withMinus(finding.text)} `);
 
-/** `listed`: the entries whose failures are worth a line here. `recordAddress`: where the record can be read otherwise. */
+/** `listed`: the entries whose failures get a line here. `recordAddress`: where to change the options for reading
+    the record. */
 export function showVerdict(
   card: HTMLElement,
   result: Result,
@@ -39,7 +40,7 @@ export function showVerdict(
   if (doubt) card.append(h("p", { class: "trouble" }, `${doubt} `, h("a", { href: recordAddress }, "Choose the unit")));
 }
 
-/** What the kinds of failures are called. */
+/** The headings for kinds of failures. */
 function failedHead(job: Job): string {
   const kind = job.error?.type ?? "";
   if (kind.endsWith("no-feasible-controller")) return "No controller meets these limits.";

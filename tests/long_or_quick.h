@@ -1,11 +1,10 @@
-// Long tests take fewer cases unless all are asked for: script/test --long.
+// Long tests use fewer cases unless all are requested: script/test --long.
 #pragma once
 
 #include <cstdlib>
 #include <string_view>
 
-/// The first where TUNEWRIGHT_LONG is 1, else the second: how many cases a test takes, or the step from one to the
-/// next.
+/// The first value if TUNEWRIGHT_LONG is 1, else the second: the number of cases of a test, or the step between cases.
 inline int long_or_quick(int in_long_run, int in_quick_run) {
     const char* wanted = std::getenv("TUNEWRIGHT_LONG");
     return wanted != nullptr && std::string_view(wanted) == "1" ? in_long_run : in_quick_run;

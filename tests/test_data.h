@@ -1,4 +1,4 @@
-// Where the tests' data lies. The build writes the source of this function (CMakeLists.txt).
+// The folder of the tests' data. The build generates the source of this function (CMakeLists.txt).
 #pragma once
 
 #include <string>

@@ -1,6 +1,7 @@
 // Writes src/api/contract.gen.ts, the types of the contract, from the service's own document on standard input:
-//     curl -s http://127.0.0.1:8080/openapi.json | npm run --silent contract A test compares the file with the current
-//     service's document. Types that the page does not use, and descriptions, are left out.
+//     curl -s http://127.0.0.1:8080/openapi.json | npm run --silent contract
+// A test compares the file with the document of the current service. Types that the page does not use, and
+// descriptions, are left out.
 import { readFileSync, writeFileSync } from "node:fs";
 import { fileURLToPath } from "node:url";
 import openapiTS, { astToString } from "openapi-typescript";

@@ -1,4 +1,4 @@
-// Answers end to end: the engine's results as JSON, held against the document.
+// Answers end to end: the engine's results as JSON, checked against the document.
 #include <gmock/gmock.h>
 
 #include "api/contract/result/evaluation.h"
@@ -36,7 +36,7 @@ Json example(const std::string& id) {
     return {};
 }
 
-// Any null figure inside an object with figures must be explained beside it.
+// Checks that any null figure in an object of figures has its reason in the same object.
 void expect_every_null_explained(const Json& value, const std::string& at) {
     if (value.is_array()) {
         for (std::size_t i = 0; i < value.size(); ++i)
@@ -214,7 +214,7 @@ TEST(Answers, IdentifyCountsTheLinesThatTheCsvLacked) {
 }
 
 TEST(Answers, IdentifyUsesOnlyThePartOfTheRecordThatIsAskedFor) {
-    // Outside the part another plant answers: its gain is 7, not 2.
+    // Outside the part the record is from another plant: its gain is 7, not 2.
     std::string csv = "t,u,y\n";
     for (int i = 0; i <= 400; ++i) {
         const double t = 0.25 * i, K = t <= 60 ? 2 : 7;
@@ -274,7 +274,7 @@ TEST(Answers, AJobCarriesTheTracesOfItsModelWhereTheyAreAskedFor) {
 }
 
 TEST(Answers, AMethodThatFailsIsAnEntryAndAJobFailsOnlyIfAllDo) {
-    // SIMC has no tau_c for a plant without lag and dead time other than the one that is given.
+    // For a plant without lag and dead time, SIMC needs a given tau_c.
     const std::string plant = R"({"plant": {"type": "transfer_function", "num": [1], "den": [1, 1]}, "tune": [)";
     const Json result = run(plant + R"({"method": "ziegler_nichols_step"}, {"method": "simc", "tau_c": 0.5}]})");
     EXPECT_EQ(result["controllers"][0]["error"]["type"], "unsupported");

@@ -1,4 +1,4 @@
-// Records that contradict themselves are refused where the contradiction is.
+// Records that contradict themselves are refused, with the place of the contradiction.
 #include <gmock/gmock.h>
 
 #include <variant>

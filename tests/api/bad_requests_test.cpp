@@ -1,4 +1,4 @@
-// Every kind of bad input gets its status, the place and a sentence that helps.
+// Every kind of bad input gets its status, the place and a helpful sentence.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -360,7 +360,7 @@ TEST(BadRequests, ASetPointIsAsLongAsTheRecord) {
     EXPECT_THAT(answer.body, HasSubstr("r has 2 numbers and y 3; they must be equally many."));
 }
 
-// Damaged requests of every kind: whatever comes, the answer is a valid problem or a job, never an exception. Seeded.
+// Damaged requests of every kind: the answer is always a valid problem or a job, never an exception. Seeded.
 TEST(BadRequests, DamagedTextsNeverDoMoreThanBeRefused) {
     std::mt19937 random(1);
     const auto pick = [&](std::size_t count) {

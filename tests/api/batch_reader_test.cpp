@@ -1,4 +1,4 @@
-// Batches as they arrive: every cut of the body gives the same requests, and what is wrong is said.
+// Batches as they arrive: every cut of the body gives the same requests, and faults are reported.
 #include <algorithm>
 
 #include <gmock/gmock.h>
@@ -40,7 +40,7 @@ Outcome read_pieces(const BatchQuestion& question, std::string_view body, std::s
     return out;
 }
 
-/// What came out, as text: the same for every cut of the body.
+/// The outcome as text: the same for every cut of the body.
 std::string shown(const Outcome& outcome) {
     std::string text = outcome.name + "\n";
     for (const BatchEntry& entry : outcome.entries) {
@@ -272,7 +272,7 @@ TEST(BatchReader, TodaysSettingsMayBeAProductsOwn) {
     EXPECT_EQ(request_of(out.entries[0])["baseline"],
               Json::parse(R"({"settings": {"GAIN": 1.2, "RESET": 90, "STRUCTURE": "PI action on error, D action on PV"},
                               "y_span": [0, 200], "u_span": [0, 100], "product": "emerson_deltav_standard"})"));
-    // A name that ends like a unit is the product's own; one without "today" in front is no column.
+    // A name that ends like a unit is the product's own; one without "today" in front is not a column.
     const Outcome named =
         read(loops(), "K,T,L,product,today fKp,today tTn_ms\n2,100,30,beckhoff_fb_ctrl_pid,1.2,90000\n");
     ASSERT_FALSE(named.problem) << named.problem->detail;

@@ -251,7 +251,7 @@ TEST(PreparedJobs, KeepTheRequestAsSentAndHashItsMeaning) {
     EXPECT_NE(one.request_hash, other.request_hash);
 }
 
-// The rows before the part say what u and a disturbance are where its first cells are blank.
+// The rows before the part give u and a disturbance if its first cells are blank.
 TEST(Contract, APartOfARecordKeepsWhatHoldsAtItsStart) {
     const auto read =
         decode<IdentifyRequest>(identify_request_contract(), R"({"record": {"from": 2, "columns": {"d": ["q"]},

@@ -1,4 +1,4 @@
-// Calls about controllers as they are built: the lists keep the document, conversions answer as the contract says.
+// Calls about products: the lists match the document, and conversions answer according to the contract.
 #include <gmock/gmock.h>
 
 #include "api/contract/product/conversion.h"
@@ -27,7 +27,7 @@ Json answered(const Answer& answer) {
 Json settings_of(const std::string& id, const Json& request = kRequest) {
     return answered(controller_settings_call(id, request.dump()));
 }
-/// Status, type, and the detail at the pointer.
+/// Expected status, type, and detail at the pointer.
 struct Refused {
     int status;
     std::string type, detail;
@@ -142,7 +142,7 @@ TEST(ControllerSchedule, EachRowIsTypedAsItWouldBeAlone) {
             const Json& typing = body["rows"][k]["typing"];
             for (const char* part : {"settings", "as_typed", "realised", "units"})
                 EXPECT_EQ(typing[part], alone[part]) << product.id << " row " << k << " " << part;
-            // A note is told at the row or for all of them, once.
+            // A note is given once, for its row or for all of them.
             for (const Json& note : alone["notes"]) {
                 const auto count = [&](const Json& in) { return std::count(in.begin(), in.end(), note); };
                 EXPECT_EQ(count(typing["notes"]) + count(body["notes"]), 1) << product.id << note;

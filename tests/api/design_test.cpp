@@ -1,4 +1,4 @@
-// POST /v1/design and /v1/frontier: what they answer, as what, and what they refuse.
+// POST /v1/design and /v1/frontier: answers, their form, and refusals.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -53,7 +53,7 @@ TEST(Design, DoesNotDependOnWhereItStarts) {
     }
 }
 
-// y of 2 e^(-3s)/(10s + 1) after a step of u by 5 at t = 10, with noise of 0.1 that every run draws alike.
+// y of 2 e^(-3s)/(10s + 1) after a step of u by 5 at t = 10, with noise of 0.1 that is the same in every run.
 Json step_record() {
     Json record{{"dt", 0.5}, {"u", Json::array()}, {"y", Json::array()}};
     std::uint32_t state = 1;
@@ -67,7 +67,7 @@ Json step_record() {
     return record;
 }
 
-/// An answer without the times it took and what names it.
+/// An answer without its durations and identifiers.
 Json figures_of(Json answer) {
     for (Json& entry : answer["controllers"]) entry.erase("compute_ms");
     return {{"controllers", answer["controllers"]}, {"verdict", answer["verdict"]}, {"ranking", answer["ranking"]}};
@@ -167,7 +167,7 @@ TEST(Design, IsAboutOneThing) {
     EXPECT_EQ(prepare_job(Json{{"model", model}}.dump()).index(), 1u) << "a job keeps its record";
 }
 
-/// The asymmetry that rounding leaves is taken out; one that changes a correlation is refused.
+/// An asymmetry within rounding is removed; one that changes a correlation is refused.
 TEST(Design, ACovarianceIsSymmetricToRounding) {
     Json model = design_run(Json{{"record", step_record()}}.dump())["model"];
     Json& matrix = model["covariance"]["matrix"];

@@ -1,4 +1,4 @@
-// The OpenAPI document, the methods and the examples that are served.
+// The OpenAPI document, the methods and the examples of the service.
 #include <set>
 
 #include "api/contract/method_options.h"

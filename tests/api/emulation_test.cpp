@@ -1,4 +1,5 @@
-// The method emulation in the contract: its options in requests and echoes, what its entry carries, and the document.
+// The method emulation in the contract: its options in requests and echoes, the contents of its entry, and the
+// document.
 #include <gmock/gmock.h>
 
 #include "tests/api/support.h"

@@ -1,4 +1,4 @@
-// Controllers as they are built, in the contract: what a request may say of them, and what entries then carry.
+// Products in the contract: the members of a request, and the fields of entries.
 #include <gmock/gmock.h>
 
 #include "tests/api/support.h"
@@ -64,7 +64,7 @@ TEST(Implement, ADesignForAProductHoldsItsLimitsOnTheLoopAsTyped) {
     EXPECT_GT(on_device["robustness"]["Ms"].get<double>(), 1.39);
     for (const char* name : {"GAIN", "RESET", "RATE", "ALPHA"})
         EXPECT_TRUE(entry["as_entered"]["as_typed"].contains(name));
-    // The entry's controller is the ideal twin of what is typed.
+    // The entry's controller is the ideal form of the typed settings.
     EXPECT_EQ(entry["controller"]["Kp"], entry["as_entered"]["realised"]["Kp"]);
     EXPECT_EQ(on_device["responses"]["load"]["t"].size(), 400U);
     EXPECT_TRUE(entry["longest_sample_time"].is_number());
@@ -81,7 +81,7 @@ TEST(Implement, MovesOfMoreThanTwoPercentAreWarnedOf) {
     const Json& entry = result["controllers"][0];
     ASSERT_GT(entry["implemented"]["difference"]["Ms_percent"].get<double>(), 2);
     EXPECT_EQ(entry["warnings"].back()["code"], "differs-as-built");
-    // The rule of 2 % on each figure, from the answer's own figures.
+    // The rule of 2 % on each figure, computed from the answer's own figures.
     const Json& on_device = entry["implemented"];
     const auto overshoot = [](const Json& loop) {
         return loop["performance"]["setpoint"]["overshoot_percent"].get<double>();

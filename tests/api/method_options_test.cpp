@@ -1,4 +1,4 @@
-// Options of every shape: what is kept under which path, what is refused where, what is written back.
+// Options of every shape: the path of the stored value, the place of a fault, the echo.
 #include "api/contract/method_options.h"
 
 #include <gmock/gmock.h>

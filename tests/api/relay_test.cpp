@@ -1,4 +1,4 @@
-// POST /v1/experiments/relay: answers against the document, and what is refused.
+// POST /v1/experiments/relay: answers checked against the document, and refusals.
 #include <gmock/gmock.h>
 
 #include "support.h"

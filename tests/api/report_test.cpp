@@ -1,4 +1,4 @@
-// The report without a port: its drawings, its escaping, and what is no result.
+// The report without a server: its drawings, its escaping, and texts that are not results.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -51,7 +51,7 @@ TEST(Report, WhatIsNoResultIsRefused) {
     EXPECT_EQ(refused("[1]"), 404);
     EXPECT_EQ(refused(R"({"controllers": []})"), 404);
     EXPECT_EQ(refused(R"({"controllers": [{"method": "x", "error": {"detail": "no"}}]})"), 404);
-    // A text that only looks like a result never brings the service down.
+    // A text that only resembles a result never stops the service.
     for (const char* text :
          {R"({"controllers": [{"controller": 3}]})", R"({"controllers": [{"controller": {"Kp": "<b>"}}]})",
           R"({"controllers": [{"controller": {}, "verdict": [1, {"text": 2}], "options": [1]}]})",

@@ -41,7 +41,7 @@ std::vector<std::string> cells(const std::string& line) {
     return out;
 }
 
-/// The cell of a line of append_csv under a heading.
+/// The cell of a line of append_csv below a heading.
 std::string under(const std::string& heading, const std::string& line) {
     const std::vector<std::string> headings = cells(split_lines(csv_headings()).front()), row = cells(line);
     EXPECT_EQ(headings.size(), row.size()) << line;
@@ -129,7 +129,7 @@ TEST(ResultRows, AsCsvHoldUnitsAndWhatIsToBeTyped) {
     EXPECT_EQ(under("gain_over_today_percent", lines[1]), "") << "today's own line";
 }
 
-// The loop that runs is far from the ideal one here: a slow program on a quick plant.
+// The implemented loop differs strongly from the ideal one here: a slow program on a fast plant.
 TEST(ResultRows, TheGainOverTodayIsThatOfTheVerdict) {
     const JobOutcome outcome = run_job(StoredRequest{request_with(
                                                          R"("tune": [{"method": "simc"}], "evaluate": {"points": 0},

@@ -39,7 +39,7 @@ TEST(SetpointOption, IsEchoedAndKept) {
     const Json best = first_entry(R"(, "setpoint": {"best": "iae"})");
     EXPECT_LE(best["performance"]["setpoint"]["IAE"].get<double>(),
               by_default["performance"]["setpoint"]["IAE"].get<double>() * (1 + 1e-6));
-    // An optimum for set points was found with b = 1.
+    // The optimum for set points was found with b = 1.
     EXPECT_EQ(first_entry(R"(, "objective": "setpoint_iae")")["controller"]["b"], 1);
 }
 

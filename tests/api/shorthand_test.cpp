@@ -1,4 +1,4 @@
-// A few words of a command line as the request that they stand for.
+// The options of a command line, and the request that they mean.
 #include "api/shorthand.h"
 
 #include "support.h"
@@ -51,7 +51,7 @@ TEST(Shorthand, ATestInAFileBecomesTheRecord) {
     EXPECT_EQ(
         request_of(words, csv),
         (Json{{"record", {{"csv", csv}, {"columns", {{"u", 2}, {"y", "PV"}}}, {"dt", 0.5}, {"u_limits", {0, 100}}}}}));
-    // A log with an object in each line is a record too, a request over several lines is none.
+    // A log with an object in each line is also a record; a request over several lines is not.
     EXPECT_TRUE(request_of({}, "{\"t\": 0, \"u\": 1}\n{\"t\": 1, \"u\": 2}\n").contains("record"));
     EXPECT_FALSE(request_of({}, "{\n\"plant\": \"1/(s+1)\"}").contains("record"));
 }

@@ -1,4 +1,4 @@
-// Answers do not depend on how work is spread over threads.
+// Answers do not depend on the distribution of work over threads.
 #include <gtest/gtest.h>
 
 #include <algorithm>

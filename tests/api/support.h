@@ -1,4 +1,4 @@
-// What the tests of api/ share: requests as text, problems as pairs of pointer and sentence.
+// Helpers of the tests of api/: requests as text, problems as pairs of pointer and sentence.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 
 namespace tunewright::api {
 
-/// The value read by a codec-like contract (Description or Union), and the faults found.
+/// The value read by a contract (Description or Union), and the faults found.
 template <class T, class Contract>
 struct Decoded {
     T value{};
@@ -36,7 +36,7 @@ std::string encode(const Contract& contract, const T& value) {
     return out.take();
 }
 
-/// The detail that belongs to `pointer`; a text that says what was there instead, if there is none.
+/// The detail at `pointer`; if there is none, a text that lists the faults.
 std::string detail_at(const std::vector<FieldError>& faults, std::string_view pointer);
 
 /// A file of tests/data.
@@ -45,11 +45,11 @@ std::string data_file(const std::string& name);
 /// A request for the FOPDT plant 2 e^(-3s)/(10 s + 1) with further members, such as R"("timeout_s": 5)".
 std::string request_with(const std::string& members);
 
-/// Differences between `value` and the schema of the OpenAPI document's component, one sentence each. Knows the
+/// Differences between `value` and the schema of the OpenAPI document's component, one sentence each. Supports the
 /// keywords that the document uses; any other one is reported too.
 std::vector<std::string> schema_faults(const Json& value, const std::string& component);
 
-/// The same for a schema that stands alone, as a method's options.
+/// Differences from a separate schema, such as a method's options.
 std::vector<std::string> schema_faults(const Json& value, const Json& schema, const Json& document);
 
 }  // namespace tunewright::api

@@ -1,4 +1,4 @@
-// The terms on which a job is run: whom to tell of its end, when its turn comes, and whether an earlier one will do.
+// The terms on which a job is run: the webhook at its end, its start time, and whether an earlier job may answer.
 #include "api/contract/terms.h"
 
 #include <gmock/gmock.h>
@@ -122,7 +122,7 @@ TEST(JobTerms, OfABatchAreNotThoseOfItsEntries) {
                     HasSubstr("POST /v1/jobs"));
 }
 
-/// What a body's reader says and finds, however the bytes are cut.
+/// The content and faults of a body, however the bytes are cut.
 struct Read {
     std::optional<Problem> problem;
     std::optional<Notify> notify;
@@ -193,7 +193,7 @@ TEST(Members, AreLeftOutWhereverTheyStand) {
     EXPECT_EQ(without_members(json, {}), json);
     for (const char* same : {"", "[]", "{}", "5", "\"b\"", "[1,2]", R"(["b","c"])"})
         EXPECT_EQ(without_members(same, {"b"}), same);
-    // Text that is no JSON ends, whatever comes out.
+    // Text that is not JSON must end, with any result.
     for (const char* broken : {"[}", "{", "{\"", "{]", "[[[", "[,", "{\"a\"", "\"\\"}) without_members(broken, {"b"});
 }
 

@@ -1,5 +1,5 @@
-// The servo/regulation methods and the trade-off in the contract: options that are a number or a word, what entries
-// carry, where it is null.
+// The servo/regulation methods and the trade-off in the contract: options that are a number or a word, the fields of
+// entries, null values.
 #include <gmock/gmock.h>
 
 #include "api/examples/examples.h"

@@ -1,4 +1,4 @@
-"""The Python client where answers are refused, cut off or missing: a server that says what it was told to say."""
+"""The Python client with answers that are refused, cut off or missing: the server gives prepared answers."""
 
 import http.server
 import json

@@ -1,4 +1,4 @@
-"""What generators of clients need of /openapi.json: a name for all that they write, and no value without a shape."""
+"""Requirements of client generators on /openapi.json: a name for every type, and a schema for every value."""
 
 import re
 import unittest

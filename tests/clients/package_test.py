@@ -1,4 +1,4 @@
-"""The Python client as a package: what pip installs without a network, what a type checker sees, what its README says."""
+"""The Python client as a package: its installation without a network, its types, and its README."""
 
 import contextlib
 import io
@@ -30,7 +30,7 @@ class PackageTest(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory(prefix="tunewright-client-")
         cls.addClassCleanup(cls.folder.cleanup)
-        # As from a clone: pip may leave nothing in the tree.
+        # Like a clone: pip must not leave files in the tree.
         cls.source = pathlib.Path(cls.folder.name, "python")
         shutil.copytree(CLIENT, cls.source, ignore=shutil.ignore_patterns("__pycache__"))
         venv = pathlib.Path(cls.folder.name, "venv")

@@ -1,4 +1,4 @@
-"""The Python client against the real service: every call, its errors, and what it does about jobs nobody wants."""
+"""The Python client with the real service: every call, its errors, and its handling of abandoned jobs."""
 
 import json
 import os
@@ -21,14 +21,14 @@ SIMC_KP, SIMC_TI = 10 / (2 * 2 * 3), 10
 
 
 def step_csv():
-    """The exact step response of FOPDT, and so a record whose model is known."""
+    """The exact step response of a first-order plant with dead time: a record with a known model."""
     times = [0.5 * i for i in range(121)]
     rows = ["%g,1,%.9f" % (t, 0 if t < 3 else 2 * (1 - 2.718281828459045 ** (-(t - 3) / 10))) for t in times]
     return "\n".join(["t,u,y", "-1,0,0", "-0.5,0,0", *rows]) + "\n"
 
 
 class Frame:
-    """What the client needs to know of a pandas DataFrame."""
+    """The part of a pandas DataFrame that the client uses."""
 
     class RangeIndex:
         name = None
@@ -67,7 +67,7 @@ class ClientTest(unittest.TestCase):
     def check_model(self, answer):
         plant = answer["model"]["plant"]
         self.assertEqual(plant["type"], "fopdt")
-        for name in "KTL":  # the record is exact but for its nine digits and the grid of its samples
+        for name in "KTL":  # the record is exact up to nine digits and its sampling grid
             self.assertAlmostEqual(plant[name], FOPDT[name], delta=0.01 * FOPDT[name])
 
     def test_tune_returns_the_result_with_its_job(self):
@@ -201,7 +201,7 @@ class ClientTest(unittest.TestCase):
         self.check_model(self.client.identify(test["record"]))
 
     def test_settings_are_those_that_the_product_takes(self):
-        # The published example: from the maker's formula, to six digits.
+        # The published example: computed from the maker's formula, to six digits.
         example = self.client.get("/v1/controllers/emerson_deltav_series")["example"]
         expected, controller = example.pop("settings"), example.pop("controller")
         settings = self.client.settings("emerson_deltav_series", controller, **example)["settings"]

@@ -1,4 +1,4 @@
-"""The command `tunewright code`: what it refuses, and what it says of where a controller comes from."""
+"""The command `tunewright code`: its refusals, and its statement of the controller's origin."""
 
 import json
 import subprocess

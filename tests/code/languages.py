@@ -13,14 +13,15 @@ from structured_text import FunctionBlock
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BINARY = os.environ.get("TUNEWRIGHT_BIN", str(ROOT / "build" / "release" / "tunewright"))
 LANGUAGES = ("st", "c", "python")
-SIGNALS = ("setpoint", "measurement", "scheduling", "manual", "manual_output")  # in their order; scheduling of a schedule
+SIGNALS = ("setpoint", "measurement", "scheduling", "manual", "manual_output")  # in their order; scheduling is used by
+                                                                                # a schedule
 FLAGS = ("manual", "at_rest", "restart")
 WARNINGS = ["-std=c11", "-Wall", "-Wextra", "-Wconversion", "-Wpedantic", "-Wshadow", "-Werror"]
 SANITIZERS = ["-fsanitize=undefined,address", "-fno-sanitize-recover=all"]
 
 
 def result_of(controller, **members):
-    """A result of one controller, as small as one may be."""
+    """The smallest possible result of one controller."""
     return dict({"controllers": [{"method": "test", "controller": controller}]}, **members)
 
 
@@ -67,7 +68,7 @@ def run_python(text, columns, rows):
 
 
 class CProgram:
-    """Several controllers in one binary, each under a name of its own."""
+    """Several controllers in one binary, each with its own name."""
 
     def __init__(self, texts, columns, sanitized=True):
         self.columns = columns

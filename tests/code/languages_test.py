@@ -1,4 +1,5 @@
-"""The code of a tuned controller: Structured Text, C and Python give the same u, and from rest it is the sampled law."""
+"""The code of a tuned controller: Structured Text, C and Python give the same u, and from rest it is that of the
+sampled law."""
 
 import itertools
 import math
@@ -11,7 +12,7 @@ from languages import LANGUAGES, CProgram, code, ideal, result_of, run_python, r
 COLUMNS = ("setpoint", "measurement", "manual", "manual_output", "Kp", "Ti", "Td", "b", "at_rest", "restart")
 SAMPLES = 10_000
 INTEGRALS = ("backward", "forward", "trapezoidal")
-# Each rule of the derivative with filters that it may stand beside.
+# Each rule of the derivative with the filters that it allows.
 DERIVATIVES = (("difference", "none"), ("difference", "measurement_second_order"), ("filtered_backward", "derivative"),
                ("filtered_forward", "derivative"), ("filtered_trapezoidal", "derivative"),
                ("slope", "measurement_first_order"), ("four_points", "measurement_second_order"))
@@ -24,7 +25,7 @@ def rule_options(integral, derivative):
 
 
 def hard_rows(seed, count=SAMPLES, at_rest=False):
-    """Noise, steps of the set point, manual phases, new settings, restarts; u lies at its limits a good part of it."""
+    """Noise, steps of the set point, manual phases, new settings, restarts; u is at its limits for much of the time."""
     chance = random.Random(seed)
     rows, settings = [], {"Kp": 1.7, "Ti": 8.0, "Td": 1.35, "b": 0.6}
     setpoint, level = 50.0, 50.0
@@ -41,7 +42,7 @@ def hard_rows(seed, count=SAMPLES, at_rest=False):
 
 
 def law(controller, options, rows):
-    """u of the law in its own words, everything 0 before the first row."""
+    """u of the law, computed directly, with all values 0 before the first row."""
     Ts, M = options["sample_time"], options.get("slope_samples", 1)
     Kp, b, c = controller["Kp"], controller["b"], controller["c"]
     Ki, Kd, Tf = Kp / controller["Ti"], Kp * controller["Td"], controller["filter"].get("Tf", 0)
@@ -74,7 +75,7 @@ def law(controller, options, rows):
 
 
 def largest(a, b):
-    """The largest difference; two lists of one length without a number that is none."""
+    """The largest difference of two lists of the same length, without NaN."""
     if len(a) != len(b) or not all(map(math.isfinite, a + b)):
         raise AssertionError("%d and %d values, or one that is not finite" % (len(a), len(b)))
     return max(abs(x - y) for x, y in zip(a, b))
@@ -100,7 +101,7 @@ class LanguagesTest(unittest.TestCase):
                 self.assertLessEqual(worst, 1e-12)
                 low, high = options.get("u_min", -math.inf), options.get("u_max", math.inf)
                 self.assertTrue(all(low <= x <= high for x in u["c"]))
-                # The rows are hard: limits are met, and left.
+                # The rows are difficult: limits are reached and left.
                 if "u_min" in options:
                     held = sum(x in (low, high) for x in u["c"])
                     self.assertTrue(50 < held < len(rows) - 50, held)

@@ -1,4 +1,5 @@
-"""The code of a schedule: the three languages follow its rows alike, and the head says what is followed."""
+"""The code of a schedule: the three languages interpolate its rows in the same way, and the head comment names the
+scheduling variable."""
 
 import json
 import math

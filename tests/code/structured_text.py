@@ -1,9 +1,9 @@
 """A function block in Structured Text (IEC 61131-3): read by its grammar, its types checked, and executed.
 
-What is understood: FUNCTION_BLOCK; the sections VAR_INPUT, VAR_OUTPUT, VAR and VAR_TEMP with LREAL, BOOL, INT, arrays of
-them and initial values; assignments, IF with ELSIF and ELSE, FOR with BY; every operator of the standard but ** on these
-types; EXP, SQRT and ABS. Everything else is a SyntaxError with its line. There is no implicit conversion, no word of the
-language may be a name, and a temporary that is read before it is assigned is a RuntimeError.
+Supported are FUNCTION_BLOCK; the sections VAR_INPUT, VAR_OUTPUT, VAR and VAR_TEMP with LREAL, BOOL, INT, arrays of them
+and initial values; assignments, IF with ELSIF and ELSE, FOR with BY; every operator of the standard except ** on these
+types; EXP, SQRT and ABS. Everything else is a SyntaxError with its line. There is no implicit conversion, no keyword
+may be a name, and a temporary that is read before it is assigned is a RuntimeError.
 
     block = FunctionBlock(text)
     block.call(setpoint=1.0, measurement=0.0, manual=False, manual_output=0.0)
@@ -39,7 +39,7 @@ DEFAULTS = {"LREAL": 0.0, "BOOL": False, "INT": 0}
 class Token:
     def __init__(self, kind, text, line):
         self.kind, self.line = kind, line
-        # Words have no case.
+        # Words are not case-sensitive.
         self.text = text.upper() if kind == "word" else text
         self.spelling = text
 
@@ -260,7 +260,7 @@ class Parser:
             other, right = inner()
             if (type_, other) != ("BOOL", "BOOL"):
                 self.fail("%s joins BOOL and BOOL" % word)
-            # Both sides are evaluated, as the standard leaves open whether they are.
+            # Both sides are evaluated: the standard leaves open whether they are.
             left = {"OR": lambda c, a=left, b=right: a(c) | b(c), "XOR": lambda c, a=left, b=right: a(c) ^ b(c),
                     "AND": lambda c, a=left, b=right: a(c) & b(c)}[word]
         return type_, left

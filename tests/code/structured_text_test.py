@@ -6,7 +6,7 @@ from structured_text import FunctionBlock
 
 
 class StructuredTextTest(unittest.TestCase):
-    """The reader of the tests must itself refuse what is wrong."""
+    """The parser of the tests must itself refuse programs that are not valid."""
 
     def block(self, body, variables="x : LREAL := 1.5; i : INT; yes : BOOL; a : ARRAY[0..2] OF LREAL;"):
         return FunctionBlock("FUNCTION_BLOCK F VAR %s END_VAR %s END_FUNCTION_BLOCK" % (variables, body))

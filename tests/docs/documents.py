@@ -1,14 +1,14 @@
-"""Reads the commands of a document with what it says they print, runs them, and holds one against the other.
+"""Reads the commands of a document with their documented output, runs them, and compares the outputs.
 
-What a reader copies is a fenced block `sh`. The blocks `json` and `text` that follow it, up to the next heading or the next
-commands, are what it prints, beside each other the whole of it from first to last. There
+A fenced block `sh` has commands. The blocks `json` and `text` that follow it, up to the next heading or the next
+commands, are together its complete output. In them
 
-- blanks and line ends do not count: an answer may be laid out to be read;
-- a number is right when the one that came rounds to it, to the digits shown; one that is cut off, 0.695..., when the
-  one that came begins so;
-- `...` stands for anything left out. Inside brackets it leaves out whole members, as the last word everything.
+- blanks and line ends do not count: an answer may be formatted for readability;
+- a number is right if the actual one rounds to it, to the digits shown; one that is cut off, 0.695..., if the actual
+  one begins with it;
+- `...` stands for omitted text: inside brackets for whole members, as the last word for everything.
 
-A remark `<!-- not run: REASON -->` above a block keeps it from being run. Blocks of one document share a shell and a folder.
+A block below a remark `<!-- not run: REASON -->` is not run. Blocks of one document share a shell and a folder.
 """
 
 import dataclasses
@@ -32,7 +32,7 @@ PROBLEM = re.compile(r'^\{\s*"type":\s*"[^"]*",\s*"title":\s*"[^"]*",\s*"status"
 
 @dataclasses.dataclass
 class Commands:
-    """One block of commands, where it begins, and the blocks of what it prints (none: the document does not say)."""
+    """One block of commands, its line, and the blocks of its output (none: the document does not show it)."""
 
     line: int
     text: str
@@ -64,7 +64,7 @@ def commands_of(document: str) -> list[Commands]:
 
 
 def same(expected: str, came: str) -> bool:
-    """Whether one word of the document is the word that came; numbers to the digits shown."""
+    """True if one word of the document matches the actual word; numbers to the digits shown."""
     if expected == came:
         return True
     if expected.endswith(REST):
@@ -77,13 +77,13 @@ def same(expected: str, came: str) -> bool:
 
 
 def without_commas_beside_rest(words: list[str]) -> list[str]:
-    """What is left out may be nothing, and then has no comma of its own."""
+    """Omitted text may be empty, and then has no comma of its own."""
     return [word for at, word in enumerate(words)
             if word != "," or REST not in (words[at - 1] if at else "", words[at + 1] if at + 1 < len(words) else "")]
 
 
 def difference(expected: str, came: str) -> str | None:
-    """A sentence on where what came leaves what the document says; None where it does not."""
+    """A sentence about the first difference between the actual and the documented output; None if there is none."""
     want, have = without_commas_beside_rest(TOKEN.findall(expected)), TOKEN.findall(came)
     farthest = [0, 0]
     dead = set()
@@ -123,13 +123,13 @@ def difference(expected: str, came: str) -> str | None:
 
 
 def script(blocks: list[Commands], mark: str) -> str:
-    """All blocks as one script for bash; a line with the mark and the exit code ends what each of them prints."""
+    """All blocks as one script for bash; after each output it prints a line with the mark and the exit code."""
     return "set -o pipefail\n" + "".join(f"{block.text}\nprintf '\\n{mark} %s\\n' \"$?\"\n" for block in blocks)
 
 
 def faults(name: str, document: str, port: int, binary: str, folder: pathlib.Path) -> list[str]:
-    """One sentence for each block of the document that fails or prints something else than the document says, or no
-    sentence. The commands run in `folder`, against the service at `port` and with the program `binary`."""
+    """One sentence for each block of the document that fails or whose output differs. The commands run in `folder`,
+    with the service at `port` and the program `binary`."""
     blocks = [block for block in commands_of(document) if block.run]
     mark = "--- end of a block of this document, exit code"
     text = script(blocks, mark).replace("127.0.0.1:8080", f"127.0.0.1:{port}")
@@ -157,7 +157,8 @@ def faults(name: str, document: str, port: int, binary: str, folder: pathlib.Pat
 
 
 def lay_out(folder: pathlib.Path, binary: str) -> None:
-    """What the commands find: the repository's folders, and the program where script/build puts it and on the path."""
+    """Prepares the folder for the commands: the repository's folders, and the program at the place of script/build
+    and in the path."""
     root = pathlib.Path(__file__).resolve().parents[2]
     for name in ("api", "docs", "tests"):
         (folder / name).symlink_to(root / name)

@@ -1,4 +1,4 @@
-"""Holds the documents' commands: each runs as it stands, and prints what the document says that it prints."""
+"""Runs the commands of the documents as written, and compares their output with the documented one."""
 
 import pathlib
 import tempfile
@@ -50,7 +50,7 @@ for document in DOCUMENTS:
 
 
 class DifferenceTest(unittest.TestCase):
-    """The comparison itself."""
+    """Tests of the comparison itself."""
 
     def same(self, expected, came):
         self.assertIsNone(documents.difference(expected, came))

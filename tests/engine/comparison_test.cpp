@@ -1,4 +1,5 @@
-// Method "all": its rows, why a method has none, and how far each row lies above the optimum at its Ms.
+// Method "all": its rows, the reasons of methods without a result, and the excess of each row over the optimum at its
+// Ms.
 #include "engine/request/plan.h"
 
 #include <gmock/gmock.h>

@@ -55,8 +55,8 @@ double sampled_Ms(const ContinuousLoop& loop, double Ts) {
     return sampled.count_unstable_poles().stable() ? sampled.peaks(sampled.grid()).S.value : INFINITY;
 }
 
-// To 1e-3 of the whole loop's Ms, at that sample time and at shorter ones down to a thousandth of the peak's radian; by
-// way of the samples after a pulse too.
+// Accurate to 1e-3 of the whole loop's Ms, at that sample time and at shorter ones down to a thousandth of the peak's
+// radian; also by the samples after a pulse.
 TEST(LongestSampleTime, LeavesTheWholeLoopJustItsShareOfMs) {
     int looked_at = 0, by_pulse = 0;
     for (const ContinuousLoop& loop : continuous_loops(100)) {
@@ -78,7 +78,7 @@ TEST(LongestSampleTime, LeavesTheWholeLoopJustItsShareOfMs) {
     EXPECT_GT(by_pulse, 50);
 }
 
-// Of K Kp = 0.02 |S| is below 1/(1 - 0.02) at any sample time: nothing is too long.
+// For K Kp = 0.02, |S| is below 1/(1 - 0.02) at any sample time: none is too long.
 TEST(LongestSampleTime, IsNoneWhereNothingIsTooLong) {
     const LinearPlant plant = *LinearPlant::make(Fopdt{.K = 1, .T = 1, .L = 1});
     const ParallelPid gains{.Kp = 0.02};
@@ -87,7 +87,7 @@ TEST(LongestSampleTime, IsNoneWhereNothingIsTooLong) {
     EXPECT_FALSE(longest_sample_time(plant, gains, S.value, S.omega, 1.05));
 }
 
-// An unfiltered derivative keeps |L| near 0.6 up to 1/T, which a dead time of a million T turns without end.
+// An unfiltered derivative keeps |L| near 0.6 up to 1/T, and a dead time of a million T turns it without end.
 TEST(LongestSampleTime, IsNotLookedForFarBelowTheDeadTime) {
     const double L = 1e6;
     const LinearPlant plant = *LinearPlant::make(Fopdt{.K = 1, .T = 1, .L = L});

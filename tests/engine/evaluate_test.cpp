@@ -1,4 +1,4 @@
-// One evaluation against closed forms and against a plain simulation with tiny steps that shares no code with the
+// Evaluation compared with closed forms and with a simple simulation in tiny steps that shares no code with the
 // engine's.
 #include "engine/evaluation/evaluate.h"
 
@@ -47,8 +47,8 @@ TEST(Evaluate, PiOnItsOwnLagIsAFirstOrderLoop) {
 }
 
 TEST(Evaluate, ASetPointJumpsThroughAPlantsDirectTerm) {
-    // (0.5 s + 1.5)/(s + 0.4) with Kp = 1, Ti = 1.1: y(0+) = 0.5/(1 + 0.5). The indices are an independent program's
-    // (exact exponentials, Richardson's extrapolation over two step sizes), to 1e-7.
+    // (0.5 s + 1.5)/(s + 0.4) with Kp = 1, Ti = 1.1: y(0+) = 0.5/(1 + 0.5). The indices come from an independent
+    // program (exact exponentials, Richardson's extrapolation over two step sizes), to 1e-7.
     EvaluateOptions options;
     options.points = 50;
     const auto e =
@@ -63,8 +63,8 @@ TEST(Evaluate, ASetPointJumpsThroughAPlantsDirectTerm) {
 }
 
 TEST(Evaluate, ADampedLoopOnAResonantPlantComesToRest) {
-    // Steps longer than the dead time kept such runs moving at 1e-7 of their size. The same simulated up to a horizon
-    // at which the rest is below 1e-9 says what the indices are.
+    // Steps longer than the dead time kept such runs moving at 1e-7 of their size. A simulation up to a horizon at
+    // which the rest is below 1e-9 gives the reference of the indices.
     const Plant plant =
         Zpk{.K = 7, .zeros = {}, .poles = {{-0.03, 1}, {-0.03, -1}, {-0.05, 2.7}, {-0.05, -2.7}}, .L = 0.3};
     for (const double factor : {0.84, 0.9, 0.95, 1.0, 1.02, 1.05}) {

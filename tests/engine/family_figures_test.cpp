@@ -1,4 +1,4 @@
-// How one controller serves every plant of a family.
+// The figures of one controller on every plant of a family.
 #include "engine/evaluation/robustness_figures.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ EvaluateOptions without_traces() {
     return options;
 }
 
-// A P controller on K e^(-s)/(10 s + 1), K from 0.8 to 1.2, whose ultimate gain is met at K = 1.1995: beyond every
+// A P controller on K e^(-s)/(10 s + 1), K from 0.8 to 1.2, whose ultimate gain is reached at K = 1.1995: beyond every
 // sample, before the corner.
 TEST(FamilyFigures, AnUnstableCornerIsNeverToldAsAllStable) {
     double w = 1.6;  // atan(10 w) + w = pi

@@ -1,5 +1,5 @@
-// Indices against an independent program (tests/data/indices), to infinity and up to horizons anywhere, and against
-// what they promise of themselves.
+// Indices compared with an independent program (tests/data/indices), to infinity and up to various horizons, and with
+// their own stated accuracy.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -60,7 +60,7 @@ double relative_error(const Json& wanted, const std::optional<double>& got) {
     return value == *got ? 0 : std::abs(*got - value) / std::abs(value);
 }
 
-/// One index: within its tolerance of the reference, and within what the answer says of itself.
+/// Checks one index: within its tolerance of the reference, and within the stated accuracy of the answer.
 void hold(const Json& wanted, const std::optional<double>& got, const std::optional<double>& stated, double tolerance,
           const char* name) {
     const double error = relative_error(wanted, got);
@@ -77,7 +77,7 @@ void hold_indices(const Json& wanted, const Figures& figures, const IndexErrors&
     hold(wanted["TV"], figures.TV, stated.TV, kPromisedTv, "TV");
 }
 
-/// A figure that exists in both or in neither.
+/// Checks a figure that must exist in both or in neither.
 void same(const Json& wanted, const std::optional<double>& got, double tolerance, const char* name) {
     ASSERT_EQ(wanted.is_null(), !got.has_value()) << name;
     if (got) {
@@ -121,7 +121,7 @@ EvaluateOptions up_to(std::optional<double> horizon) {
 }
 
 TEST(IndexAccuracy, ActuatorLimitsThatAreNeverMetChangeNothing) {
-    // The same responses by two programs: one of three linear systems, one of one.
+    // The same responses by two programs: one for three linear systems, one for one.
     const Fopdt plant{.K = 1, .T = 10, .L = 3};
     for (const IdealPid& pid : {IdealPid{.Kp = 1, .Ti = 40},
                                 IdealPid{.Kp = 2, .Ti = 8, .Td = 1, .b = 0.5, .filter = {FilterType::derivative, 0.1}}})
@@ -176,8 +176,8 @@ TEST(IndexAccuracy, ATailWithoutChangeOfSignIsTheIntegralOfErrorHoweverSlow) {
             EXPECT_NEAR(*e->performance.load.IAE / (Ti / Kp), 1, 1e-12);
             EXPECT_TRUE(e->verification.load_error_keeps_sign.value_or(false));
             EXPECT_NEAR(*e->performance.load.ITAE / (Ti * Ti / Kp), 1, 1e-5 + 25 / Ti);
-            // A tail 10^7 times the dead time leaves the set-point response of two integrators to rounding, and says
-            // so.
+            // A tail of 10^7 dead times reduces the set-point response of two integrators to rounding errors, and the
+            // answer says so.
             for (const auto& warning : e->warnings)
                 if (Ti < 1e7) ADD_FAILURE() << warning.detail;
         }

@@ -1,5 +1,4 @@
-// Answers about sampled, limited and typed loops scale: in other units of time, of y and of u they are the same
-// answers.
+// Answers about sampled, limited and typed loops scale: in other units of time, of y and of u they are the same.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,8 +14,8 @@
 namespace tunewright {
 namespace {
 
-/// Time in units of 1/time, y in units of 1/gain. u in other units is y in other units for this plant, and a load and
-/// limits in them; the load stays 1 here, so that it meets a y of any size.
+/// Time in units of 1/time, y in units of 1/gain. For this plant other units of u are other units of y, and of a load
+/// and limits; the load stays 1 here, so that it is combined with a y of any size.
 struct OtherUnits {
     double time = 1, gain = 1;
 };
@@ -64,7 +63,7 @@ struct LoopKind {
     const product::Product* product = nullptr;
 };
 
-// No command of a case is at a limit exactly, where rounding would decide.
+// No command in a case is exactly at a limit, where rounding would decide.
 const LoopKind kLoopKinds[] = {{"sampled"},
                                {"limited on the way", ActuatorLimits{-2, 1.0837}},
                                {"at rest at a limit", ActuatorLimits{-2, 0.4137}}};
@@ -79,7 +78,7 @@ Expected<TuningResult> sampled_answer(const SampledCase& c, OtherUnits s, const 
     request.evaluate.actuator = kind.limits;
     device::DeviceModel device{.product = kind.product, .Ts = c.Ts * s.time};
     if (kind.product != nullptr) {
-        // The block counts in seconds and in shares of its spans: both stay as they are.
+        // The block counts in seconds and in fractions of its spans: both are unchanged.
         device.context = product::Context::with_spans({0, 100 * s.gain, -50, 50}, c.Ts);
         device.context.loop_clock_s = c.Ts;
         device.context.seconds_per_time = 1 / s.time;
@@ -134,19 +133,19 @@ void sampled_scales(const char* method, const LoopKind& kind, const NearIn& near
     }
 }
 
-// A rule's controller is the same to rounding; times at which a response leaves a band are as exact as its steps.
+// A rule's controller is the same to rounding; times at which a response leaves a band are as accurate as its steps.
 TEST(SampledScaling, OfARule) {
     for (const LoopKind& kind : kLoopKinds) sampled_scales("simc", kind, {1e-6}, kOtherUnits);
 }
 
-// A simplex takes other ways where rounding differs.
+// A simplex takes other steps after different rounding.
 TEST(SampledScaling, OfADesignForSampling) {
     constexpr OtherUnits kFew[] = {{1e-9, 1e-9}, {1, 1e7}, {4e6, 1}, {1e9, 1e9}};
     for (const LoopKind& kind : kLoopKinds) sampled_scales("robust", kind, {2e-4}, kFew);
 }
 
-// Every product: in the unit of time alone all of its numbers stay the same; in the unit of y those of a block that
-// counts in shares of its span do.
+// Every product: in another unit of time all of its numbers stay the same; in another unit of y those of a block that
+// counts in fractions of its span do.
 TEST(SampledScaling, OfEveryProduct) {
     constexpr OtherUnits kTimes[] = {{1e-9, 1}, {1e9, 1}}, kBoth[] = {{1e-9, 1e9}, {1e9, 1e-9}};
     for (const product::Product& product : product::catalogue()) {

@@ -70,7 +70,7 @@ Expected<TuningResult> answer(const Case& c, Units s, const std::string& method,
     return tune(request, {});
 }
 
-/// Which comparison stands where.
+/// The comparison for each figure.
 struct Comparison {
     double tolerance;
 
@@ -157,7 +157,7 @@ TEST(Scaling, OfAmigo) {
     scales("amigo", "PID", rules_compare);
 }
 
-/// The optimum is flat: its cost scales, its settings need not.
+/// The optimum is flat: its cost scales exactly, its settings only roughly.
 void optimum_compare(const Evaluation& one, const Evaluation& other, Units s) {
     const Comparison near{1e-6};
     near("IAE", one.performance.load.IAE, other.performance.load.IAE, s.time);

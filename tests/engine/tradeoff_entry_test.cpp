@@ -1,4 +1,5 @@
-// The trade-off between servo and regulation of any controller: what the optima are, how figures scale, what is empty.
+// The trade-off between servo and regulation of any controller: properties of the optima, scaling of figures, empty
+// values.
 #include "engine/tuning/arrieta/tradeoff_report.h"
 
 #include <gmock/gmock.h>
@@ -126,7 +127,7 @@ TEST(Tradeoffs, SayWhyTheyAreEmpty) {
         EXPECT_THAT(figure->why, HasSubstr("Without integral action"));
 }
 
-// With a delta_r far above the step the nonlinear integral is an ordinary one.
+// With a delta_r far above the step the nonlinear integral is a linear one.
 TEST(Tradeoffs, OfANonlinearPidAreThoseOfItsResponsesToTheGivenSteps) {
     const Sopdt plant{.K = 2, .T1 = 10, .T2 = 4, .L = 3};
     EvaluateOptions options;

@@ -69,8 +69,8 @@ FrequencyResponse points_of(const Plant& plant) {
     return points;
 }
 
-// Points have no response over time: the answer names the objective that was minimised, and warns where another was
-// asked for.
+// Points have no response over time: the answer names the objective that was minimised, and warns if another was
+// requested.
 TEST(Tune, NamesTheObjectiveThatMeasuredPointsAllow) {
     TuningRequest request;
     request.subject = test::subject_of(points_of(kPlant));
@@ -111,7 +111,7 @@ TEST(Tune, AnswersEveryMethodInRequestOrderAndTheBaselineLast) {
 }
 
 TEST(Tune, RanksWithinTheMsLimitThenTheRestThenTheUnstable) {
-    // Ziegler-Nichols is fast but far above Ms = 2 here; the baseline does not stabilise.
+    // Ziegler-Nichols is fast but far above Ms = 2 here; the baseline does not stabilise the plant.
     auto request =
         request_for(kPlant, {method("ziegler_nichols_step"), method("simc", {{"tau_c", 12.0}}), method("simc")});
     request.baseline = IdealPid{.Kp = 50, .Ti = 10};

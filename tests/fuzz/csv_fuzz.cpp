@@ -1,6 +1,6 @@
-// libFuzzer on what people export and send in bulk: CSV records, and batches as JSON, NDJSON and CSV of loops. Whatever
-// bytes come, either sentences that can be shown to anybody, or numbers that are finite and requests that are JSON; and
-// a batch is the same however its bytes are cut. First byte: which reader; second: the seed of the cuts.
+// libFuzzer on exported and uploaded files: CSV records, and batches as JSON, NDJSON and CSV of loops. For any bytes,
+// the result is either printable sentences, or finite numbers and requests that are JSON; and a batch does not depend
+// on how its bytes are cut. First byte: the reader; second: the seed of the cuts.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -19,7 +19,7 @@
 
 namespace tunewright::api {
 
-// The real one reads the contract, which is not looked at here.
+// The real function reads the contract, which is not tested here.
 std::variant<PreparedJob, Problem> prepare_entry(std::string_view body, const JobLimits&) {
     auto parsed = parse(body);
     if (auto* problem = std::get_if<Problem>(&parsed)) return std::move(*problem);
@@ -35,7 +35,7 @@ std::variant<Notify, Problem> read_notify(std::string_view json) {
 }  // namespace tunewright::api
 
 namespace tunewright {
-// The lines of a batch name a method or mean this one; the methods themselves are not looked at here.
+// The lines of a batch name a method or use this one; the methods themselves are not tested here.
 const std::string& default_method() {
     static const std::string id = "robust";
     return id;
@@ -71,7 +71,7 @@ std::string shown(const std::vector<BatchEntry>& entries) {
     return text;
 }
 
-/// Entries that came before a fault of the whole may differ with the cuts; nothing of them is kept.
+/// Entries before a fault of the whole batch may differ with the cuts; none of them is kept.
 std::string read_batch(const BatchQuestion& question, std::string_view body, unsigned seed) {
     std::minstd_rand chance(seed);
     BatchReader reader(question);

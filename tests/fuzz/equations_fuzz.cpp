@@ -1,6 +1,6 @@
-// libFuzzer on a plant's texts: whatever bytes come, either an error that can be shown to anybody, or a plant whose
-// numbers are finite. Lines: output, dx/dt, dz/dt, a parameter. The same bytes are read as a typed plant too, whose
-// text must be read back.
+// libFuzzer on a plant's texts: for any bytes, the result is either a printable error, or a plant with finite numbers.
+// Lines: output, dx/dt, dz/dt, a parameter. The same bytes are also read as a typed plant, whose text must be read
+// back.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -67,7 +67,7 @@ void examine(const NonlinearSystem& system) {
     require(lie_derivatives(system, *r, system.x_steady(), lie), "Lie derivatives at the operating point");
     require(lie.of_g != 0, "an effect of the input");
     for (const auto zero : zero_dynamics(system).zeros) require(!std::isnan(zero.real()), "zeros that are numbers");
-    // Off the operating point anything may fail, but says so.
+    // Away from the operating point any evaluation may fail, but must report that.
     const std::array<double, 2> far = {-3, 1e6};
     std::array<double, 2> rates = {};
     require(system.rates(far, -1, rates) || can_be_shown(system.domain_fault(far, -1)),

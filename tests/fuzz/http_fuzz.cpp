@@ -1,6 +1,6 @@
-// libFuzzer on what a client sends: the bytes of one connection, through a real socket into the framing of requests,
-// whole and cut at random. Promises: what is understood does not depend on the cuts; nothing is read past a refusal;
-// no body is longer than its limit.
+// libFuzzer on a client's input: the bytes of one connection, through a real socket into the framing of requests, whole
+// and cut at random. Checks: the parsed requests do not depend on the cuts; nothing is read after a refusal; no body is
+// longer than its limit.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -23,7 +23,7 @@ void require(bool holds, const char* what, const std::string& detail = "") {
     std::abort();
 }
 
-/// Writes down what is understood of one request; false where the connection ends.
+/// Writes the parsed data of one request; false if the connection ends.
 bool read_request(Connection& connection, std::string& text) {
     std::optional<Head> head = connection.next_head();
     if (!head) return false;
@@ -65,7 +65,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::string_view bytes(reinterpret_cast<const char*>(data) + 1, size - 1);
     const std::string whole = understood(bytes, [&] { return bytes.size(); });
     std::minstd_rand random(data[0] + 1U);
-    // The socket holds some 270 packets.
+    // The socket holds about 270 packets.
     const std::size_t longest = size / 60 + 1 + random() % 60;
     const std::string cut = understood(bytes, [&] { return longest / 2 + 1 + random() % longest; });
     require(cut == whole, "the same however the bytes are cut", "whole: " + whole + "\ncut: " + cut);

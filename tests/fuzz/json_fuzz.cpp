@@ -1,5 +1,5 @@
-// libFuzzer on the reader of JSON text: whatever bytes come, it takes what the tree library's own reader takes, with
-// the same values, or says in readable words what is wrong.
+// libFuzzer on the parser of JSON text: it accepts the same bytes as the tree library's own reader, with the same
+// values, or reports the fault in readable words.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -19,7 +19,7 @@ void require(bool holds, const char* what, std::string_view text) {
     std::abort();
 }
 
-/// What is refused although it is JSON: the contract's own limits, and a zero byte, which the other takes for the end.
+/// JSON that is refused: by the contract's own limits, or for a zero byte, which the other reader takes for the end.
 bool may_differ(const Problem& problem, std::string_view text) {
     return problem.status == 422 || text.find('\0') != text.npos;
 }

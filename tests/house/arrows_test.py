@@ -1,16 +1,16 @@
 #!/usr/bin/python3
-"""Holds the arrows of the house: which part and which room may include which, without circles, and that no matrix comes out
-of the engine, read from the includes."""
+"""Checks the dependencies of the sources: which part and which folder may include which, without cycles, and that
+headers outside the engine do not include a matrix library, from the includes."""
 import pathlib
 import re
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
-# Parts may include themselves and what is named.
+# Parts may include themselves and those named.
 PARTS = {"engine": set(), "api": {"engine"}, "server": {"api", "engine"}}
 
-# Rooms of a part, each with those that it may include beside itself and the files at the top of its folder. A file at the
+# Folders of a part, each with those that it may include in addition to itself and the files at the top. A file at the
 # top may have a line of its own, by its stem; "top" are the others, which all may include.
 ROOMS = {
     "engine": {
@@ -39,7 +39,7 @@ ROOMS = {
         "npid": {"method", "device"},
         "rimc": {"method", "device", "model_based"},
         "robust": {"method", "device", "reaction_curve"},
-        # The first level is designed by any other method, by its id.
+        # The first level is designed by any other method, chosen by its id.
         "emulation": {"method", "device", "model_based", "ultimate", "robust", "registry"},
         "registry": {"method", "reaction_curve", "ultimate", "model_based", "arrieta", "npid", "rimc", "robust",
                      "emulation"},
@@ -83,20 +83,20 @@ ROOMS = {
 }
 
 INCLUDE = re.compile(r'^#include "((?:engine|api|server)/[^"]+)"', re.MULTILINE)
-# A second of compiling for each source that sees it, and nothing of it in the engine's answers.
+# It costs a second of compile time for each source that includes it, and the engine's answers do not use it.
 EIGEN = re.compile(r"^#include <(?:unsupported/)?Eigen/", re.MULTILINE)
 
 
 def room(path: str, level: str) -> str:
-    """The room of a path below a level: of engine/plant/linear/factor.h below "engine" it is plant; of a file at the top
-    its stem where that has a line, else "top"."""
+    """The folder of a path below a level: for engine/plant/linear/factor.h below "engine" it is plant; for a file at
+    the top its stem if that has a line, else "top"."""
     names = path[len(level) + 1:].split("/")
     stem = names[0].split(".")[0]
     return names[0] if len(names) > 1 else stem if stem in ROOMS[level] else "top"
 
 
 def wrong_arrows(includes: dict[str, list[str]]) -> list[str]:
-    """One sentence for each include that turns an arrow."""
+    """One sentence for each include in the wrong direction."""
     wrong = []
     for source, headers in sorted(includes.items()):
         part = source.split("/")[0]
@@ -113,10 +113,10 @@ def wrong_arrows(includes: dict[str, list[str]]) -> list[str]:
 
 
 def circles() -> list[str]:
-    """One sentence for each level whose table has a circle: rooms that no order puts before one another."""
+    """One sentence for each level whose table has a cycle: folders that cannot be ordered."""
     wrong = []
     for level, rooms in ROOMS.items():
-        # The registry names every method, and the first level of emulation asks it for them.
+        # The registry names every method, and the first level of emulation looks them up there.
         left = {name: uses - {"registry"} if name == "emulation" else set(uses) for name, uses in rooms.items()}
         while free := [name for name, uses in left.items() if not uses & set(left)]:
             left = {name: uses for name, uses in left.items() if name not in free}
@@ -126,7 +126,7 @@ def circles() -> list[str]:
 
 
 def ways_to_eigen(includes: dict[str, list[str]], with_eigen: set[str]) -> list[str]:
-    """One sentence for each source or header outside the engine that sees Eigen, with the way there."""
+    """One sentence for each source or header outside the engine that includes Eigen, with the chain of includes."""
     wrong = []
     for source in sorted(name for name in includes if not name.startswith("engine/")):
         came_from, open_ends = {source: ""}, [source]
@@ -158,7 +158,7 @@ def main() -> int:
         faults += [f"{level}/{name} has no line in tests/house/arrows_test.py." for name in sorted(here - set(rooms))]
         faults += [f"tests/house/arrows_test.py has a line for {level}/{name}, which is not there."
                    for name in sorted(set(rooms) - here - {"top"})]
-    # The check itself must see a turned arrow.
+    # The check itself must find an include in the wrong direction.
     turned = wrong_arrows({"engine/plant/plant.h": ["engine/loop/loop.h"], "engine/error.h": ["api/outcome.h"],
                            "engine/tuning/method/method.h": ["engine/tuning/robust/robust.h"],
                            "engine/progress.h": ["engine/controller/pid.h"], "server/store/queue.h": ["server/jobs/service.h"],

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""Holds defaults and tolerances to their one table, engine/tuning/limits.h: defaults_test.py BINARY.
+"""Checks that defaults and tolerances are only in their table, engine/tuning/limits.h: defaults_test.py BINARY.
 
-Nothing else in the sources defines one; the binary's description of its methods, its help and the documents state what the
-table has. The defaults of every method's options that the documents list are held to the description as well."""
+No other source defines one; the binary's description of its methods, its help and the documents state the values of
+the table. The defaults of every method's options in the documents are compared with the description as well."""
 import json
 import pathlib
 import re
@@ -42,7 +42,7 @@ def text_of(value) -> str:
 
 
 def stated_defaults(document: str) -> list[tuple[list[str], list[str], list[str]]]:
-    """Ids of the section, names and defaults of each row of its table of options."""
+    """Ids of the section, and names and defaults of each row of its table of options."""
     rows, ids, inside = [], [], False
     for line in document.splitlines():
         if line.startswith("## "):
@@ -58,7 +58,7 @@ def stated_defaults(document: str) -> list[tuple[list[str], list[str], list[str]
 
 
 def wrong_defaults(document: str, methods: dict) -> list[str]:
-    """Rows whose default is a number or a word of the option, and not the one that the description has."""
+    """Rows whose default is a number or a word of the option, but differs from the description."""
     wrong = []
     for ids, names, stated in stated_defaults(document):
         for method in (methods[one] for one in ids if one in methods):

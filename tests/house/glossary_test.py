@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Holds documents, labels and messages to docs/glossary.md: the synonyms of its last column stand in none of them."""
+"""Checks documents, labels and messages against docs/glossary.md: they contain none of the synonyms in its last
+column."""
 import pathlib
 import re
 import sys
@@ -18,7 +19,7 @@ COMMENT = re.compile(r"(?<![:\"'`])//[^\n]*|/\*.*?\*/", re.DOTALL)
 
 
 def refused(glossary: str) -> dict[str, str]:
-    """Each synonym of the glossary's tables with the term that stands in its place."""
+    """Each synonym of the glossary's tables with the term that replaces it."""
     found, heads = {}, []
     for line in glossary.splitlines():
         cells = [cell.strip() for cell in line.strip().strip("|").split("|")] if line.startswith("|") else []
@@ -31,8 +32,8 @@ def refused(glossary: str) -> dict[str, str]:
 
 
 def sentences_of(path: str, text: str) -> list[tuple[int, str]]:
-    """What a reader sees: the prose of a document, the literals of a source that have a blank or begin with a
-    capital letter (names of fields and styles do not), with their lines."""
+    """The text that a reader sees: the prose of a document, the literals of a source that have a blank or begin with
+    a capital letter (names of fields and styles do not), with their lines."""
     if path.endswith(".md"):
         return [(number, without_code(line)) for number, line in prose(text)]
     text = COMMENT.sub(lambda comment: re.sub(r"[^\n]", " ", comment[0]), text)
@@ -46,7 +47,7 @@ def sentences_of(path: str, text: str) -> list[tuple[int, str]]:
 
 
 def uses(path: str, text: str, synonyms: dict[str, str]) -> list[str]:
-    """One sentence for each synonym in the document or source, also over the end of a line."""
+    """One sentence for each synonym in the document or source, also across the end of a line."""
     lines = sentences_of(path, text)
     whole, starts = "", []
     for number, line in lines:
@@ -62,7 +63,7 @@ def uses(path: str, text: str, synonyms: dict[str, str]) -> list[str]:
 
 
 def check_of_the_check() -> list[str]:
-    """What the check sees, and passes over, in a glossary, a document and sources made for it."""
+    """The findings in a glossary, a document and sources written for this check."""
     glossary = ("# G\n| term | meaning | not used |\n| --- | --- | --- |\n| comparison | m | league; as built |\n"
                 "| job | m | - |\n\n| a | b |\n| --- | --- |\n| c | thing |\n")
     synonyms = refused(glossary)

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""A source includes the standard header of what it uses, by itself or through headers of ours: what one version of the
-standard library brings along with another header, the next leaves out."""
+"""Checks that a source includes the standard header for each name that it uses, directly or through headers of this
+tree: one version of the standard library includes it in another header, the next one does not."""
 
 import functools
 import pathlib
@@ -10,7 +10,8 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
-# The headers that versions of the library, or of others' headers, bring along or not, with names that need them.
+# Headers that versions of the library, or of other libraries' headers, may or may not include, with names that need
+# them.
 NAMES = {
     "algorithm": "all_of any_of binary_search clamp copy_if count_if equal_range fill_n find_if lower_bound max max_element min"
                  " min_element minmax minmax_element none_of nth_element partition remove_if replace reverse rotate sort"
@@ -56,7 +57,7 @@ def text_of(name):
 
 @functools.cache
 def reached(name):
-    """The headers of others that a source of ours includes, by itself or through ours."""
+    """The external headers that a source of this tree includes, directly or through others."""
     own = re.findall(r'^#include "([^"]+)"', text_of(name), re.M)
     through = [reached(header) for header in own if (ROOT / header).exists()]
     return frozenset(re.findall(r"^#include <([^>]+)>", text_of(name), re.M)).union(*through)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Holds the documents: relative links lead to tracked files, anchors to headings, no line is too long."""
+"""Checks the documents: relative links lead to tracked files, anchors to headings, and no line is too long."""
 import pathlib
 import re
 import subprocess
@@ -18,7 +18,7 @@ FENCE = re.compile(r"^ {0,3}(```+|~~~+)")
 
 
 def prose(text: str) -> list[tuple[int, str]]:
-    """The numbered lines that are not in a block of code, fenced or indented."""
+    """The numbered lines outside blocks of code, fenced or indented."""
     kept, fence, code, blank = [], None, False, True
     for number, line in enumerate(text.splitlines(), 1):
         mark = FENCE.match(line)
@@ -38,15 +38,16 @@ def prose(text: str) -> list[tuple[int, str]]:
 
 
 def without_code(line: str) -> str:
-    """The line without what is shown as it stands, and without remarks, which are not shown at all."""
+    """The line without inline code, and without remarks, which are not displayed."""
     line = re.sub(r"<!--.*?-->", "", line)
     return re.sub(r"(`+)(?!`).*?(?<!`)\1(?!`)", "``", line)
 
 
 def slug(heading: str) -> str:
-    """The anchor that GitHub gives a heading: its text in small letters, punctuation gone, blanks as hyphens."""
+    """The anchor that GitHub gives a heading: its text in small letters, without punctuation, with hyphens for
+    blanks."""
     text = re.sub(r"!?\[([^\]]*)\]\([^)]*\)", r"\1", heading)
-    # Emphasis is no text, an underscore inside a word is.
+    # Emphasis marks are not text, but an underscore inside a word is.
     text = re.sub(r"\*+|(?<!\w)_+|_+(?!\w)", "", text) if "`" not in text else text.replace("*", "")
     return re.sub(r"[^\w\- ]", "", text.lower()).replace(" ", "-")
 
@@ -63,7 +64,7 @@ def anchors(text: str) -> set[str]:
 
 
 def wrong_links(documents: dict[str, str], files: set[str]) -> list[str]:
-    """One sentence for each link of the documents (text by path) that leads nowhere; `files` are all paths."""
+    """One sentence for each broken link of the documents (text by path); `files` are all paths."""
     folders = {str(parent) for name in files for parent in pathlib.PurePosixPath(name).parents}
     headings = {path: anchors(text) for path, text in documents.items()}
     wrong = []
@@ -90,7 +91,7 @@ def wrong_links(documents: dict[str, str], files: set[str]) -> list[str]:
 
 
 def long_lines(documents: dict[str, str]) -> list[str]:
-    """One sentence for each line that is too long; tables and code may be."""
+    """One sentence for each line that is too long, except in tables and code."""
     return [f"{path}:{number} has {len(line)} columns; at most {MOST_COLUMNS}."
             for path, text in sorted(documents.items()) if path == "README.md" or path.startswith("docs/")
             for number, line in prose(text) if len(line) > MOST_COLUMNS and not line.lstrip().startswith("|")]
@@ -102,7 +103,7 @@ def tracked() -> set[str]:
 
 
 def check_of_the_check() -> list[str]:
-    """What the check does not see, or sees where nothing is, in documents made for it."""
+    """Faults that the check misses, or reports wrongly, in documents written for it."""
     long = "x" * (MOST_COLUMNS + 1)
     made = {"README.md": f"# A `b_c` (d), e: f\n# Twice\n# Twice\n[a](docs/a.md#twice) [b](#a-b_c-d-e-f)\n"
                          f"[c](#twice-1)\n| {long} |\n\n    [code](nowhere) {long}\n\n`[code](nowhere)` "

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Holds the map of the tree: a source has a header of its name, a room has a README, and a README names what is there.
+"""Checks the map of the tree: a source has a header with its name, a folder has a README, and a README names its
+contents.
 
 Sources of the listed families have no header each: one header lists them, and declares a function of each."""
 import fnmatch
@@ -13,7 +14,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 PARTS = ("engine/", "api/", "server/", "web/src/")
 SOURCES = (".h", ".cpp", ".ts", ".css")
 
-# Sources without a header of their name: by the header that declares them, and why.
+# Sources without a header of their name: the header that declares them, and the reason.
 FAMILIES = {
     "engine/controller/product/catalogue/*.cpp": ("engine/controller/product/catalogue.h", "data, a maker each"),
     "engine/code/c.cpp": ("engine/code/print.h", "a printer for each language"),
@@ -30,12 +31,12 @@ ALONE = {"server/main.cpp": "the program"}
 
 DEFINED = re.compile(r"^[A-Za-z_][\w:<>,&* ]*?[ &*](\w+)\([^;{}]*\)[^;{}]*\{", re.MULTILINE)
 NAME = re.compile(r"[\w*][\w./*-]*\.(?:h|cpp|ts|css|py|mjs|cmake)\b|[\w.][\w./-]*/(?=$|[\s,;])")
-# What the tables of a README have in their first column.
+# Headings of the first column in the tables of a README.
 HEADS = re.compile(r"\| *(?:file|room|folder|file or room|file or folder|here|part)s? *\|", re.IGNORECASE)
 
 
 def without_header(texts: dict[str, str]) -> list[str]:
-    """One sentence for each source that has neither a header of its name nor a place in a family."""
+    """One sentence for each source that has neither a header with its name nor a place in a family."""
     found = []
     for path in sorted(texts):
         if not path.endswith(".cpp") or path[:-4] + ".h" in texts or path in ALONE:
@@ -60,7 +61,7 @@ def rooms(paths: list[str]) -> dict[str, set[str]]:
 
 
 def unnamed(paths: list[str], readmes: dict[str, str]) -> list[str]:
-    """One sentence for each room without a README, and for each stem that its README does not name."""
+    """One sentence for each folder without a README, and for each stem that its README does not name."""
     found = []
     for folder, stems in sorted(rooms(paths).items()):
         text = readmes.get(folder + "/README.md")
@@ -89,7 +90,7 @@ def names_in(text: str) -> set[str]:
 
 
 def ghosts(paths: list[str], readmes: dict[str, str]) -> list[str]:
-    """One sentence for each name in a README that is no file or folder there, below, or in a folder above."""
+    """One sentence for each name in a README that is not a file or folder there, below, or in a folder above."""
     known = set(paths) | {folder for path in paths for folder in map(str, pathlib.PurePosixPath(path).parents)}
     known |= {posixpath.splitext(path)[0] for path in paths}
     found = []
@@ -110,7 +111,7 @@ def tracked() -> list[str]:
 
 
 def blind() -> list[str]:
-    """What the checks do not see of a tree that is wrong on purpose."""
+    """Faults that the checks miss in a tree written with them."""
     wrong = {"engine/a/b.cpp": "int b() {}\n", "engine/request/verdict/c.cpp": "int c() {}\n", "server/main.cpp": ""}
     paths = ["engine/a/b.cpp", "engine/a/d.h", "engine/c/e.h", "engine/a/README.md"]
     readmes = {"engine/a/README.md": "`b` and `gone.h`, `lost/`\n\n| file | holds |\n| --- | --- |\n| `ghost` | - |\n"}

@@ -1,13 +1,14 @@
 #!/usr/bin/python3
-"""Sources that are compiled together (CMakeLists.txt: tunewright_unity) see each other's anonymous names. Two functions
-of one name and other parameters compile, and a call may quietly mean the neighbour's: no helper of a test has the name
-of a neighbour's helper, nor of a function that a neighbour takes from a header of the tests."""
+"""Checks sources that are compiled together (CMakeLists.txt: tunewright_unity), which see each other's anonymous
+names. Two functions with one name and different parameters compile, and a call may silently use the neighbour's: no
+helper of a test may have the name of a neighbour's helper, or of a function that a neighbour uses from a header of
+the tests."""
 import pathlib
 import re
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-TOGETHER = 6  # as tests/CMakeLists.txt says
+TOGETHER = 6  # as in tests/CMakeLists.txt
 ROOMS = ("engine", "api", "server", "papers", "records")
 INCLUDE = re.compile(r'^#include "([^"]+)"', re.MULTILINE)
 DEFINED = re.compile(r"^(?!TEST|return|namespace|using)[A-Za-z_][\w:<>,&* \[\]]*?[ &*]([a-z_]\w*)\([^;]*\)(?: const)? *\{",
@@ -16,7 +17,7 @@ DECLARED = re.compile(r"^[A-Za-z_][\w:<>,&* \n\[\]]*?[ &*]([a-z_]\w*)\(", re.MUL
 
 
 def headers_of(source: pathlib.Path, known: set[pathlib.Path]) -> set[pathlib.Path]:
-    """The headers of the tests that a source includes, and theirs."""
+    """The headers of the tests that a source includes, directly and indirectly."""
     for name in INCLUDE.findall(source.read_text()):
         for header in (ROOT / name, source.parent / name):
             if header.exists() and header.is_relative_to(ROOT / "tests") and header not in known:
@@ -30,7 +31,7 @@ def declared(headers: set[pathlib.Path]) -> set[str]:
 
 
 def hidden(group: list[pathlib.Path]) -> list[str]:
-    """One sentence for each name that a group has twice."""
+    """One sentence for each name that occurs twice in a group."""
     taken = {source: declared(headers_of(source, set())) for source in group}
     own = {source: set(DEFINED.findall(source.read_text())) - taken[source] for source in group}
     return [

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Holds the lists that documents make of the engine's registries: registry_lists.py BINARY; with --write it writes them."""
+"""Checks the lists in documents that come from the engine's registries: registry_lists.py BINARY; with --write it
+updates them."""
 import json
 import pathlib
 import subprocess
@@ -34,7 +35,7 @@ def controllers_list(answer: dict) -> str:
                   for entry in answer["controllers"]])
 
 
-# Of each document: the command that prints the registry, and how it becomes a list.
+# For each document: the command that prints the registry, and the function that makes the list.
 LISTS = {"methods.md": ("methods", methods_list), "controllers.md": ("controllers", controllers_list)}
 
 

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""The scripts say what they do, refuse what they do not know before they install or build anything, and count what is
-skipped. Quick: what installs and builds is replaced by programs that leave a mark."""
+"""Checks the scripts: they describe themselves, refuse unknown arguments before they install or build anything, and
+count skipped tests. Quick: installation and build are replaced by programs that leave a mark."""
 
 import os
 import pathlib
@@ -12,7 +12,7 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCRIPTS = sorted(path.name for path in (ROOT / "script").iterdir() if path.suffix == "")
-# The word that a script does not know, and what its refusal names instead.
+# An argument that a script does not have, and the text of its refusal.
 WRONG = {
     "bootstrap": (["biuld"], ["build", "page", "test", "style", "check", "bench", "peers"]),
     "build": (["alles"], ["all"]),
@@ -101,7 +101,7 @@ class Box(unittest.TestCase):
 
 
 class CountsTest(unittest.TestCase):
-    """script/test in a tree of its own, where each kind of suite has few tests."""
+    """script/test in a tree of its own, in which each kind of suite has few tests."""
 
     def tree(self, skipping):
         folder = tempfile.TemporaryDirectory(prefix="tunewright-counts-")
@@ -130,7 +130,7 @@ class CountsTest(unittest.TestCase):
         return pathlib.Path(folder.name)
 
     def run_tests(self, root):
-        # A runner of node's tests tells those that it starts to report to it.
+        # A runner of node tests makes nested runners report to it.
         environment = {key: value for key, value in os.environ.items() if key != "NODE_TEST_CONTEXT"}
         environment["PATH"] = str(root / "bin") + os.pathsep + environment["PATH"]
         done = subprocess.run([root / "script" / "test"], capture_output=True, text=True, env=environment, timeout=120)

@@ -1,8 +1,9 @@
 #!/usr/bin/python3
-"""Holds the sources to codes and figures: nothing but the writers of answers reads what a message says.
+"""Checks that the sources use codes and figures: only the writers of answers read the text of a message.
 
-A message is the sentence of an error, a warning, a finding, a note or an exception. Read means: searched, cut, compared or
-matched, directly or under another name. Tests may read messages, in lines that are counted; their number may only fall."""
+A message is the sentence of an error, a warning, a finding, a note or an exception. Read means: searched, cut,
+compared or matched, directly or under another name. Tests may read messages, in lines that are counted; their number
+may only fall."""
 import pathlib
 import re
 import subprocess
@@ -18,11 +19,11 @@ CPP_FAULTS = (
     re.compile(rf"\b{MESSAGES}\)?\s*(?:\.|->){CPP_READS}"),
     re.compile(r"\b(?:message|detail|sentence|what\(\))\s*(?:==|!=)"),
     re.compile(r"(?:==|!=)\s*[\w.>\[\]()*-]*(?:\.|->)(?:message|detail|sentence|what\(\))(?![\w(])"),
-    # The place of a figure in a sentence; the place of a fault is a path, and may be asked what it begins with.
+    # The place of a figure in a sentence. The place of a fault is a path, whose beginning may be checked.
     re.compile(r"(?:\.|->)where\.(?:ends_with|find|contains)\s*\(\""),
-    # A member looked for in the text of a request or an answer.
+    # A member that is searched for in the text of a request or an answer.
     re.compile(r'(?:\.|->)(?:request|result|error|body|json)\.(?:find|contains)\("\\"'),
-    # Of an answer that has been parsed: the text of a finding or a fault.
+    # In a parsed answer: the text of a finding or a fault.
     re.compile(r'(?:value|at)\("(?:text|detail|reason|message|title)"[^;]*?\)\.(?:get<[\w:]+>\(\)\.)?' + CPP_READS),
 )
 TS_FAULTS = (
@@ -31,13 +32,13 @@ TS_FAULTS = (
     re.compile(r"\.(?:detail|message|reason|sentence)\b[^=!\n]{0,12}(?:===|!==)\s*[\w.\"'?]"),
     re.compile(r"finding\.text\)\.split\("),
 )
-# A name for a message, and what is then done with it.
+# A variable for a message, and its later use.
 NAMED = (
     re.compile(r"\b(\w+)\s*(?:=|\()\s*[^;=]*(?:\.|->)(?:message|detail|what\(\))\s*[;)]"),
     re.compile(r'\b(\w+)\s*=\s*[^;=]*(?:value|at)\("(?:text|detail|message)"[^;]*;'),
     re.compile(r"const (\w+) = [^;=]*\.(?:detail|message)\s*;"),
 )
-# Writers: what they do with a sentence, and how often.
+# Writers: their use of a sentence, and the number of uses.
 WRITERS = {
     "api/describe/members.cpp": (2, "takes the first sentence of a member's description"),
     "api/report/terminal.cpp": (1, "names the file in place of the body in a problem for the terminal"),
@@ -47,7 +48,7 @@ WRITERS = {
     "web/src/words/numbers.ts": (1, "writes a true minus into a sentence"),
     "web/src/words/products.ts": (1, "says it or them in a sentence of its own"),
 }
-# Lines of tests of the engine, the API and the service that assert what a sentence says.
+# Lines of tests of the engine, the API and the service that assert the text of a sentence.
 ASSERTED = re.compile(r"\b(?:message|detail|text|what\(\))\b[^\n]*(?:HasSubstr|StartsWith|EndsWith|MatchesRegex|\.find)\(\"|"
                       r"EXPECT_EQ\([^\n]*(?:\.|->)(?:message|detail|text), *\"[^\"\n]* ")
 MOST_ASSERTED = 186
@@ -96,7 +97,7 @@ def tracked() -> dict[str, str]:
     return {str(path.relative_to(ROOT)): path.read_text(encoding="utf-8") for path in paths if path.is_file()}
 
 
-# What was once in the tree, and what is none of it.
+# Examples of lines that read a message, once in the tree, and of lines that do not.
 READERS = {
     "engine/a.cpp": 'const std::size_t at = error.message.find(kNamesLimit);',
     "engine/b.cpp": 'if (peak.where.ends_with("plant")) wide = true;',

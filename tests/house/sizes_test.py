@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Holds the sizes of the house: entries of a folder, lines of a file, and how many files are very short. A source is parted by
-idea, not at a count: a long one is named, and fails only where no reader can take it in."""
+"""Checks sizes: entries of a folder, lines of a file, and the number of very short files. A source is split by idea,
+not at a count: a long one is listed, and fails only above the limit for any reader."""
 import pathlib
 import subprocess
 import sys
@@ -12,7 +12,7 @@ GENERATED = (".gen.ts",)
 MOST_ENTRIES = 30
 LONG = 600
 MOST_LINES = 900
-# Files that say little by themselves are a tree that nobody finds his way in. The narrow header of a larger source is none.
+# Many files with little content make a tree hard to navigate. The narrow header of a larger source does not count.
 SHORT = 30
 MOST_SHORT_FILES = 20
 
@@ -41,7 +41,7 @@ def faults(lines: dict[str, int]) -> list[str]:
 
 
 def long_ones(lines: dict[str, int]) -> list[str]:
-    """One sentence for each source that may hold two things."""
+    """One sentence for each source that may contain two ideas."""
     return [f"{path} has {n} lines, more than {LONG}; does it hold two things?" for path, n in sorted(lines.items())
             if LONG < n <= MOST_LINES and path.endswith(SOURCES) and path.startswith(PARTS)]
 
@@ -55,7 +55,7 @@ def tracked() -> dict[str, int]:
 def main() -> int:
     lines = tracked()
     found = faults(lines)
-    # The check itself must see what is too much.
+    # The check itself must find excess.
     crowded = {f"engine/a/{i}.h": 10 for i in range(max(MOST_ENTRIES, MOST_SHORT_FILES) + 1)} | {"api/long.cpp": MOST_LINES + 1}
     faces = {f"engine/a/{i}{end}": n for i in range(MOST_ENTRIES // 2) for end, n in ((".h", 10), (".cpp", SHORT))}
     if len(faults(crowded)) != 3 or faults(faces) or len(long_ones({"api/long.cpp": LONG + 1})) != 1:

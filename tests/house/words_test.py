@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Holds the words of the engine: it knows numbers, plants and controllers, and speaks neither of JSON and HTTP nor of the
-contract that a client has with the service, in code, comments or messages."""
+"""Checks the words of the engine: it deals with numbers, plants and controllers, and mentions neither JSON and HTTP
+nor the contract of the service with its clients, in code, comments or messages."""
 import pathlib
 import re
 import sys

@@ -1,5 +1,5 @@
-// Hagglund and Astrom (2004): AMIGO over the test batch, tuned from the plants and evaluated, against an independent
-// solver's Ms, Mt and IAE (tests/data/robust, cases amigo_pid and amigo_pi).
+// Hagglund and Astrom (2004): AMIGO over the test batch, tuned from the plants and evaluated, compared with Ms, Mt and
+// IAE of an independent solver (tests/data/robust, cases amigo_pid and amigo_pi).
 #include <gtest/gtest.h>
 
 #include "engine/request/tune.h"
@@ -23,7 +23,7 @@ void expect_reference(const nlohmann::json& row, const std::string& controller, 
     ASSERT_TRUE(evaluation);
     ASSERT_EQ(evaluation->robustness.stable, reference.at("stable").get<bool>());
     if (!evaluation->robustness.stable) return;
-    // The reference prints six digits, of tangent models rounded to six.
+    // The reference has six digits, for tangent models rounded to six.
     EXPECT_NEAR(*evaluation->robustness.Ms / reference.at("Ms").get<double>(), 1, 5e-5);
     EXPECT_NEAR(*evaluation->robustness.Mt / reference.at("Mt").get<double>(), 1, 5e-5);
     EXPECT_NEAR(*evaluation->performance.load.IAE / reference.at("IAE").get<double>(), 1, 2e-4);

@@ -1,5 +1,5 @@
 // Arrieta, Vilanova and Alfaro (2012): Tables 3 and 4, the rule's robustness over L/T, its optima and degradations,
-// against the printed figures and independently recomputed ones (tests/data/servo_regulation).
+// compared with the printed figures and independently recomputed ones (tests/data/servo_regulation).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -89,7 +89,7 @@ TEST(Arrieta, Table3FollowsFromTheProcessAndFromThePrintedModel) {
     }
 }
 
-// The printed table has robustness and degradation on the model, the errors on the process.
+// The printed table has robustness and degradation for the model, the errors for the process.
 TEST(Arrieta, Table4ComesOutWithEachColumnOnItsPlant) {
     for (const char* level : kLevels) {
         const Json& row = reference()["table4"][level]["published"];
@@ -190,7 +190,7 @@ TEST(Arrieta, TheMethodTakesTheTableAtItsLevelsAndEquation9InBetween) {
     }
 }
 
-// The recomputed optima are good to 2e-4; a better one than theirs must not fail.
+// The recomputed optima are accurate to 2e-4; a better result must not fail.
 TEST(Arrieta, OptimaAndDegradationsOverTheRangeAgreeWithTheRecomputedOnes) {
     for (const auto& [tau, row] : reference()["tau_scan"].items()) {
         for (const auto& [level, Deg] : row["Deg_table2"].items()) {
@@ -215,7 +215,7 @@ TEST(Arrieta, OptimaAndDegradationsOverTheRangeAgreeWithTheRecomputedOnes) {
     }
 }
 
-// Deg evaluated anew: the optima and the free tuning's J_rd from the recomputed values, J_r and J_d from the general
+// Recomputes Deg: the optima and the free tuning's J_rd from the recomputed values, J_r and J_d from the general
 // evaluation.
 TEST(Arrieta, ExactHasTheDegradationAskedFor) {
     for (const auto& [tau, row] : reference()["tau_scan"].items()) {
@@ -227,7 +227,7 @@ TEST(Arrieta, ExactHasTheDegradationAskedFor) {
             const double J_rd =
                 std::hypot(*p.setpoint.IAE - row["Jr_o"].get<double>(), *p.load.IAE - row["Jd_o"].get<double>());
             EXPECT_NEAR(1 - row["free"]["Jrd"].get<double>() / J_rd, asked, 1e-3) << tau << " " << asked;
-            // Eq. 9 aims at Ms within a few per cent.
+            // Eq. 9 approximates Ms within a few per cent.
             EXPECT_NEAR(*answer.evaluation->robustness.Ms / *answer.report_as<TradeoffReport>()->Ms_design, 1, 0.03);
         }
     }
@@ -250,7 +250,7 @@ TEST(Arrieta, TheProfileIsWhatTheMethodsAnswerOneByOne) {
         EXPECT_DOUBLE_EQ(point.Ms, *f.Ms);
         EXPECT_DOUBLE_EQ(point.Deg, *f.Deg);
     }
-    // More robust is less fast, all along Fig. 2.
+    // Higher robustness means lower speed, all along Fig. 2.
     for (std::size_t i = 1; i < profile.by_Ms.size(); ++i) {
         EXPECT_GT(profile.by_Ms[i].Ms, profile.by_Ms[i - 1].Ms);
         EXPECT_GT(profile.by_Ms[i].I_perf, profile.by_Ms[i - 1].I_perf);

@@ -1,5 +1,5 @@
-// Garpinger and Hagglund (2008): the printed designs of Examples 1 and 2, and the test batch against independently
-// computed optima.
+// Garpinger and Hagglund (2008): the printed designs of Examples 1 and 2, and the test batch compared with
+// independently computed optima.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,8 +29,8 @@ Evaluation evaluated(const Plant& plant, const IdealPid& pid) {
     return *evaluation;
 }
 
-/// One printed design: K, Ti, Td with two decimals, and the IAE of the notes (the paper's Tf is not printed; 1e-4
-/// reproduces it).
+/// One printed design: K, Ti, Td with two decimals, and the independently computed IAE (the paper does not print Tf;
+/// 1e-4 reproduces it).
 struct PrintedDesign {
     const char* where;
     TransferFunction plant;
@@ -72,7 +72,7 @@ TEST(Garpinger, OwnSearchesReachThePrintedDesignToo) {
     }
 }
 
-/// A case of the reference batch with what `robust` is asked for.
+/// A case of the reference batch with the limits for `robust`.
 struct BatchCase {
     const char* name;
     bool pid;
@@ -119,7 +119,7 @@ INSTANTIATE_TEST_SUITE_P(Garpinger, ReferenceBatch,
                                            BatchCase{"pid_Mcircle1.4_td10", true, 1.4, false, true}),
                          [](const auto& test) { return "Case" + std::to_string(test.index); });
 
-/// The simulator alone, on the reference's own parameters: IAE and peaks.
+/// Only the simulator, on the reference's own parameters: IAE and peaks.
 TEST(Garpinger, EvaluationAgreesWithTheReferenceOnItsOwnDesigns) {
     std::ifstream file(test_data("robust/public.json"));
     const auto data = nlohmann::json::parse(file);
@@ -131,7 +131,7 @@ TEST(Garpinger, EvaluationAgreesWithTheReferenceOnItsOwnDesigns) {
             if (r["Tf"].get<double>() > 0) pid.filter = {FilterType::measurement_second_order, r["Tf"].get<double>()};
             const TransferFunction plant{row["plant"]["num"], row["plant"]["den"], row["plant"]["delay"]};
             const auto e = evaluated(plant, pid);
-            // 0.05 % is what is promised; the references are known to about 1e-6.
+            // The stated accuracy is 0.05 %; the references are known to about 1e-6.
             EXPECT_NEAR(*e.performance.load.IAE / r["IAE"].get<double>(), 1, 2e-5) << row["id"] << " " << name;
             EXPECT_NEAR(std::max(*e.robustness.Ms, *e.robustness.Mt), 1.4, 2e-5) << row["id"] << " " << name;
             EXPECT_TRUE(*e.verification.stability_methods_agree) << row["id"] << " " << name;

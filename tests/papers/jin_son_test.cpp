@@ -1,8 +1,8 @@
 // Jin and Son (2019): settings of Tables 4, 6, 8 (the nonlinear rows), responses of Tables 5, 7, 9 (all rows), the
-// optima that the rules were fitted to; against the printed figures and recomputed ones (tests/data/npid).
-//
-// Read as in the recomputation: the derivative acts on the measurement (a pure derivative of e would put an impulse
-// into u, and the IAE of every nonlinear row 4 to 18 % below the printed one), delta_r is held at the step's size.
+// optima that the rules were fitted to; compared with the printed figures and recomputed ones (tests/data/npid).
+// Interpretation as in the recomputation: the derivative acts on the measurement (a pure derivative of e would cause an
+// impulse in u, and an IAE of every nonlinear row 4 to 18 % below the printed one), delta_r is constant at the step's
+// size.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ const Json& jin_son_reference() {
 std::string process_of(const std::string& row) { return row.substr(0, row.find('/')); }
 bool is_nonlinear(const std::string& row) { return row.find("NPID-") != row.npos; }
 
-/// "npid_ise" of "I/NPID-ISE" and of "ise/0.5".
+/// "npid_ise" for "I/NPID-ISE" and for "ise/0.5".
 std::string method_of(const std::string& row) {
     for (const char* index : {"ITAE", "IAE", "ISE", "itae", "iae", "ise"})
         if (row.find(index) != row.npos) {
@@ -47,7 +47,7 @@ Plant process(const std::string& name) {
     return Zpk{.K = 0.5, .zeros = {}, .poles = {-1.0, -1.0, -0.5}, .L = 5};
 }
 
-/// As printed, for the settings follow from these.
+/// As printed, because the settings follow from these.
 Fopdt printed_model(const std::string& name) {
     if (name == "I") return {.K = 1, .T = 10.002, .L = 3.06};
     if (name == "II") return {.K = 1.001, .T = 2.306, .L = 2.32};
@@ -105,8 +105,8 @@ TEST(JinSon, ResponsesOfTables5And7And9) {
         }
         EXPECT_NEAR(*p.overshoot_percent, printed["Mp"].is_null() ? 0 : printed["Mp"].get<double>(), 0.3) << row;
         EXPECT_NEAR(*p.overshoot_percent, r["Mp"].get<double>(), 0.01) << row;
-        // Printed as 9.5668, an artefact of sampling: the overshoot grazes the band of 2 % (1.905 % in continuous
-        // time).
+        // Printed as 9.5668, an artefact of sampling: the overshoot nearly reaches the band of 2 % (1.905 % in
+        // continuous time).
         if (row == "I/NPID-IAE") {
             EXPECT_NEAR(*p.settling_time, 7.6563, 0.005);
         } else if (!printed["ts"].is_null()) {

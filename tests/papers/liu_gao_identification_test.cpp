@@ -1,6 +1,6 @@
 // Liu and Gao (2008), section 2 and examples 1 to 3: limit cycles and models by their formulas, from event-accurate
-// simulated relay tests, against an independent computation with machine-precision integrals (the printed table carries
-// the sampling of the authors' simulation; the printed model of example 3 does not solve Eqs. 11 to 13).
+// simulated relay tests, compared with an independent computation with machine-precision integrals (the printed table
+// has the sampling errors of the authors' simulation; the printed model of example 3 does not solve Eqs. 11 to 13).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -89,7 +89,7 @@ TEST(LiuGaoIdentification, PrintedModelsOfExamplesOneAndTwoWithinTheirSampling) 
     EXPECT_NEAR(biased.L, 4.8578, 2e-3 * 4.8578);
 }
 
-// Eqs. 11 to 13 on a plant that is not first order: the gain that they give depends on the shift.
+// Eqs. 11 to 13 on a plant that is not first order: the resulting gain depends on the shift.
 TEST(LiuGaoIdentification, GainOfAnUnbiasedTestOfASecondOrderPlantFollowsTheShift) {
     const Record record = recorded(kSecondOrder, 1, -1, 0.01);
     struct Root {
@@ -119,7 +119,7 @@ TEST(LiuGaoIdentification, MeasuredFrequencyPointsLieOnThePlant) {
     }
 }
 
-// Over many time constants the free run of an unstable model is arbitrary: the record's beginning must do.
+// Over many time constants the free run of an unstable model is arbitrary: the record's beginning must be sufficient.
 TEST(LiuGaoIdentification, LongRecordOfAnUnstablePlantIsReadFromItsBeginning) {
     RelaySettings settings;
     settings.hysteresis = 0.1;
@@ -142,8 +142,8 @@ TEST(LiuGaoIdentification, LongRecordOfAnUnstablePlantIsReadFromItsBeginning) {
     EXPECT_NEAR(plant.L, 0.3, 0.01);
 }
 
-// 30 seeds of the paper's noisy case (sd 0.0212, relay looking every 0.05 s): unbiased, and no wider than the spread
-// that an independent output-error fit and pooled integrals have (gain 0.027 by the formulas).
+// 30 seeds of the paper's noisy case (sd 0.0212, relay with a sampling time of 0.05 s): unbiased, and no wider than the
+// spread of an independent output-error fit and pooled integrals (gain 0.027 by the formulas).
 TEST(LiuGaoIdentification, NoisyRelayTestsScatterAroundTheTruth) {
     constexpr int kSeeds = 30;
     const double truth[] = {1, 10, 2};

@@ -1,6 +1,7 @@
-// Liu and Gao (2008), Table 1: the limit cycles of three relay tests. The printed values carry the sampling of the
-// authors' simulation (0.01 s): the exact ones differ by up to 0.1 % and were computed by an independent event-accurate
-// simulation with machine-precision integrals. The sampled relay with left-rectangle sums gives what is printed.
+// Liu and Gao (2008), Table 1: the limit cycles of three relay tests. The printed values have the sampling errors of
+// the authors' simulation (0.01 s): the exact ones differ by up to 0.1 % and were computed by an independent
+// event-accurate simulation with machine-precision integrals. The sampled relay with left-rectangle sums gives the
+// printed values.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -68,7 +69,7 @@ TEST(LiuGaoRelay, TableOneRecomputedExactly) {
     }
 }
 
-// Where u rises to u_plus for the i-th time after the start, counted from the end of the record (0: its last row).
+// The row of the i-th rise of u to u_plus after the start, counted from the end of the record (0: its last row).
 std::size_t rise_from_end(const RelayRecord& record, int count, double u_plus) {
     std::size_t at = record.t.size() - 1;
     while (count > 0) {
@@ -130,8 +131,8 @@ TEST(LiuGaoRelay, LeftRectanglesOnASampledRelayGiveThePrintedRows) {
     }
 }
 
-// Example 1 with noise N(0, 0.00045) on what the relay sees. Printed: 14.03, 0.2182, -2.2506, one run. The means and
-// deviations here are those of an independent simulation of many runs.
+// Example 1 with noise N(0, 0.00045) on the relay's input. Printed: 14.03, 0.2182, -2.2506, one run. The means and
+// deviations here come from an independent simulation of many runs.
 TEST(LiuGaoRelay, NoiseMovesTheCycleAsItDoesInTheReference) {
     constexpr int kSeeds = 30, kPeriods = 10;
     double Pu = 0, Au = 0, phi = 0, K = 0;

@@ -1,5 +1,5 @@
-// Liu and Gao (2008): the tuning part. Table 2, Example 3's responses, Fig. 2 and the robust-stability bounds, against
-// the printed figures and independently recomputed ones (tests/data/relay_tuning).
+// Liu and Gao (2008): the tuning part. Table 2, Example 3's responses, Fig. 2 and the robust-stability bounds, compared
+// with the printed figures and independently recomputed ones (tests/data/relay_tuning).
 #include <gtest/gtest.h>
 
 #include <array>

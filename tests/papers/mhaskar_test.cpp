@@ -1,6 +1,6 @@
 // Mhaskar, El-Farra and Christofides (2004): Tables II and III, the first level and the optima of the second level,
-// against the printed figures and independently recomputed ones (tests/data/emulation). Step sizes and horizons are
-// nowhere printed: those used here are the recomputation's.
+// compared with the printed figures and independently recomputed ones (tests/data/emulation). Step sizes and horizons
+// are not printed anywhere: those used here are the recomputation's.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -81,8 +81,8 @@ TEST(Mhaskar, OptimaOfTheSecondLevelAreTheRecomputedOnes) {
     }
 }
 
-// Of Remark 6 the recomputation's half-widths are exact; of the full problem they are Gauss and Newton's, which leave
-// out the curvature of y and u: J itself decides there.
+// For Remark 6 the recomputation's half-widths are exact; for the full problem they are those of Gauss and Newton,
+// which neglect the curvature of y and u: there J itself is the reference.
 TEST(Mhaskar, HowFlatTheOptimaAreIsTheRecomputedHessians) {
     const char* names[] = {"Kp", "Ti", "Td"};
     for (const Json& row : mhaskar_reference()["level2"]) {
@@ -138,9 +138,9 @@ TEST(Mhaskar, TableIIIsProposedRowIsReachedByRemark6AtALargePositiveStep) {
     EXPECT_NEAR(answer->controller.Td, printed[2].get<double>(), 5e-3);
 }
 
-// Table II prints Kc 5.38 with tau_I 2.1. The gain is reproduced; no tau_I near 2.1 can be: under Remark 6 the PI's
-// final u is Kc gamma/tau_I per unit of r, at least the 2 (really 4.51) K per K that any steady state needs, so tau_I
-// is at most 0.67. About 0.21 to 0.28 is what the optimisation gives.
+// Table II prints Kc 5.38 with tau_I 2.1. The gain is reproduced; a tau_I near 2.1 is impossible: under Remark 6 the
+// PI's final u is Kc gamma/tau_I per unit of r, at least the 2 (actually 4.51) K per K that any steady state needs, so
+// tau_I is at most 0.67. The optimisation gives about 0.21 to 0.28.
 TEST(Mhaskar, TableIIsProposedGainIsReachedItsIntegralTimeIsAMisprint) {
     for (const auto& [r, tf] : {std::pair{10.0, 2.0}, {5.0, 3.0}}) {
         MethodOptions options = loop_options(true, r, tf);
@@ -211,7 +211,7 @@ const LevelOneRow* row_of(const EmulationReport& report, const std::string& meth
     return nullptr;
 }
 
-// Printed: -1342.7, 0.95, 0.0524, the step of its test is not given.
+// Printed: -1342.7, 0.95, 0.0524; the step of its test is not given.
 TEST(Mhaskar, ImcOnTheDefaultStepTestIsTableIIIsFirstRow) {
     MethodOptions options = loop_options(false, 0.05, 2);
     options.set("formulation", std::string("remark6"));

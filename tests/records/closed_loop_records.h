@@ -1,5 +1,5 @@
 // Records of simulated loops and of open-loop tests, each from a seed: a sampled controller on a known plant, in steps
-// far finer than the rows. It shares no code with the product.
+// much finer than the rows. Shares no code with the product.
 #pragma once
 
 #include <algorithm>
@@ -28,7 +28,7 @@ struct SimulatedTest {
     std::string what;  ///< for a failed test's message
 };
 
-/// The standard library's distributions differ between libraries; these do not.
+/// The standard library's distributions differ between implementations; these do not.
 class Dice {
 public:
     explicit Dice(unsigned seed) : bits_(seed * 2654435761u + 12345u) {
@@ -45,7 +45,7 @@ private:
     std::mt19937 bits_;
 };
 
-/// A plant stepped with its input held.
+/// A plant simulated in steps with its input held.
 class PlantRun {
 public:
     PlantRun(const LoopPlant& plant, double step)
@@ -85,8 +85,8 @@ inline LoopPlant random_plant(Dice& dice, double spacing) {
     return plant;
 }
 
-/// P, PI or PID in the sampled loop, with what loops have: limits, a grid of u, a filter, a slower or faster clock than
-/// the rows', set-point weights, measurement noise, wandering and stepping loads.
+/// P, PI or PID in the sampled loop, with real effects: limits, a grid of u, a filter, a slower or faster clock than
+/// the rows', set-point weights, measurement noise, loads that drift and step.
 inline SimulatedTest simulated_loop(unsigned seed, LoopTest excitation) {
     Dice dice(seed * 4u + static_cast<unsigned>(excitation));
     SimulatedTest out;
@@ -104,7 +104,7 @@ inline SimulatedTest simulated_loop(unsigned seed, LoopTest excitation) {
     const double h = clock * step;
     const double y_filter = dice.chance(0.2) ? dice.between(0.1, 0.5) * plant.L + h : 0;
 
-    // lambda tuning, from brisk to sluggish, of plant, clock and filter together
+    // lambda tuning, from fast to slow, for plant, clock and filter together
     const double lag = plant.T1 + plant.T2 / 2, dead = plant.L + plant.T2 / 2 + 1.5 * h + y_filter;
     const double lambda = std::max(dice.log_between(0.8, 4) * dead, 0.1 * plant.T1);
     double weight = dice.chance(0.25) ? 0 : 1;
@@ -116,7 +116,7 @@ inline SimulatedTest simulated_loop(unsigned seed, LoopTest excitation) {
     if (kind >= 8) out.Td = dice.between(0.1, 0.3) * std::max(plant.L, plant.T2);
     const double filter = out.Td / dice.between(3, 8) + h;
 
-    const bool on_error = dice.chance(0.3);  // derivative action on the error, else on y
+    const bool on_error = dice.chance(0.3);  // derivative action on the error, otherwise on y
 
     // magnitudes: y moves by about `swing`
     const double swing = dice.log_between(0.5, 50);
@@ -132,7 +132,7 @@ inline SimulatedTest simulated_loop(unsigned seed, LoopTest excitation) {
     const double u_grid = dice.chance(0.3) ? u_swing * dice.log_between(0.002, 0.05) : 0;
     const double y_grid = dice.chance(0.3) ? swing * dice.log_between(0.001, 0.02) : 0;
     const bool seen_rounded = dice.chance(0.5);
-    const bool own_noise = dice.chance(0.15);  // the log samples y for itself
+    const bool own_noise = dice.chance(0.15);  // the log samples y separately
     const double limit = dice.chance(0.3) ? u_swing * dice.between(1.1, 2.0) : 1e300;
     const double u_offset = dice.between(-1, 3) * u_swing, y_offset = dice.between(-5, 5) * swing;
 
@@ -195,8 +195,8 @@ inline SimulatedTest simulated_loop(unsigned seed, LoopTest excitation) {
     return out;
 }
 
-/// A test in which nothing moves u in answer to y: steps, staircases, bumps, ramps, pseudo-random levels, sines,
-/// heaters by pulse width, slewing and lagging valves; with noise, drift, rounding, dead bands, uneven times.
+/// A test in which u never responds to y: steps, staircases, bumps, ramps, pseudo-random levels, sines, heaters with
+/// pulse width, slewing and lagging valves; with noise, drift, rounding, dead bands, uneven times.
 inline SimulatedTest open_loop_test(unsigned seed) {
     Dice dice(seed + 7'000'000u);
     SimulatedTest out;
@@ -226,7 +226,7 @@ inline SimulatedTest open_loop_test(unsigned seed) {
     const double pole = dice.chance(0.4) ? dice.between(0.5, 0.99) : 0;
     const double drift = dice.chance(0.2) ? swing * dice.between(-0.5, 0.5) / end : 0;
     const double y_grid = dice.chance(0.3) ? swing * dice.log_between(0.001, 0.05) : 0;
-    const double band = dice.chance(0.1) ? 0.1 * size : 0;  // of a sticking valve, downstream of u
+    const double band = dice.chance(0.1) ? 0.1 * size : 0;  // for a sticking valve, between u and the plant
     const bool uneven = dice.chance(0.2), late = dice.chance(0.2);
     const double load = dice.chance(0.15) ? size * dice.between(-0.4, 0.4) : 0,
                  load_time = end * dice.between(0.3, 0.9);
@@ -284,7 +284,7 @@ inline SimulatedTest open_loop_test(unsigned seed) {
             colour = pole * colour + std::sqrt(1 - pole * pole) * white;
             double shown = y + wandering + noise * colour + drift * t;
             if (y_grid > 0) shown = y_grid * std::round(shown / y_grid);
-            // `late`: the script that reads y at the end of the row's interval logs the u that it has just had
+            // `late`: the script that reads y at the end of the row's interval logs the u of that interval
             double logged = (late ? u_before : u) + jitter * dice.normal();
             if (u_grid > 0) logged = u_grid * std::round(logged / u_grid);
             out.record.t.push_back(t);

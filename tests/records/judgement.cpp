@@ -18,7 +18,7 @@ bool integrates(const Plant& plant) {
     return linear && linear->integrators() > 0;
 }
 
-/// Whether a sentence warns of the gain, or of the model as a whole.
+/// True if a sentence warns of the gain, or of the model as a whole.
 bool names_gain(const Warning& warning) {
     static const std::set<std::string> kWhole = {
         "unsettled-record",         "slow-or-integrating", "slow-part",   "looks-integrating", "structured-residuals",
@@ -28,8 +28,8 @@ bool names_gain(const Warning& warning) {
     return warning.detail.find("K = ") != std::string::npos || warning.detail.find("gain") != std::string::npos;
 }
 
-/// The relative standard deviation of G(j omega) that the covariance states: half axes of the 95 % region, over the
-/// quantile of chi-square.
+/// The relative standard deviation of G(j omega) according to the covariance: half axes of the 95 % region, divided by
+/// the quantile of chi-square.
 double stated_std(const IdentifiedModel& model, double omega) {
     const auto region = PlantRegion::of_covariance(model.plant, model.covariance.names, model.covariance.matrix);
     const auto centre = LinearPlant::make(model.plant);
@@ -55,17 +55,18 @@ void judge_gain(const MadeRecord& made, const IdentifiedModel& model, Judgement&
     if (const auto at = model.standard_errors.find("K"); at != model.standard_errors.end()) j.K_std = at->second;
 }
 
-/// The stated error of K where the record shows when u moved; of the same structure, so that the moves alone differ.
+/// The stated error of K if the record shows the time of each move; with the same structure, so that only the moves
+/// differ.
 void judge_told(const MadeRecord& made, const IdentifiedModel& model, Judgement& j) {
     Record record = *made.with_moves;
-    // Rows of u alone hide from the product what kind of test it is, and with it what the kind leaves open.
+    // Rows with only u hide the kind of test from the product, and the uncertainties that depend on the kind.
     if (made.test == Test::relay_between) record.kind = RecordKind::relay;
     const auto told = identify(record, {}, {});
     if (!told || integrates(told->plant) != integrates(model.plant)) return;
     if (const auto at = told->standard_errors.find("K"); at != told->standard_errors.end()) j.K_std_told = at->second;
 }
 
-/// Of the default design for the true plant.
+/// For the default design for the true plant.
 std::optional<double> min_load_IAE(const TruePlant& plant) {
     TuningRequest request;
     request.subject = test::subject_of(PlantModel(Plant(plant.zpk())));

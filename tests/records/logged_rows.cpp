@@ -25,7 +25,7 @@ void keep_rows(Record& record, const std::function<bool(std::size_t)>& kept) {
     }
 }
 
-/// True if an input is another than in the row before, or there is none.
+/// True if an input differs from the previous row, or there is none.
 bool moves(const Record& record, std::size_t i) {
     if (i == 0 || record.u[i] != record.u[i - 1]) return true;
     for (const FurtherInput& input : record.d) {
@@ -51,7 +51,7 @@ void log_rows(Noise noise, double noise_std, double size, Record& record, Random
             keep_rows(record, [&](std::size_t) { return !random.chance(0.05); });
             break;
         case Noise::irregular_times:
-            // Rows at random, those kept where an input has just moved.
+            // Random rows, and those in which an input has just moved.
             keep_rows(record, [&](std::size_t i) { return moves(record, i) || random.chance(0.6); });
             break;
         case Noise::logged_on_change: {

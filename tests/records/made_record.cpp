@@ -11,15 +11,15 @@
 namespace tunewright::records {
 namespace {
 
-/// The move of u: its level at a row, or at a step of the simulation, from what was measured there.
+/// The move of u: its level at a row, or at a step of the simulation, from the measurement there.
 using Operator = std::function<double(int place, double y)>;
 
 struct Plan {
     int rows = 0;
     double dt = 0;
     Operator u;
-    std::vector<double> r;   ///< set point, where there is one
-    bool each_step = false;  ///< u is asked for at every step in place of every row
+    std::vector<double> r;   ///< set point, if there is one
+    bool each_step = false;  ///< u is computed at every step instead of every row
 };
 
 /// Rows at which a test without feedback moves u.
@@ -38,7 +38,7 @@ Operator by_moves(std::vector<Move> moves) {
     };
 }
 
-/// The times that a test is made of, in rows.
+/// The times of a test, in rows.
 struct Scale {
     double dt;
     int settling, rest;
@@ -104,7 +104,7 @@ Plan open_steps(MadeRecord& made, const Scale& s, Random& random) {
 
 Plan relay_test(const MadeRecord& made, const Scale& s, Random& random) {
     const double bias = random.chance(0.5) ? random.uniform(0.1, 0.4) : 0, sign = made.plant.K > 0 ? 1 : -1;
-    // What the relay must see: beyond the noise, within what a half swing moves.
+    // The signal for the relay: above the noise, below the effect of half an oscillation.
     const double moved = made.plant.integrating ? std::abs(made.plant.K) * (made.plant.L + made.plant.lag_sum())
                                                 : std::abs(made.plant.K);
     const double hysteresis = moved * std::max(random.uniform(0.02, 0.1), 4 * made.noise_std);
@@ -120,7 +120,7 @@ Plan relay_test(const MadeRecord& made, const Scale& s, Random& random) {
     return plan;
 }
 
-/// A PI controller by lambda tuning on a rough first-order picture of the plant, in the position form.
+/// A PI controller by lambda tuning for a rough first-order model of the plant, in the position form.
 Plan feedback(const MadeRecord& made, const Scale& s, Random& random) {
     const TruePlant& plant = made.plant;
     const double lags = plant.lag_sum(), dead = plant.L + 0.4 * lags + std::max(0.0, -plant.b) + s.dt;
@@ -156,7 +156,7 @@ Plan feedback(const MadeRecord& made, const Scale& s, Random& random) {
     return plan;
 }
 
-/// The test that moves u at rows, moved within them: all moves at one phase, or each at its own.
+/// A test that moves u at rows, with the moves shifted within them: all by one phase, or each by its own.
 Plan between_rows(Plan plan, Random& random) {
     const int phase = random.chance(0.5) ? random.below(kFine) : -1;
     std::vector<int> earlier;
@@ -170,7 +170,7 @@ Plan between_rows(Plan plan, Random& random) {
     return plan;
 }
 
-/// The relay that looks at every step, or once a row at some phase.
+/// A relay that samples at every step, or once a row with some phase.
 Plan relay_between_rows(Plan plan, Random& random) {
     const int phase = random.chance(0.5) ? random.below(kFine) : -1;
     double level = 0;
@@ -193,7 +193,7 @@ Plan make_plan(MadeRecord& made, const Scale& scale, Random& random) {
     }
 }
 
-/// What is added to y and to the plant's input, row by row; `size` is what a unit of u moves.
+/// Signals added to y and to the plant's input, row by row; `size`: the effect of a unit of u.
 struct Disturbance {
     std::vector<double> on_y, load;
 };
@@ -243,7 +243,7 @@ Record run(const MadeRecord& made, ActuatedPlant& process, const Plan& plan, con
     return record;
 }
 
-/// The record with a row of u alone for each of the moves.
+/// The record with a row of u alone for each move.
 Record told(const Record& record, const std::vector<std::pair<double, double>>& moves) {
     Record with;
     std::size_t j = 0;
@@ -268,7 +268,7 @@ Record told(const Record& record, const std::vector<std::pair<double, double>>& 
     return with;
 }
 
-/// The user's units: a level, a slope for u, a start of time.
+/// Converts to the user's units: a level, a slope for u, a start of time.
 void into_units(MadeRecord& made, double u_level, double u_step, double y_level, double t_start) {
     for (Record* record : {&made.record, &made.earlier, made.with_moves ? &*made.with_moves : nullptr}) {
         if (record == nullptr) continue;

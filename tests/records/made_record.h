@@ -1,4 +1,4 @@
-// A record from a seed: a plant, a test, what disturbs it, and what a logger makes of it.
+// A record from a seed: a plant, a test, disturbances, and the effects of a logger.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +18,8 @@ enum class Test {
     prbs,
     ramp,
     relay,
-    closed_setpoints,   ///< a PI controller, set-point steps in the record
-    closed_regulation,  ///< a PI controller, loads alone
+    closed_setpoints,   ///< a PI controller, with set-point steps in the record
+    closed_regulation,  ///< a PI controller, with loads only
     staircase_between,  ///< moved at any time; the rows show it late
     relay_between,      ///< acts at any time, or once a row at another instant than the logger
 };
@@ -30,11 +30,11 @@ enum class Noise { none, white, coloured, drifting_load, outliers, missing_rows,
 inline constexpr int kNoises = 8;
 const char* name_of(Noise noise);
 
-/// The form in which a user sends it: columns of numbers, or a file that the product's own reader turns into them
-/// (record_form.h).
+/// The form in which a user sends the record: columns of numbers, or a file that the product's own reader converts to
+/// them (record_form.h).
 enum class Form {
     columns,
-    several_runs,   ///< the logger was started again, or its clock set back
+    several_runs,   ///< the logger was restarted, or its clock set back
     countdown,      ///< the times count down to the test, or throughout
     damaged_cells,  ///< words, cut numbers, half lines
     two_inputs,     ///< a second measured input moves y too
@@ -48,12 +48,12 @@ struct MadeRecord {
     Test test = Test::step_much_rest;
     Noise noise = Noise::none;
     Form form = Form::columns;
-    double noise_std = 0;    ///< relative to what the test moves
+    double noise_std = 0;    ///< relative to the effect of the test
     bool cut_short = false;  ///< the record ends before y rests
     Record record;
-    /// The same with rows of u alone where u moved: of tests that move u between rows.
+    /// For tests that move u between rows: the same record with rows of u alone at the moves.
     std::optional<Record> with_moves;
-    /// Rows from before the test, of the same plant: of several runs and countdowns.
+    /// Rows from before the test, of the same plant: for several runs and countdowns.
     Record earlier = {};
     std::string text() const;  ///< one line
 };
@@ -61,11 +61,11 @@ struct MadeRecord {
 /// Families, tests and noises in turn over the seeds, everything else at random.
 MadeRecord make_record(std::uint64_t seed, Form form = Form::columns);
 
-/// The same with some of them given.
+/// A record with some of them given.
 MadeRecord make_record(std::uint64_t seed, Family family, Test test, Noise noise, Form form = Form::columns);
 
-/// Acts as a logger: spoils, drops or thins the rows in the way of `noise` (logged_rows.cpp). `size` is what a unit
-/// of u moves, `noise_std` relative to it.
+/// Simulates a logger: damages, drops or thins the rows according to `noise` (logged_rows.cpp). `size` is the effect of
+/// a unit of u; `noise_std` is relative to it.
 void log_rows(Noise noise, double noise_std, double size, Record& record, Random& random);
 
 }  // namespace tunewright::records

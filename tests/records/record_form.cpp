@@ -25,7 +25,7 @@ Cells headings(const Record& record) {
     return cells;
 }
 
-/// A run's rows, with a set point at rest where the test has one and the run has none.
+/// A run's rows, with a constant set point if the test has one and the run has none.
 void add_rows(const Record& run, const Record& test, std::vector<Cells>& rows) {
     for (std::size_t i = 0; i < run.t.size(); ++i) {
         Cells cells = {digits(run.t[i], 10), digits(run.u[i], 7), digits(run.y[i], 7)};
@@ -47,7 +47,7 @@ void several_runs(const MadeRecord& made, Record test, std::vector<Cells>& rows,
         for (std::size_t i = static_cast<std::size_t>(at); i < test.t.size(); ++i) test.t[i] -= dt * (1 + at % 8);
         return add_rows(test, test, rows);
     }
-    if (kind == 3) {  // a buffer writes neighbours in turned order
+    if (kind == 3) {  // a buffer writes adjacent rows in reverse order
         add_rows(test, test, rows);
         for (int k = 1 + random.below(4); k > 0; --k) {
             const auto i = static_cast<std::ptrdiff_t>(random.below(n - 1));
@@ -61,7 +61,7 @@ void several_runs(const MadeRecord& made, Record test, std::vector<Cells>& rows,
     add_rows(earlier, test, rows);
     if (random.chance(0.4)) rows.push_back(headings(test));
     add_rows(test, test, rows);
-    if (kind == 1) {  // the logger runs on at rest
+    if (kind == 1) {  // the logger continues in steady state
         Record still = test;
         still.d.clear();
         const auto left = static_cast<std::size_t>(10 + random.below(n));
@@ -93,7 +93,7 @@ std::string line_of(const Cells& cells) {
     return line;
 }
 
-/// One line, damaged in one of the usual ways; "" in place of its end where the next line follows in it.
+/// One line, damaged in one of the usual ways; "" instead of its line end if the next line follows on it.
 std::string damaged(Cells cells, Random& random) {
     static const char* const kWords[] = {"ERR", "40.0degC", "#REF!", "OVERRUN", "4O.2", "\xEF\xBF\xBD"};
     std::string& cell = cells[static_cast<std::size_t>(random.chance(0.5) ? 2 : random.below(3))];

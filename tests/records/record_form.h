@@ -1,5 +1,5 @@
-// The forms in which made records are sent: what they have besides the test, and the files that loggers make of them,
-// read back by the product's own reader.
+// The forms in which made records are sent: the rows in addition to the test, and the files of loggers, read back by
+// the product's own reader.
 #pragma once
 
 #include <string>
@@ -10,19 +10,19 @@
 
 namespace tunewright::records {
 
-/// Rows before the test, of the same plant, every `dt`: at rest in front of a countdown, else u at other levels, and
-/// then a pause that nobody logged. `settling`: rows until the plant rests; `size`: what a unit of u moves.
+/// Rows before the test, of the same plant, every `dt`: at rest before a countdown, else u at other levels, and then a
+/// pause that was not logged. `settling`: rows until the plant rests; `size`: effect of a unit of u.
 Record earlier_run(const MadeRecord& made, ActuatedPlant& process, double dt, int settling, double size,
                    Random& random);
 
-/// A measured input that moves y too, with one to six moves or many. Adds what it does to `on_y`, row by row.
+/// A measured input that also moves y, with one to six moves or many. Adds its effect to `on_y`, row by row.
 FurtherInput second_input(const MadeRecord& made, double dt, double size, std::vector<double>& on_y, Random& random);
 
 /// CSV text: several runs in turn, times that count down, damaged cells, or a plain table.
 ///
-/// 1. Several runs: the earlier run stands in front of the test, whose times begin again, behind its headings or not; a
+/// 1. Several runs: the earlier run comes before the test, whose times start again, with or without its headings; a
 ///    third one in which nothing moves may follow. Or one run whose clock is set back by 1 to 8 rows, once; or a few
-///    neighbours that are written in turned order.
+///    adjacent rows that are written in reverse order.
 /// 2. Countdown: the rest in front of the test counts down to 0, or the whole test counts down to its end.
 /// 3. Damaged cells, in 0.2 to 1.5 % of the lines: a word, a number with a word, a cut number, two lines in one, half a
 ///    line, a second decimal point.
@@ -31,7 +31,7 @@ std::string written(const MadeRecord& made);
 /// The record, or the reader's first sentence.
 std::variant<Record, std::string> read_back(const MadeRecord& made, const std::string& csv);
 
-/// Judges the record as the user sends it: the columns, or the file.
+/// Evaluates the record as sent by the user: the columns, or the file.
 Judgement judge_as_sent(MadeRecord made);
 
 }  // namespace tunewright::records

@@ -1,4 +1,5 @@
-// Bounds that hold over made records: no wrong gain in silence, no unstable design without a warning, honest intervals.
+// Bounds that hold over made records: no wrong gain without a warning, no unstable design without a warning, correct
+// intervals.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,7 +13,7 @@
 namespace tunewright::records {
 namespace {
 
-/// A step of one lag of 80 s behind `order` equal lags, sampled every second.
+/// A step with one lag of 80 s behind `order` equal lags, sampled every second.
 MadeRecord slow_step(std::uint64_t seed) {
     Random random(seed);
     MadeRecord made;
@@ -49,7 +50,7 @@ TEST(MadeRecords, AStepThatBeginsAtRestKeepsItsGainWhateverItsLags) {
 }
 
 TEST(MadeRecords, OfEveryFamilyTestAndNoiseOnce) {
-    // No factor in common with the numbers of families, tests and noises: each meets each.
+    // No common factor with the numbers of families, tests and noises: each is combined with each.
     const int step = long_or_quick(7, 37);
     int records = 0, silent = 0, designed = 0, above = 0, unstable = 0;
     for (std::uint64_t seed = 1; seed <= 4 * kFamilies * kTests * kNoises; seed += static_cast<std::uint64_t>(step)) {
@@ -89,8 +90,8 @@ TEST(MadeRecords, MovesBetweenRowsLeaveAsMuchOpenAsTheyHide) {
 }
 
 TEST(MadeRecords, ARelaysStaticGainIsAsOpenAsTheStructuresLeaveIt) {
-    // Plants that a single structure, chosen by the fit, extrapolates wrongly: most have lags or a slow part beside
-    // those that the oscillation shows.
+    // Plants that a single structure, chosen by the fit, extrapolates wrongly: most have lags or a slow part in
+    // addition to those that the oscillation shows.
     int covered = 0, comparable = 0;
     for (const records::Test test : {records::Test::relay, records::Test::relay_between})
         for (const Family family : {Family::spread_lags, Family::oscillating, Family::inverse_response,
@@ -107,7 +108,7 @@ TEST(MadeRecords, ARelaysStaticGainIsAsOpenAsTheStructuresLeaveIt) {
 }
 
 TEST(MadeRecords, AGainOfTheSignThatARelayExcludesIsBad) {
-    // y drifts, and a zero may stand in for the drift with a gain of the other sign.
+    // y drifts, and a zero with a gain of the other sign may be taken for the drift.
     for (const std::uint64_t seed : {1975, 1976, 1977, 1978}) {
         const Judgement j = judge(make_record(seed, Family::drifting, records::Test::relay_between, Noise::white));
         if (j.refused || !j.comparable || j.K * j.K_true > 0) continue;
@@ -131,7 +132,7 @@ TEST(MadeRecords, OfEveryFormNoneIsWrongInSilence) {
         EXPECT_GE(records, long_or_quick(39, 15));
         EXPECT_GE(answered, 0.6 * records) << name_of(form);
         EXPECT_LE(silent, 1) << name_of(form);
-        // There are to be none.
+        // The target is none.
         EXPECT_LE(unstable, 1) << name_of(form);
     }
 }
@@ -152,8 +153,8 @@ TEST(MadeRecords, AreReadBackAsTheyWereWritten) {
     }
 }
 
-/// The share of step tests whose stated 95 % interval holds K. `walk`: standard deviation of a load at the plant's
-/// input that has walked for 50 units of time.
+/// The share of step tests whose stated 95 % interval contains K. `walk`: standard deviation of a random-walk load at
+/// the plant's input after 50 units of time.
 double coverage(double noise, double pole, int seeds, double walk = 0) {
     int covered = 0;
     for (int seed = 0; seed < seeds; ++seed) {

@@ -1,5 +1,5 @@
 // Records of controllers that are switched on from cold, each from a seed: the usual log of an oven or a boiler. The
-// plants run in steps far finer than the rows, and share no code with the product.
+// plants are simulated in steps much finer than the rows, and share no code with the product.
 #pragma once
 
 #include "tests/records/closed_loop_records.h"
@@ -47,7 +47,7 @@ struct ColdStart {
     }
 };
 
-/// Heaters and coolers, brisk and sluggish controllers, with what such logs have: limits, grids, filters, weights.
+/// Heaters and coolers, fast and slow controllers, with the effects in such logs: limits, grids, filters, weights.
 inline ColdStart random_cold_start(unsigned seed) {
     Dice dice(seed + 99'000u);
     ColdStart c;

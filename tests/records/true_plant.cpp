@@ -10,7 +10,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// Dead time from none to five times the lags; in a fifth of the plants none.
+/// Dead time up to five times the lags; in a fifth of the plants none.
 double some_dead_time(double lags, Random& random) {
     return random.chance(0.2) ? 0 : lags * (random.chance(0.8) ? random.spread(0.03, 1) : random.spread(1, 5));
 }
@@ -126,7 +126,7 @@ RunningPlant::RunningPlant(const TruePlant& plant, double step) {
     const int order = static_cast<int>(plant.lags.size()) + (plant.T_osc > 0 ? 2 : 0) + (plant.integrating ? 1 : 0);
     Eigen::MatrixXd A = Eigen::MatrixXd::Zero(order, order);
     Eigen::VectorXd B = Eigen::VectorXd::Zero(order), output = Eigen::VectorXd::Zero(order);
-    // A chain: each part's input is what the part before puts out, the first one's is u.
+    // A chain: each part's input is the output of the previous one; the first one's is u.
     int before = -1;
     auto feed = [&](int row, double gain) {
         if (before < 0)
@@ -153,7 +153,7 @@ RunningPlant::RunningPlant(const TruePlant& plant, double step) {
         before = at++;
     }
     output[before] = plant.K;
-    // (b s + 1) on the last state; its derivative has no direct part where the chain has two states and more.
+    // (b s + 1) on the last state; its derivative has no direct part if the chain has two or more states.
     if (plant.b != 0) output += plant.K * plant.b * A.row(before).transpose();
     Eigen::MatrixXd augmented = Eigen::MatrixXd::Zero(order + 1, order + 1);
     augmented.topLeftCorner(order, order) = A * step;
@@ -185,7 +185,7 @@ double ActuatedPlant::advance(double u, double load) {
         in = valve_;
     }
     if (period_ > 0) {
-        // The duty, -2 to 2 for all off and all on, is switched between the two ends; its mean over this step.
+        // The duty, -2 to 2 for always off and always on, is switched between the two levels; its mean over this step.
         const double from = static_cast<double>(steps_ % period_), duty = period_ * (2 + u) / 4;
         in = std::abs(u) < 2 ? 4 * std::clamp(duty - from, 0.0, 1.0) - 2 : u;
     }

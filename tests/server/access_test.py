@@ -1,4 +1,4 @@
-"""Who may call: keys, whose jobs are whose, rates, other sites, and what a port beyond loopback asks for."""
+"""Access: keys, owners of jobs, rates, other sites, and the requirements of an address beyond loopback."""
 
 import http.client
 import json
@@ -43,7 +43,7 @@ class KeysTest(unittest.TestCase):
             self.assertEqual(service.get("/metrics").status, 401)
             for path, expected in (("/metrics", 200), ("/healthz", 200), ("/readyz", 200), ("/v1/jobs", 404)):
                 connection = http.client.HTTPConnection("127.0.0.1", port, timeout=20)
-                # As Prometheus calls it: by an address that the service does not know of.
+                # Like Prometheus: by an address that the service does not know.
                 connection.request("GET", path, headers={"Host": "10.1.2.3:9090"})
                 self.assertEqual(connection.getresponse().status, expected, path)
                 connection.close()

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""Calls made up from the service's own /openapi.json: each answer must be one that the document announces.
+"""Calls generated from the service's own /openapi.json: each answer must be documented there.
 
-Every path and method, with parameters and bodies that the schemas describe and with bent ones. What is held: no fault of
-the service's (5xx other than 503 and 507), a status that the operation documents, the media type and the schema of
+Every path and method, with parameters and bodies according to the schemas and with damaged ones. Checks: no fault of
+the service (5xx other than 503 and 507), a status that the operation documents, the media type and the schema of
 that answer.
 
     tests/server/api_fuzz.py --seconds 300        a new seed for each round; the seed of a fault is printed
@@ -29,10 +29,10 @@ from schema_values import Values, bent, bent_bytes  # noqa: E402
 from service import LONG, QUICK, Service  # noqa: E402
 
 INTENDED = (503, 507)
-# Of any request, whatever it asks for: documented as `default`.
+# For any request: documented as `default`.
 REFUSED = (408, 411, 414, 417, 431, 505)
 METHODS = ("get", "put", "post", "delete", "patch")
-# Short limits: the fuzz is after answers, not after designs.
+# Short limits: the fuzzer tests answers, not designs.
 OPTIONS = ("--queue-limit", "100", "--drain-timeout", "0", "--job-timeout", "200ms", "--max-timeout", "200ms")
 
 
@@ -41,7 +41,7 @@ def not_a_number(word):
 
 
 class Api:
-    """The document: its operations, and what they promise."""
+    """The document: its operations, and their answers."""
 
     def __init__(self, document):
         self.document = document
@@ -60,7 +60,7 @@ class Api:
         return [self.resolved(item) for item in self.parameters[path] + operation.get("parameters", [])]
 
     def check(self, operation, answer):
-        """Raises AssertionError where the answer is not one that the operation documents."""
+        """Raises AssertionError if the operation does not document the answer."""
         responses = operation["responses"]
         assert answer.status < 500 or answer.status in INTENDED, "a fault of the service"
         status = "default" if answer.status in REFUSED else str(answer.status)
@@ -91,7 +91,7 @@ class Call:
 
 
 def sendable(text):
-    """What may stand in a header field."""
+    """The text with the characters that a header field allows."""
     return re.sub("[^ -~]", "", str(text)).strip()
 
 
@@ -125,7 +125,7 @@ def bodies(draw, api, content):
 
 @st.composite
 def calls(draw, api, ids):
-    # What only shows a document is worth a few tries; what takes something in, most of them.
+    # Operations that only return a document get few attempts; those with input get most of them.
     weighted = [item for item in api.operations for _ in range(4 if item[0] == "post" or "{" in item[1] else 1)]
     method, path, operation = draw(st.sampled_from(weighted))
     query, headers = [], {}
@@ -176,7 +176,7 @@ def new_batch(service):
 
 
 def replace_deleted(service, ids, call):
-    """Something else takes the place of what was deleted, so that calls to come find more than 404."""
+    """Replaces deleted jobs and batches, so that later calls find more than 404."""
     for known, make in ((ids["jobs"], lambda: service.post_job(QUICK, wait=30)["id"]),
                         (ids["batches"], lambda: new_batch(service))):
         for i, name in enumerate(known):
@@ -185,7 +185,8 @@ def replace_deleted(service, ids, call):
 
 
 def round_of_calls(service, api, examples, number=None, counts=None, shrink=False):
-    """`number` seeds it; without one it is the same each time. Raises AssertionError with the call that shows a fault."""
+    """`number` is the seed; without it the round is always the same. Raises AssertionError with the call that shows
+    a fault."""
     ids = prepared(service)
     phases = [Phase.generate] + ([Phase.shrink] if shrink else [])
 
@@ -200,7 +201,7 @@ def round_of_calls(service, api, examples, number=None, counts=None, shrink=Fals
             raise AssertionError("no answer, %r\n  call: %r" % (fault, call)) from None
         if call.method == "DELETE" and answer.status == 204:
             replace_deleted(service, ids, call)
-        if call.target.split("?")[0].endswith("/queue/pause"):  # else each job that is waited for would cost its whole wait
+        if call.target.split("?")[0].endswith("/queue/pause"):  # otherwise each wait for a job would last its full time
             service.post("/v1/queue/resume", b"")
         if counts is not None:
             counts[operation["operationId"], answer.status] += 1

@@ -1,4 +1,4 @@
-"""Bodies of batches, their rows, and a body that is sent piece by piece."""
+"""Bodies of batches, their rows, and a body that is sent in pieces."""
 
 import http.client
 import json
@@ -32,7 +32,7 @@ def wait_for_end(service, batch, patience=120):
 
 
 class Upload:
-    """A chunked body that is sent piece by piece."""
+    """A chunked body that is sent in pieces."""
 
     def __init__(self, service, headers=NDJSON, path="/v1/batches"):
         self.socket = socket.create_connection(("127.0.0.1", service.port), timeout=60)
@@ -47,7 +47,7 @@ class Upload:
         try:
             self.socket.sendall(b"0\r\n\r\n")
         except BrokenPipeError:
-            pass  # the answer may have come before
+            pass  # the answer may have come earlier
         response = http.client.HTTPResponse(self.socket)
         response.begin()
         return response.status, response.read()

@@ -1,4 +1,4 @@
-"""Batches over HTTP: three forms in, two forms out, lists, owners."""
+"""Batches over HTTP: three forms of upload, two forms of results, lists, owners."""
 
 import csv
 import io
@@ -143,7 +143,7 @@ class BatchesTest(unittest.TestCase):
 
     def test_ten_thousand_run_and_come_in_order(self):
         batch = self.post(lines(10_000))
-        # While it runs, a single job is not kept waiting for it.
+        # While it runs, a single job is not delayed.
         single = self.service.post_job(QUICK, wait=30)
         self.assertEqual(single["status"], "succeeded")
         rows = rows_of(self.follow(batch))
@@ -187,12 +187,12 @@ class BatchesTest(unittest.TestCase):
         self.assertEqual(shown["counts"]["cancelled"], 300)
         follower.join(30)
         self.assertEqual([row["status"] for row in self.followed], ["cancelled"] * 300)
-        # What a batch that was cancelled as a whole had cannot be queued again, and no link says so.
+        # Jobs of a batch that was cancelled as a whole cannot be queued again, and have no link for it.
         for job in self.service.get("/v1/jobs?batch=" + batch).json["jobs"][:3]:
             self.assertNotIn("requeue", job["links"])
             self.assertNotIn("requeue", self.service.job(job["id"])["links"])
             self.assertEqual(self.service.post("/v1/jobs/%s/requeue" % job["id"], "").status, 409)
-        # Once more changes nothing; then it can be deleted, with its jobs.
+        # A second cancellation changes nothing; then the batch can be deleted, with its jobs.
         self.assertEqual(self.service.post("/v1/batches/%s/cancel" % batch, "").status, 202)
         self.assertEqual(self.service.call("DELETE", "/v1/batches/" + batch).status, 204)
         for path in ("/v1/batches/" + batch, "/v1/batches/%s/results" % batch, "/v1/jobs/" + self.followed[0]["id"]):
@@ -233,13 +233,13 @@ class BatchesTest(unittest.TestCase):
         while not (seen := self.named("stopped")):
             self.assertLess(time.monotonic(), end)
             time.sleep(0.01)
-        # It is gone as soon as its receiver has heard of it.
+        # It is deleted as soon as its receiver knows of the cancellation.
         self.assertIn(self.service.post("/v1/batches/%s/cancel" % seen[0]["id"], "").status, (202, 404))
         upload.send(lines(1500))
         status, body = upload.end()
         self.assertEqual(status, 409, body)
         upload.close()
-        # What came after it was refused takes no place in the queue.
+        # Entries that came after the refusal take no place in the queue.
         figures = self.service.get("/metrics").body.decode()
         waiting = float(next(line for line in figures.splitlines() if line.startswith("tunewright_jobs_queued")).split()[1])
         self.assertLess(waiting, 20_000)

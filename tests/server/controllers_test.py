@@ -1,4 +1,4 @@
-"""Controllers as they are built, over HTTP: the catalogue, both conversions, and what they refuse."""
+"""Products over HTTP: the catalogue, both conversions, and their refusals."""
 
 import unittest
 

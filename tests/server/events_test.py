@@ -27,7 +27,7 @@ class Stream:
         self.response.close()
 
     def __iter__(self):
-        """(event, id, data) of each event; comments and retry are passed over."""
+        """(event, id, data) of each event, without comments and retry."""
         fields = {}
         for line in self.response:
             line = line.decode().rstrip("\n")
@@ -66,7 +66,7 @@ class EventsTest(unittest.TestCase):
         self.assertGreater(len(events), 2)
         fractions = [data["fraction"] for _, _, data in events[:-1]]
         self.assertEqual(fractions, sorted(fractions))
-        self.assertLess(len(events), 40)  # far fewer than the search has steps
+        self.assertLess(len(events), 40)  # far fewer than the steps of the search
         best = [data["best"] for _, _, data in events[:-1] if data.get("best")]
         self.assertIn("Kp", best[-1]["controller"])
         event, event_id, job = events[-1]

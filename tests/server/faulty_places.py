@@ -1,4 +1,4 @@
-"""Stores that can be broken, and a load that does not mind."""
+"""Stores that can be broken, and a load that tolerates it."""
 
 import http.client
 import json
@@ -18,7 +18,7 @@ ENDED = ("succeeded", "failed", "cancelled")
 
 
 class SqliteFile:
-    """A file that is looked through for damage at the end."""
+    """A file that is checked for damage at the end."""
 
     def __enter__(self):
         self.folder = tempfile.TemporaryDirectory(prefix="tunewright-test-")
@@ -43,7 +43,7 @@ def assert_intact(path):
 
 
 class OwnPostgres:
-    """A cluster of its own, which a test may stop and start."""
+    """A cluster for one test, which may stop and start it."""
 
     def __init__(self, where=None, **settings):
         self.where = where
@@ -77,7 +77,7 @@ class SmallDisk:
         os.rmdir(self.folder)
 
     def fill(self, leave_kib=0):
-        """Until nothing fits any more but that much."""
+        """Fills the disk except for this many KiB."""
         with open(self.filler, "ab", buffering=0) as file:
             try:
                 while True:
@@ -101,14 +101,14 @@ def may_mount():
 
 
 class Poster:
-    """Threads that post so many jobs, each with a key of its own, and try again until it is accepted. So every job is
-    there once, although the service is killed between its commit and its answer."""
+    """Threads that post this number of jobs, each with a key of its own, and repeat until it is accepted. So every
+    job exists once, even if the service is killed between its commit and its answer."""
 
     def __init__(self, service: Service, request, wanted, threads, patience=240):
         self.service = service
         self.body = json.dumps(request)
         self.wanted = wanted
-        self.name = uuid.uuid4().hex  # two posters at one service never mean the same job
+        self.name = uuid.uuid4().hex  # two posters at one service have different keys
         self.next = 0
         self.ids = []
         self.refusals = []
@@ -136,7 +136,7 @@ class Poster:
         try:
             answer = self.service.post("/v1/jobs", self.body, {"Idempotency-Key": key})
         except (OSError, http.client.HTTPException):
-            return False  # the service is away
+            return False  # the service is not running
         with self.lock:
             if answer.status == 202:
                 self.ids.append(answer.json["id"])
@@ -170,8 +170,8 @@ class Poster:
 
 
 class Caller:
-    """A thread of posts, each on a connection of its own, until nobody listens any more. `cut` holds answers that
-    broke off."""
+    """A thread of posts, each on a connection of its own, until the service stops listening. `cut` holds incomplete
+    answers."""
 
     def __init__(self, port, request):
         body = json.dumps(request).encode()
@@ -189,7 +189,7 @@ class Caller:
             try:
                 connection = socket.create_connection(("127.0.0.1", self.port), timeout=60)
             except ConnectionError:
-                return  # nobody listens
+                return  # the service has stopped listening
             with connection:
                 if not self._call(connection):
                     return
@@ -201,7 +201,7 @@ class Caller:
             while piece := connection.recv(65536):
                 received += piece
         except ConnectionError as fault:
-            # Connected by the system, but never taken by the service.
+            # The system accepted the connection, but not the service.
             if received:
                 self.cut.append((fault, received))
             return False
@@ -232,7 +232,7 @@ def all_jobs(service):
 
 
 def all_end(service, ids, patience=180):
-    """All jobs, once those have ended."""
+    """All jobs, once these have ended."""
     end = time.monotonic() + patience
     while True:
         jobs = all_jobs(service)

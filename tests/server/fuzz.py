@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""Random bytes and bent requests against a running service, for a while: it must answer, and live.
+"""Random bytes and damaged requests against a running service, for a given time: it must answer and survive.
 
-Not a unit test: its length is given, its seed is printed and can be given again."""
+Not a unit test: its length is an argument; its seed is printed and can be given again."""
 
 import argparse
 import json
@@ -17,7 +17,7 @@ ODD_VALUES = [None, True, -1, 0, 1e308, -1e308, 1e-308, 10**30, "", "NaN", "\0",
 
 
 def bend(value, chance):
-    """The same JSON with something odd somewhere."""
+    """The same JSON with a random change."""
     if chance.random() < 0.08:
         return chance.choice(ODD_VALUES)
     if isinstance(value, dict):

@@ -1,5 +1,5 @@
-"""Clients that mean harm: streams that two parsers could read differently, floods, and crowds that never finish. Each
-bad stream gets one answer at most and a closed connection, and the service is as healthy after it as before."""
+"""Hostile clients: streams that two parsers could read differently, floods, and crowds that never finish. Each bad
+stream gets at most one answer and a closed connection, and the service is as healthy after it as before."""
 
 import collections
 import json
@@ -29,7 +29,7 @@ def post(target=b"/v1/batches", fields=b"", body=b""):
     return b"POST " + target + b" HTTP/1.1\r\n" + HOST + b"Content-Type: application/x-ndjson\r\n" + fields + b"\r\n" + body
 
 
-# What is sent, and the statuses of all answers to it. Each ends with a whole second request that must not be answered.
+# The input, and the statuses of all answers. Each ends with a complete second request that must not be answered.
 MALFORMED = {
     "a length and chunks": (post(fields=b"Content-Length: 5\r\n" + CHUNKED, body=b"0\r\n\r\n"), [400]),
     "chunks and a length": (post(fields=CHUNKED + b"Content-Length: 5\r\n", body=b"0\r\n\r\n"), [400]),
@@ -85,7 +85,7 @@ class MalformedTest(unittest.TestCase):
         cls.addClassCleanup(cls.service.__exit__)
 
     def conversation(self, data, cut):
-        """The statuses of all answers until the service closes; fails where it does not close."""
+        """The statuses of all answers until the service closes; fails if it does not close."""
         received = b""
         with socket.create_connection(("127.0.0.1", self.service.port), timeout=10) as connection:
             try:
@@ -123,7 +123,7 @@ class MalformedTest(unittest.TestCase):
 
 
 class CrowdTest(unittest.TestCase):
-    """Everybody at once, beside a client that only wants to be served."""
+    """Many clients at once, together with an ordinary client."""
 
     def open(self, data=b""):
         connection = socket.create_connection(("127.0.0.1", self.service.port), timeout=30)
@@ -177,7 +177,7 @@ class CrowdTest(unittest.TestCase):
         finally:
             stop.set()
             dripping.join()
-        # One for each connection, and some of the service's own.
+        # One thread for each connection, and some of the service's own.
         self.assertLess(len(os.listdir("/proc/%d/task" % self.service.process.pid)), 950 + 50)
 
 
@@ -197,7 +197,7 @@ class ManyAtOnceTest(unittest.TestCase):
             for _ in range(50):
                 start = time.monotonic()
                 self.assertEqual(service.get("/v1/methods").status, 200)
-                if "san" not in BINARY:  # heads that do not come would keep a place for 10 s
+                if "san" not in BINARY:  # incomplete heads would keep a slot for 10 s
                     self.assertLess(time.monotonic() - start, 10)
             for connection in crowd:
                 connection.close()
@@ -227,7 +227,7 @@ class ManyAtOnceTest(unittest.TestCase):
             status = open("/proc/%d/status" % service.process.pid).read()
             peak = int(re.search(r"VmHWM:\s+(\d+) kB", status).group(1))
             if "san" not in BINARY:
-                self.assertLess(peak, 200_000)  # kB; the budget is 128 MiB, the process itself takes some 30
+                self.assertLess(peak, 200_000)  # kB; the budget is 128 MiB, the process itself takes about 30
 
     def test_a_client_that_never_reads_does_not_keep_the_service_from_stopping(self):
         with Service() as service:
@@ -241,7 +241,7 @@ class ManyAtOnceTest(unittest.TestCase):
 
 
 class FewThreads(Service):
-    """A service whose user may have so many threads. It runs from a folder that this user can reach."""
+    """A service whose user may have this number of threads. It runs from a folder that this user can read."""
 
     AS_ANOTHER = ["setpriv", "--reuid", "54321", "--regid", "54321", "--clear-groups"]
 
@@ -270,7 +270,7 @@ class FewThreadsTest(unittest.TestCase):
 
 
 class MadeUpCallsTest(unittest.TestCase):
-    """A short round of calls made up from the service's own document, the same each time."""
+    """A short round of calls generated from the service's own document, always the same."""
 
     def test_made_up_calls_get_documented_answers(self):
         counts = collections.Counter()

@@ -1,4 +1,4 @@
-"""HTTP itself: methods, media types, sizes, and clients that mean harm or are merely slow."""
+"""HTTP itself: methods, media types, sizes, and clients that are hostile or slow."""
 
 import gzip
 import http.client
@@ -15,7 +15,7 @@ HOST = b"Host: localhost\r\n"
 
 
 def statuses(received):
-    """Of all answers in what a socket gave."""
+    """The statuses of all answers in the bytes from a socket."""
     return [int(status) for status in re.findall(rb"HTTP/1\.1 (\d\d\d) ", received)]
 
 
@@ -224,7 +224,7 @@ class HttpTest(unittest.TestCase):
         answer = connection.getresponse()
         batch = json.loads(answer.read())
         self.assertEqual((answer.status, batch["total"]), (202, 50))
-        # On the same connection: nothing of the body is left in it.
+        # On the same connection: nothing of the body remains in it.
         results = answer.headers["Location"] + "/results"
         connection.request("GET", results + "?follow=true", headers={"Accept-Encoding": "gzip"})
         answer = connection.getresponse()

@@ -1,4 +1,4 @@
-"""What a client may rely on about jobs."""
+"""The documented behaviour of jobs."""
 
 import json
 import csv
@@ -66,7 +66,7 @@ class JobTest(unittest.TestCase):
         self.assertEqual(answer.status, 202)
         job = self.service.wait_for(job_id)
         self.assertEqual(job["status"], "cancelled")
-        self.assertLess(time.monotonic() - start, 5)  # a second on a quiet machine
+        self.assertLess(time.monotonic() - start, 5)  # about a second on an idle machine
         self.assertIsNotNone(job["finished_at"])
 
     def test_a_running_job_shows_its_progress(self):
@@ -155,7 +155,7 @@ class JobTest(unittest.TestCase):
         self.assertEqual((other.status, other.media_type), (409, "application/problem+json"))
 
     def test_a_request_that_cannot_be_done_ends_failed_with_the_cause(self):
-        # A record in which nothing happens: no plant follows from it.
+        # A record without any change: no plant follows from it.
         request = {"record": {"t": list(range(50)), "u": [1] * 50, "y": [2] * 50}}
         job = self.service.post_job(request, wait=50)
         self.assertEqual(job["status"], "failed", job.get("result"))
@@ -228,10 +228,10 @@ class QueueTest(unittest.TestCase):
             self.assertEqual((answer.status, answer.media_type), (429, "application/problem+json"))
             self.assertIn(int(answer.headers["Retry-After"]), range(1, 61))
             self.assertEqual(len(answer.headers.get_all("Retry-After")), 1)
-            # A queued job is cancelled at once and makes room.
+            # A queued job is cancelled at once, which makes room.
             self.assertEqual(service.post("/v1/jobs/%s/cancel" % waiting[0], "").json["status"], "cancelled")
             self.assertEqual(service.post("/v1/jobs", LONG).status, 202)
-            # One that is queued again waits like any other.
+            # A job that is queued again waits like any other.
             full = service.post("/v1/jobs/%s/requeue" % waiting[0], "")
             self.assertEqual(full.status, 429)
             self.assertIn(int(full.headers["Retry-After"]), range(1, 61))

@@ -1,4 +1,4 @@
-"""What whoever runs the service sees and does: everybody's jobs, the queue as a whole, jobs queued again, logs."""
+"""The administrator's view and calls: everybody's jobs, the queue as a whole, jobs queued again, logs."""
 
 import json
 import os
@@ -22,7 +22,7 @@ def bearer(key):
 
 
 class OperatorTest(unittest.TestCase):
-    """With keys: two owners, and one who runs the service."""
+    """With keys: two owners, and an administrator."""
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory(prefix="tunewright-operator-")
@@ -135,7 +135,7 @@ class OperatorTest(unittest.TestCase):
 
 
 class OwnMachineTest(unittest.TestCase):
-    """Without keys whoever calls from the machine runs the service, but not through a proxy."""
+    """Without keys every caller on the machine is an administrator, but not through a proxy."""
 
     def test_on_loopback_the_queue_is_at_hand(self):
         with Service() as service:
@@ -162,7 +162,7 @@ class OwnMachineTest(unittest.TestCase):
 
 class LogTest(unittest.TestCase):
     def events(self, service, kind, count):
-        """The log is written a moment after what it tells of."""
+        """The log is written a moment after the event."""
         for _ in range(1000):
             lines = [json.loads(line) for line in service.read_log().splitlines() if line.startswith("{")]
             found = [line for line in lines if line.get("event") == kind and line.get("method") != "GET"]

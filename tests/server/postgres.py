@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""A private PostgreSQL from Debian's package, for tests and figures: in a folder and on a port of its own.
+"""A private PostgreSQL from Debian's package, for tests and measurements: in a folder and on a port of its own.
 
     tests/server/postgres.py run -- COMMAND ...
 
-runs COMMAND with TUNEWRIGHT_TEST_POSTGRES set to the address of such a cluster, and stops it whatever happens.
+runs COMMAND with TUNEWRIGHT_TEST_POSTGRES set to the address of such a cluster, and always stops it.
 """
 
 import argparse
@@ -34,14 +34,14 @@ def programs():
 
 
 def die_with_parent():
-    """Runs in the child: whoever kills the test leaves no server behind."""
+    """Runs in the child process: if the test is killed, the server ends too."""
     pr_set_pdeathsig = 1
     ctypes.CDLL(None).prctl(pr_set_pdeathsig, signal.SIGQUIT)
 
 
 class Cluster:
-    """A server that listens on 127.0.0.1 alone and asks for a password. PostgreSQL refuses to run as root: then it
-    runs as the user that Debian's package made."""
+    """A server that listens on 127.0.0.1 only and asks for a password. PostgreSQL refuses to run as root: then it
+    runs as the user of Debian's package."""
 
     def __init__(self, where=None, **settings):
         self.bin = programs()
@@ -83,7 +83,7 @@ class Cluster:
         return done.stdout
 
     def start(self, patience=30):
-        """On the port it had before, if it had one."""
+        """On its previous port, if it had one."""
         if self.process and self.process.poll() is None:
             return
         if self.port is None:
@@ -113,7 +113,7 @@ class Cluster:
         return len(lines) >= 8 and lines[0].strip() == str(self.process.pid) and lines[7].strip() == "ready"
 
     def stop(self, mode="fast", patience=30):
-        """fast: connections are cut; immediate: as a crash would, with recovery at the next start."""
+        """fast: connections are cut; immediate: like a crash, with recovery at the next start."""
         if self.process is None:
             return
         if self.process.poll() is None:
@@ -131,13 +131,13 @@ class Cluster:
             return log.read()
 
     def url(self, database="postgres"):
-        """The address of that database, which is made if it is not there."""
+        """The address of that database, which is created if it does not exist."""
         address = "postgresql://%s:%s@127.0.0.1:%d/" % (USER, self.password, self.port)
         return make_database(address + "postgres", database)
 
 
 def make_database(address, database):
-    """The address of a database of that name beside the one of `address`; it is made if it is not there."""
+    """The address of a database with that name in the cluster of `address`; it is created if it does not exist."""
     parts = urllib.parse.urlsplit(address)
     wanted = urllib.parse.urlunsplit(parts._replace(path="/" + database))
     if parts.path == "/" + database:
@@ -151,7 +151,7 @@ def make_database(address, database):
 
 
 def run(command):
-    """The exit code of the command, run beside a cluster."""
+    """The exit code of the command, run with a cluster."""
     def stop(number, _frame):
         raise SystemExit(128 + number)
 

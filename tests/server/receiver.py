@@ -1,4 +1,4 @@
-"""Somebody who wants to hear of ends: an HTTP server on loopback, and the signature that it expects."""
+"""A receiver of notifications: an HTTP server on loopback, and the signature that it expects."""
 
 import base64
 import contextlib
@@ -11,8 +11,8 @@ import time
 
 
 class Receiver:
-    """Takes notes on loopback and answers as it is told: `answers` has a status, or status and headers, for each call
-    in turn, then 204. `hold` is waited for before an answer."""
+    """Receives notifications on loopback and gives prepared answers: `answers` has a status, or status and headers,
+    for each call in turn, then 204. It waits for `hold` before an answer."""
 
     def __init__(self, answers=(), port=0, tls=None):
         self.notes, self.answers = [], list(answers)
@@ -66,7 +66,7 @@ class Receiver:
         return self.notes
 
     def note(self, patience=30):
-        """The only note, as JSON, when it has had time to come twice."""
+        """The only notification, as JSON, after enough time for a second one."""
         self.wait_for(1, patience)
         time.sleep(1.5)
         if len(self.notes) != 1:

@@ -1,4 +1,5 @@
-"""The report of a job: one well-formed file without scripts, whose figures are the job's and whose request runs again."""
+"""The report of a job: one well-formed file without scripts, with the job's figures and a request that can be run
+again."""
 
 import base64
 import html.parser
@@ -20,7 +21,7 @@ BASE = {"name": "TIC-101", "units": {"time": "s", "u": "%", "y": "degC"}, "plant
 
 
 class Checker(html.parser.HTMLParser):
-    """Tags as a browser takes them, which must close as they open."""
+    """Checks tags like a browser: each must be closed in order."""
 
     def __init__(self):
         super().__init__()
@@ -58,7 +59,7 @@ class ReportTest(unittest.TestCase):
         return answer
 
     def checked(self, job, query=""):
-        """The tree of a report that keeps every promise about its figures and its form."""
+        """The tree of a report, after checks of its figures and its form."""
         answer = self.report(job, query)
         text = answer.body.decode()
         checker = Checker()
@@ -139,7 +140,7 @@ class ReportTest(unittest.TestCase):
         for place in ("/request/implement/y_span/1", "/request/implement/u_span/0", "/request/implement/sample_time",
                       "/request/evaluate/actuator/max"):
             self.assertIn(place, figures)
-        # The product's own settings come first, generic forms after the lines to sign.
+        # The product's own settings come first; generic forms come after the lines for signatures.
         captions = list(tables)
         self.assertEqual(captions[0], "On your controller, Emerson DeltaV PID, FORM Standard")
         self.assertLess(text.index("Prepared by"), text.index("New settings, by the form of the controller"))

@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""Runs every *_test.py beside it, in cli/, deploy/, records/ and stores/, and in tests/docs and tests/clients, and
+"""Runs every *_test.py next to it, in cli/, deploy/, records/ and stores/, and in tests/docs and tests/clients, and
 prints the counts that script/test adds up.
 
     tests/server/run.py [--jobs N] [NAME ...]
 
 A NAME is a module, a class or a test, such as jobs_test or jobs_test.JobTest.test_ids_cannot_be_guessed. With --jobs N
-as many classes run at a time, in N lanes with a PostgreSQL each: most tests wait for something.
+this number of classes run at a time, in N lanes with a PostgreSQL each: most tests mainly wait.
 """
 
 import argparse
@@ -33,7 +33,7 @@ def tests_of(suite):
 
 
 def discovered():
-    """The tests of all rooms, by class, in the order in which they are found."""
+    """The tests of all folders, by class, in the order in which they are found."""
     classes = {}
     for room in ROOMS:
         for test in tests_of(unittest.TestLoader().discover(str(room), pattern="*_test.py")):
@@ -52,7 +52,7 @@ def run_here(suite):
 
 
 def run_beside_each_other(names, jobs):
-    """Each class by a process of its own, `jobs` at a time; what a process prints comes out whole."""
+    """Runs each class in a process of its own, `jobs` at a time; the output of a process is printed as a whole."""
     from postgres import Cluster
 
     waiting, printing, codes = queue.SimpleQueue(), threading.Lock(), []

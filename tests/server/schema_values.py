@@ -1,4 +1,4 @@
-"""Hypothesis strategies from JSON Schema: values that a schema describes, and the same with something wrong in them."""
+"""Hypothesis strategies from JSON Schema: values according to a schema, and the same with damage."""
 
 import copy
 
@@ -18,10 +18,10 @@ class Values:
         self.known = {}
 
     def of(self, schema, depth=0):
-        """The strategy of a schema, the same object each time: hypothesis spends most of its time on new ones."""
+        """The strategy of a schema, always the same object: hypothesis spends most of its time on new ones."""
         key = (id(schema), min(depth, 4))
         if key not in self.known:
-            # The schema is kept too, so that nothing else gets its id.
+            # The schema is stored too, so that no other object gets its id.
             self.known[key] = (schema, self.made(schema, depth))
         return self.known[key][1]
 
@@ -42,7 +42,7 @@ class Values:
             return st.one_of([self.of({**schema, "type": one}, depth) for one in kind])
         given = schema.get("examples", []) + ([schema["default"]] if "default" in schema else [])
         made = getattr(self, kind)(schema, depth) if kind != "null" else st.none()
-        # What the document itself gives as an example is worth a third of the tries.
+        # The document's own examples get a third of the attempts.
         return st.one_of(made, made, st.sampled_from(given)) if given else made
 
     def reference(self, name, depth):
@@ -99,14 +99,14 @@ class Values:
             return st.dictionaries(WORDS, inner, min_size=schema.get("minProperties", 0), max_size=3)
         if not optional:
             return fixed
-        # A few of the optional ones at a time: with all of them nearly every object would be refused for one.
+        # A few of the optional members at a time: with all of them nearly every object would be refused for one.
         names = st.lists(st.sampled_from(sorted(optional)), unique=True, max_size=3)
         some = names.flatmap(lambda chosen: st.fixed_dictionaries({name: optional[name] for name in chosen}))
         return st.tuples(fixed, some).map(lambda both: {**both[0], **both[1]})
 
 
 def places(value, path=()):
-    """The paths of everything inside a JSON value, itself included."""
+    """The paths of all values inside a JSON value, including itself."""
     yield path
     inner = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
     for key, item in inner:
@@ -115,7 +115,7 @@ def places(value, path=()):
 
 @st.composite
 def bent(draw, value):
-    """The same value with one to three places replaced, removed, doubled or added to."""
+    """The same value with one to three parts replaced, removed, doubled or extended."""
     value = copy.deepcopy(value)
     for _ in range(draw(st.integers(1, 3))):
         *way, last = draw(st.sampled_from([path for path in places(value)][:400])) or (None,)
@@ -138,7 +138,7 @@ def bent(draw, value):
 
 @st.composite
 def bent_bytes(draw, data):
-    """The same bytes with some cut out, put in or changed."""
+    """The same bytes with some removed, inserted or changed."""
     data = bytearray(data)
     for _ in range(draw(st.integers(1, 3))):
         at = draw(st.integers(0, max(0, len(data) - 1)))

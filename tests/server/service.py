@@ -1,4 +1,4 @@
-"""Starts the real service on a free port for a test, and talks to it."""
+"""Starts the real service on a free port for a test, and calls it."""
 
 import http.client
 import json
@@ -15,8 +15,7 @@ BINARY = os.environ.get("TUNEWRIGHT_BIN", str(ROOT / "build" / "release" / "tune
 
 FOPDT = {"type": "fopdt", "K": 2, "T": 10, "L": 3}
 QUICK = {"plant": FOPDT, "tune": [{"method": "simc"}], "evaluate": {"points": 0}}
-# Grid searches over a plant of high order that swings: more than half a minute of work, so that it can be caught in the
-# middle.
+# Grid searches over an oscillatory plant of high order: more than half a minute of work, so that it can be interrupted.
 LONG = {
     "name": "long",
     "plant": {"type": "zpk", "zeros": [], "K": 7, "L": 0.5,
@@ -42,7 +41,7 @@ class Answer:
 
 
 class Service:
-    """One running process. A store that is given, as a path or as for --store, outlives it and may be shared by several;
+    """One running process. A given store, as a path or as for --store, outlives it and may be shared by several;
     otherwise each service has an SQLite file of its own."""
 
     def __init__(self, *arguments, store=None, environment=None):
@@ -75,7 +74,7 @@ class Service:
         return [BINARY, "serve", "--listen", "127.0.0.1:0", "--store", self.store, *self.arguments]
 
     def read_log(self):
-        """What the service has logged; it gathers lines for some milliseconds before it writes them."""
+        """The log of the service, which collects lines for some milliseconds before it writes them."""
         time.sleep(0.05)
         with open(os.path.join(self.folder.name, "log"), errors="replace") as log:
             return log.read()
@@ -114,7 +113,7 @@ class Service:
         return self.call("POST", path, body, headers)
 
     def post_job(self, request, wait=None):
-        """The job as the service shows it in its first answer."""
+        """The job as in the service's first answer."""
         answer = self.post("/v1/jobs", request, {"Prefer": "wait=%d" % wait} if wait else None)
         if answer.status not in (200, 202):
             raise AssertionError("%d %s" % (answer.status, answer.body[:300]))
@@ -137,7 +136,7 @@ class Service:
             time.sleep(0.01)
 
     def wait_for_any(self, status, patience=60):
-        """The first job of that status that a list shows."""
+        """The first job with that status in a list."""
         end = time.monotonic() + patience
         while not (jobs := self.get("/v1/jobs?status=" + status).json["jobs"]):
             if time.monotonic() > end:

@@ -1,4 +1,4 @@
-"""Clients that end their sending and still read, that leave before their answer, and that do not read it."""
+"""Clients that end their sending and still read, that disconnect before their answer, and that do not read it."""
 
 import concurrent.futures
 import json
@@ -12,7 +12,7 @@ import unittest
 from service import FOPDT, LONG, QUICK, Service
 
 CHEAP = {"plant": FOPDT, "tune": [{"method": "simc"}]}
-# Seconds on all cores; a call gets ten.
+# Takes seconds on all cores; a call gets ten.
 HEAVY = {"plant": {"type": "set", "plants": [{**LONG["plant"], "K": 7 + 0.1 * i} for i in range(50)]},
          "tune": [{"method": "robust", "search": "grid", "surface": True, "Ms": 1.4}]}
 MEGABYTE = 1 << 20
@@ -32,7 +32,7 @@ def read_all(connection):
 
 
 def final(received):
-    """Status and body of the answer behind interim ones."""
+    """Status and body of the answer after interim ones."""
     while received.startswith(b"HTTP/1.1 100 "):
         received = received.partition(b"\r\n\r\n")[2]
     head, _, body = received.partition(b"\r\n\r\n")
@@ -45,7 +45,7 @@ def metric(service, name):
 
 
 def resident(service):
-    """Bytes of memory that the process has."""
+    """Bytes of memory in use by the process."""
     with open("/proc/%d/statm" % service.process.pid) as figures:
         return int(figures.read().split()[1]) * 4096
 
@@ -63,7 +63,7 @@ class LeavingTest(unittest.TestCase):
         return connection
 
     def half_closed(self, request):
-        """What comes to a client that has ended its sending."""
+        """The bytes that a client receives after it has ended its sending."""
         connection = self.connect(request)
         connection.shutdown(socket.SHUT_WR)
         return final(read_all(connection))
@@ -103,7 +103,7 @@ class LeavingTest(unittest.TestCase):
         self.assertLessEqual({answer.status for answer in answers}, {200, 503, 504})
         stopped = [answer for answer in answers if answer.status == 504]
         late = [answer for answer in answers if answer.status == 503]
-        # Those whose turn comes at the last moment are stopped as they begin: which of both a call meets is chance.
+        # A call whose turn comes at the last moment is stopped as it begins: either status is possible.
         self.assertTrue(stopped or late, "the calls of one client wait for its others")
         for answer in stopped:
             self.assertIn("stopped after 10 s", answer.json["detail"])
@@ -199,7 +199,7 @@ class StoreOwesAnAnswerTest(unittest.TestCase):
             design = service.post("/v1/design", dict(CHEAP, name="x" * 100_000))
             self.assertIn(design.status, (200, 422), "what waits for the store keeps nobody from being answered")
             other.execute("ROLLBACK")
-            # The store has them; three calls go on waiting for their ends and hold nothing.
+            # The store has them; three calls continue to wait for their ends and hold no memory.
             first = posts[0].result(30)["id"]
             self.until_bodies_hold(service, lambda held: held == 0)
             self.assertFalse(any(post.done() for post in posts[1:]))
@@ -215,7 +215,7 @@ class StoreOwesAnAnswerTest(unittest.TestCase):
             with socket.create_connection(("127.0.0.1", service.port)) as connection:
                 connection.sendall(post("/v1/jobs", CHEAP).replace(b"\r\n", b"\r\nPrefer: wait=60\r\n", 1))
                 self.until_bodies_hold(service, lambda held: held > 0)
-            time.sleep(0.6)  # it is asked every quarter of a second whether it has left
+            time.sleep(0.6)  # the connection is checked every quarter of a second
             self.assertGreater(metric(service, "tunewright_http_body_bytes"), 0)
             other.execute("ROLLBACK")
             self.until_bodies_hold(service, lambda held: held == 0)
@@ -223,7 +223,7 @@ class StoreOwesAnAnswerTest(unittest.TestCase):
 
 
 class LargeRecordTest(unittest.TestCase):
-    """A file as a text of JSON, of the shortest numbers that there are."""
+    """A file as a text of JSON, with the shortest possible numbers."""
 
     def test_it_takes_no_more_than_its_share(self):
         memory = 256 * MEGABYTE

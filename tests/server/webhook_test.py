@@ -1,4 +1,4 @@
-"""Who asked for it is told of the end of a job or a batch: once, signed, and again when he could not be told."""
+"""Notifications of the end of a job or a batch: once, signed, and repeated after a failed delivery."""
 
 import json
 import os
@@ -81,7 +81,7 @@ class ToldTest(WebhookTest):
         self.assertRegex(headers["webhook-id"], "^evt_%s_[0-9]+$" % job["id"])
         self.assertLess(abs(int(headers["webhook-timestamp"]) - time.time()), 10)
         self.assertEqual((note["type"], note["timestamp"]), ("job.ended", job["finished_at"]))
-        # As GET shows it, but for the traces.
+        # As returned by GET, without the traces.
         for controller in job["result"]["controllers"]:
             self.assertTrue(controller.pop("responses") and controller.pop("frequency"))
         self.assertEqual(note["data"], job)

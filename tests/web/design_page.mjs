@@ -1,4 +1,4 @@
-// What tests of Design share: its sliders, its settings, a design to begin with.
+// Common helpers of the tests of Design: its sliders, its settings, a design to start from.
 
 export const PLANT = "#/new/fopdt?K=1.25&T=40&L=8";
 
@@ -30,7 +30,7 @@ export async function openDesign(page, today = false) {
   await slider(page, "Robustness Ms").waitFor();
 }
 
-/** The service's own answer for a limit on Ms, about the job that is shown. */
+/** The service's own answer for a limit on Ms, for the displayed job. */
 export const designedBy = (jobOf) => async (page, Ms) => {
   const { plant, tune } = (await jobOf(page)).request;
   const answer = await page.request.post(`${new URL(page.url()).origin}/v1/design`, {

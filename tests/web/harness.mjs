@@ -1,5 +1,6 @@
-// Runs the page's tests and gives the browser tests what they need: the real service, a real browser, one page under watch.
-// `node harness.mjs unit` bundles unit/*.test.ts (Node 18 strips no types) and runs them; `node harness.mjs browser` runs browser/*.test.mjs.
+// Runs the page's tests and gives the browser tests what they need: the real service, a real browser, one monitored
+// page. `node harness.mjs unit` bundles unit/*.test.ts (Node 18 strips no types) and runs them; `node harness.mjs
+// browser` runs browser/*.test.mjs.
 import assert from "node:assert/strict";
 import { spawn, spawnSync } from "node:child_process";
 import { existsSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync } from "node:fs";
@@ -12,7 +13,7 @@ import { fileURLToPath, pathToFileURL } from "node:url";
 
 const here = path.dirname(fileURLToPath(import.meta.url));
 export const root = path.resolve(here, "../..");
-// The tools are the front end's own; tests stand outside its folder.
+// The tools are those of the front end; the tests are outside its folder.
 const fromWeb = createRequire(path.join(root, "web/package.json"));
 
 async function bundleUnitTests() {
@@ -46,7 +47,7 @@ function runTests(files, environment = {}) {
   process.exitCode = run.status ?? 1;
 }
 
-/** The service's binary; fails with what to do if it is not there. */
+/** The path of the service's binary; fails with instructions if it does not exist. */
 export function serviceBinary() {
   const binary = process.env.TUNEWRIGHT_BIN ?? path.join(root, "build/release/tunewright");
   if (!existsSync(binary))
@@ -65,7 +66,8 @@ function freePort() {
   });
 }
 
-/** Starts the service on a free loopback port with an empty store, and what options are given. `stop` ends it and removes the store. */
+/** Starts the service on a free loopback port with an empty store and the given options. `stop` ends it and removes
+    the store. */
 export async function startService(options = []) {
   const web = path.join(root, "build/web");
   if (!existsSync(path.join(web, "index.html")))
@@ -121,8 +123,8 @@ export function launchBrowser() {
 }
 
 /**
- * A page in a fresh context that keeps a list of everything that went wrong in it: console errors and warnings, uncaught
- * exceptions, violations of the content security policy, answers of the service from 500 on.
+ * A page in a fresh context that records all faults: console errors and warnings, uncaught exceptions, violations of
+ * the content security policy, answers of the service from 500 on.
  */
 export async function openPage(browser, { scheme = "light", width = 1440, height = 900, hasTouch = false } = {}) {
   const viewport = { width, height };
@@ -153,8 +155,8 @@ export async function openPage(browser, { scheme = "light", width = 1440, height
 }
 
 /**
- * Runs a test body on a fresh page at an address below the service; the page must end without a fault. Chromium reports
- * every 4xx answer on the console: those that the body means to provoke are named in `expected`.
+ * Runs a test body on a fresh page at an address of the service; the page must end without a fault. Chromium reports
+ * every 4xx answer on the console: those that the body provokes are named in `expected`.
  */
 export async function withPage(service, browser, address, options, body, expected = []) {
   const opened = await openPage(browser, options);
@@ -164,13 +166,14 @@ export async function withPage(service, browser, address, options, body, expecte
     const faults = (await opened.faults()).filter((fault) => !expected.some((status) => fault.includes(status)));
     if (faults.length > 0) throw new Error(`The page met faults:\n${faults.join("\n")}`);
   } finally {
-    // A call that a test answers itself may be under way still; its answer is nobody's any more.
+    // A call that a test answers itself may still be in progress; its answer is dropped.
     await opened.page.unrouteAll({ behavior: "ignoreErrors" });
     await opened.close();
   }
 }
 
-/** Starts the service and the browser before a file's tests and ends them afterwards. Both are there once a test runs. */
+/** Starts the service and the browser before a file's tests and ends them afterwards. Both are available once a test
+    runs. */
 export function browserTests(options = []) {
   const shared = { service: null, browser: null };
   before(async () => {
@@ -188,10 +191,10 @@ export function browserTests(options = []) {
     get browser() {
       return shared.browser;
     },
-    /** A page at an address below the service; see withPage. */
+    /** A page at an address of the service; see withPage. */
     withPage: (address, options, body, expected) =>
       withPage(shared.service, shared.browser, address, options, body, expected),
-    /** What the API answers to a body; jobs are waited for. */
+    /** The answer of the API to a body; for jobs after their end. */
     post: async (address, body) =>
       (
         await fetch(`${shared.service.base}/${address}`, {
@@ -200,7 +203,7 @@ export function browserTests(options = []) {
           body: JSON.stringify(body),
         })
       ).json(),
-    /** The answer of the API for the job that the page's address names, once the job has ended: the page shows it before. */
+    /** The answer of the API for the job in the page's address, once the job has ended: the page shows it earlier. */
     async jobOf(page) {
       const id = /#\/jobs\/([^/]+)\/(?:design|compare)/.exec(page.url())?.[1];
       if (!id) throw new Error(`There is no job in ${page.url()}.`);
@@ -212,7 +215,7 @@ export function browserTests(options = []) {
   };
 }
 
-/** Windows that every screen is tried in. */
+/** Window sizes in which every screen is tested. */
 export const WINDOWS = [
   ["desktop", {}],
   ["dark desktop", { scheme: "dark" }],
@@ -220,18 +223,18 @@ export const WINDOWS = [
   ["phone", { width: 400, height: 860 }],
 ];
 
-/** By how many pixels the page is wider than its window. */
+/** The number of pixels by which the page is wider than its window. */
 export const overflow = (page) =>
   page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
 
-/** Unfolds what Design keeps below its plots. */
+/** Unfolds the part of Design below its plots. */
 export async function openMore(page) {
   const more = page.locator("details.more");
   await more.waitFor();
   if (!(await more.evaluate((element) => element.open))) await more.locator("> summary").click();
 }
 
-/** Lets go of a text file over an element. */
+/** Drops a text file on an element. */
 export async function dropFile(page, selector, name, text) {
   const transfer = await page.evaluateHandle(
     ([fileName, content]) => {
@@ -244,7 +247,7 @@ export async function dropFile(page, selector, name, text) {
   await page.locator(selector).dispatchEvent("drop", { dataTransfer: transfer });
 }
 
-/** How many traces a plot shows now; a path that is not a number fails. */
+/** The number of traces in a plot; a path that is not valid fails. */
 async function drawnTraces(page, title) {
   const plot = page.locator("section.plot").filter({ has: page.getByRole("heading", { name: title, exact: true }) });
   const paths = await plot.locator("svg.canvas path").evaluateAll((list) => list.map((item) => item.getAttribute("d")));
@@ -253,7 +256,7 @@ async function drawnTraces(page, title) {
   return paths.filter((d) => (d.match(/L/g) ?? []).length > 20).length;
 }
 
-/** A plot shows so many traces, at the latest 5 s from now: plots are drawn a moment after what they show has changed. */
+/** Waits at most 5 s until a plot shows this number of traces: plots are drawn a moment after a change. */
 export async function tracesShown(page, title, count) {
   const until = Date.now() + 5000;
   let drawn = await drawnTraces(page, title);
@@ -264,7 +267,7 @@ export async function tracesShown(page, title, count) {
   assert.equal(drawn, count, `traces of the plot "${title}"`);
 }
 
-/** What axe-core finds wrong with the page, one line each. */
+/** The violations that axe-core finds in the page, one line each. */
 export async function accessibilityViolations(page) {
   const source = readFileSync(fromWeb.resolve("axe-core/axe.min.js"), "utf8");
   await page.evaluate(source);

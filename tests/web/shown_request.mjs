@@ -1,8 +1,9 @@
-// Design as it is shown, and the request that is handed out for it: posted again, it must give the same to the digit.
+// The displayed Design, and the request that it hands out: posted again, it must give the same result to the last
+// digit.
 import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
 
-/** Waits until no call of the page is under way; `watchCalls` has to have been called before the page asked anything. */
+/** Waits until no call of the page is in progress; `watchCalls` must be called before the page's first call. */
 export function watchCalls(page) {
   const calls = new Set();
   page.on("request", (request) => request.url().includes("/v1/") && calls.add(request));
@@ -31,7 +32,7 @@ export async function requestHandedOut(page) {
 
 const plain = (text) => text.replaceAll("−", "-").replaceAll(" ", " ").trim();
 
-/** Settings in the ideal form and the verdict's sentences, as they stand on the screen. */
+/** Settings in the ideal form and the verdict's sentences, as displayed. */
 export async function designOnScreen(page) {
   const settings = await page
     .locator(".settings tbody tr")
@@ -52,7 +53,7 @@ export async function designOnScreen(page) {
 
 const five = (value) => String(Number(value.toPrecision(5)));
 
-/** The same of an entry of an answer. */
+/** The same data from an entry of an answer. */
 export function designAnswered({ controller, verdict }) {
   const { Kp, Ti, Td, filter, b, setpoint_filter: lag } = controller;
   return {
@@ -68,7 +69,7 @@ export function designAnswered({ controller, verdict }) {
   };
 }
 
-/** The request on the screen gives the design and the verdict on the screen. `post`: to the service. */
+/** The displayed request gives the displayed design and verdict. `post`: to the service. */
 export async function assertRequestIsShown(page, post, what) {
   const request = await requestHandedOut(page);
   const shown = await designOnScreen(page);

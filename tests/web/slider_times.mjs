@@ -1,5 +1,6 @@
-// Prints how long a slider takes to its drawn frame: from the input event, over the service's answer, to the end of the frame
-// that shows it. `node slider_times.mjs` in a real Chromium with the real service; nothing is asserted, machines differ.
+// Prints the time from a slider's move to its drawn frame: from the input event, through the service's answer, to the
+// end of the frame that shows it. `node slider_times.mjs` in a real Chromium with the real service; nothing is
+// asserted, because machines differ.
 import { launchBrowser, openPage, startService } from "./harness.mjs";
 
 const PLANTS = [
@@ -44,13 +45,13 @@ async function measure(what, id, label, latency) {
   const to = (share) => page.mouse.move(box.x + box.width * share, box.y + box.height / 2);
   await to(0.3);
   await page.mouse.down();
-  // Slowly: each move is drawn before the next comes.
+  // Slowly: each move is drawn before the next one.
   for (let step = 0; step < STEPS; step += 1) {
     await to(0.25 + 0.4 * Math.abs(Math.sin(step / 20)));
     await page.evaluate(() => globalThis.drawn());
   }
   const times = (await page.evaluate(() => globalThis.times.splice(0))).sort((a, b) => a - b);
-  // As fast as a hand: how many frames a second show something new.
+  // As fast as a person: the number of frames per second with new content.
   const start = performance.now();
   for (let step = 0; performance.now() - start < DRAG_MS; step += 1) await to(0.25 + 0.45 * Math.abs(Math.sin(step / 60)));
   const redraws = (1000 * (await page.evaluate(() => globalThis.times.length))) / (performance.now() - start);
@@ -70,7 +71,7 @@ async function postJob(plant) {
   return (await answer.json()).id;
 }
 
-/** In the page: from an input's time stamp to the first task after the frame that shows what was drawn for it. */
+/** In the page: from an input's time stamp to the first task after the frame that shows its result. */
 function watch(range) {
   globalThis.times = [];
   let since = null;

@@ -4,7 +4,8 @@
 
     result = Client().tune(plant="2 e^(-3s)/(10s+1)", tune=[{"method": "robust", "Ms": 1.4, "Mt": 1.4}])
     print(result.best["controller"])
- Requests and answers are those of the service's own description, GET /openapi.json, as dictionaries: that description
+
+Requests and answers are those of the service's own description, GET /openapi.json, as dictionaries: that description
 has the names, units and meanings of all fields, and they are not repeated here. Further keyword arguments of a call go
 into its request unchanged, so that a newer service needs no newer client.
 """
@@ -50,7 +51,7 @@ class Problem(Exception):
         self.title: str = body.get("title", "Problem")
         self.detail: str = body.get("detail", "")
         self.errors: List[Fault] = [Fault(each["pointer"], each["detail"]) for each in body.get("errors", [])]
-        self.result = result  # the best design of a job that was stopped during its search, if it had one
+        self.result = result  #: the best design of a job that was stopped during its search, if it had one
         super().__init__(str(self))
 
     def __str__(self) -> str:
@@ -78,7 +79,8 @@ class Result(Dict[str, Any]):
 
 def record(source: Any, **fields: Any) -> Json:
     """A recorded test in the form that a request takes.
-     `source` is a dict of lists or arrays (t or dt, u, y), the path of a CSV, its text (known by its line ends), or a
+
+    `source` is a dict of lists or arrays (t or dt, u, y), the path of a CSV, its text (known by its line ends), or a
     pandas DataFrame, whose index is a column too if it has a name or holds dates. Further `fields` are added:
     columns={"u": "FIC101.OP"}, time_unit="min", kind="step", u_limits=[0, 100], ...
     """
@@ -96,7 +98,8 @@ def record(source: Any, **fields: Any) -> Json:
 
 class Client:
     """A service, its API key if it needs one, and the timeout of calls.
-     `timeout` is in seconds and covers a whole call: waiting for the job, and retries while the service is full or
+
+    `timeout` is in seconds and covers a whole call: waiting for the job, and retries while the service is full or
     restarting. A job that takes longer continues; the TimeoutError names it.
     """
 
@@ -113,7 +116,8 @@ class Client:
              baseline: Optional[Mapping[str, Any]] = None, evaluate: Optional[Mapping[str, Any]] = None,
              **rest: Any) -> Result:
         """Tunes for a plant or a recorded test, waits for the end, and returns the result.
-         `plant` is an object or a text such as "2 e^(-3s)/(10s+1)"; `record` anything that record() takes; `tune` a
+
+        `plant` is an object or a text such as "2 e^(-3s)/(10s+1)"; `record` anything that record() takes; `tune` a
         list of methods, by name or with options. A KeyboardInterrupt cancels the job.
         """
         return self.run(_request(plant=plant, record=record, tune=_methods(tune), baseline=baseline, evaluate=evaluate,
@@ -185,7 +189,8 @@ class Client:
               name: Optional[str] = None) -> Iterator[Json]:
         """Tunes thousands of loops: yields {index, id, name, status, result or error} in the order of the requests,
         each as soon as it has ended. A request that is not valid fails alone.
-         The batch is posted at once; `progress(done, total)` is called with each row. Leaving the loop over the rows
+
+        The batch is posted at once; `progress(done, total)` is called with each row. Leaving the loop over the rows
         early, also by an interrupt, cancels the remaining jobs. `timeout` is the longest wait for the next row.
         """
         lines = b"".join(_encoded(request) + b"\n" for request in requests)

@@ -1,4 +1,4 @@
-// Times as clocks and spreadsheets write them, and signs as type setters do.
+// Times in the formats of clocks and spreadsheets, and signs of typeset text.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ void expect_even(const CsvRecord& record) {
 
 TEST(CsvClocks, SummerTimeBeginsWithoutAGap) {
     const auto wall = [](int i) {
-        int seconds = 3600 + 45 * 60 + kStep * i;  // 01:45 and on
+        int seconds = 3600 + 45 * 60 + kStep * i;  // from 01:45 on
         if (seconds >= 2 * 3600) seconds += 3600;
         return fmt::format("2026-03-29 {:02}:{:02}:{:02}", seconds / 3600, seconds / 60 % 60, seconds % 60);
     };

@@ -1,4 +1,4 @@
-// Which columns of a log are time, u, y and the set point: chosen, found, or refused with the cure.
+// The columns of a log for time, u, y and the set point: chosen, found, or refused with the cure.
 #include <gmock/gmock.h>
 
 #include "api/csv/csv_record.h"
@@ -147,7 +147,7 @@ TEST(Csv, TimesOfNoUnitThatAreFarApartAreRemarked) {
     EXPECT_THAT(notes(given), IsEmpty());
 }
 
-// Serial monitors print their own clock before what the program prints.
+// Serial monitors print their own clock before the program's output.
 TEST(Csv, ACounterWithoutUnitIsReadByTheClockBesideIt) {
     for (const auto& [unit, in_a_second] : {std::pair{"ms", 1000}, {"s", 1}}) {
         std::string log, table = "stamp,t,pwm,temp\n";

@@ -1,5 +1,4 @@
-// Logs as loggers, printers, controllers and other people's scripts write them are read right; damaged ones are read
-// or refused.
+// Logs of loggers, printers, controllers and scripts are read correctly; damaged ones are read or refused.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -26,10 +25,10 @@ CsvOptions seconds(double dt) {
 struct Log {
     const char* name;
     std::string text;
-    double u_scale = 1;          ///< of 20 and 50
-    double u_low = 20;           ///< else, of a log that switches, 0
-    double r = std::nan("");     ///< the set point, where there is one
-    const char* note = nullptr;  ///< part of a sentence that must come back
+    double u_scale = 1;          ///< for levels 20 and 50
+    double u_low = 20;           ///< otherwise, for a log that switches, 0
+    double r = std::nan("");     ///< the set point, if there is one
+    const char* note = nullptr;  ///< part of a sentence that must be reported
     CsvOptions options = {};
 };
 
@@ -165,7 +164,7 @@ const std::vector<Log> kLogs = {
 INSTANTIATE_TEST_SUITE_P(Csv, Logs, testing::ValuesIn(kLogs),
                          [](const auto& one) { return std::string(one.param.name); });
 
-// Damaged logs: whatever comes, sentences or finite numbers. Seeded.
+// Damaged logs: the result is always sentences or finite numbers. Seeded.
 TEST(Csv, DamagedLogsAreReadOrRefused) {
     std::mt19937 random(7);
     const auto pick = [&](std::size_t count) {

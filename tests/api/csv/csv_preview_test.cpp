@@ -1,5 +1,4 @@
-// What a file is read as: the preview tells it beforehand, by the reader of records itself. Files as loggers write
-// them.
+// The preview of a file shows what the record reader will do. Files in the formats of loggers.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -29,7 +28,7 @@ std::string number(double value, char decimal = '.') {
 double u_at(int i) { return i < 10 ? 20 : 50; }
 double y_at(int i) { return i < 12 ? 20 : 20 + 15 * -std::expm1(-(i - 12) / 8.0); }
 
-/// 60 rows by `row(i)` under `head`.
+/// 60 rows made by `row(i)` below `head`.
 std::string file(const std::string& head, const std::function<std::string(int)>& row, const std::string& tail = "") {
     std::string out = head;
     for (int i = 0; i < 60; ++i) out += row(i) + "\n";

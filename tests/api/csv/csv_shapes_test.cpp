@@ -1,4 +1,4 @@
-// Files that do not have one line a sample, logs with lines of several kinds, and several runs in one file.
+// Files that do not have one line per sample, logs with lines of several kinds, and several runs in one file.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -51,7 +51,7 @@ TEST(CsvShapes, ValuesOfTagsKeepTheirOwnTimes) {
     EXPECT_EQ(record.dropped, 0);
 }
 
-// Each tag at times of its own; what a table with one line for each second says is the same.
+// Each tag has times of its own; a table with one line for each second has the same content.
 TEST(CsvShapes, SetPointAndDisturbancesOfALongTableHoldUntilTheirNextValue) {
     std::string text = "time,tag,value\n";
     const auto r_at = [](int t) { return t < 20 ? 30 : t < 45 ? 40 : 35; };
@@ -88,7 +88,7 @@ TEST(CsvShapes, SetPointAndDisturbancesOfALongTableHoldUntilTheirNextValue) {
         EXPECT_EQ(d, d_at(t)) << t;
     }
     EXPECT_EQ(rows, 60);
-    // A disturbance moves at its own time; times count from the first row.
+    // A disturbance changes at its own time; times count from the first row.
     EXPECT_NEAR(d_changed - record.t.front(), 33.25 - 0.1, 1e-9);
     EXPECT_EQ(record.dropped, 0);
 }
@@ -203,7 +203,7 @@ TEST(CsvRuns, MoreThanAThousandAreNoOrderOfTimes) {
     EXPECT_THAT(refused_shape(text).message, HasSubstr("The times begin again 1000 times; at most 1000 runs"));
 }
 
-// Each of these took minutes, or gigabytes, at a few megabytes.
+// Each of these took minutes, or gigabytes, for a few megabytes of input.
 TEST(CsvLimits, WhatGrowsWithTheNamesInAFileIsRefused) {
     std::string wide = "t,u,y", row = "1,2,3";
     for (int k = 0; k < 300'000; ++k) {
@@ -271,7 +271,7 @@ TEST(CsvColumns, AFileWithoutUTakesTheStepAsGiven) {
     const CsvRecord record = shaped("t,y\n0,20\n1,20\n2,21\n", options);
     EXPECT_THAT(record.u, ElementsAre(30, 30, 30));
     EXPECT_THAT(refused_shape("t,y\n0,20\n1,20\n2,21\n").message, HasSubstr("u_step"));
-    // The step is at the first row, whatever y is there.
+    // The step is at the first row, even if y is missing there.
     const CsvRecord late = shaped("t,y\n0,\n1,\n2,20\n3,21\n", options);
     EXPECT_THAT(late.t, ElementsAre(0, 2, 3));
     EXPECT_THAT(late.u, ElementsAre(30, 30, 30));
@@ -287,7 +287,7 @@ TEST(CsvColumns, AStepIsNotGivenWhereTheFileHasU) {
         EXPECT_EQ(refused_shape(text, options).where, "u_step") << name;
         EXPECT_THAT(refused_shape(text, options).message, HasSubstr("\"" + std::string(name) + "\""));
     }
-    // One that stands still holds no step; one that may be u is named.
+    // A column that stands still holds no step; one that may be u is named.
     EXPECT_THAT(shaped("t,u,y\n0,5,20\n1,5,20\n2,5,21\n", options).unread_column, "");
     const std::string tagged = "t,TIC101.OP,y\n0,0,20\n1,0,20\n2,5,21\n3,5,22\n";
     EXPECT_THAT(shaped(tagged, options).unread_column, HasSubstr("\"TIC101.OP\" may be u and was not read"));

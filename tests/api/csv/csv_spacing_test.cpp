@@ -1,4 +1,4 @@
-// Files without times: what they say of their sample time, and what is not taken for one.
+// Files without times: statements of their sample time, and texts that are not one.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@ namespace tunewright::api {
 namespace {
 
 struct SpacingCase {
-    const char* above;  ///< the data
-    double rows_apart;  ///< s; 0: nothing that is known
+    const char* above;  ///< text above the data
+    double rows_apart;  ///< s; 0: no known spacing
     bool unit_known = true;
     const char* headings = "u,y";
     const char* row = "1,20.5";

@@ -1,4 +1,4 @@
-// Recorded tests as people export them.
+// Recorded tests in exported files.
 #include <gmock/gmock.h>
 
 #include "api/csv/csv_record.h"
@@ -98,7 +98,7 @@ TEST(Csv, ALetterOfSeveralBytesIsNoSeparator) {
 }
 
 TEST(Csv, ASingleQuoteInAQuotedCellHidesNoLetter) {
-    // The letter behind it has two bytes: half of it would be no text.
+    // The letter behind it has two bytes: half of it would not be valid text.
     const CsvRecord record =
         read("\"t\",\"a\"\xC3\xB9\"b\"\"\",\"y\"\n0,1,2\n1,1,3\n", chosen_columns("t", "a\"\xC3\xB9\"b\"", "y"));
     EXPECT_THAT(record.y, ElementsAre(2, 3));

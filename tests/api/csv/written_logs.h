@@ -1,4 +1,4 @@
-// One simulated test, written as loggers, printers, controllers and scripts write their logs.
+// One simulated test, written in the formats of loggers, printers, controllers and scripts.
 #pragma once
 
 #include <cmath>
@@ -11,7 +11,8 @@
 
 namespace tunewright::api {
 
-/// One sample of the same simulated test in every format: u from 20 to 50 at the tenth, y answers by a lag of 12 s.
+/// One sample of the same simulated test in every format: u steps from 20 to 50 at the tenth, y follows with a lag of
+/// 12 s.
 struct Sample {
     int t;
     double u, y;
@@ -73,8 +74,8 @@ inline std::string with_commas(std::string text) {
     return text;
 }
 
-/// The log of Klipper, whose clock counts seconds since its start. `heaters` is the part of a line that names them,
-/// with {y} and {duty}.
+/// A log of Klipper, whose clock counts seconds since its start. `heaters` is the part of a line that names them, with
+/// {y} and {duty}.
 inline std::string klipper(const std::string& heaters) {
     std::string out = "Starting Klippy...\n[extruder]\npid_kp = 22.2\nmesh = 0.1, 0.2, 0.3\n";
     for (const Sample& s : samples()) {

@@ -1,4 +1,4 @@
-// The formulas of all methods as MathML, against the text that they come from and against what the methods compute.
+// The formulas of all methods as MathML, checked against their source text and against the methods' results.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -30,7 +30,8 @@ Markup table_of(const std::string& formula) {
     return mathml ? read_markup(*mathml).inside.at(0).inside.at(0) : Markup{};
 }
 
-/// The value of a text with every operator written; none where the engine's language has no such text.
+/// The value of a text in which every operator is written; empty if it is not valid in the engine's expression
+/// language.
 std::optional<double> value_of(const std::string& text, const Values& values) {
     const auto tree = parse_expression(text);
     if (!tree) return std::nullopt;
@@ -47,7 +48,8 @@ std::optional<double> value_of(const std::string& text, const Values& values) {
     return results.back();
 }
 
-/// Letters, digits and signs alone; what is laid out in two dimensions is left out: brackets, slashes, powers, indices.
+/// Only letters, digits and signs, without the parts that have a two-dimensional layout: brackets, slashes, powers,
+/// indices.
 std::string names_and_signs(const std::string& text) {
     std::string out;
     for (const char c : on_a_keyboard(text))
@@ -60,9 +62,9 @@ TEST(MethodFormulas, EachKeepsEveryNameNumberAndSignInItsOrder) {
         EXPECT_EQ(names_and_signs(leaves(table_of(method.formula))), names_and_signs(method.formula)) << method.id;
 }
 
-// ---- each equation is worth the same in both spellings
+// ---- each equation has the same value in both notations
 
-/// Products written with *, and indices with _, by looking at neighbours alone.
+/// Writes products with *, and indices with _, by looking at adjacent tokens only.
 std::string with_operators(const std::string& text) {
     std::string out, name;
     char before = 0;  // n: a number, a name or a closing bracket; f: a function; o: anything else
@@ -85,13 +87,13 @@ std::string with_operators(const std::string& text) {
     return out;
 }
 
-/// Kp, K_p and a1, a_1 are one name: without the line.
+/// Kp, K_p and a1, a_1 are one name: removes the underscore.
 std::string one_spelling(std::string text) {
     std::erase(text, '_');
     return text;
 }
 
-/// The equations of a formula's text: what stands between separators outside brackets and has one =.
+/// The equations of a formula's text: the parts between separators outside brackets that have one =.
 std::vector<std::string> equations_of_text(const std::string& formula) {
     std::vector<std::string> pieces{""};
     int depth = 0;
@@ -155,9 +157,9 @@ TEST(MethodFormulas, EachEquationHasTheValueOfItsText) {
     EXPECT_GT(compared, 90);
 }
 
-// ---- what the page shows is what the method computes
+// ---- the displayed formula gives the method's result
 
-/// The equations of the unlabelled lines and of those labelled so, with what they define, one after another.
+/// The values defined by the equations of the unlabelled lines and of those with this label, one after another.
 Values worked_out(const std::string& formula, const std::string& label, Values values) {
     for (const Markup& line : table_of(formula).inside) {
         const std::string named = on_a_keyboard(leaves(line.inside.at(0)));

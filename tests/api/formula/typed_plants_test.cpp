@@ -1,4 +1,4 @@
-// A text wherever a plant is expected, and what the service says of one.
+// A text wherever a plant is expected, and the service's interpretation of one.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -50,7 +50,7 @@ TEST(TypedPlants, ATextIsAPlantItsFormulaAndItsText) {
               (Json{{"type", "fopdt"}, {"K", 2.0}, {"T", 10.0}, {"L", 3.0}}));
 }
 
-// The formulas that the page drew by itself before: what each kind of plant looks like.
+// The formulas for each kind of plant, as an earlier version of the page drew them.
 TEST(TypedPlants, EveryKindOfPlantHasItsFormula) {
     const auto formula = [](const Json& plant) {
         return plain(asked({{"plant", plant}})["formula"].get<std::string>());

@@ -1,4 +1,4 @@
-// What parse() reads, against the tree library's own reader, which is another program.
+// The output of parse(), compared with the reader of the tree library, which is another program.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -159,7 +159,7 @@ TEST(JsonReading, RefusesMoreValuesThanMemoryIsFor) {
         ASSERT_TRUE(std::holds_alternative<Problem>(parsed)) << value;
         EXPECT_EQ(std::get<Problem>(parsed).status, 413) << value;
     }
-    // A record of ten characters a row, and a file in one string, are what bodies are for.
+    // A record of ten characters a row, and a file in one string, are normal bodies.
     EXPECT_TRUE(std::holds_alternative<Json>(parse(repeated("23.4567", body))));
     EXPECT_TRUE(std::holds_alternative<Json>(parse("[\"" + std::string(body, ',') + "\"]")));
 }

@@ -79,7 +79,7 @@ TEST(RangeCall, AGivenScheduleIsJudgedAsTheDesignJudgedIt) {
     EXPECT_FALSE(given["curves"].contains("one"));
     EXPECT_EQ(given["schedule"]["rows"], designed["schedule"]["rows"]);
     EXPECT_TRUE(given["schedule"]["holds_limits"]);
-    // Own optima are interpolated between fewer places.
+    // The optima are interpolated between fewer places.
     for (std::size_t i = 0; i < 3; ++i)
         EXPECT_NEAR(given["worst"]["schedule"][i]["value"].get<double>(),
                     designed["worst"]["schedule"][i]["value"].get<double>(), 5e-3);

@@ -16,8 +16,8 @@ std::optional<double> at(const Json& value, const std::string& pointer) {
     return value[where].get<double>();
 }
 
-/// The steps of 1 for which u has to be beyond its limits at rest, by the request alone, and whether the request names
-/// the size of one of them; a set's first plant counts.
+/// The steps of 1 for which u must exceed its limits in steady state, computed from the request alone, and whether the
+/// request gives the size of one of them; the first plant of a set counts.
 struct BeyondActuator {
     bool load = false, setpoint = false, named = false;
 };
@@ -38,7 +38,7 @@ BeyondActuator beyond_actuator(const Json& request) {
     return beyond;
 }
 
-/// y comes to rest by itself, whatever u is.
+/// True if y settles by itself, whatever u is.
 bool rests_alone(const Json& request) {
     const Json& plant = request["plant"]["type"] == "set" ? request["plant"]["plants"][0] : request["plant"];
     return plant["type"] != "ipdt" && !(plant["type"] == "fopdt" && plant["T"].get<double>() < 0);
@@ -49,7 +49,7 @@ bool null_at(const Json& value, const std::string& pointer) {
     return value.contains(where) && value[where].is_null();
 }
 
-/// Where a figure of a finding stands in its entry. An entry's own places come first; any of them will do.
+/// The places of a finding's figures in its entry. An entry's own places come first; any of them is sufficient.
 const std::map<std::string, std::vector<std::string>>& places() {
     static const std::map<std::string, std::vector<std::string>> all = {
         {"Ms", {"/robustness/Ms", "/implemented/robustness/Ms", "/region/worst_Ms"}},
@@ -82,12 +82,12 @@ const std::map<std::string, std::vector<std::string>>& places() {
     return all;
 }
 
-/// What runs: the loop as it is built, where that is known.
+/// The path of the implemented loop, if it is known.
 std::string runs(const Json& entry) { return entry.contains("implemented") ? "/implemented" : ""; }
 
 void check_numbers(const Json& finding, std::vector<std::string>& faults) {
     const std::string text = finding["text"], code = finding["code"];
-    if (code == "reason" || code == "large-errors") return;  // sentences of others
+    if (code == "reason" || code == "large-errors") return;  // their sentences come from other parts
     for (const char* word : {"nan", "null", "inf ", "  "})
         if (text.find(word) != text.npos) faults.push_back(code + " says \"" + word + "\": " + text);
     static const std::regex number(R"((^|[^A-Za-z0-9_.])(-?\d+(\.\d+)?(e-?\d+)?))");
@@ -122,7 +122,7 @@ struct Words {
     double low, high;
 };
 
-/// How far words may be from the ratio that they stand for.
+/// The tolerance of words for a ratio.
 constexpr Words kWords[] = {
     {"about a tenth of", 0.085, 0.115},      {"about a fifth of", 0.17, 0.23},  {"about a quarter of", 0.21, 0.29},
     {"about a third of", 0.29, 0.38},        {"about half of", 0.45, 0.55},     {"about two thirds of", 0.62, 0.71},
@@ -161,7 +161,7 @@ void check_active_limit(const Json& entry, const Json& finding, std::vector<std:
         }
         if (text.find(name + " (") != text.npos && (!value || !asked || *value > 1.003 * *asked))
             faults.push_back(name + " is said to be within its limit: " + finding.dump());
-        // A limit that is not named must not be the one that stops the design.
+        // A limit that is not named must not be the one that constrains the design.
         const auto runs_at = at(entry, runs(entry) + "/robustness/" + name);
         if (!on_worst && runs_at && asked && std::abs(*runs_at / *asked - 1) < 1e-3 &&
             text.find(name + " = ") == text.npos)
@@ -292,7 +292,7 @@ const Json* finding(const Json& verdict, const std::string& code) {
     return nullptr;
 }
 
-/// The limit on the overshoot that the request sets, and not the method by itself.
+/// The limit on the overshoot in the request, not the method's own.
 std::optional<double> asked_overshoot(const Json& entry, const Json& request) {
     if (!request.contains("tune")) return {};
     const Json tune = request["tune"].is_array() ? request["tune"] : Json::array({request["tune"]});

@@ -1,4 +1,4 @@
-// Loops with the verdict that an experienced engineer would give, and why.
+// Loops with the verdict that an experienced engineer would give, and the reason.
 #include <gtest/gtest.h>
 
 #include "tests/api/support.h"
@@ -12,8 +12,8 @@ struct Loop {
     const char* request;
     const char* head;  ///< code of the first finding
     const char* level;
-    std::vector<const char*> said;    ///< codes that must be there
-    std::vector<const char*> unsaid;  ///< codes that must not
+    std::vector<const char*> said;    ///< codes that must be present
+    std::vector<const char*> unsaid;  ///< codes that must be absent
     const char* reason;
     std::size_t entry = 0;
 };

@@ -1,5 +1,5 @@
-// No verdict is contradicted by a figure of the same answer: over random plants, sets, controllers as built, baselines,
-// limits that are met and that are not.
+// No figure of an answer contradicts its verdict: over random plants, sets, products, baselines, limits that hold and
+// limits that do not.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -158,7 +158,7 @@ TEST(Verdict, IsContradictedByNoFigureOfControllersThatWereSent) {
     EXPECT_GE(entries, wanted);
 }
 
-/// The loop that runs is designed for: its ideal twin may lie above the limit, and runs nowhere.
+/// The implemented loop is designed: its ideal form may exceed the limit, and is not used.
 TEST(Verdict, OfADesignForAControllerIsThatOfTheLoopAsItIsBuilt) {
     const Json request = {{"plant", {{"type", "fopdt"}, {"K", 2}, {"T", 10}, {"L", 3}}},
                           {"tune", {{{"method", "robust"}, {"Ms", 1.6}, {"setpoint", {{"overshoot", 20}}}}}},
@@ -172,7 +172,7 @@ TEST(Verdict, OfADesignForAControllerIsThatOfTheLoopAsItIsBuilt) {
     EXPECT_EQ(entry["verdict"][0]["text"], "Robust, limited by the margin you asked for.");
 }
 
-/// A check that sees nothing would pass too.
+/// Otherwise a check that finds nothing would pass too.
 TEST(Verdict, ContradictionsAreSeen) {
     const Json request = Json::parse(request_with(R"("baseline": {"Kp": 0.4, "Ti": 12}, "evaluate": {"points": 0})"));
     const auto outcome = run_job(std::get<PreparedJob>(prepare_job(request.dump())), {});

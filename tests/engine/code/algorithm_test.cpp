@@ -55,7 +55,7 @@ void for_every_law(const Check& check) {
     }
 }
 
-// The law as sampled_pid.h states it, with I and D as they stand there, everything 0 before k = 0.
+// The law of sampled_pid.h, with I and D as defined there, everything 0 before k = 0.
 class Law {
 public:
     explicit Law(const SampledPid& pid) : pid_(pid) {}
@@ -113,7 +113,7 @@ private:
     std::vector<double> f_;
 };
 
-// Rounding alone: sums of some hundred terms of size 10.
+// Only rounding: sums of some hundred terms of size 10.
 TEST(PidAlgorithm, FromRestInAutomaticUIsTheSampledLaw) {
     for_every_law([](const SampledPid& pid) {
         const Program program = program_of(pid);
@@ -152,7 +152,7 @@ struct Scenario {
     double sign = 1;
 };
 
-// Limits, noise, manual phases and new settings, against the controller written from its description.
+// Limits, noise, manual phases and new settings, compared with the controller written from its description.
 void compare(SampledPid pid, const Scenario& scenario) {
     const Program program = program_of(pid, scenario.options);
     Machine machine(program);
@@ -246,12 +246,12 @@ TEST(PidAlgorithm, TheFirstCallDoesNotKick) {
         const Program program = program_of(pid, {.bias = 12});
         Machine machine(program);
         EXPECT_DOUBLE_EQ(machine.step(80, 20), 12);
-        // Then the integral alone moves u: by Ki Ts e.
+        // Then only the integral moves u: by Ki Ts e.
         EXPECT_NEAR(machine.step(80, 20), 12 + 0.21 * 0.5 * 60, 1e-9);
     });
 }
 
-// A rule must not jump by more than its integral's share where nothing but the switch or a setting has changed.
+// u must not jump by more than the share of the integral if only the mode or a setting has changed.
 TEST(PidAlgorithm, NeitherTheSwitchToAutomaticNorNewSettingsJump) {
     for_every_law([](const SampledPid& pid) {
         const Program program = program_of(pid);
@@ -263,15 +263,15 @@ TEST(PidAlgorithm, NeitherTheSwitchToAutomaticNorNewSettingsJump) {
         machine["Kp"] = 17;
         machine["Td"] = 9;
         machine["b"] = 0;
-        EXPECT_NEAR(machine.step(30, 30), u, 1e-5);  // what the filters have left of the old set point
+        EXPECT_NEAR(machine.step(30, 30), u, 1e-5);  // remainder of the old set point in the filters
         u = machine.step(30, 30);
         machine["Ti"] = 1;
         EXPECT_NEAR(machine.step(30, 30), u, 1e-5);
     });
 }
 
-// Nothing may appear in u later that the operator's u does not contain: of a false measurement in the last manual call
-// the proportional part and one share of the integral stay, and nothing of the derivative.
+// u must later contain nothing that the operator's u does not: from a false measurement in the last manual call, the
+// proportional part and one share of the integral stay, and nothing of the derivative.
 TEST(PidAlgorithm, TheSwitchToAutomaticKeepsNothingOfTheDerivativesNoise) {
     constexpr double kFalse = 3;
     for_every_law([](const SampledPid& law) {
@@ -293,7 +293,7 @@ TEST(PidAlgorithm, TheSwitchToAutomaticKeepsNothingOfTheDerivativesNoise) {
     });
 }
 
-// Half an hour at a limit: without anti-windup the integral would need as long to come back.
+// Half an hour at a limit: without anti-windup the integral would need the same time to return.
 TEST(PidAlgorithm, ULeavesItsLimitAsSoonAsTheErrorHasTurned) {
     for (const AntiWindup anti_windup : {AntiWindup::back_calculation, AntiWindup::clamping}) {
         const Program program = program_of(pid_of(FilterType::none), {.anti_windup = anti_windup, .u_max = 10});

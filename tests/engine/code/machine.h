@@ -1,4 +1,4 @@
-// Executes a controller's program as it stands, before any language has been chosen.
+// Executes a controller's program directly, independent of any language.
 #pragma once
 
 #include <algorithm>
@@ -31,7 +31,7 @@ public:
         (*this)["measurement"] = y;
         (*this)["manual"] = manual ? 1 : 0;
         (*this)["manual_output"] = manual_output;
-        // A local that is read before it is assigned shows as no number.
+        // A local that is read before it is assigned gives NaN.
         for (const Declaration& variable : program_.variables)
             if (variable.role == VariableRole::local) (*this)[variable.name] = std::nan("");
         run(program_.body);

@@ -26,7 +26,7 @@ std::vector<std::string> written(const std::function<Expr(Program&)>& make) {
         const Expr u = program.declare({.role = VariableRole::output, .name = "u"});
         program.body.push_back(assign(u, make(program)));
         const std::string text = print(program, language, {});
-        // Above the statement the head tells how the program is called, with a u of its own.
+        // The head comment above the statement also assigns u.
         const std::size_t begin = std::min(text.rfind("u := "), text.rfind("u = "));
         out.push_back(text.substr(begin, text.find('\n', begin) - begin));
     }
@@ -99,7 +99,7 @@ TEST(CodeProgram, FaultsOfTheProgramThatBuildsAreNotPrinted) {
     const Expr x = program.declare({.role = VariableRole::state, .name = "x"}),
                yes = program.declare({.role = VariableRole::input, .type = Type::boolean, .name = "yes"}),
                n = program.declare({.role = VariableRole::local, .type = Type::integer, .name = "n"});
-    EXPECT_THROW(program.declare({.name = "X"}), std::logic_error);  // Structured Text has one case
+    EXPECT_THROW(program.declare({.name = "X"}), std::logic_error);  // Structured Text is not case-sensitive
     EXPECT_THROW(x + yes, std::logic_error);
     EXPECT_THROW(x + n, std::logic_error);
     EXPECT_THROW(n / n, std::logic_error);

@@ -1,5 +1,5 @@
-// The controller once more, written from its description with whole histories in place of states: what the generated
-// program is held to.
+// The controller once more, written from its description with complete histories instead of states: the reference for
+// the generated program.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace tunewright::code {
 
-/// What a user may change between two calls; gains with their sign.
+/// The settings that a user may change between two calls; gains with their sign.
 struct Gains {
     double Kp = 0, Ki = 0, Kd = 0, b = 1;
 };
@@ -33,7 +33,7 @@ public:
             u = limited(manual ? manual_output : options_.bias);
             level_ = u - P;
         } else if (law_.velocity) {
-            // The last output and the increments of the sum; what was given contains no D.
+            // The last output and the increments of the sum; a given output contains no D.
             const double D_contained = given_last_ ? now.Kd * at(slope_, 1) : 0;
             u = rated(at(u_, 0) + (P + D - sum_before(now)) + D_contained + share);
             level_ = u - P - D;
@@ -49,7 +49,7 @@ public:
     }
 
 private:
-    // `ago` calls back, 0 the latest; before the first call its own value.
+    // The value `ago` calls back, 0 for the latest; before the first call `before`.
     static double at(const std::vector<double>& history, std::size_t ago) {
         return ago < history.size() ? history[history.size() - 1 - ago] : history.front();
     }
@@ -82,7 +82,7 @@ private:
         slope_.push_back(slope());
     }
 
-    // D over Kd, by the formulas of sampled_pid.h.
+    // D divided by Kd, by the formulas of sampled_pid.h.
     double slope() const {
         const double Ts = law_.Ts, Tf = law_.gains.filter.Tf, step = at(f_, 0) - at(f_, 1), before = at(slope_, 0);
         const bool filtered = law_.gains.filter.type == FilterType::derivative;
@@ -114,8 +114,8 @@ private:
         return gains.Kp * (gains.b * at(r_, 1) - at(yf_, 1)) + gains.Kd * at(slope_, 1);
     }
 
-    // The level before this call: at the first from the operating point, then such that the last sum is the same with
-    // the gains of now.
+    // The level before this call: at the first call from the operating point, then such that the last sum is the same
+    // with the current gains.
     double last_sum(const Gains& now) const {
         if (first_) return options_.bias - now.Kp * (now.b - 1) * options_.y0;
         return level_ + sum_before(gains_) - sum_before(now);

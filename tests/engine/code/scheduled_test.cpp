@@ -1,5 +1,5 @@
-// The program with a schedule: executed as it stands, beside the controller of reference.h with the settings of each
-// call interpolated here.
+// The program with a schedule: executed directly, and compared with the controller of reference.h, with settings
+// interpolated here for each call.
 #include "engine/code/algorithm.h"
 
 #include <gmock/gmock.h>
@@ -32,7 +32,7 @@ Program scheduled_program(const Schedule& schedule, const CodeOptions& options =
     return program ? *program : Program{};
 }
 
-/// Row in use of `steps` by the words of the document: from a row's place on, left half the hysteresis beyond it.
+/// The row in use of `steps` as documented: from a row's place on; it is left at half the hysteresis beyond the place.
 class Rows {
 public:
     explicit Rows(const Schedule& schedule) : schedule_(schedule) {}

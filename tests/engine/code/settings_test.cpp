@@ -20,7 +20,7 @@ TEST(CodeSettings, TheIdealFormGivesTheGainsToTheLastBit) {
         EXPECT_FALSE(settings.direct);
         exact += settings.Kp / settings.Ti == gains.Ki && settings.Kp * settings.Td == gains.Kd ? 1 : 0;
     }
-    EXPECT_GT(exact, 990);  // a quotient has no decimal that gives it back now and then
+    EXPECT_GT(exact, 990);  // the decimals of a few quotients do not give the same number back
 }
 
 TEST(CodeSettings, RoundTimesStayRound) {

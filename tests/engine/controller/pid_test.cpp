@@ -1,4 +1,5 @@
-// Conversions between the PID forms: equal loops, checked as transfer functions, and the stated existence rules.
+// Conversions between the PID forms: equal loops, compared as transfer functions, and the stated conditions of
+// existence.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -24,7 +25,7 @@ Complex measurement_filter(const Filter& filter, Complex s) {
 
 double derivative_Tf(const Filter& filter) { return filter.type == FilterType::derivative ? filter.Tf : 0; }
 
-// -u/y with r = 0, written from the contract's definitions, not from the code under test.
+// -u/y with r = 0, written from the contract's definitions, independent of the code under test.
 Complex law(const IdealPid& pid, Complex s) {
     return pid.Kp * (1.0 + 1.0 / (s * pid.Ti) + s * pid.Td / (1.0 + s * derivative_Tf(pid.filter))) *
            measurement_filter(pid.filter, s);

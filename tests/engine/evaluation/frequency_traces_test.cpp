@@ -1,5 +1,5 @@
-// Traces over frequency: smooth to the eye, the marked frequencies among them, the dead time's turns counted; and the
-// peaks that a dead time's ripples hide from a grid.
+// Traces over frequency: smooth curves that include the marked frequencies and count the turns of the dead time; and
+// peaks between the grid points when a dead time causes ripples.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -31,12 +31,12 @@ TEST(FrequencyTraces, FollowTheTurnsOfADeadTimeUntilTheyCannotBeSeen) {
         for (std::size_t i = 1; i < f.omega.size(); ++i) {
             ASSERT_GT(f.omega[i], f.omega[i - 1]);
             const double gain = std::hypot(f.L_re[i], f.L_im[i]), w = f.omega[i];
-            // What a chord leaves of the arc: less than a pixel where the unit circle is 100 wide.
+            // The distance of a chord from its arc: less than a pixel if the unit circle is 100 wide.
             const double turn = (f.L_phase_deg[i] - f.L_phase_deg[i - 1]) * std::numbers::pi / 180;
             if (gain > 0.02 && gain < 4) {
                 EXPECT_LT(gain * (1 - std::cos(turn / 2)), 0.01) << "L " << L << " omega " << w;
             }
-            // The phase is that of plant and controller, whole turns included.
+            // The phase is that of plant and controller, including whole turns.
             const double exact = -w * L - std::atan(w) - std::numbers::pi / 2 + std::atan(w * Ti);
             EXPECT_NEAR(f.L_phase_deg[i], exact * 180 / std::numbers::pi, 1e-6);
         }
@@ -44,7 +44,7 @@ TEST(FrequencyTraces, FollowTheTurnsOfADeadTimeUntilTheyCannotBeSeen) {
     }
 }
 
-// Where the dead time ripples |C S| the grid, which follows S, does not see the highest ripple.
+// If the dead time causes ripples in |C S|, the grid, which follows S, misses the highest one.
 TEST(Peaks, OfCSAreThoseOfADenseGridWhereADeadTimeRipplesThem) {
     std::mt19937 chance(3);
     const auto between = [&](double low, double high) {

@@ -1,5 +1,5 @@
-// The longest sample time is one below which all keep the promise, also where Ms is jagged over the sample time: on
-// plants that are mostly dead time, at dead times of whole samples and in dense steps between them.
+// At the longest sample time and all shorter ones the stated limit holds, even if Ms is a jagged function of the sample
+// time: on plants that are mostly dead time, at dead times of whole samples and in dense steps between them.
 #include "engine/evaluation/longest_sample_time.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,8 @@ namespace {
 
 constexpr int kLoops = 40, kSteps = 150;
 constexpr double kFactor = 1.05;
-// Steps of the search are up to 1 % where Ms is near its limit: so much a hump between them may stand out.
+// Steps of the search are up to 1 % where Ms is near its limit: a hump between them may exceed the limit by this
+// factor.
 constexpr double kHump = 1.01;
 
 class Random {
@@ -85,14 +86,14 @@ TEST(LongestSampleTimeOfDeadTime, AllShorterOnesKeepItsPromise) {
     }
 }
 
-/// A plant of a lag, a dead time and a mode of natural frequency `omega` in series with them.
+/// A plant of a lag, a dead time and a mode of natural frequency `omega` in series.
 LinearPlant with_mode(double omega, double zeta) {
     const double w = 1 / omega;
     return *LinearPlant::make(
         TransferFunction{.num = {2}, .den = {10 * w * w, w * w + 20 * zeta * w, 10 + 2 * zeta * w, 1}, .L = 3});
 }
 
-/// A mode far above the loop does not move it: the sample time is the plant's without it, and is found.
+/// A mode far above the loop does not affect it: the sample time is that of the plant without it, and is found.
 TEST(LongestSampleTimeOfModes, OneFarBeyondTheLoopDoesNotCount) {
     const ParallelPid gains =
         to_parallel(IdealPid{.Kp = 0.7, .Ti = 9, .Td = 1, .filter = {FilterType::measurement_first_order, 0.3}});
@@ -110,7 +111,7 @@ TEST(LongestSampleTimeOfModes, OneFarBeyondTheLoopDoesNotCount) {
     }
 }
 
-/// One without damping is sampled badly again and again: the search ends, and says why.
+/// A mode without damping is sampled badly at many sample times: the search ends, and gives the reason.
 TEST(LongestSampleTimeOfModes, ASearchThatWouldNotEndSaysSo) {
     const LinearPlant plant = with_mode(1e6, 0);
     const ParallelPid gains = to_parallel(IdealPid{.Kp = 0.3, .Ti = 9});

@@ -1,4 +1,4 @@
-// Responses of one answer share one horizon, within reason.
+// Responses of one answer share one horizon, within limits.
 #include "engine/evaluation/response_pair.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Records that no linear model of u explains, and times that run both ways: what is said of them.
+// Records that no linear model of u explains, and times in both directions: the reported findings.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ namespace {
 using testing::identified;
 using testing::warns;
 
-/// A lag of 60 s towards `goal` of the time, u as `level` says, every 5 s.
+/// A lag of 60 s towards `goal` of the time, with u given by `level`, every 5 s.
 Record towards(const std::function<double(double)>& goal, const std::function<double(double)>& level) {
     Record record;
     double y = 24;
@@ -37,7 +37,7 @@ std::string detail_of(const IdentifiedModel& model, const std::string& code) {
     return "";
 }
 
-/// An oven's log whose column of the output shows the climb at 100 % and the holding at 40 and 65 %, whatever y does.
+/// An oven's log whose output column shows the climb at 100 % and the holding at 40 and 65 %, independent of y.
 TEST(ContradictoryRecords, YThatSettlesAtTwoLevelsUnderOneUIsSaidToContradict) {
     const Record record = towards([](double t) { return t < 60     ? 24
                                                         : t < 1110 ? 150

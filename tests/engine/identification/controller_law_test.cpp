@@ -1,4 +1,4 @@
-// Feedback that is known by the controller's law over all rows, and what is no feedback.
+// Feedback that is found by the controller's law over all rows, and records without feedback.
 #include "engine/identification/closed_loop/controller_law.h"
 
 #include <gmock/gmock.h>
@@ -20,7 +20,7 @@ namespace {
 using ::testing::HasSubstr;
 using testing::open_loop_test;
 
-/// A PI controller that takes up a load which began before the record, smooth and short: neither u nor y has any news.
+/// A PI controller that compensates a load from before the record, smooth and short: neither u nor y has fast changes.
 Record smooth_loop(double noise) {
     Record out;
     testing::Dice dice(5);
@@ -87,7 +87,7 @@ TEST(ControllerLaw, OpenLoopTestsKeepToNone) {
     EXPECT_LE(found, kAllowed) << which;
 }
 
-/// u by hand through a lag, as a soft start, and along an S: smooth, and no controller's answer to y.
+/// u moved by hand through a lag, as a soft start, and along an S: smooth, but not a controller's response to y.
 TEST(ControllerLaw, SoftStartsByHandAreNoLoop) {
     int tests = 0;
     for (unsigned seed = 1; seed <= 24; ++seed) {
@@ -115,7 +115,7 @@ TEST(ControllerLaw, SoftStartsByHandAreNoLoop) {
     EXPECT_EQ(tests, 24);
 }
 
-/// Column r is what was sent to the actuator: u itself, a line over it, a row early.
+/// Column r is the command sent to the actuator: u itself, an affine function of it, a row early.
 TEST(ControllerLaw, AColumnRThatIsUIsNoSetPoint) {
     for (const auto& [slope, offset, early] : {std::tuple{1.0, 0.0, 0}, {1.0, 0.0, 1}, {0.1, 5.0, 0}}) {
         Record record = testing::simulate(testing::even_times(160, 1), 0, 0, {{10, 3}, {60, 1}, {110, 2}},

@@ -1,4 +1,4 @@
-// Whether the stated errors are true: joint 95 % regions of many simulated records against the plant they came from.
+// The stated errors are correct: joint 95 % regions of many simulated records compared with their plant.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>

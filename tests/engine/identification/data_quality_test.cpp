@@ -1,4 +1,4 @@
-// What a record shows before any fit, and what is done about it.
+// Findings of a record before any fit, and their treatment.
 #include "engine/identification/record/data_quality.h"
 
 #include <gmock/gmock.h>
@@ -148,9 +148,9 @@ TEST(FalseReadings, WhatSensorsReportInAFaultIsFoundOnceAndInRuns) {
     EXPECT_EQ(false_readings(rows_of(with_run(-127, 390, 400))).size(), 10u);
 }
 
-/// Runs are judged one by one beside the readings that do not jump: which of them comes first is nothing to the others.
+/// Runs are judged one by one, compared with the readings that do not jump: their order does not matter.
 TEST(FalseReadings, DoNotDependOnTheOrderOfTheFaults) {
-    std::vector<double> levels = {26, 27, 29, 40};  // of a y from 20 to 24: the first two are within its range of it
+    std::vector<double> levels = {26, 27, 29, 40};  // for a y from 20 to 24: the first two are within its range of it
     std::vector<std::size_t> faults_by_order;
     do {
         Record record = good_step();
@@ -161,7 +161,7 @@ TEST(FalseReadings, DoNotDependOnTheOrderOfTheFaults) {
     EXPECT_THAT(faults_by_order, ::testing::Each(8));
 }
 
-/// Jumps that are no faults do not count against the quarter that faults may make up.
+/// Jumps that are not faults do not count towards the quarter of the rows that faults may take.
 TEST(FalseReadings, JumpsThatAreNoneDoNotHideTheFaults) {
     Record record = good_step();
     const double raised = record.y[200] + 2;
@@ -172,7 +172,7 @@ TEST(FalseReadings, JumpsThatAreNoneDoNotHideTheFaults) {
 }
 
 TEST(FalseReadings, AProcessThatGoesToSuchAValueKeepsIt) {
-    // Steps of u by which a process as fast as its rows jumps to 85 and back, and one that passes 85 slowly.
+    // Steps of u with which a process as fast as its rows jumps to 85 and back, and one that passes 85 slowly.
     Record fast =
         simulate(even_times(300, 0.5), 60, 60, {{20, 85}, {40, 60}, {60, 85}, {100, 60}}, first_order(1, 0.05, 0));
     for (double& y : fast.y) y = std::round(y);

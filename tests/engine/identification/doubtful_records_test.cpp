@@ -1,4 +1,4 @@
-// Records that a plant and something else made together: a controller, a logger, a valve at its end.
+// Records that are affected by more than the plant: a controller, a logger, a valve at its end.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ using namespace tunewright::testing;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 
-/// Gain 2, five lags of 10, in steps of 0.1 of a row.
+/// Gain 2, five lags of 10, simulated in steps of 0.1 of a row.
 class FiveLags {
 public:
     double advance(double u) {
@@ -36,7 +36,7 @@ private:
 
 double rounded(double value, double step) { return step > 0 ? step * std::round(value / step) : value; }
 
-/// u = Kp (r - y) + I about (40, 60) on that plant; rows every second.
+/// u = Kp (r - y) + I around (40, 60) on that plant; rows every second.
 struct Loop {
     double Kp = 0.15, Ti = 30, noise = 0.05, step = 0, load = 0, grid = 0;
     int rows = 700, moved_at = 60, manual_until = 0;
@@ -142,7 +142,7 @@ TEST(DoubtfulRecords, RowsOfBeforeTheSensorIsReadAreLeftOut) {
     EXPECT_NEAR(plant_as<Fopdt>(model).K, plant_as<Fopdt>(whole).K, 1e-3);
     EXPECT_NEAR(plant_as<Fopdt>(model).L, plant_as<Fopdt>(whole).L, 0.05);
     EXPECT_THAT(model.data_quality.notes, Contains(HasSubstr("10 rows at the start left out")));
-    // A plant that is a gain leaves one number for another in one row too, after u.
+    // A plant that is a pure gain also jumps from one value to another in one row, after u.
     Record gain = simulate(even_times(100, 1), 40, 0, {{20, 60}}, first_order(2, 0.01, 3));
     add_noise(gain, 0.01, 6);
     std::fill_n(gain.y.begin(), 23, 0);
@@ -151,7 +151,7 @@ TEST(DoubtfulRecords, RowsOfBeforeTheSensorIsReadAreLeftOut) {
 }
 
 TEST(DoubtfulRecords, NoLoadTakesBackAMoveOfU) {
-    // The valve ends at 49: the second and third move do nothing.
+    // The valve ends at 49: the second and third move have no effect.
     const Steps at_plant = {{100, 49}, {800, 49}, {1150, 40}};
     Record record = simulate(even_times(1500, 1), 40, 60, at_plant, first_order(2, 60, 10));
     add_noise(record, 0.1, 1);

@@ -1,5 +1,5 @@
-// Closed loops: found, warned of, identified where set points move, refused where nothing but feedback moves u. Loops
-// and open-loop tests are simulated from seeds (tests/records/closed_loop_records.h).
+// Closed loops: found, with a warning, identified if set points move, refused if only feedback moves u. Loops and
+// open-loop tests are simulated from seeds (tests/records/closed_loop_records.h).
 #include "engine/identification/closed_loop/feedback.h"
 
 #include <gmock/gmock.h>
@@ -183,7 +183,7 @@ double gain_of(const Plant& plant) {
     return std::nan("");
 }
 
-/// Of answers about self-regulating plants: the gain within a tenth, or three of its standard errors.
+/// For answers about self-regulating plants: the gain within a tenth, or three of its standard errors.
 TEST(Feedback, GainsFromSetPointMovesAreRightWithinTheirErrors) {
     const int seeds = long_or_quick(60, 24);
     int right = 0, answers = 0;

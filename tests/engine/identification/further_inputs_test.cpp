@@ -13,7 +13,7 @@ namespace {
 
 using testing::LoopPlant;
 
-/// u steps twice (or a PI controller holds y at its set point); the other inputs step now and then.
+/// u steps twice (or a PI controller holds y at its set point); the other inputs step occasionally.
 struct TwoInputs {
     LoopPlant plant{2, 40, 8, 5, false};
     std::vector<LoopPlant> others = {{3, 25, 0, 8, false}};
@@ -91,7 +91,7 @@ TEST(FurtherInputs, BothModelsAreRightWithinTheirErrors) {
     }
 }
 
-/// Before the input is known its one lasting step looks like a load, or a drift: neither stays with the model.
+/// Before the input is known its one lasting step looks like a load, or a drift: neither remains in the model.
 TEST(FurtherInputs, AStepOfOneLeavesNoLoadAndNoDrift) {
     for (unsigned seed = 1; seed <= 10; ++seed) {
         testing::Dice dice(seed);

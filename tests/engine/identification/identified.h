@@ -11,7 +11,7 @@
 
 namespace tunewright::testing {
 
-/// The model that is found in the record; the test fails where there is none.
+/// The model identified from the record; the test fails if there is none.
 inline IdentifiedModel identified(const Record& record, ModelChoice model = ModelChoice::automatic) {
     IdentifyOptions options;
     options.model = model;
@@ -31,7 +31,7 @@ inline bool warns(const IdentifiedModel& model, const std::string& code) {
     return std::any_of(model.warnings.begin(), model.warnings.end(), [&](const Warning& w) { return w.code == code; });
 }
 
-/// Why the record is refused; the test fails where it is not.
+/// The refusal of the record; the test fails if it is not refused.
 inline Error refusal(const Record& record, const IdentifyOptions& options = {}) {
     auto result = identify(record, options, {});
     EXPECT_FALSE(result);

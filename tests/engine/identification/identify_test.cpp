@@ -1,4 +1,4 @@
-// Parameters recovered from simulated records, scaling laws, warnings, progress.
+// Parameters identified from simulated records, scaling laws, warnings, progress.
 #include "engine/identification/identify.h"
 
 #include <gmock/gmock.h>
@@ -26,8 +26,8 @@ TEST(Identify, DeadTimeBetweenSamplesIsExact) {
     }
 }
 
-// 100,000 samples are fitted as means over blocks of five. The steps fall inside blocks, and the last plant's lag lasts
-// two blocks of that length: it is fitted to more.
+// 100,000 samples are fitted as means over blocks of five. The steps are inside blocks, and the last plant's lag is two
+// blocks of that length: it is fitted to more samples.
 TEST(Identify, ThinningALongRecordChangesNoParameter) {
     for (const double T : {2000.0, 500.0, 60.0, 10.0}) {
         Record record =
@@ -189,7 +189,7 @@ TEST(Identify, PlantScalesWithTheUnitsOfTheRecord) {
     }
 }
 
-/// How far, in standard errors, the estimates of K, T, L lie from the truth over many noises: their root mean square.
+/// Root mean square of the errors of K, T, L over many noises, in standard errors.
 std::map<std::string, double> normalised_errors(double noise, double pole, unsigned first_seed, int runs) {
     std::map<std::string, double> squares;
     for (int run = 0; run < runs; ++run) {

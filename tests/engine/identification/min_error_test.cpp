@@ -1,5 +1,5 @@
-// Reductions by least difference of step responses: Jin & Son's three processes against an independent optimisation,
-// closed forms, properties, refusals.
+// Reductions by the smallest difference of step responses: Jin & Son's three processes compared with an independent
+// optimisation, closed forms, properties, refusals.
 #include "engine/reduction/min_error.h"
 
 #include <gmock/gmock.h>
@@ -85,8 +85,8 @@ TEST(MinError, CostsNoMoreThanTheReferenceOptimumOnEveryRow) {
         const auto model = reduce(plant, {.method = method, .horizon = row.horizon});
         ASSERT_TRUE(model) << model.error().message;
         const StepDifference difference(plant, row.horizon);
-        // The measure itself: at the reference's model it is the reference's cost, but for what the seventh digit of K
-        // adds up to until the horizon.
+        // The criterion itself: at the reference's model it is the reference's cost, up to the effect of the seventh
+        // digit of K until the horizon.
         const double rounding = 5e-7 * row.horizon * (method == ReductionMethod::min_itae ? row.horizon / 2 : 1);
         const ReducedModel theirs{.K = row.K, .T1 = row.T, .L = row.L};
         EXPECT_NEAR(criterion(method, difference.to(theirs)), row.J, 1e-4 * row.J + rounding);
@@ -97,7 +97,7 @@ TEST(MinError, CostsNoMoreThanTheReferenceOptimumOnEveryRow) {
     }
 }
 
-// The longest horizons of the reference are settled; the gain, free there, is 1 to 5e-7 and buys 2e-4 of the cost.
+// The longest horizons of the reference are settled; the gain, free there, is 1 to 5e-7 and reduces the cost by 2e-4.
 TEST(MinError, WithoutAHorizonTheIntegralRunsToInfinity) {
     struct Settled {
         const char* process;
@@ -127,7 +127,7 @@ TEST(MinError, DifferenceOfKnownResponsesIsItsClosedForm) {
     EXPECT_NEAR(lags.IAE, 2, 2e-5);
     EXPECT_NEAR(lags.ISE, 2.0 / 3, 1e-5);
     EXPECT_NEAR(lags.ITAE, 3 * 2 + 2 * (4 - 1), 1e-4);
-    // Ramps: t - 1 + e^-t up to t = 1, e^-t from then on: 1/2 - 1/e + 1/e.
+    // Ramps: t - 1 + e^-t up to t = 1, e^-t after that: 1/2 - 1/e + 1/e.
     const LinearPlant ramp = made(Ipdt{.K = 1, .L = 1, .T = 1});
     EXPECT_NEAR(StepDifference(ramp, std::nullopt).to({.integrators = 1, .K = 1, .T1 = 0, .L = 2}).IAE, 0.5, 1e-5);
 }
@@ -184,7 +184,7 @@ TEST(MinError, IntegratingPlantsKeepTheirSlopeAndTheAsymptoteOfTheirRamp) {
         EXPECT_NEAR(second->L + second->T1, 2.875, 1e-9);
         EXPECT_GT(second->L, 1.3);
         EXPECT_LT(second->L, 1.8);
-        // To a horizon L is free, also without a lag, and ends below the asymptote.
+        // With a horizon L is free, also without a lag, and ends below the asymptote.
         const auto early = reduce(plant, {.method = method, .horizon = 5});
         ASSERT_TRUE(early);
         EXPECT_LT(early->L, 2.875);

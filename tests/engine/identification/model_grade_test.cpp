@@ -1,4 +1,4 @@
-// How far a model may be relied on: the borders that documents state, from both sides.
+// Grades of a model: the documented thresholds, from both sides.
 #include "engine/identification/model_grade.h"
 
 #include <gtest/gtest.h>

@@ -20,7 +20,7 @@ using ::testing::HasSubstr;
 
 constexpr double kK = 640, kT1 = 150, kT2 = 6, kL = 1.5;
 
-/// A heater's duty switched on and off between rows of a second: heat-up, then a cycle about a set point.
+/// A heater's duty switched on and off between rows one second apart: heat-up, then a cycle about a set point.
 Steps heater_moves(unsigned seed) {
     std::mt19937 bits(seed);
     const auto part = [&] { return std::uniform_real_distribution<double>(0, 1)(bits); };
@@ -48,7 +48,7 @@ TEST(MoveTimes, StatedErrorsAreAsLargeAsTheErrors) {
         const IdentifiedModel model = identified(heater_record(heater_moves(seed), seed), ModelChoice::sopdt);
         EXPECT_THAT(model.data_quality.notes, Contains(HasSubstr("13 change(s) of u happened between rows"))) << seed;
         const auto plant = plant_as<Sopdt>(model);
-        // By the Cramer-Rao bound of the same test, the times as likely anywhere in their rows: 0.76 and 0.24.
+        // From the Cramer-Rao bound of the same test, with times equally likely anywhere in their rows: 0.76 and 0.24.
         sharp += model.standard_errors.at("K") < 0.01 * kK && model.standard_errors.at("T1") < 0.01 * kT1;
         EXPECT_LT(model.standard_errors.at("K"), 0.05 * kK) << seed;
         EXPECT_LT(model.standard_errors.at("T1"), 0.05 * kT1) << seed;
@@ -56,9 +56,10 @@ TEST(MoveTimes, StatedErrorsAreAsLargeAsTheErrors) {
         K += std::pow((plant.K - kK) / model.standard_errors.at("K"), 2) / kSeeds;
         T1 += std::pow((plant.T1 - kT1) / model.standard_errors.at("T1"), 2) / kSeeds;
     }
-    // The others cannot tell their noise from a load that walks.
+    // The others cannot distinguish their noise from a load that is a random walk.
     EXPECT_GE(sharp, 0.9 * kSeeds);
-    // Mean squares of 40 normal values: 1 with a standard deviation of 0.22. Errors stated twice too large give 0.25.
+    // Mean squares of 40 normal values: 1 with a standard deviation of 0.22. Errors stated too large by a factor of two
+    // give 0.25.
     for (const double mean_square : {K, T1}) {
         EXPECT_GT(mean_square, 0.3);
         EXPECT_LT(mean_square, 1.6);

@@ -1,4 +1,4 @@
-// Reads the columns of a recorded test for the tests; the product reads CSV elsewhere.
+// Reads the columns of a recorded test for the tests; the product has its own CSV reader.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@ inline std::vector<std::string> cells_of(const std::string& line) {
     return cells;
 }
 
-/// Columns by heading from tests/data/records/<file>; what is no number becomes NaN.
+/// Columns by heading from tests/data/records/<file>; a text that is not a number becomes NaN.
 inline Record read_record(const std::string& file, const std::string& t = "t", const std::string& u = "u",
                           const std::string& y = "y") {
     std::ifstream stream(test_data("records/" + file));

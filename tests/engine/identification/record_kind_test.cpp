@@ -1,4 +1,4 @@
-// Records of every kind, distinguished by u and by what y does when u moves.
+// Records of every kind, distinguished by u and by the response of y to u.
 #include "engine/identification/record/record_kind.h"
 
 #include <gtest/gtest.h>

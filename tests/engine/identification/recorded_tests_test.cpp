@@ -1,4 +1,4 @@
-// The recorded tests in tests/data/records: true parameters as stated there, tolerances beside them.
+// The recorded tests in tests/data/records: true parameters as stated there, with tolerances.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -82,7 +82,7 @@ TEST(RecordedTests, FopdtOfAnInverseResponseIsFlagged) {
     const IdentifiedModel model = identified(read_record("step_inverse_response.csv"), ModelChoice::fopdt);
     ASSERT_FALSE(model.warnings.empty());
     EXPECT_EQ(model.warnings.front().code, "structured-residuals");
-    // y rests before the step: no other start may stand in for the missing zero and bend the gain.
+    // y rests before the step: no other initial state may replace the missing zero and change the gain.
     EXPECT_NEAR(std::get<Fopdt>(model.plant).K, 1, 0.05);
 }
 

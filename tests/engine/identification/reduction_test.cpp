@@ -1,4 +1,4 @@
-// Reduction to the forms of the rules: published examples of the half rule, exact tangents, error paths.
+// Reduction to the forms of the rules: published examples of the half rule, exact tangents, refusals.
 #include "engine/reduction/reduction.h"
 
 #include <gmock/gmock.h>
@@ -64,7 +64,7 @@ TEST(HalfRule, LeadRulesFollowTheirCases) {
     // T3 with the lag above 5 theta: lead 2 against 10, theta 1: 5/10 of the gain and a lag 3.
     expect_model(reduced(TransferFunction{.num = {2, 1}, .den = {10, 1}, .L = 1}, ReductionMethod::half_rule), 0, 0.5,
                  3, 0, 1);
-    // T2: lead 8 >= 5 theta against 10: gain 0.8, nothing left of the lag.
+    // T2: lead 8 >= 5 theta with lag 10: gain 0.8, nothing left of the lag.
     expect_model(reduced(TransferFunction{.num = {8, 1}, .den = {10, 1}, .L = 1}, ReductionMethod::half_rule), 0, 0.8,
                  0, 0, 1);
     // T1a: lead 3 >= theta 2 >= lag 1: gain 3/2.
@@ -166,7 +166,7 @@ TEST(TwoPoint123c, ReproducesThePublishedFourthOrderModel) {
 
 TEST(TwoPoint123c, DeadTimeGainAndTimeScaleCarryOver) {
     const Zpk plant{.K = -3 * 64, .zeros = {}, .poles = {-0.1, -0.2, -0.4, -0.8}, .L = 7};
-    // Ten times slower, so K of the zpk is 1e-4 of it.
+    // Ten times slower, so that K of the zpk is 1e-4 of it.
     Zpk slow = plant;
     slow.K *= 1e-4;
     expect_model(reduced(slow, ReductionMethod::two_point_123c), 0, -3, 12.47109, 0, 7 + 6.908683, 2e-6);
@@ -214,7 +214,7 @@ TEST(Reduction, APlantOfTheFormIsTakenAsItIsByEveryMethod) {
 }
 
 TEST(Reduction, AutomaticFallsBackOnTheOtherMethod) {
-    // Ringing: no half rule. Jumping: no tangent.
+    // Oscillatory: no half rule. With a jump: no tangent.
     EXPECT_TRUE(reduce(reducible(OscillatorySopdt{.K = 1, .T = 1, .zeta = 0.2, .L = 1}),
                        {.preferred = ReductionMethod::half_rule}));
     EXPECT_TRUE(reduce(reducible(TransferFunction{.num = {1, 2}, .den = {1, 1}, .L = 1}),
@@ -222,7 +222,7 @@ TEST(Reduction, AutomaticFallsBackOnTheOtherMethod) {
 }
 
 TEST(Reduction, AutomaticNamesBothReasonsWhereNeitherMethodApplies) {
-    // As many zeros as poles, and ringing poles.
+    // As many zeros as poles, and oscillatory poles.
     const auto model = reduced(TransferFunction{.num = {1, 1, 2}, .den = {1, 0.1, 1}}, ReductionMethod::automatic);
     ASSERT_FALSE(model);
     EXPECT_EQ(model.error().where, "plant");

@@ -1,4 +1,4 @@
-// Records from which no model can be found are refused, with the place and the cure.
+// Records from which no model can be identified are refused, with the place and the cure.
 #include <gmock/gmock.h>
 
 #include "tests/engine/identification/identified.h"

@@ -1,4 +1,4 @@
-// What a record leaves open: the band that it excited, and controllers on its confidence region.
+// The uncertainty that a record leaves: the band that it excited, and controllers on its confidence region.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ Excitation step_test(double noise) {
 }
 
 TEST(ExcitedBand, OfAStepIsWhereItsAnswerMeetsTheNoise) {
-    // |P U| = |2/(10 j w + 1)|/w meets sqrt(0.01^2 0.5 199.5) = 0.0999: w = 1.411 by solving 4/((100 w^2 + 1) w^2) =
+    // |P U| = |2/(10 j w + 1)|/w reaches sqrt(0.01^2 0.5 199.5) = 0.0999: w = 1.411 by solving 4/((100 w^2 + 1) w^2) =
     // 0.009975.
     const auto band = excited_band(step_test(0.01), Fopdt{.K = 2, .T = 10, .L = 3});
     ASSERT_TRUE(band.has_value());
@@ -85,7 +85,7 @@ TuningResult tuned(double noise, bool over_region) {
     return result ? std::move(*result) : TuningResult{};
 }
 
-/// A step test of a plant and of noise drawn by `seed`.
+/// A step test with a plant and noise drawn from `seed`.
 Record drawn_step(unsigned seed) {
     std::mt19937 random(seed);
     std::normal_distribution<double> normal(0, 1);
@@ -102,7 +102,7 @@ Record drawn_step(unsigned seed) {
     return record;
 }
 
-/// As a client may send it back: to the last digit, also where the open choice of structure has widened it.
+/// In the form for a client: to the last digit, also if the uncertainty of the structure has widened it.
 TEST(IdentifiedModelCovariance, IsSymmetricToTheLastBit) {
     int widened = 0;
     for (unsigned seed = 1; seed <= 60; ++seed) {
@@ -132,7 +132,7 @@ TEST(IdentifiedRegion, RobustHoldsItsLimitOnAllOfItWhereAsked) {
     EXPECT_TRUE(std::ranges::any_of(nominal.warnings, coded));
     EXPECT_FALSE(std::ranges::any_of(safe.warnings, coded));
     EXPECT_EQ(*plain.model->region->worst_Ms, *nominal.region->worst_Ms);
-    // Points of its own inside the ellipsoid.
+    // Points of the test's own inside the ellipsoid.
     const auto family = identified_region(*held.model);
     ASSERT_TRUE(family.has_value());
     const PlantRegion* region = family->regions.data();
@@ -153,7 +153,7 @@ TEST(IdentifiedRegion, ACrossoverBeyondTheExcitedBandIsWarnedOf) {
         << loud.model->excited_band->omega_high << " " << *loud.controllers[0].evaluation->robustness.phase_crossover;
 }
 
-/// Sum of squares that a first-order plant leaves of the record, the offset fitted; the step comes at t = 10.
+/// Residual sum of squares of a first-order plant, with a fitted offset; the step comes at t = 10.
 double left_by(const Fopdt& plant, const Record& record) {
     std::vector<double> rest;
     double mean = 0;
@@ -168,7 +168,8 @@ double left_by(const Fopdt& plant, const Record& record) {
 }
 
 TEST(IdentifiedRegion, HoldsNoPlantThatTheRecordExcludes) {
-    // A step that ends before y has settled: gain and lag are open together, along a curve that no ellipse follows.
+    // A step that ends before y has settled: gain and lag are uncertain together, along a curve that no ellipse
+    // follows.
     int excluded = 0;
     for (unsigned seed = 0; seed < 10; ++seed) {
         std::mt19937 random(seed);
@@ -195,7 +196,7 @@ TEST(IdentifiedRegion, HoldsNoPlantThatTheRecordExcludes) {
             return left_by(std::get<Fopdt>(in.at(z)), record) - min;
         };
         for (const auto& z : region.ends()) {
-            // The curvature of the sum of squares, which the covariance means.
+            // The curvature of the sum of squares, which the covariance represents.
             const double curvature = 0.5 * (growth(*ellipsoid, z, 0.02) + growth(*ellipsoid, z, -0.02)) / (0.02 * 0.02);
             EXPECT_LT(growth(region, z, 1), 1.7 * curvature + 1e-3 * min) << seed;
             excluded += growth(*ellipsoid, z, 1) > 1.7 * curvature;

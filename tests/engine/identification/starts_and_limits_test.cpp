@@ -1,4 +1,4 @@
-// How a record starts, what reaches the plant, which readings are false, and what a lag too many does to the gain.
+// The start of a record, limits of the input, false readings, and the effect of an excess lag on the gain.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -54,7 +54,7 @@ TEST(Start, ARecordAtRestStaysAtRestHoweverManyLagsFollow) {
     }
 }
 
-/// A damaged cell or the rounding of u is no second move, after which the start would be free.
+/// A damaged cell or the rounding of u is not a second move, after which the initial state would be free.
 TEST(Start, JitterOfUIsNoSecondMove) {
     Record record = simulate(even_times(300, 1), 0, 10, {{1, 5}}, first_order(1.4, 30, 2));
     add_noise(record, 0.02, 5);
@@ -90,7 +90,7 @@ TEST(Records, AMoveWithTheLastRowIsNone) {
 }
 
 TEST(Records, MovesOfUInGapsArePlacedAtTheMissingRows) {
-    // A relay's square wave of about nine rows a half period; every third move falls among missing rows.
+    // A relay's square wave of about nine rows per half period; every third move is among missing rows.
     Steps moves;
     std::vector<double> t;
     std::mt19937 random(5);
@@ -139,7 +139,7 @@ TEST(Records, ADeadTimeThatMissingRowsHideIsAsOpenAsTheyAreLong) {
         EXPECT_NEAR(plant->T, 30, 0.5) << from;
         EXPECT_TRUE(warned(*model, "unseen-move")) << from;
     }
-    // A recorder that writes on change: the step is the first row for long, and stands at its own time.
+    // A recorder that writes on change: the step is the first row for a long time, at its own time.
     const Record dense = simulate(even_times(1200, 1), 50, 100, {{300, 51}}, first_order(2, 30, 25));
     Record on_change;
     for (std::size_t i = 0; i < dense.t.size(); ++i) {
@@ -174,7 +174,7 @@ TEST(Records, ALoadFarBeyondWhatUDidIsNoExplanation) {
     }
 }
 
-/// A relay of +-1 that looks at y = 2 e^(-5s)/(20s + 1) every half second, from rest, recorded every `rows` seconds.
+/// A relay of +-1 that samples y = 2 e^(-5s)/(20s + 1) every half second, from rest, recorded every `rows` seconds.
 Record coarse_relay_record(double hysteresis, double rows) {
     constexpr double kLook = 0.5;
     constexpr int kDelay = 10, kLooks = 1000, kStart = 60;
@@ -205,7 +205,8 @@ TEST(Records, ARelayThatSwitchesBetweenRowsGivesADesignThatHolds) {
     for (const double hysteresis : {0.07, 0.08, 0.1}) {
         const auto model = identify(coarse_relay_record(hysteresis, 2), {}, {});
         ASSERT_TRUE(model) << model.error().message;
-        // The times of the switches are estimated, and counted, or the answer warns that it is not counted.
+        // The times of the switches are estimated, and their uncertainty is included, or the answer warns that it is
+        // not.
         const bool counted = std::ranges::any_of(model->data_quality.notes, [](const std::string& note) {
             return note.find("the standard errors count it") != std::string::npos;
         });
@@ -224,7 +225,7 @@ TEST(Records, ARelayThatSwitchesBetweenRowsGivesADesignThatHolds) {
 }
 
 TEST(Records, WhatOnlyASlowPartExplainsIsNotExplainedAway) {
-    // The record ends in the inverse response of a plant that goes the other way: gain 5, b = -6, lags 9 and 4.
+    // The record ends in the inverse response of a plant with opposite sign: gain 5, b = -6, lags 9 and 4.
     const auto inverse = [](double t) {
         if (t <= 0) return 0.0;
         const double by_nine = (9 + 6) / (9.0 - 4), by_four = (4 + 6) / (9.0 - 4);
@@ -282,7 +283,7 @@ TEST(Records, APulseThatTheProcessAnswersIsNoFalseReading) {
     EXPECT_FALSE(model->data_quality.outliers);
 }
 
-/// u beyond 0 to 100 has no effect of its own.
+/// u beyond 0 to 100 has no further effect.
 Record beyond_its_ends() {
     const Steps asked = {{20, 60}, {80, 400}, {140, -300}, {200, 150}, {260, 30}};
     Steps reaching = asked;
@@ -367,7 +368,7 @@ TEST(ResidualNoise, KnowsTheLongRunVarianceOfSlowNoise) {
         }
         const double exact = (1 + pole) / (1 - pole);
         EXPECT_GT(sum, 0.9 * exact) << pole;
-        EXPECT_LT(sum, 1.3 * exact) << pole;  // means over blocks of a slow process err to the safe side
+        EXPECT_LT(sum, 1.3 * exact) << pole;  // means over blocks overestimate the variance of a slow process
     }
     EXPECT_NEAR(student_factor(10), 2.228139 / 1.959964, 2e-3);  // Abramowitz and Stegun 1964, table 26.10
 }

@@ -1,4 +1,4 @@
-// Moves of u between the rows that show them: what that leaves of the dead time.
+// Moves of u between the rows that show them: the accuracy of the dead time.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

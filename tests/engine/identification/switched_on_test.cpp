@@ -1,4 +1,4 @@
-// A controller that is switched on moves u from outside the loop, once: the plant is known from it within its errors.
+// A controller that is switched on moves u once, without feedback: the plant is identified from it within its errors.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -24,14 +24,14 @@ std::complex<double> true_response(const LoopPlant& p, double w) {
     return p.K * std::exp(-p.L * s) / ((1.0 + p.T1 * s) * (1.0 + p.T2 * s));
 }
 
-/// Relative error of the response where the plant lags by about 60 degrees.
+/// Relative error of the frequency response where the plant's phase is about -60 degrees.
 double miss(const Plant& plant, const LoopPlant& truth) {
     const double w = 1 / (0.3 * truth.T1 + truth.T2 + truth.L);
     const auto found = LinearPlant::make(plant)->at({0, w}), right = true_response(truth, w);
     return std::abs(found - right) / std::abs(right);
 }
 
-/// K and L within three standard errors, and a tenth of the response besides.
+/// K and L within three standard errors, and a tenth of the response in addition.
 void expect_right(const Record& record, const LoopPlant& truth, const char* which, bool in_loop = true) {
     const auto model = identify(record, {}, {});
     ASSERT_TRUE(model) << which << ": " << model.error().message;
@@ -53,7 +53,8 @@ TEST(SwitchedOn, AnOvensLogTellsThePlant) {
     expect_right(oven.record(), oven.plant, "without");
 }
 
-/// While u is held at its end nothing feeds back; as a test by hand that ended there the record would be cut short.
+/// While u is held at its limit there is no feedback; if it were taken for a test by hand that ended there, the record
+/// would be cut short.
 TEST(SwitchedOn, AtTheEndOfUAllRowsCount) {
     ColdStart oven;
     for (const int row : {20, 30}) {
@@ -83,8 +84,8 @@ bool warns_of_gain(const IdentifiedModel& model) {
     });
 }
 
-/// With u moved in or before the first row, from 0 or from `rest`, the level of rest is not in the record. Nothing is
-/// wrong in silence then; from 0 on, nearly all are right.
+/// With u moved in or before the first row, from 0 or from `rest`, the level of rest is not in the record. Every wrong
+/// model then has a warning; from 0, nearly all models are right.
 TEST(SwitchedOn, InTheFirstRowNothingIsWrongInSilence) {
     const auto seeds = static_cast<unsigned>(long_or_quick(12, 5));
     for (const double rest : {0.0, 0.5}) {
@@ -110,7 +111,7 @@ TEST(SwitchedOn, InTheFirstRowNothingIsWrongInSilence) {
     }
 }
 
-/// The usual trim of a file: its first row is the one in which the heater is already on.
+/// A usual trim of a file: the heater is already on in the first row.
 TEST(SwitchedOn, AnOpenLoopRecordThatBeginsWithUMovedIsTakenToComeFromOff) {
     testing::PlantRun run({1.2, 200, 20, 10, false}, 1);
     Record record;

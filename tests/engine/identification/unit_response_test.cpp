@@ -13,12 +13,12 @@ namespace {
 constexpr double kL = 0.0123, kT = 0.05, kT3 = 0.02;
 const std::vector<double> kMoves = {0, 0.11, 0.25, 0.2504, 0.6, 0.83}, kLevels = {1, -0.7, 0.2, 0.9, -1, 0.3};
 
-/// Of one step, its first and its second derivative.
+/// The response to one step with its first and second derivatives.
 struct Curves {
     std::function<double(double)> x, x1, x2;
 };
 
-/// Lags T and others in a row after an integrator or not: x = sum of c e^(-t/T), with a ramp.
+/// Lags T and others in series, with or without an integrator: x = sum of c e^(-t/T), with a ramp.
 Curves of_lags(const std::vector<double>& T, bool integrates) {
     const auto share = [T](std::size_t i) {
         double product = 1;

@@ -42,7 +42,8 @@ TEST(IntegralSector, BothCriteriaAgreeWithHandCalculation) {
 }
 
 TEST(IntegralSector, PopovFailsWhereTheLinearLoopIsCloseToInstability) {
-    // The linear loop is the limit of large amplitudes of no gain below one: at its own edge nothing can be proved.
+    // The linear loop is the limit of large amplitudes of every gain below one: at its own stability limit nothing can
+    // be proved.
     const Fopdt plant{.K = 1, .T = 1, .L = 1};
     const double Ku_of_I = 0.8;
     for (const double share : {0.2, 0.5, 0.9, 0.99}) {
@@ -54,7 +55,8 @@ TEST(IntegralSector, PopovFailsWhereTheLinearLoopIsCloseToInstability) {
 }
 
 TEST(IntegralSector, FindsTheIntegralGainThatHoldsAnOscillatoryPlant) {
-    // A lightly damped plant whose dead time turns the derivative into negative and the integral into positive damping.
+    // A lightly damped plant whose dead time turns the derivative action into negative damping and the integral action
+    // into positive damping.
     const OscillatorySopdt plant{.K = 1, .T = 1, .zeta = 0.05, .L = 3.14159265};
     const IdealPid pid{.Kp = 0.01, .Ti = 0.1, .Td = 15};
     ASSERT_TRUE(stable_with(plant, pid, 1));

@@ -1,5 +1,4 @@
-// Peaks, margins and stability of loops whose answers are known in closed form, and the two stability methods against
-// each other.
+// Peaks, margins and stability of loops with closed-form results, and a comparison of the two stability methods.
 #include "engine/loop/loop.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// A loop at many frequencies against the same loop at one, and the parts that serve it: the unit circle by polynomials
-// and the angle that a curve turns through.
+// A loop at many frequencies compared with the same loop at one, and its parts: the unit circle by polynomials and the
+// winding angle of a curve.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -26,7 +26,7 @@ TEST(PairComplex, UnitCircleIsSineAndCosineOfTheLibrary) {
         }
     };
     for (int i = 0; i < 100'000; ++i) near(std::copysign(std::pow(10, digits(random)), sign(random)));
-    // Next to the multiples of pi/4, where polynomials and quarters change.
+    // Near the multiples of pi/4, where polynomials and quarters change.
     for (int k = -50; k <= 50; ++k)
         for (const double off : {-1e-9, -1e-16, 0.0, 1e-16, 1e-9}) near(k * std::numbers::pi / 4 * (1 + off));
     near(kMaxPairAngle);
@@ -54,7 +54,8 @@ TEST(Loop, AtManyFrequenciesIsThatAtEachAndSoIsItsPlant) {
         gains.filter.Tf = gains.filter.type == FilterType::none ? 0 : log_uniform(0.01, 1);
         const auto loop = Loop::make(*plant, gains);
         if (!loop) continue;
-        // An odd number of them, some beyond what two at a time can do: 0, angles of e^(-jwL) and squares out of range.
+        // An odd number of frequencies, some beyond the range of the vectorised code: 0, angles of e^(-jwL) and squares
+        // out of range.
         std::vector<double> omega{0, 1e-200, 1e-120};
         for (int i = 0; i < 60; ++i) omega.push_back(log_uniform(1e-6, 1e6));
         omega.insert(omega.end(), {1e9, 1e100, 1e150, 0.5});
@@ -87,7 +88,7 @@ TEST(Winding, AddsUpWhatASpiralTurnsThrough) {
         for (int i = 1; i <= steps; ++i) {
             const double t = double(i) / steps;
             ASSERT_TRUE(Winding::is_short(spiral(t - 1.0 / steps), spiral(t)));
-            // Now and then by an angle that is known.
+            // Sometimes by a known angle.
             if (i % 37 == 0)
                 winding.turn(2 * std::numbers::pi * turns / steps, spiral(t));
             else

@@ -1,4 +1,4 @@
-// Noise gain against exact sums in the time domain, a seeded random run and closed forms.
+// Noise gain compared with exact sums in the time domain, a seeded random run and closed forms.
 #include "engine/loop/noise.h"
 
 #include <gtest/gtest.h>
@@ -119,7 +119,7 @@ TEST(NoiseGain, MatchesThePulseResponseWithDeadTimeAndFilters) {
 }
 
 TEST(NoiseGain, IntegratesTheEchoesOfANeutralLoopInClosedForm) {
-    // PI on a pure dead time: |C S| never stops turning; q = 0.6.
+    // PI on a pure dead time: |C S| never stops oscillating; q = 0.6.
     for (const double Ts : {0.05, 0.5, 1.0, 2.5}) {
         const ParallelPid c{.Kp = 0.6, .Ki = 0.3};
         const double expected = by_pulse_response(1, 0, 1, c, Ts, 1e-3, 80);

@@ -1,5 +1,5 @@
-// Figures of a sampled loop by brute force: a response in two thousand parts a period, and the sums over the samples
-// that follow a single pulse in the measurement.
+// Figures of a sampled loop by brute force: a response in two thousand parts per period, and sums over the samples that
+// follow a single pulse in the measurement.
 #pragma once
 
 #include <functional>
@@ -11,11 +11,11 @@ namespace tunewright::test {
 
 struct BruteResponse {
     double IAE = 0, error_integral = 0, y_max = 0, y_min = 0, TV = 0;
-    std::vector<double> u;  // of each sample
+    std::vector<double> u;  // one per sample
 };
 
 /// `dead_time` and the law's computation delay in whole parts of Ts/parts. Ends with the period in which y has been
-/// near its rest for as long as it took. `rest`: of y.
+/// near its final value for as long as it took to reach it. `rest`: of y.
 struct BruteForce {
     OwnPlant plant;
     double dead_time = 0;
@@ -59,7 +59,7 @@ struct BruteForce {
     }
 };
 
-/// What follows a pulse n_0 = 1 in the measurement: y + n and u, until both have died out. Empty if they do not.
+/// The samples after a pulse n_0 = 1 in the measurement: y + n and u, until both have died out. Empty if they do not.
 struct PulseResponse {
     std::vector<double> S, CS;  // samples of S and of C S
 };
@@ -83,7 +83,7 @@ inline std::optional<PulseResponse> pulse_response_of(OwnLoop loop, int max_samp
 
 inline std::complex<double> sum_at(const std::vector<double>& samples, double angle) {
     const std::complex<double> back = std::polar(1.0, -angle);
-    double re = 0, im = 0;  // Horner from the last sample
+    double re = 0, im = 0;  // Horner's scheme from the last sample
     for (std::size_t k = samples.size(); k-- > 0;) {
         const double next = re * back.real() - im * back.imag() + samples[k];
         im = re * back.imag() + im * back.real();
@@ -92,8 +92,8 @@ inline std::complex<double> sum_at(const std::vector<double>& samples, double an
     return {re, im};
 }
 
-/// The largest of f over 0 <= angle <= pi: a grid that is fine both in the angle and in its logarithm, then golden
-/// sections around every point that is higher than its neighbours, the ends too.
+/// The maximum of f over 0 <= angle <= pi: a grid that is fine both in the angle and in its logarithm, then golden
+/// sections around every point that is higher than its neighbours, including the ends.
 inline double largest_over_angles(const std::function<double(double)>& f, int linear = 500, int a_decade = 60) {
     std::vector<double> angle{0};
     for (int i = 1; i <= linear; ++i) angle.push_back(std::numbers::pi * i / linear);

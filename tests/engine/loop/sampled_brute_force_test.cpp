@@ -27,7 +27,7 @@ std::vector<SampledCase> cases(int rounds) {
     for (int round = 0; round < rounds; ++round)
         for (const KnownPlant& plant : known_plants()) {
             ++i;
-            // Where nothing holds the plant with so long a dead time or sample time, a shorter one.
+            // If nothing stabilises the plant with so long a dead time or sample time, a shorter one.
             std::optional<SampledCase> found;
             double Ts = kSampleTimes[std::size_t(i) % kSampleTimes.size()];
             double dead = kDeadTimes[std::size_t(i / 5 + round) % kDeadTimes.size()];
@@ -62,8 +62,8 @@ TEST(SampledBruteForce, TheCasesHaveEveryPlantAndEveryRule) {
     EXPECT_GE(the_cases().size(), 110u);
 }
 
-// The transform of the samples that follow a pulse: cut off at 1e-11 of the largest, which leaves some 1e-8 of a
-// slow loop.
+// The transform of the samples after a pulse: truncated at 1e-11 of the largest, which leaves about 1e-8 for a slow
+// loop.
 TEST(SampledBruteForce, PeaksAreThoseOfTheSamplesAfterAPulse) {
     for (const SampledCase& c : the_cases()) {
         SCOPED_TRACE(c.name);
@@ -78,8 +78,8 @@ TEST(SampledBruteForce, PeaksAreThoseOfTheSamplesAfterAPulse) {
     }
 }
 
-// The continuous y in two thousand parts a period, straight between them (in kParts where many periods pass): below
-// 1e-6 of the whole.
+// The continuous y in two thousand parts per period, linear between them (in kParts for many periods): below 1e-6 of
+// the whole.
 TEST(SampledBruteForce, IntegralsOfTheErrorAreThoseOfTheContinuousOutput) {
     int i = 0, finely = 0;
     for (const SampledCase& c : the_cases()) {
@@ -107,8 +107,8 @@ TEST(SampledBruteForce, IntegralsOfTheErrorAreThoseOfTheContinuousOutput) {
     EXPECT_GE(finely, 30);
 }
 
-// C S rises to pi/Ts while the dead time turns L eighteen times as fast as z: the highest of its ripples lies between
-// two points of a grid that S alone has made.
+// C S rises to pi/Ts while the dead time turns L eighteen times as fast as z: the highest of its ripples is between two
+// points of a grid made from S alone.
 TEST(SampledBruteForce, FindsTheHighestRippleOfTheControllersOutput) {
     SampledPid law{.gains = {.Kp = 0, .Ki = 0.78552787476650243, .Kd = 0.1065559254683302}, .Ts = 0.03};
     law.integral = IntegralRule::forward;
@@ -128,14 +128,14 @@ TEST(SampledLoop, AtRestItFollowsTheSetPointExactlyWithAnIntegrator) {
     const Peaks peaks = loop.peaks(loop.grid());
     EXPECT_EQ(peaks.T.value, 1);
     EXPECT_EQ(peaks.T.omega, 0);
-    EXPECT_EQ(peaks.CS.value, 0.5);  // 1/K: what u has moved when y has moved by one
+    EXPECT_EQ(peaks.CS.value, 0.5);  // 1/K: the move of u for a move of y by one
     const SampledPid proportional{.gains = {.Kp = 0.5}, .Ts = 0.3};
     const SampledLoop by_plant(integrator, proportional);
     EXPECT_EQ(by_plant.peaks(by_plant.grid()).T.value, 1);
 }
 
-// Behind a hold everything comes Ts/2 later than it would: of first order. A dead time that is shorter by that leaves,
-// with the trapezoidal rules, an error of second order.
+// A hold delays everything by Ts/2, to first order. If the dead time is reduced by that, the error of the trapezoidal
+// rules is of second order.
 TEST(SampledLoop, TendsToTheContinuousLoopByTheOrderOfItsRules) {
     ParallelPid gains{.Kp = 1.3, .Ki = 1.2, .Kd = 0.25, .filter = {FilterType::derivative, 0.1}};
     const auto own = [&](double L) { return *LinearPlant::make(Sopdt{.K = 1, .T1 = 1, .T2 = 0.3, .L = L}); };

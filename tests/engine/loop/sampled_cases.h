@@ -1,4 +1,4 @@
-// Plants of every kind, each with its coefficients typed a second time, and laws that hold them stable.
+// Plants of every kind, each with independently typed coefficients, and laws that stabilise them.
 #pragma once
 
 #include <optional>
@@ -23,7 +23,7 @@ inline Coefficients lags(const std::vector<double>& times_of) {
     return den;
 }
 
-/// The time scale of all of them is about one.
+/// Their time scales are about one.
 inline std::vector<KnownPlant> known_plants() {
     using Roots = std::vector<std::complex<double>>;
     std::vector<KnownPlant> all;

@@ -1,5 +1,4 @@
-// Sampled loops at the ends of what can be asked for: nothing crashes, nothing is not a number, and what theory says
-// holds there too.
+// Sampled loops at the limits of the allowed requests: no crash, no NaN, and agreement with theory.
 #include <gtest/gtest.h>
 
 #include <stop_token>
@@ -25,7 +24,7 @@ void expect_numbers(const Figure& figure, const char* name) {
     }
 }
 
-/// All figures of the loop, which are numbers or tell why not.
+/// Checks that all figures of the loop are numbers or have a reason.
 DeviceLoop evaluated(const Plant& plant, const SampledPid& law, const ProgramLimits& limits = {},
                      bool horizon = false) {
     EvaluateOptions options;
@@ -76,7 +75,7 @@ TEST(SampledExtremes, ALagOfRoundingNeitherFillsTheMemoryNorKeepsAStopWaiting) {
 }
 
 TEST(SampledExtremes, ASampleTimeOfAThousandLags) {
-    // y is at K u before the next sample: z = -K Kp of a proportional law, -(K Ki Ts - 1) of a pure integral one.
+    // y reaches K u before the next sample: z = -K Kp for a proportional law, -(K Ki Ts - 1) for a pure integral one.
     const DeviceLoop built = evaluated(Fopdt{.K = 0.5, .T = 1, .L = 3}, {.gains = {.Kp = 1}, .Ts = 1000}, {}, true);
     EXPECT_TRUE(built.robustness.stable);
     EXPECT_NEAR(*built.robustness.Ms, 2, 1e-9);  // 1/(1 - 0.5) at z = -1
@@ -84,8 +83,8 @@ TEST(SampledExtremes, ASampleTimeOfAThousandLags) {
     EXPECT_FALSE(count(Fopdt{.K = 0.5, .T = 1, .L = 3}, {.gains = {.Kp = 2.1}, .Ts = 1000}).stable());
     const DeviceLoop integral = evaluated(Fopdt{.K = 0.5, .T = 1}, {.gains = {.Ki = 0.002}, .Ts = 1000});
     EXPECT_TRUE(integral.robustness.stable);
-    EXPECT_NEAR(*integral.performance.setpoint.IAE, 1, 1e-5);  // deadbeat: what one lag takes
-    // e^1000 is no number: the loop is unstable, whatever the gain.
+    EXPECT_NEAR(*integral.performance.setpoint.IAE, 1, 1e-5);  // deadbeat: as for one lag
+    // e^1000 overflows: the loop is unstable, whatever the gain.
     for (const double Kp : {-3.0, 0.001, 2.0})
         EXPECT_FALSE(evaluated(Fopdt{.K = 1, .T = -1}, {.gains = {.Kp = Kp}, .Ts = 1000}).robustness.stable) << Kp;
 }
@@ -97,7 +96,7 @@ TEST(SampledExtremes, ASampleTimeOfATenThousandthOfALag) {
     const StepResponse load = simulate_linear(plant, law.gains, {0, 1}, {});
     EXPECT_NEAR(*built.performance.load.IAE, integral_of_absolute_error(load.nodes, 0, load.error_integral_final),
                 2e-4);
-    // Against its gain margin: stability is lost there.
+    // Compared with its gain margin: there stability is lost.
     for (const double share : {0.999, 1.001}) {
         SampledPid more = law;
         more.gains.Kp *= share * *built.robustness.gain_margin;
@@ -111,7 +110,7 @@ TEST(SampledExtremes, ADeadTimeOfFiveThousandSamples) {
         const DeviceLoop lag = evaluated(Fopdt{.K = 1, .T = T, .L = 5}, {.gains = {.Kp = 0.3, .Ki = 0.08}, .Ts = 1e-3});
         EXPECT_TRUE(lag.robustness.stable);
     }
-    // y = K u(t - L): |L| = K Kp all the way.
+    // y = K u(t - L): |L| = K Kp at all frequencies.
     const DeviceLoop gain = evaluated(Fopdt{.K = 1, .T = 0, .L = 5}, {.gains = {.Kp = 0.5}, .Ts = 1e-3}, {}, true);
     EXPECT_TRUE(gain.robustness.stable);
     EXPECT_NEAR(*gain.robustness.Ms, 2, 1e-9);
@@ -164,7 +163,7 @@ TEST(SampledExtremes, DoubleIntegrators) {
 
 TEST(SampledExtremes, APoleExactlyOnTheCircle) {
     const auto on_it = [](const Plant& plant, const SampledPid& law) { return count(plant, law).on_the_boundary; };
-    // Of an integrator, z - 1 + K Kp Ts: at -1, at 0 (deadbeat) and at 1.
+    // For an integrator, z - 1 + K Kp Ts: at -1, at 0 (deadbeat) and at 1.
     EXPECT_TRUE(on_it(Ipdt{.K = 1}, {.gains = {.Kp = 2}, .Ts = 1}));
     EXPECT_TRUE(count(Ipdt{.K = 1}, {.gains = {.Kp = 1}, .Ts = 1}).stable());
     const DeviceLoop deadbeat = evaluated(Ipdt{.K = 1}, {.gains = {.Kp = 1}, .Ts = 1});
@@ -174,7 +173,8 @@ TEST(SampledExtremes, APoleExactlyOnTheCircle) {
     EXPECT_FALSE(count(Fopdt{.K = 2, .T = 1, .L = 0.3}, {.gains = {.Kp = -0.5}, .Ts = 0.2}).stable());
     EXPECT_TRUE(count(Fopdt{.K = 2, .T = 1, .L = 0.3}, {.gains = {.Kp = -0.4999}, .Ts = 0.2}).stable());
     EXPECT_FALSE(count(Fopdt{.K = 2, .T = 1, .L = 0.3}, {.gains = {.Kp = -0.5001}, .Ts = 0.2}).stable());
-    // Half a swing, and a whole one, from sample to sample: the input moves one of both states only, the other goes on.
+    // Half an oscillation, or a whole one, between samples: the input moves only one of the two states; the other
+    // continues freely.
     for (const double swings : {0.5, 1.0}) {
         const double omega = 2 * std::numbers::pi * swings;
         const Plant undamped = TransferFunction{.num = {omega * omega}, .den = {1, 0, omega * omega}};
@@ -182,7 +182,7 @@ TEST(SampledExtremes, APoleExactlyOnTheCircle) {
         evaluated(undamped, {.gains = {.Kp = 0.3}, .Ts = 1});
         EXPECT_FALSE(count(undamped, {.gains = {.Kp = 0.1, .Ki = 0.1}, .Ts = 1}).stable()) << swings;
     }
-    // Elsewhere an undamped plant can be held.
+    // At other sample times an undamped plant can be stabilised.
     const Plant undamped = TransferFunction{.num = {1}, .den = {1, 0, 1}};
     const SampledPid law{.gains = {.Kp = 0.2, .Ki = 0.1, .Kd = 0.6}, .Ts = 0.3};
     double largest = 0;
@@ -195,7 +195,7 @@ TEST(SampledExtremes, APoleExactlyOnTheCircle) {
     EXPECT_NEAR(*built.robustness.Mks / peaks_of(*pulse).CS, 1, 1e-7);
 }
 
-// Tf = Ts/2 by the forward rule: D changes its sign for ever on its own, within the loop it can be held.
+// Tf = Ts/2 with the forward rule: D alone oscillates in sign forever, but within the loop it can be stabilised.
 TEST(SampledExtremes, AFilterWithItsPoleAtMinusOne) {
     SampledPid law{.gains = {.Kp = 0.5, .Ki = 0.2, .Kd = 0.1, .filter = {FilterType::derivative, 0.25}}, .Ts = 0.5};
     law.derivative = DerivativeRule::filtered_forward;
@@ -218,7 +218,7 @@ TEST(SampledExtremes, AFilterWithItsPoleAtMinusOne) {
     }
 }
 
-// A zero at s = 0 takes the integral's place: u drifts, and the pole at z = 1 is nobody's.
+// A zero at s = 0 cancels the integral: u drifts, and the pole at z = 1 is not controllable.
 TEST(SampledExtremes, AZeroAtTheOriginUnderAnIntegral) {
     const Plant plant = TransferFunction{.num = {1, 0}, .den = {1, 2, 1}};
     EXPECT_FALSE(count(plant, {.gains = {.Kp = 0.5, .Ki = 0.3}, .Ts = 0.2}).stable());
@@ -241,7 +241,7 @@ TEST(SampledExtremes, LawsWithoutAPart) {
         if (one.performance.load.IAE) {
             EXPECT_NEAR(*mirrored.performance.load.IAE, *one.performance.load.IAE, 1e-12);
         }
-        // Of the wrong sign an integral is never stable.
+        // An integral with the wrong sign is never stable.
         if (g.Ki != 0) {
             EXPECT_FALSE(evaluated(plant, law).robustness.stable);
         }

@@ -17,7 +17,7 @@ using Complex = std::complex<double>;
 
 LinearPlant fopdt(double K, double T, double L) { return *LinearPlant::make(Fopdt{.K = K, .T = T, .L = L}); }
 
-// Astrom and Wittenmark (1997), example 2.8: of K e^(-Ls)/(Ts + 1), d whole samples and a rest delta, the pulse
+// Astrom and Wittenmark (1997), example 2.8: for K e^(-Ls)/(Ts + 1), d whole samples and a remainder delta, the pulse
 // transfer function K z^-d ((1 - a1) + (a1 - a) z^-1)/(z - a), a = e^(-Ts/T), a1 = e^(-(Ts - delta)/T).
 TEST(HeldPlant, AFirstOrderLagHasItsClosedForm) {
     for (const double Ts : {0.01, 0.3, 1.0, 2.5, 7.0})
@@ -59,7 +59,7 @@ TEST(SampledLoop, TendsToTheContinuousLoopAsTheSampleTimeFalls) {
     EXPECT_NEAR(sampled(*longest) / Ms, 1.05, 1e-3);
 }
 
-/// A robust design of a random plant, with its loop's peak.
+/// A robust design for a random plant, with its loop's peak.
 struct Design {
     LinearPlant plant;
     ParallelPid gains;
@@ -80,7 +80,7 @@ std::optional<Design> random_design(std::uint64_t seed, bool resonant) {
 
 class OfRandomPlants : public testing::TestWithParam<bool> {};
 
-// The quick look against the whole peaks on the loop's finest grid.
+// The quick check compared with the complete peaks on the loop's finest grid.
 TEST_P(OfRandomPlants, ALimitIsKeptWhereThePeakIsBelowIt) {
     int kept = 0, exceeded = 0;
     for (std::uint64_t seed = 1; seed <= 60; ++seed) {
@@ -102,7 +102,7 @@ TEST_P(OfRandomPlants, ALimitIsKeptWhereThePeakIsBelowIt) {
     EXPECT_GT(exceeded, 300);
 }
 
-/// |S| at 400,000 frequencies up to pi/Ts, without a grid of the loop's own choice.
+/// |S| at 400,000 frequencies up to pi/Ts, independent of the loop's own grid.
 double densely_scanned_Ms(const SampledLoop& loop) {
     constexpr int kPoints = 400'000;
     double largest = 0;
@@ -113,8 +113,8 @@ double densely_scanned_Ms(const SampledLoop& loop) {
     return largest;
 }
 
-// On the flank of an antiresonance L passes near -1 between two frequencies of which neither shows it: |S| is small
-// where |L| is large, and near 1 where L is small.
+// On the flank of an antiresonance L passes near -1 between two frequencies that do not show it: |S| is small where |L|
+// is large, and near 1 where L is small.
 TEST(SampledLoop, AHumpBesideAnAntiresonanceBreaksALimit) {
     const double zero = 7.74e-4, pole = 4.98e-4, w = 1.466;
     Zpk zpk;

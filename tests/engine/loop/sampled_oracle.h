@@ -1,6 +1,6 @@
-// The sampled loop written out a second time, from the promises of engine/controller/sampled/sampled_pid.h and of
-// engine/loop/README.md alone: an own realisation, an own exponential, an own row of outputs on their way to the plant
-// and the difference equations of the law as they stand there. Nothing of the product computes here.
+// A second implementation of the sampled loop, written only from the descriptions in
+// engine/controller/sampled/sampled_pid.h and engine/loop/README.md: its own realisation, its own exponential, its own
+// queue of delayed outputs, and the difference equations of the law as documented. It uses no code of the product.
 #pragma once
 
 #include <Eigen/Eigenvalues>
@@ -56,8 +56,8 @@ public:
         }
     }
 
-    /// How the states move over h with v held: x(h) = Phi x + Gamma v. Taylor's series of [A h, B h; 0, 0] 2^-m in long
-    /// numbers, squared m times.
+    /// The motion of the states over h with v constant: x(h) = Phi x + Gamma v. Taylor's series of [A h, B h; 0, 0]
+    /// 2^-m in long double, squared m times.
     struct Motion {
         std::vector<double> Phi, Gamma;
     };
@@ -123,7 +123,7 @@ private:
     double D_ = 0;
 };
 
-/// The law's states and its equations, in the order of the comment in sampled_pid.h.
+/// The states and equations of the law, in the order of the comment in sampled_pid.h.
 struct OwnLaw {
     SampledPid law;
     double y_f = 0, v = 0, D = 0, I = 0, e_last = 0;
@@ -173,7 +173,7 @@ struct OwnLaw {
     }
 };
 
-/// Plant and law from sample to sample, everything that has a memory: the loop without anything from outside.
+/// Plant and law from sample to sample, with all states: the loop without external inputs.
 class OwnLoop {
 public:
     OwnLoop(const OwnPlant& plant, double dead_time, const SampledPid& law)
@@ -217,7 +217,7 @@ public:
     }
 
 private:
-    // Without what is fed to nothing: a state that only integrates, or is only held, would be an eigenvalue of its own.
+    // Without states that affect nothing: one that only integrates, or is only held, would be an eigenvalue of its own.
     std::vector<double> memory() const {
         std::vector<double> all = x_;
         const auto add = [&](const auto& more) { all.insert(all.end(), more.begin(), more.end()); };
@@ -254,7 +254,7 @@ private:
     OwnPlant plant_;
     OwnLaw law_;
     std::vector<double> x_;
-    std::deque<double> on_the_way_;  // u, the latest last: the first one drives the plant when a period begins
+    std::deque<double> on_the_way_;  // u, the latest last: the first one drives the plant at the beginning of a period
     std::size_t whole_ = 0;
     bool split_ = false;
     OwnPlant::Motion before_, after_;

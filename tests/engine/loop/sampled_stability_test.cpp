@@ -15,8 +15,7 @@ struct RandomLoop {
     SampledPid law;
 };
 
-/// Any plant of the searches' random ones under any law, stable or not: up to `max` samples of dead time and five of
-/// delay.
+/// Any random plant of the searches with any law, stable or not: up to `max` samples of dead time and five of delay.
 RandomLoop random_loop(int index, int max = 15) {
     Random random(1000 + static_cast<std::uint64_t>(index));
     RandomPlant drawn = random_plant(static_cast<std::uint64_t>(index), index % 4 == 0);
@@ -42,7 +41,7 @@ RandomLoop random_loop(int index, int max = 15) {
     g.Kd = random.one_in(3) ? 0 : g.Kp * slowest * random.log_uniform(0.02, 1);
     if (g.Ki != 0 && random.one_in(8)) g.Kp = 0;
     const int filter = random.whole(0, 3);
-    // From below the half sample on: there the forward rule's filter is unstable.
+    // From below half a sample on: there the forward rule's filter is unstable.
     g.filter = {static_cast<FilterType>(filter), filter == 0 ? 0.0 : law.Ts * random.log_uniform(0.3, 6)};
     return {drawn.description, OwnPlant(num, den), std::move(plant), law};
 }
@@ -59,7 +58,7 @@ int outside(const Eigen::VectorXcd& values) {
     return static_cast<int>(std::count_if(values.begin(), values.end(), [](auto z) { return std::abs(z) > 1; }));
 }
 
-/// How far from the circle the nearest one is.
+/// Distance of the nearest eigenvalue from the circle.
 double distance(const Eigen::VectorXcd& values) {
     double nearest = INFINITY;
     for (const auto z : values) nearest = std::min(nearest, std::abs(std::abs(z) - 1));
@@ -68,7 +67,8 @@ double distance(const Eigen::VectorXcd& values) {
 
 constexpr int kLoops = 500;
 
-// The eigenvalues of a matrix of up to 45 rows are good to 1e-7 at the circle, beyond it they are told apart.
+// The eigenvalues of a matrix of up to 45 rows are accurate to 1e-7 near the circle; at larger distances they are
+// distinguished.
 TEST(SampledStability, CountsTheEigenvaluesOutsideTheCircle) {
     int stable = 0, compared = 0;
     for (int i = 0; i < kLoops; ++i) {
@@ -87,7 +87,7 @@ TEST(SampledStability, CountsTheEigenvaluesOutsideTheCircle) {
     EXPECT_GT(compared, kLoops - 20);
 }
 
-// From point to point of a grid the dead time may turn L by more than once, which must not count as standing still.
+// Between two points of a grid the dead time may turn L by more than once, which must not count as no turn.
 TEST(SampledStability, CountsThemBehindAHundredSamplesToo) {
     int many = 0;
     for (int i = 0; i < 150; ++i) {
@@ -100,7 +100,7 @@ TEST(SampledStability, CountsThemBehindAHundredSamplesToo) {
     EXPECT_GT(many, 10);
 }
 
-/// With all gains times a factor the loop is stable between the gain margins and no longer stable beyond each of them.
+/// With all gains scaled by a factor the loop is stable between the gain margins and not stable beyond each of them.
 void check_gain_margins(const RandomLoop& loop) {
     const SampledLoop sampled(loop.plant, loop.law);
     const Margins margins = sampled.margins(sampled.grid());
@@ -131,7 +131,7 @@ TEST(SampledStability, GainMarginsAreWhereAnEigenvalueReachesTheCircle) {
         check_gain_margins(loop);
     }
     EXPECT_GT(looked_at, 100);
-    // Loops that a smaller gain makes unstable, and those between.
+    // Loops that a smaller gain makes unstable, and those in between.
     Random random(5);
     int found = 0;
     for (const KnownPlant& known : known_plants())
@@ -146,7 +146,7 @@ TEST(SampledStability, GainMarginsAreWhereAnEigenvalueReachesTheCircle) {
     EXPECT_GT(found, 50);
 }
 
-/// L by way of the pulse response, at an angle of z.
+/// L from the pulse response, at an angle of z.
 std::complex<double> open_loop(const PulseResponse& pulse, double angle) { return 1.0 / sum_at(pulse.S, angle) - 1.0; }
 
 // The crossings of |L| = 1 by bisection between 4000 angles, L from the samples after a pulse.

@@ -1,5 +1,5 @@
-// Gain margins of loops whose dead time turns L hundreds of times before the crossing that decides, against a dense
-// walk along the axis.
+// Gain margins of loops whose dead time turns L hundreds of times before the critical crossing, compared with a dense
+// scan along the axis.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double kMaxIntegral = 1;  // rad: pi/2 is the limit of stability
+constexpr double kMaxIntegral = 1;  // rad: pi/2 is the stability limit
 
 /// 1/|L| at the crossing of the negative real axis where |L| is largest, between two frequencies.
 double walked(const std::function<Complex(double)>& L, double from, double to, double delay) {
@@ -37,7 +37,7 @@ double walked(const std::function<Complex(double)>& L, double from, double to, d
     return 1 / largest;
 }
 
-/// A resonance that the dead time has turned `turns` times, under an integral: |L| is `top` there and small elsewhere.
+/// A resonance that the dead time has turned `turns` times, with an integral: |L| is `top` there and small elsewhere.
 struct Resonance {
     OscillatorySopdt plant;
     ParallelPid gains;
@@ -54,7 +54,7 @@ struct Resonance {
     }
 };
 
-// The top of the hill may lie anywhere between two crossings: a turn of width 1/L over it.
+// The maximum may lie anywhere between two crossings: one turn has the width 1/L.
 TEST(TurningMargins, TheGainMarginIsExactHoweverOftenTheDeadTimeTurns) {
     for (const double turns : {20.0, 70.0, 70.3, 150.55, 400.8, 1000.1})
         for (const double zeta : {2e-5, 3e-4, 2e-3}) {

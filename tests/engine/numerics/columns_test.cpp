@@ -1,4 +1,4 @@
-// Products of columns: what plain sums give, for lengths that fill registers and for those that do not.
+// Products of columns compared with plain sums, for lengths that fill registers and for others.
 #include "engine/numerics/columns.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ using Index = std::size_t;
 
 constexpr double kRounding = 1e-13;
 
-/// Columns of n random numbers, filled up with zeros; one number in four is 0, as in a chain of lags.
+/// Columns of n random numbers, padded with zeros; one number in four is 0, as in a chain of lags.
 std::vector<double> random_columns(Random& random, Index n, Index count) {
     std::vector<double> columns(count * column_length(n), 0.0);
     for (Index k = 0; k < count; ++k)
@@ -25,7 +25,7 @@ std::vector<double> random_columns(Random& random, Index n, Index count) {
     return columns;
 }
 
-/// Whether each has the n sums and nothing beyond them.
+/// Checks that each column has the n sums and zeros after them.
 void expect_column(const double* column, const std::vector<double>& sums) {
     for (Index i = 0; i < column_length(sums.size()); ++i)
         EXPECT_NEAR(column[i], i < sums.size() ? sums[i] : 0, kRounding) << i << " of " << sums.size();
@@ -67,7 +67,7 @@ TEST_P(OfLength, AProductIsThatOfPlainSums) {
 }
 
 TEST_P(OfLength, AProductMayStandBesideItsWeights) {
-    // Two numbers more of each column, behind the n that they are made of.
+    // Two more numbers in each column, behind the n that are used.
     const Index n = GetParam(), apart = column_length(n + 4);
     Random random(n + 50);
     const auto of_two = random_columns(random, 2, n), weights = random_columns(random, n + 4, 3);
@@ -92,7 +92,7 @@ TEST_P(OfLength, AProductMayStandBesideItsWeights) {
     }
 }
 
-/// A map of z, whose first `n` numbers count.
+/// Checks a map of z, whose first `n` numbers count.
 void expect_map(Index n, Index size) {
     const Index length = column_length(size);
     Random random(n + 100 + size);
@@ -106,7 +106,7 @@ void expect_map(Index n, Index size) {
     }
     std::vector<std::vector<double>> mapped;
     for (const auto registers : all_registers()) {
-        // What lies beside z stays as it is.
+        // Numbers next to z stay unchanged.
         std::vector<double> room(size + 8, 7.0);
         std::copy(z.begin(), z.end(), room.begin());
         map_columns(columns.data(), n, {room.data(), size}, inputs, registers);

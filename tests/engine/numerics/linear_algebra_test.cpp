@@ -53,7 +53,7 @@ TEST(MatrixScaling, NoEntryIsAboveOneAfterIt) {
 }
 
 TEST(BalancedNorm, KnowsNoUnitsAndCountsNoChain) {
-    // An oscillation of 2 rad a unit of time, its states in units 1e12 apart; an integrator of it; a chain.
+    // An oscillation of 2 rad per unit of time, with states whose units differ by 1e12; an integrator of it; a chain.
     const std::vector<double> A = {0, 2e-12, 0, -2e12, 0, 0, 1e20, 0, 0};
     EXPECT_NEAR(balanced_norm(A, 3), 2, 2);
     const std::vector<double> chain = {0, 0, 0, 1e9, 0, 0, 0, 1e9, 0};

@@ -1,4 +1,4 @@
-// Sums over long vectors: what plain sums give, the same to the last digit in both kinds of registers.
+// Sums over long vectors compared with plain sums; identical in both kinds of registers.
 #include "engine/numerics/long_vectors.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ double plain_sum(const std::vector<double>& a, const std::vector<double>& b) {
     return static_cast<double>(sum);
 }
 
-// Shorter than what is summed at once, whole multiples of it, and what is left over.
+// Lengths below one vectorised block, whole multiples of it, and with a remainder.
 TEST(LongVectors, SumsAreThoseOfPlainOnesInBothRegisters) {
     test::Random random(1);
     for (const std::size_t n : {0, 1, 2, 5, 15, 16, 17, 31, 32, 33, 48, 63, 100, 1000, 4099}) {

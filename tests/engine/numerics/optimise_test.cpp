@@ -1,5 +1,5 @@
-// The optimisers against other ways to the same minimum: enumeration of active sets, optimality conditions, closed
-// forms.
+// The optimisers compared with other methods for the same minimum: enumeration of active sets, optimality conditions,
+// closed forms.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -74,7 +74,7 @@ TEST(QuadraticProgram, IsTheOneFeasibleStationaryPoint) {
         const MatrixXd root = MatrixXd::NullaryExpr(n, n, [&] { return normal(random); });
         program.H = root * root.transpose() + 0.01 * MatrixXd::Identity(n, n);
         program.g = VectorXd::NullaryExpr(n, [&] { return 3 * normal(random); });
-        // Every third program has its first constraint twice, as two plants with the same peak give it.
+        // Every third program has its first constraint twice, like two plants with the same peak.
         for (Eigen::Index i = 0; i < m; ++i) {
             const bool again = trial % 3 == 0 && i == 1;
             const VectorXd a =
@@ -99,7 +99,7 @@ TEST(QuadraticProgram, RefusesAMatrixThatIsNotPositiveDefinite) {
     EXPECT_FALSE(solve(program).has_value());
 }
 
-// As a step of the joint search: unknowns t and s that enter linearly, next to no curvature of theirs, a large penalty.
+// Like a step of the joint search: unknowns t and s that enter linearly, almost no curvature in them, a large penalty.
 TEST(QuadraticProgram, ALargeOneMeetsItsOptimalityConditionsBesideALargePenalty) {
     std::mt19937 random(2);
     std::normal_distribution<double> normal;
@@ -133,7 +133,7 @@ TEST(QuadraticProgram, ALargeOneMeetsItsOptimalityConditionsBesideALargePenalty)
     }
 }
 
-/// Least x1 + x2 on the disc of radius sqrt 2: at (-1, -1), multiplier 1/2.
+/// Minimum of x1 + x2 on the disc of radius sqrt 2: at (-1, -1), multiplier 1/2.
 struct Disc {
     struct State {
         Eigen::Vector2d x;
@@ -196,7 +196,7 @@ TEST(Sqp, CurvatureStaysPositiveDefiniteWhereTheLagrangianBendsDown) {
             const double before = s.dot(H * s);
             update_curvature(H, s, y);
             ASSERT_EQ(H.llt().info(), Eigen::Success) << trial << " " << i;
-            // The secant condition, of y as damped: s'Hs keeps a fifth of what it was, and H s is y where y has more.
+            // The secant condition with damping: s'Hs keeps a fifth of its value, and H s is y if y has more.
             EXPECT_GE(s.dot(H * s), 0.2 * before * (1 - 1e-9));
             if (s.dot(y) > 0.2 * before) {
                 EXPECT_NEAR((H * s - y).norm(), 0, 1e-9 * (1 + y.norm()));
@@ -274,7 +274,7 @@ TEST(LogMaximum, FindsASharpResonance) {
 }
 
 TEST(LogMaximum, NeverAnswersLessThanWhatIsKnown) {
-    // Two peaks: the known point stands on the higher, narrow one.
+    // Two peaks: the known point is on the higher, narrow one.
     const auto f = [](double x) { return std::exp(-1e8 * std::pow(x - 1.5, 2)) + 0.5 * std::exp(-std::pow(x - 3, 2)); };
     const auto peak = log_maximum(f, 1, {1.5, f(1.5)}, 4);
     EXPECT_GE(peak.value, f(1.5));

@@ -1,4 +1,4 @@
-// Multiple roots on one point, and simple ones left alone.
+// Multiple roots are merged to one point, and simple ones are left unchanged.
 
 #include <gtest/gtest.h>
 
@@ -46,8 +46,8 @@ TEST(MultipleRoots, AreFoundBesideOthersAndInPairs) {
     }
 }
 
-// (s + 1)(0.005 s + 1)^2 multiplied out: one coefficient is off by one unit in its last place, which makes a pair of
-// the double root so narrow that a Newton step would turn it over.
+// (s + 1)(0.005 s + 1)^2 expanded: one coefficient is wrong by one unit in its last place, which turns the double root
+// into a pair so close that a Newton step would swap them.
 TEST(MultipleRoots, ARoundedCoefficientLeavesTheOthersTheirs) {
     const auto roots = polynomial_roots(std::vector<double>{2.5e-05, 0.010025, 1.0099999999999998, 1.0});
     EXPECT_EQ(std::ranges::count_if(roots, [](Complex root) { return std::abs(root + 1.0) < 1e-12; }), 1);
@@ -87,7 +87,7 @@ TEST(PolynomialRoots, TheirProductIsThePolynomialWhateverItsRounding) {
 }
 
 TEST(MultipleRoots, NearOnesStayApart) {
-    // Coefficients that tell 1 and 1.00001 apart, and four roots on a circle of radius 0.018 around -1.
+    // Coefficients that distinguish 1 and 1.00001, and four roots on a circle of radius 0.018 around -1.
     const auto two = polynomial_roots(std::vector<double>{1, 2.00001, 1.00001});
     EXPECT_NEAR(std::abs(two[0] - two[1]), 1e-5, 1e-9);
     for (const Complex root : polynomial_roots(std::vector<double>{1, 4, 6, 4, 1.0000001}))

@@ -1,4 +1,4 @@
-// Projections on a few long columns: against exact combinations, and Eigen's own decompositions.
+// Projections on a few long columns: compared with exact combinations, and Eigen's own decompositions.
 #include "engine/numerics/matrix/projection.h"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ TEST(Projection, IsTheLeastSquaresSolutionOfColumnsOfAnyCount) {
     }
 }
 
-// Of columns that nearly depend on each other nine digits of the angle between them are left, and the basis is one.
+// For nearly dependent columns nine digits of their angle remain, and the basis is orthogonal.
 TEST(Projection, StaysOrthogonalOnColumnsThatAreNearlyTheSame) {
     test::Random random(22);
     Eigen::MatrixXd A = random_matrix(random, 500, 3);
@@ -55,7 +55,7 @@ TEST(Projection, TheFirstColumnIsNotDeterminedWhereItDependsOnTheOthers) {
     EXPECT_FALSE(dependent.determined);
     EXPECT_EQ(dependent.linear[0], 0);
 
-    // A column of zeros in another place takes no part.
+    // A column of zeros in another place has no effect.
     A.col(0) = random_matrix(random, 100, 1);
     A.col(2).setZero();
     const Projection p = projected(A, y);

@@ -1,4 +1,4 @@
-// Subject: every fault of what was asked about at once, each with its place; what is computed with otherwise.
+// The subject of a request: every fault at once, each with its place; otherwise the data for the computation.
 #include "engine/plant/analysed_plant.h"
 
 #include <gmock/gmock.h>
@@ -42,7 +42,7 @@ TEST(AnalysedPlant, PlacesTheFaultsOfASetAtItsMembers) {
     EXPECT_THAT(places(PlantSet{{Fopdt{.K = 1, .T = 1, .L = 1}, hidden}}), ElementsAre("plant/plants/1/A"));
 }
 
-// Roots that a program has computed differ from their conjugates in the last digits.
+// Computed roots differ from their conjugates in the last digits.
 TEST(AnalysedPlant, TakesConjugatesThatDifferByRounding) {
     const Zpk nearly{.K = 1, .zeros = {}, .poles = {{-1, 2}, {-1, -2.0000000000000004}}, .L = 1};
     const auto made = AnalysedPlant::make(Plant(nearly));

@@ -1,4 +1,4 @@
-// Nonlinear plants that several tests look at.
+// Nonlinear plants for several tests.
 #pragma once
 
 #include <stdexcept>
@@ -46,7 +46,7 @@ inline NonlinearPlant bioreactor(double X, double S) {
         .output = "X"};
 }
 
-/// Strong acid and strong base: a is the acid that is left, mol/L, in the vessel.
+/// Strong acid and strong base: a is the excess acid, mol/L, in the vessel.
 inline NonlinearPlant ph_vessel(double a, double base_flow) {
     return {.states = {{"a", a}},
             .parameters = {{"V", 10.0}, {"Fa", 1.0}, {"Ca", 0.01}, {"Cb", 0.01}, {"Kw", 1e-14}},

@@ -170,7 +170,7 @@ TEST(NonlinearRefusals, RelativeDegrees) {
     EXPECT_THAT(refused(plant).message,
                 testing::StartsWith("The input Tj enters no derivative of the output up to the order 3 of the plant:"));
 
-    // u moves x through sin(x), which is 0 at x = 0 and nowhere near it.
+    // u moves x through sin(x), which is 0 at x = 0 but not near it.
     EXPECT_THAT(refused(scalar_plant("-x + sin(x)*u", 0)).message,
                 testing::StartsWith("The relative degree is undefined at the operating point:"));
 }

@@ -113,7 +113,7 @@ TEST(NonlinearSystem, AnUprightPendulumStandsAtItsZeros) {
     EXPECT_EQ(LinearPlant::make(system.linearised())->unstable_poles(), 1);
 }
 
-// Its speed is 0 there: a state without a size of its own.
+// Its speed is 0 there: a state without a natural size.
 TEST(NonlinearSystem, AHangingPendulumRestsWhereItsTorqueHoldsIt) {
     for (const double drag : {0.0, 0.2}) {
         const NonlinearPlant plant{

@@ -1,4 +1,4 @@
-// Regions of plants: what lies in them, and that it is the same every time.
+// Regions of plants: their members, which are reproducible.
 #include "engine/plant/plant_family.h"
 
 #include <gtest/gtest.h>
@@ -60,7 +60,7 @@ TEST(PlantRegion, GainFactorsScaleEveryPlantType) {
 }
 
 TEST(PlantRegion, TheEllipsoidHoldsNineteenOfTwentyDrawsOfItsCovariance) {
-    // In the coordinates of the covariance's axes a draw lies inside where its chi-square is below the 95 % point: the
+    // In the coordinates of the covariance's axes a sample is inside if its chi-square is below the 95 % point: the
     // surface points must have exactly that Mahalanobis distance.
     const std::vector<std::vector<double>> V = {{0.04, 0.1, 0.0}, {0.1, 1.0, -0.2}, {0.0, -0.2, 0.09}};
     const Plant plant = Fopdt{.K = 2, .T = 10, .L = 3};

@@ -1,5 +1,5 @@
-// Plants as people type them: every spelling of one plant is that plant, what can be read in two ways is refused, and
-// every linear plant's text is read back as it.
+// Plants as typed: every spelling of one plant gives that plant, ambiguous texts are refused, and every linear plant's
+// text is read back as it.
 #include "engine/plant/typed/typed_plant.h"
 
 #include <gmock/gmock.h>
@@ -22,7 +22,7 @@ std::string fault(const std::string& text, double unit = 1) {
     return read ? "no fault; read as " + plant_text(read->plant) : read.error().message;
 }
 
-/// The plant's own spelling: equal texts are equal plants, digit by digit.
+/// The plant's own text: equal texts mean equal plants, to all digits.
 std::string read_as(const std::string& text, double unit = 1) {
     const auto read = read_plant(text, unit);
     return read ? plant_text(read->plant) : "refused: " + read.error().message;
@@ -229,9 +229,9 @@ TEST(TypedPlant, EveryPlantsTextIsReadBackAsIt) {
         const auto back = read_plant(text);
         ASSERT_TRUE(back) << text << "\n" << back.error().message;
         EXPECT_LT(distance(plant, back->plant), 1e-9) << text << "\n" << plant_text(back->plant);
-        // What is read is written as it was, but for the order of two lags and for gains that a fraction hides.
+        // A text that is read is written unchanged, except for the order of two lags and for gains inside a fraction.
         same_type += plant_text(back->plant) == text;
-        // The formula that is shown is of the same plant.
+        // The displayed formula represents the same plant.
         const auto shown = typed::plant_of(back->formula);
         ASSERT_TRUE(shown) << text;
         EXPECT_LT(distance(plant, *shown), 1e-6) << text;
@@ -240,7 +240,7 @@ TEST(TypedPlant, EveryPlantsTextIsReadBackAsIt) {
     EXPECT_GT(same_type, tried * 3 / 4);
 }
 
-// Pieces of the grammar in any order: a plant that is one, or a fault that can be shown.
+// Pieces of the grammar in any order: a valid plant, or a printable fault.
 TEST(TypedPlant, AnyTextIsReadOrRefused) {
     constexpr const char* kPieces[] = {
         "2",    "s",      "(",          ")",   "[",    "]",   "+",     "-",    "*",       "/", "^",  "e^",

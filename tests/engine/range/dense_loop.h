@@ -1,4 +1,4 @@
-// Peaks and stability of a loop written apart from the engine: a dense sweep over frequency and a count of turns.
+// Peaks and stability of a loop, independent of the engine: a dense sweep over frequency and a count of turns.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,7 @@ struct DensePeaks {
     bool stable = false;
 };
 
-/// P(s) of a rational plant with dead time as the test knows it.
+/// P(s) of a rational plant with dead time, from the test itself.
 using PlantFunction = std::function<Complex(Complex s)>;
 
 inline Complex pid_at(const IdealPid& pid, Complex s) {

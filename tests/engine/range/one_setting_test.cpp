@@ -36,14 +36,14 @@ Expected<OneSetting> one_setting(const std::vector<RangePoint>& points, const Ra
     return design_one_setting(places, (*model)->points(), options);
 }
 
-/// What a brute-force search knows of a problem: simulation and the refined peaks, nothing of the design's search.
+/// The data for a brute-force search: simulation and the refined peaks, nothing of the design's search.
 struct BruteForce {
     std::vector<LinearPlant> plants;
     std::vector<double> own_IAE;
     RangeOptions options;
     robust::DesignProblem problem;  // filter and sign
 
-    /// ln of the aim with a penalty of what exceeds the limits.
+    /// ln of the objective with a penalty for exceeding the limits.
     double cost(const robust::DesignPoint& x) const {
         const ParallelPid gains = to_parallel(robust::controller_at(problem, x));
         double worst = -1e9, sum = 0, excess = 0;
@@ -62,7 +62,8 @@ struct BruteForce {
         return std::log(options.aim == Aim::worst ? worst : sum / double(plants.size())) + 60 * excess;
     }
 
-    /// Subplex runs from spread starts (each own optimum with several gains), each begun anew until nothing is won.
+    /// Subplex runs from distributed starting points (each optimum with several gains), each restarted until there is
+    /// no improvement.
     double min(const std::vector<robust::DesignPoint>& starts) const {
         double best = 100;
         const std::size_t n = problem.pid ? 3 : 2;
@@ -118,7 +119,7 @@ class OneSettingOfSet : public testing::TestWithParam<int> {};
 
 TEST_P(OneSettingOfSet, IsWithinHalfAPercentOfWhatBruteForceFinds) {
     Case set = ten_sets()[std::size_t(GetParam())];
-    set.options.between = Between::frequency_response;  // plants of unlike structure: only the points matter here
+    set.options.between = Between::frequency_response;  // plants of different structure: only the points matter here
     const auto one = one_setting(points_of(set.plants), set.options);
     ASSERT_TRUE(one) << one.error().message;
     BruteForce brute{.plants = {}, .own_IAE = {}, .options = set.options, .problem = {}};
@@ -133,7 +134,7 @@ TEST_P(OneSettingOfSet, IsWithinHalfAPercentOfWhatBruteForceFinds) {
         for (const double less : {0.3, 1.4})
             starts.push_back({std::log(std::abs(own.Kp)) - less, std::log(own.Ti), std::log(own.Td) + 0.5 * less});
     }
-    // From the answer too: a search over kinks that begins elsewhere often stalls short of the optimum.
+    // From the answer too: a nonsmooth search that begins elsewhere often stalls short of the optimum.
     const IdealPid& answer = one->controller;
     starts.push_back({std::log(std::abs(answer.Kp)), std::log(answer.Ti), std::log(answer.Td)});
     const double min = std::exp(brute.min(starts));
@@ -170,8 +171,8 @@ TEST(OneSetting, HoldsTheLimitsOnEveryPlantOfARegionAtAPoint) {
         }
 }
 
-// Two integrators with lags: the loops live far below the lags. The second set asks for little more than the least
-// peaks that any PID has there, where the price of a setting grows a hundred times as fast as its limits narrow.
+// Two integrators with lags: the bandwidth is far below the lags. The limits of the second set are only slightly above
+// the smallest peaks of any PID there, where the cost of a setting grows a hundred times as fast as its limits narrow.
 TEST(OneSetting, IsFoundBehindTwoIntegrators) {
     struct Set {
         double M, worst;

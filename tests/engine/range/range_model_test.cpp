@@ -50,7 +50,8 @@ TEST(RangeModel, InterpolatesWhatIsUncertainOfBothNeighbours) {
         min = std::min(min, member.low_frequency_gain());
         largest = std::max(largest, member.low_frequency_gain());
     }
-    // Nothing is uncertain at the right: halfway the factors 0.5 and 2 have become their roots, of the 2 between.
+    // The right end is not uncertain: halfway, the factors 0.5 and 2, with a ratio of 2 to the centre, have become
+    // their roots.
     EXPECT_NEAR(min, 2 / std::sqrt(2.0), 1e-12);
     EXPECT_NEAR(largest, 2 * std::sqrt(2.0), 1e-12);
     Fopdt surer{4, 10, 2};
@@ -76,7 +77,7 @@ TEST(RangeModel, EnclosesWhatIsUncertainOfOneNeighbourAlone) {
     const auto middle = (*model)->at(2);
     ASSERT_TRUE(middle);
     const auto nominal = numbers_of(*middle->nominal);
-    // Halfway each factor 0.5 or 2 has become its root, and all eight combinations of them may occur.
+    // Halfway, each factor 0.5 or 2 has become its root, and all eight combinations of them may occur.
     for (int corner = 0; corner < 8; ++corner) {
         const auto there = [&](const LinearPlant& member) {
             const auto numbers = numbers_of(member);
@@ -90,7 +91,7 @@ TEST(RangeModel, EnclosesWhatIsUncertainOfOneNeighbourAlone) {
     Fopdt alike{2, 5, 1};
     alike.uncertainty.L = alike.uncertainty.T = FactorRange{0.5, 2};
     const auto same = model_of_points(two(left, alike), Between::parameters);
-    EXPECT_LE((*same)->at(2)->members.size(), 6u);  // corners with their own kind alone, and centres
+    EXPECT_LE((*same)->at(2)->members.size(), 6u);  // corners interpolated only with their own kind, and centres
 }
 
 TEST(RangeModel, InterpolatesResponsesThatLieOnEitherSideOfANegativeRealAxis) {
@@ -121,7 +122,8 @@ TEST(RangeModel, InterpolatesFrequencyResponsesOfUnlikeStructures) {
     ASSERT_TRUE(middle->measured);
     for (const double omega : {0.02, 0.1, 0.3, 0.6}) {
         const auto a = LinearPlant::make(left)->at({0, omega}), b = LinearPlant::make(right)->at({0, omega});
-        // At these frequencies neither phase has passed -180 degrees twice: the principal values serve, once unwrapped.
+        // At these frequencies neither phase has passed -180 degrees twice: the principal values are sufficient,
+        // unwrapped once.
         const double phase_a = -std::atan(10 * omega) - 2 * omega, phase_b = -3 * std::atan(2 * omega) - omega;
         const auto expected = std::polar(std::sqrt(std::abs(a) * std::abs(b)), 0.5 * (phase_a + phase_b));
         EXPECT_LT(std::abs(middle->measured->at(omega) - expected), 1e-4 * std::abs(expected)) << omega;

@@ -1,4 +1,5 @@
-// A range known from recorded step tests with noise: what is designed holds on the plant itself, which no model is.
+// A range known from recorded step tests with noise: the design holds on the plant itself, which differs from every
+// model.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,13 +13,13 @@
 namespace tunewright {
 namespace {
 
-/// The plant itself over the range 10 to 90: its gain trebles and its lag halves.
+/// The plant itself over the range 10 to 90: its gain is multiplied by three and its lag halved.
 Fopdt plant_at(double at) {
     const double s = (at - 10) / 80;
     return {.K = std::pow(3, s), .T = 10 * std::pow(0.5, s), .L = 2};
 }
 
-/// A step test at the place, its noise 1 % of the change.
+/// A step test at the place, with noise of 1 % of the change.
 Record test_at(double at, std::mt19937_64& random) {
     const Fopdt plant = plant_at(at);
     std::normal_distribution<double> noise(0, 0.01 * plant.K);
@@ -57,7 +58,7 @@ double worst_on_the_plant(const Schedule& schedule) {
     return worst;
 }
 
-/// More than the build runs where TUNEWRIGHT_SEEDS says so: docs/correctness.md has what 100 of them gave.
+/// More seeds than in the build if TUNEWRIGHT_SEEDS is set: docs/correctness.md has the results of 100.
 unsigned seeds(unsigned fallback) {
     const char* wanted = std::getenv("TUNEWRIGHT_SEEDS");
     return wanted == nullptr ? fallback : static_cast<unsigned>(std::atoi(wanted));
@@ -73,7 +74,7 @@ TEST(RangeOfRecords, ItsScheduleHoldsTheLimitsOnThePlantItself) {
         EXPECT_TRUE(result->design.schedule->within_allowance) << "seed " << seed;
         const double worst = worst_on_the_plant(result->design.schedule->schedule);
         held += worst <= 1.4 * (1 + 1e-4) ? 1 : 0;
-        // The price of not knowing: far from the limit the region would be of no use.
+        // The cost of the uncertainty: far from the limit the region would have no effect.
         EXPECT_GT(worst, 1.3) << "seed " << seed;
     }
     EXPECT_GE(held, count - count / 100);

@@ -1,4 +1,4 @@
-// A schedule between given points: where the plant or the settings bend, the limits are nearest.
+// A schedule between given points: the limits are most nearly reached at kinks of the plant or the settings.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -62,8 +62,8 @@ struct Set {
     std::optional<int> rows = {};
 };
 
-// Looked at between rows alone, these exceed a limit by 0.03 %, 0.10 % and 0.07 % of it: at a point beside a row, and
-// between two points that lie close together.
+// If only places between rows were checked, these would exceed a limit by 0.03 %, 0.10 % and 0.07 %: at a point next to
+// a row, and between two points that are close together.
 TEST(Schedule, HoldsItsLimitsWhereThePlantBends) {
     const Set sets[] = {
         {{{9, 5.509, 43.0, 2.216}, {38, 2.509, 122.6, 7.76}, {76, 2.056, 47.48, 2.449}},
@@ -112,8 +112,8 @@ TEST(Schedule, HoldsItsLimitsWhereThePlantBends) {
     }
 }
 
-// A third of a per cent of the range, about 57.2, alone is above a limit, by 0.1 % of it: none of the curve's evenly
-// spread places lies there.
+// Only a third of a per cent of the range, about 57.2, exceeds a limit, by 0.1 %: none of the curve's evenly spaced
+// places lies there.
 TEST(Schedule, ThatIsGivenIsFoundToExceedALimitBetweenTheCurvesPlaces) {
     const Schedule given{.interpolation = Interpolation::linear_in_gains,
                          .hysteresis = 0,
@@ -134,7 +134,8 @@ TEST(Schedule, ThatIsGivenIsFoundToExceedALimitBetweenTheCurvesPlaces) {
     EXPECT_NEAR(worst.at, 57.18, 0.1);
     EXPECT_NEAR(worst.value.value_or(0), 1.3586, 3e-4);  // 1.35858 at 57.196 by a dense sweep
 
-    // However little it is above a limit, a warning says so with figures that differ; within the limits none does.
+    // However small the excess over a limit, a warning reports it with figures that differ; within the limits there is
+    // none.
     for (const double excess : {0.1, 1e-3, 1e-4, -1e-4}) {
         options.limits.Ms = *worst.value / (1 + excess);
         options.limits.Mt = 2;
@@ -152,7 +153,7 @@ TEST(Schedule, ThatIsGivenIsFoundToExceedALimitBetweenTheCurvesPlaces) {
     }
 }
 
-// A product's table may reach beyond the range: what its settings would do there is not judged.
+// A product's table may extend beyond the range: its settings there are not evaluated.
 TEST(Schedule, ThatIsGivenMayHaveRowsBeyondTheRange) {
     const auto branch =
         SteadyBranch::follow({.plant = range_tests::conical_tank(20), .along = Along::output, .from = 10, .to = 32});

@@ -1,4 +1,4 @@
-// The longest sample time of a schedule, held against the sampled loops of its places.
+// The longest sample time of a schedule, compared with the sampled loops of its places.
 #include "engine/range/schedule/design_schedule.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ std::shared_ptr<const RangeModel> furnace() {
     return *model_of_points(points, Between::parameters);
 }
 
-/// Ms with the sample time over Ms without, of the linear plant at a place.
+/// Ms with the sample time divided by Ms without, for the linear plant at a place.
 double raised(const RangeModel& model, double at, const IdealPid& pid, double Ts) {
     const LinearPlant plant = *model.at(at)->nominal;
     const Loop loop = *Loop::make(plant, to_parallel(pid));

@@ -21,12 +21,12 @@ namespace {
 using range_tests::Complex;
 using range_tests::PlantFunction;
 
-/// The linear plant of a place as the test works it out by hand, and what it takes to judge loops on it.
+/// The linear plant of a place, derived by hand in the test, and the data for evaluating loops on it.
 struct HandPlant {
     PlantFunction P;
     Plant plant;  // the same for the engine's simulation and single design
     int unstable_poles = 0;
-    double low = 1e-3, high = 1e3;  // of the frequencies that matter
+    double low = 1e-3, high = 1e3;  // of the relevant frequencies
 };
 
 /// K e^(-Ls)/(T s + 1) of the conical tank: T h' = ..., from its equation's derivatives at rest.
@@ -47,7 +47,7 @@ HandPlant of_two_states(double a11, double a12, double a21, double a22, double b
         .A = {{a11, a12}, {a21, a22}}, .B = {0, b2}, .C = {first ? 1.0 : 0.0, first ? 0.0 : 1.0}, .D = 0, .L = L};
     const double trace = a11 + a22, det = a11 * a22 - a12 * a21;
     hand.unstable_poles = det < 0 ? 1 : trace > 0 ? 2 : 0;
-    hand.low = 1e-6;  // near a fold a pole passes 0
+    hand.low = 1e-6;  // near a fold a pole passes through 0
     hand.high = 1e4;
     return hand;
 }
@@ -109,7 +109,7 @@ std::vector<RangeCase> cases() {
         {"jacketed reactor through its unstable states", jacketed, jacket_at, 6, 1.8},
         {"reactor of the papers", papers, endothermic_at, 6},
         {"neutralisation, gain 1 to 8", acid, acid_at, 6},
-        // More than six rows are needed: the gain of the rate varies a hundredfold, that of the pH fifty-eight-fold.
+        // More than six rows are needed: the gain of the rate varies by a factor of 100, that of the pH by 58.
         {"conical tank, gain of the rate 1 to 100", wide_tank, tank_at, 9},
         {"neutralisation, gain 1 to 58", wide_acid, acid_at, 9},
     };
@@ -149,7 +149,7 @@ TEST_P(ScheduleOfEquations, HoldsItsLimitsAt200PlacesAndCostsLittleMoreThanTheOw
         EXPECT_LE(peaks.Ms, range.limit * (1 + 1e-4)) << at;
         EXPECT_LE(peaks.Mt, range.limit * (1 + 1e-4)) << at;
     }
-    // Ten places against a single design by the method robust, with the range's filter rule.
+    // Ten places compared with a single design by the method robust, with the range's filter rule.
     for (int i = 0; i < 10; ++i) {
         const double at = range.range.from + (range.range.to - range.range.from) * (i + 0.37) / 10;
         const HandPlant hand = range.at(at);
@@ -299,7 +299,7 @@ TEST(Range, NamesTheWorstPlaceOfEveryQuantity) {
     const auto design = design_range({.scheduling = {}, .model = *model, .options = {}}, {});
     ASSERT_TRUE(design);
     ASSERT_EQ(design->one_curve.worst.size(), 3u);
-    // The lowest gain pays most for a setting that the highest one limits.
+    // The cost of one setting, which the highest gain limits, is largest at the lowest gain.
     EXPECT_EQ(design->one_curve.worst[2].quantity, Quantity::relative_IAE);
     EXPECT_DOUBLE_EQ(design->one_curve.worst[2].at, 10);
     EXPECT_NEAR(*design->one_curve.worst[2].value, design->one->points.front().relative_IAE.value_or(0), 1e-3);

@@ -1,5 +1,5 @@
-// Ranges on which no number of rows stays within the allowance, or on which a search from the own optima finds nothing:
-// there still is a schedule where there can be one.
+// Ranges on which no number of rows stays within the allowance, or on which a search from the optima finds nothing:
+// there is still a schedule if one is possible.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ bool warned(const RangeDesign& design, const std::string& code) {
     return std::ranges::any_of(design.warnings, [&](const Warning& warning) { return warning.code == code; });
 }
 
-/// Holds its limits, and costs no more than the one setting, as far as own optima that are interpolated tell.
+/// Checks that the design holds its limits, and costs no more than the one setting, as far as interpolated optima show.
 void expect_worth_having(const RangeDesign& design) {
     ASSERT_TRUE(design.one) << design.why_no_one;
     ASSERT_TRUE(design.schedule) << design.why_no_schedule;
@@ -56,7 +56,7 @@ TEST(ScheduleWhereNoneSuffices, TheOneThatComesNearestIsAnsweredWithAWarning) {
     EXPECT_TRUE(warned(design, "schedule-over-allowance"));
 }
 
-/// Strong acid and strong base: the gain of the pH rises and falls a thousandfold.
+/// Strong acid and strong base: the gain of the pH rises and falls by a factor of a thousand.
 NonlinearPlant strong_acid_and_base() {
     const std::string root = "sqrt(z^2 + 4*Kw)";
     return {.states = {{"w", -0.005}, {"z", -0.005}},

@@ -19,7 +19,7 @@ SteadyBranch tank_branch() {
     return *SteadyBranch::follow({.plant = conical_tank(20), .along = Along::output, .from = 10, .to = 32});
 }
 
-/// Fit for the tank of the tests: gains as its area.
+/// Suitable for the tank of the tests: gains proportional to its area.
 Schedule tank_schedule(Interpolation interpolation) {
     Schedule schedule{.interpolation = interpolation, .hysteresis = 0.5, .rows = {}};
     for (const double h : {10.0, 13.0, 17.4, 23.2, 32.0})
@@ -49,13 +49,13 @@ TEST(ScheduledRun, DoesNotMoveUWhereRowsSwitch) {
     ASSERT_TRUE(run) << run.error().message;
     EXPECT_GE(run->switches, 8);
     EXPECT_LT(run->largest_bump, 1e-9);
-    // Nor between two samples, by more than the corners of the ramp do: a new Kp on the error of the ramp would.
+    // Nor between two samples, by more than the corners of the ramp do: a new Kp acting on the error of the ramp would.
     for (std::size_t i = 1; i < run->u.size(); ++i) EXPECT_LT(std::abs(run->u[i] - run->u[i - 1]), 1.1) << run->t[i];
     EXPECT_TRUE(run->settled);
 }
 
 TEST(ScheduledRun, FollowsARampWithTheErrorThatTheIntegralNeeds) {
-    // On a slow ramp u = c sqrt(h) + A(h) h' moves steadily, so e = u' Ti/Kp.
+    // On a slow ramp u = c sqrt(h) + A(h) h' changes steadily, so e = u' Ti/Kp.
     const auto run = run_schedule(tank_branch(), tank_schedule(Interpolation::linear_in_gains), {{0, 10}, {400, 32}},
                                   {.horizon = 400, .samples = 401});
     ASSERT_TRUE(run);
@@ -64,7 +64,7 @@ TEST(ScheduledRun, FollowsARampWithTheErrorThatTheIntegralNeeds) {
         const double h = run->y[i], area = 0.09 * std::numbers::pi * h * h;
         const double du = 40 / (2 * std::sqrt(h)) * v + 2 * area / h * v * v;
         const IdealPid pid = settings_at(tank_schedule(Interpolation::linear_in_gains), h);
-        // The derivative lag of the filter and the settings' motion are second order in the ramp's slope.
+        // The derivative, the lag of the filter and the motion of the settings are of second order in the ramp's slope.
         EXPECT_NEAR(run->target[i] - h, (du * pid.Ti) / pid.Kp, 0.15 * du * pid.Ti / pid.Kp) << h;
     }
 }
@@ -83,7 +83,7 @@ TEST(ScheduledRun, SaysHowMuchTheSettingsMotionAddsOnALargeStepAndNotOnASlowPass
 TEST(ScheduledRun, PassesTheWholeRangeWithLessErrorThanOneSetting) {
     const SteadyBranch branch = tank_branch();
     const Schedule schedule = tank_schedule(Interpolation::linear_in_gains);
-    // The setting that the smallest area allows serves all levels, slowly.
+    // The setting that the smallest area allows is stable at all levels, but slow.
     const Schedule one = one_row(controller_of(schedule.rows.front()), 10);
     const auto passages = standard_passages(branch, schedule);
     ASSERT_TRUE(passages);
@@ -94,14 +94,14 @@ TEST(ScheduledRun, PassesTheWholeRangeWithLessErrorThanOneSetting) {
         ASSERT_TRUE(with && without);
         EXPECT_TRUE(with->ended.empty()) << with->ended;
         EXPECT_TRUE(with->settled) << passage.name;
-        // A large step down ends where the smallest area asks for low gain, and the schedule is no quicker there.
+        // A large step down ends where the smallest area requires low gain, and the schedule is not faster there.
         const double allowed = passage.name == "step down" ? 1.05 : 1.0;
         EXPECT_LT(with->IAE, allowed * without->IAE) << passage.name;
     }
 }
 
 TEST(LinearisingRun, IsTheFirstOrderLagOfItsTimeBehindTheDeadTime) {
-    NonlinearPlant tank = conical_tank(20);  // another level than the start's: the law begins where the run does
+    NonlinearPlant tank = conical_tank(20);  // another level than at the start: the law begins at the start of the run
     tank.input.min = -1e6;
     tank.input.max = 1e6;
     const auto branch = SteadyBranch::follow({.plant = tank, .along = Along::output, .from = 10, .to = 32});

@@ -51,13 +51,13 @@ TEST(SteadyBranch, AlongAParameterHoldsTheOutputOrTheInput) {
     EXPECT_NEAR(free->at(50)->y, std::pow(200.0 / 50, 2), 1e-8);
 }
 
-/// The jacket's temperature at which the reactor rests at T, in closed form.
+/// The steady-state jacket temperature for the reactor temperature T, in closed form.
 double jacket_at_rest(double T) {
     const double k = 34930800.0 * std::exp(-11843.0 / (1.987 * T));
     return T + (T - 298 - 11.92 * 10 * k / (1 + k)) / 0.3;
 }
 
-/// Where it is largest or smallest between two temperatures: golden section on the closed form.
+/// Its maximum or minimum between two temperatures: golden section on the closed form.
 double turning_point(double low, double high, double sign) {
     const double golden = 0.5 * (std::sqrt(5.0) - 1);
     while (high - low > 1e-9) {
@@ -82,7 +82,7 @@ TEST(SteadyBranch, FindsTheFoldsOfTheJacketedReactor) {
     const auto model = model_of_branch(std::make_shared<SteadyBranch>(*branch));
     ASSERT_TRUE(model);
     EXPECT_EQ((*model)->warnings().size(), 2u);
-    // Between the folds one pole lies in the right half-plane (van Heerden's slope condition), outside none.
+    // Between the folds one pole is in the right half-plane (van Heerden's slope condition), outside none.
     EXPECT_EQ((*model)->at(339)->nominal->unstable_poles(), 1);
     EXPECT_EQ((*model)->at(312)->nominal->unstable_poles(), 0);
     EXPECT_EQ((*model)->at(368)->nominal->unstable_poles(), 0);
@@ -98,7 +98,7 @@ TEST(SteadyBranch, AlongTheInputNamesTheFoldAndWhereThePlantJumps) {
               "The steady states turn back at Tc = 305.91 (y = 323.491, Tc = 305.91): with a larger Tc there is none "
               "near, and the plant jumps to y = 373.604. Give a range that ends before, or let it go along the output, "
               "which the loop holds.");
-    // The jump's end rests at the same Tc.
+    // The end of the jump has the same Tc.
     EXPECT_NEAR(jacket_at_rest(373.604), 305.91, 0.1);
 }
 

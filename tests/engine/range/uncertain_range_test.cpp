@@ -1,4 +1,4 @@
-// What is said of settings on plants that are uncertain: the worst of them counts, not the nominal one.
+// Findings about settings on uncertain plants: the worst plant counts, not the nominal one.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -41,7 +41,7 @@ const WorstPoint& worst_of(const RangeCurve& curve, Quantity quantity) {
     return *std::ranges::find(curve.worst, quantity, &WorstPoint::quantity);
 }
 
-/// The largest Ms at the corners of what is uncertain, over the range, by a dense sweep.
+/// The largest Ms at the corners of the uncertainty, over the range, by a dense sweep.
 double dense_Ms(double K_high, double T_low) {
     double largest = 0;
     for (int i = 0; i <= 60; ++i) {

@@ -1,4 +1,5 @@
-// Findings that advise: what they say is done, and helps as they say. Others state facts, which are held too.
+// Findings with advice: the advice is followed, and has the stated effect. Other findings state facts, which are also
+// checked.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -167,7 +168,7 @@ TEST(Advice, ALongerFilterDoesWhatIsSaidOfIt) {
     EXPECT_GT(advised, 4);
 }
 
-// |C S| of a PI is 1/K at rest, however small its Kp: that is no noise.
+// |C S| of a PI is 1/K at frequency 0, however small its Kp: that is not noise.
 TEST(Advice, ThePeakAtRestIsNoNoiseGain) {
     for (const double Kp : {1e-4, 0.01, 0.04}) {
         const TuningEntry entry = evaluated(Fopdt{.K = 1, .T = 1, .L = 25}, IdealPid{.Kp = Kp, .Ti = 60 * Kp});
@@ -176,7 +177,7 @@ TEST(Advice, ThePeakAtRestIsNoNoiseGain) {
     }
 }
 
-// The largest steps that are named are carried, and a hundredth more is not.
+// The actuator can produce the largest stated steps, but not steps one per cent larger.
 TEST(Advice, AnActuatorThatIsTooSmallIsNamedWithTheStepsThatItCarries) {
     EvaluateOptions options;
     options.actuator = ActuatorLimits{-0.3, 0.4};
@@ -214,7 +215,7 @@ TEST(Advice, AnActuatorThatIsTooSmallCondemnsNoMethod) {
     ASSERT_TRUE(result);
     EXPECT_EQ(result->verdict.front().code, "take");
     EXPECT_EQ(result->controllers[0].verdict.front().code, "actuator-too-small");
-    // It is bad if nothing holds y, for the same reason.
+    // It is bad if no controller holds y, for the same reason.
     request.subject = test::subject_of(Ipdt{.K = 1, .L = 1});
     const auto runaway = tune(request, {});
     ASSERT_TRUE(runaway);
@@ -222,12 +223,12 @@ TEST(Advice, AnActuatorThatIsTooSmallCondemnsNoMethod) {
     EXPECT_EQ(runaway->controllers[0].verdict.front().level, Level::bad);
 }
 
-/// The size of a step that no request names is nobody's: its sign alone must not decide.
+/// The request gives no size of a step: its sign alone must not decide.
 TEST(Advice, AnAssumedStepThatTheActuatorDoesNotCarryIsANote) {
     const IdealPid pid{.Kp = 0.8, .Ti = 8};
     for (const Plant& plant : {Plant(Fopdt{.K = 2, .T = 10, .L = 3}), Plant(Ipdt{.K = 0.2, .L = 1})}) {
         EvaluateOptions options;
-        options.actuator = ActuatorLimits{0, 100};  // u cannot be below where it rests
+        options.actuator = ActuatorLimits{0, 100};  // u cannot be below its steady-state value
         for (const double load : {1.0, -1.0}) {
             options.load_step = load;
             const TuningEntry assumed = evaluated(plant, pid, options, {});
@@ -245,7 +246,7 @@ TEST(Advice, AnAssumedStepThatTheActuatorDoesNotCarryIsANote) {
     }
 }
 
-/// A load that the actuator cannot carry says nothing of the set point, and does not hide what that does.
+/// A load that the actuator cannot compensate does not concern the set point, and does not hide findings about it.
 TEST(Advice, AStepBeyondTheActuatorExcusesItsOwnResponseAlone) {
     EvaluateOptions options;
     options.actuator = ActuatorLimits{-0.4, 2};
@@ -277,7 +278,7 @@ TEST(Advice, WhatStaysWithinTheOvershootAskedForIsNoFinding) {
     EXPECT_GE(within, 3);
 }
 
-/// A search that was stopped finds nothing, and the verdict stands without it.
+/// A search that was stopped finds nothing, and the verdict is given without it.
 TEST(Advice, ACureWhoseSearchIsStoppedIsNone) {
     auto request = advice_request(TransferFunction{.num = {1}, .den = {10, 11, 1}, .L = 0}, "robust", 1.4);
     const auto result = tune(request, {});
@@ -301,7 +302,7 @@ TEST(Advice, ACureWhoseSearchIsStoppedIsNone) {
 }
 
 TEST(Advice, OnEquationsTheStepThatTheActuatorCarriesIsWhereTheyComeToRest) {
-    // y = x^2 at rest x = u: from u 1 up to 1.2, y goes from 1 to 1.44.
+    // y = x^2, at rest x = u: from u 1 to 1.2, y goes from 1 to 1.44.
     NonlinearPlant plant{.states = {{"x", 1}},
                          .parameters = {},
                          .equations = {{"x", "u - x"}},
@@ -320,8 +321,9 @@ TEST(Advice, OnEquationsTheStepThatTheActuatorCarriesIsWhereTheyComeToRest) {
     EXPECT_NEAR(finding->figures.at("largest_setpoint_step"), 0.44, 1e-9);
 }
 
-// A firmware without weight and filter: the step's overshoot, the limit, and the lag that keeps it. A limit that the
-// request did not set is the method's own: above it there is a word, and up to a quarter of the step no doubt.
+// A firmware without weight and filter: the finding has the overshoot of the step, the limit, and the lag that keeps
+// it. A limit that the request did not set is the method's own: above it there is a finding, and up to a quarter of the
+// step no doubt.
 void expect_overshoot_told(std::optional<double> asked) {
     int apart = 0;
     for (const std::string product : {"klipper", "marlin", "siemens_fb41_cont_c", "esphome_pid"}) {

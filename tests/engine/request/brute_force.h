@@ -1,4 +1,5 @@
-// The best that a product can do by trying: settings on its own grid of numbers, judged by the test's own formulas.
+// The best settings of a product by brute force: settings on its own grid of numbers, evaluated by the test's own
+// formulas.
 #pragma once
 
 #include <cstdio>
@@ -8,10 +9,10 @@
 
 namespace tunewright::test {
 
-inline constexpr double kWorse = 1.01;       // than what trying finds
-inline constexpr int kNet = 7, kRounds = 4;  // of the net that is tried, and how often it is made finer
+inline constexpr double kWorse = 1.01;       // relative to the best by brute force
+inline constexpr int kNet = 7, kRounds = 4;  // of the grid, and number of refinements
 
-/// One plant behind its hold, at frequencies from far below its corners to half the sampling frequency.
+/// One plant with its hold, at frequencies from far below its corners to half the sampling frequency.
 class Judge {
 public:
     Judge(const Case& c, double Ts, double Ms, double Mt) : plant_(c.plant, Ts, 1), Ts_(Ts), Ms_(Ms), Mt_(Mt) {
@@ -23,7 +24,7 @@ public:
         }
     }
 
-    /// Whether |S| and |T| stay within the limits, by C(z) = sum of the increments z^-k/(1 - z^-1) after a pulse.
+    /// True if |S| and |T| stay within the limits, by C(z) = sum of the increments z^-k/(1 - z^-1) after a pulse.
     bool within_limits(const OwnProgram& program) {
         increments(program);
         std::size_t at_S = 0, at_T = 0;
@@ -43,7 +44,7 @@ public:
         }
         return refined(at_S, false) <= Ms_ * kHolds && refined(at_T, true) <= Mt_ * kHolds;
     }
-    /// 1/Ki: what the load IAE cannot be below. Of the program last asked about.
+    /// 1/Ki: a lower bound of the load IAE, for the program that was checked last.
     double min_iae() const { return Ts_ / std::abs(rest_); }
     double iae(const OwnProgram& program, double enough) const {
         OwnLoopPlant plant = plant_;
@@ -53,7 +54,7 @@ public:
 private:
     static constexpr double kHolds = 1 + 1e-6;
 
-    // u comes to rest, at -Ki Ts, once filter and slopes have forgotten the pulse.
+    // u settles at increments of -Ki Ts, once filter and slopes have forgotten the pulse.
     void increments(OwnProgram program) {
         steps_.clear();
         double last = 0, largest = 0;
@@ -96,7 +97,7 @@ private:
     double rest_ = 0;
 };
 
-/// Gain and times of a product's own form as its numbers, in the digits in which it takes them.
+/// Gain and times of a product's own form as its numbers, in the digits that it accepts.
 struct Form {
     std::string gain, integral, derivative;
     double of_gain = 1;                         ///< number per K
@@ -131,21 +132,21 @@ inline std::string four_digits(double x) {
     return text;
 }
 
-/// Settings by trial: every (Ti, Td) of a coarse net about the answer and of ever finer ones about the best, the gain
-/// as large as the limits let it be and less.
+/// Brute-force search for settings: every (Ti, Td) of a coarse grid around the answer and of ever finer ones around the
+/// best, with the largest gain within the limits and smaller ones.
 class BruteForce {
 public:
     BruteForce(std::string product, Form form, Typed answer, Judge judge)
         : product_(std::move(product)), form_(std::move(form)), answer_(std::move(answer)), judge_(std::move(judge)) {}
 
-    std::function<void(Typed&)> tie = {};  ///< sets the filter's number where it follows from the derivative's
+    std::function<void(Typed&)> tie = {};  ///< sets the filter's number if it follows from the derivative's
 
     struct Best {
         double IAE = std::numeric_limits<double>::infinity();
         Typed typed;
     };
 
-    /// `net`: points of a side of the coarse net; `rounds` of finer ones.
+    /// `net`: points per side of the coarse grid; `rounds`: number of finer ones.
     Best best(int net, int rounds) {
         read_answer();
         const double wide = std::log(6.0);
@@ -207,7 +208,7 @@ private:
         for (double K = 8 * K_; K > K_ / 30 && low == 0; K /= 1.3) {
             if (!serves(K, Ti, Td)) continue;
             if (judge_.min_iae() > best_.IAE) return;
-            // Small |S| and |T| of an unstable loop are no use.
+            // Small |S| and |T| of an unstable loop are meaningless.
             const double bound = 1e4 * judge_.min_iae();
             if (!std::isfinite(judge_.iae(own_program(product_, typed(K, Ti, Td)), bound))) continue;
             low = K;

@@ -1,4 +1,4 @@
-// Which controller an answer says to take: what keeps the limits, within its rule's validity, is never passed over for
+// The controller that an answer proposes: one that keeps the limits, within its rule's validity, is never replaced by
 // one that costs many times as much.
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ const TuningEntry* taken(const TuningResult& result) {
     return &result.controllers[static_cast<std::size_t>(first.figures.at("entry"))];
 }
 
-// From the figures of the answer alone.
+// From the figures of the answer only.
 bool keeps_limits(const TuningEntry& entry) {
     const Robustness& r = entry.evaluation->robustness;
     const Performance& p = entry.evaluation->performance;
@@ -56,7 +56,7 @@ void expect_not_dominated(const TuningResult& result) {
     for (const TuningEntry& other : result.controllers) {
         if (!other.evaluation || !keeps_limits(other) || !valid(other)) continue;
         EXPECT_GE(*other.evaluation->performance.load.IAE, IAE / 3) << best->title << " before " << other.title;
-        // Nor by a tenth by one that is as good a level and no less robust.
+        // Nor by a tenth by one with an equally good level and no less robustness.
         const bool as_good = other.verdict.front().level <= best->verdict.front().level &&
                              *other.evaluation->robustness.Ms <= *best->evaluation->robustness.Ms;
         if (as_good) {
@@ -76,7 +76,7 @@ TEST(Choice, IsNotALevelAtManyTimesTheCost) {
         ASSERT_NE(taken(result), nullptr);
         EXPECT_LE(*taken(result)->evaluation->performance.load.IAE, 3 * robust) << plant.L;
     }
-    // Asked for Ms 2 the optimum there is the one to take: its little margin is what was asked for.
+    // For a limit of Ms 2 the optimum there is proposed: its small margin was requested.
     for (const double L : {1.0, 25.0}) {
         const TuningResult result = all_methods(Fopdt{.K = 1, .T = L == 1 ? 10.0 : 1.0, .L = L}, 2);
         expect_not_dominated(result);
@@ -101,7 +101,7 @@ TEST(Choice, IsDominatedOnNoPlant) {
 }
 
 TEST(Choice, IsOutsideItsRulesValidityOnlyWhereNothingElseHolds) {
-    // Haalman below L/T = 0.1 next to a rule that is made for it.
+    // Haalman below L/T = 0.1 compared with a rule that is valid there.
     TuningRequest request;
     request.subject = test::subject_of(Fopdt{.K = 1, .T = 100, .L = 1});
     request.tune = {{.method = "haalman", .options = {}}, {.method = "simc", .options = {}}};

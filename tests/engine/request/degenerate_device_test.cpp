@@ -1,4 +1,4 @@
-// Settings typed for a product come with a warning if their proportional part is next to nothing.
+// Settings typed for a product have a warning if their proportional part is almost zero.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,8 +16,8 @@ bool warns(const TuningEntry& entry) {
                                [](const Warning& warning) { return warning.code == "degenerate-design"; });
 }
 
-// Resonances behind dead times, whose optimum is often pure integral and derivative action; where it is not, nothing is
-// said.
+// Resonances with dead time, whose optimum often has pure integral and derivative action; if it has not, there is no
+// warning.
 TEST(DegenerateDevice, EveryTypedDesignWithoutAProportionalPartSaysSo) {
     int degenerate = 0, ordinary = 0;
     for (const std::string product : {"marlin", "esphome_pid", "simple_pid", "klipper"})

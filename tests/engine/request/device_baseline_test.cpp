@@ -1,4 +1,4 @@
-// Settings as they stand in a product today: the loop that they make, and their ideal twin.
+// Today's settings of a product: their loop, and their ideal form.
 #include <gtest/gtest.h>
 
 #include "engine/controller/product/to_controller.h"
@@ -12,7 +12,7 @@ using product::Settings;
 
 const Case kPlant{"two lags", Sopdt{.K = 2, .T1 = 10, .T2 = 4, .L = 3}, 3, {0, 400, 4, 20}};
 
-// About Kp = 0.7, Ti = 9 s, Td = 2.5 s; what is not given has the maker's default.
+// About Kp = 0.7, Ti = 9 s, Td = 2.5 s; other settings have the maker's default.
 Settings settings_of(const std::string& product, double Ts) {
     if (product == "siemens_pid_compact") return {{"Gain", 0.7}, {"Ti", 9.0}, {"Td", 2.5}, {"TdFiltRatio", 0.2}};
     if (product == "rockwell_pide_independent") return {{"PGain", 17.5}, {"IGain", 116.7}, {"DGain", 0.729}};
@@ -46,7 +46,7 @@ TuningRequest request_with_baseline(const std::string& product, const Settings& 
 
 class DeviceBaseline : public testing::TestWithParam<std::string> {};
 
-// The longer sample time brings out the rules of integral, derivative and filter.
+// The longer sample time shows the effect of the rules of integral, derivative and filter.
 TEST_P(DeviceBaseline, IsJudgedAsTheProductsOwnProgramRunsIt) {
     for (const double Ts : {0.1, 0.5}) {
         const auto result = tune(request_with_baseline(GetParam(), settings_of(GetParam(), Ts), Ts), {});
@@ -66,7 +66,7 @@ INSTANTIATE_TEST_SUITE_P(Products, DeviceBaseline,
                                          "discretepids_jl", "openplc_iec_pid", "matlab_pidstd", "labview_pid"),
                          name_of_case);
 
-// TS is a whole number of milliseconds, and the block computes with it whatever was asked for.
+// TS is a whole number of milliseconds, and the block computes with it whatever was requested.
 TEST(DevicePeriod, IsTheOneThatIsTyped) {
     const Case fast{"fast", Fopdt{.K = 2, .T = 0.2, .L = 0.05}, 0.05, {0, 10, -10, 10}};
     TuningRequest request = request_of(fast, "simc");

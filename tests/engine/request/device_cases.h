@@ -1,4 +1,4 @@
-// Twenty plants and the thirty-three products whose equations were read, and a request for each pair.
+// Twenty plants and the thirty-three products whose equations were read, with a request for each pair.
 #pragma once
 
 #include <string>
@@ -18,9 +18,9 @@ struct Spans {
 struct Case {
     std::string name;
     Plant plant;
-    double shortest = 1;  ///< time that counts in the loop: lag, dead time
+    double shortest = 1;  ///< shortest relevant time of the loop: lag, dead time
     Spans spans = {};
-    double seconds = 1;  ///< per unit of the plant's time
+    double seconds = 1;  ///< seconds per unit of the plant's time
 };
 
 inline const std::vector<Case>& device_plants() {
@@ -109,7 +109,7 @@ inline TuningRequest request_of(const Case& c, const std::string& method) {
     return request;
 }
 
-/// What a person reads off the answer and types, with nothing but its texts.
+/// The settings that a user reads in the answer and types, from its texts only.
 inline Typed typed_of(const device::Fitted& fitted, const Case& c, double Ts) {
     Typed typed{
         .text = {}, .Ts = Ts * c.seconds, .Sy = c.spans.y_high - c.spans.y_low, .Su = c.spans.u_high - c.spans.u_low};

@@ -1,5 +1,5 @@
-// The figures of a controller as it is built, against a program written from the maker's equations, typed with the
-// answer's texts and run on a plant that shares nothing with the engine.
+// The figures of a product, compared with a program written from the maker's equations, with settings typed from the
+// answer's texts, on a plant that shares no code with the engine.
 #include <gtest/gtest.h>
 
 #include "tests/engine/request/expect_device.h"
@@ -10,8 +10,8 @@ namespace {
 
 using namespace test;
 
-// Of all pairs of product and plant every sixth is looked at in a long run, so that each plant meets every family of
-// laws; without the division all hold.
+// A long run checks every sixth pair of product and plant, so that each plant occurs with every family of laws; with
+// all pairs the figures hold too.
 const std::size_t kEvery = static_cast<std::size_t>(long_or_quick(6, 18));
 
 std::size_t number_of(const std::string& product) {
@@ -76,14 +76,14 @@ TEST_P(DeviceDesigns, HoldTheirLimitsOnTheOwnProgramAsItIsTyped) {
     }
 }
 
-// One of each family of laws.
+// One product of each family of laws.
 INSTANTIATE_TEST_SUITE_P(Products, DeviceDesigns,
                          testing::Values("siemens_pid_compact", "rockwell_pide_independent", "emerson_deltav_series",
                                          "mitsubishi_fx_pid", "openplc_iec_pid", "matlab_pid", "reprapfirmware",
                                          "controlsystems_jl_pid"),
                          name_of_case);
 
-// A heater's gain is never negative, and nothing in its settings turns it round.
+// A heater's gain is never negative, and none of its settings reverses it.
 TEST(DeviceRefusals, SayThatAHeaterCannotActTheOtherWay) {
     for (const std::string product : {"marlin", "klipper", "esphome_pid", "betaflight"}) {
         const Case& c = device_plants()[4];  // of negative gain

@@ -1,4 +1,4 @@
-// Designs for products whose filter or set-point weight is not free.
+// Designs for products whose filter or set-point weight is fixed.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -32,7 +32,7 @@ const product::Setting& setting(const device::Fitted& fitted, const std::string&
     return *found;
 }
 
-// A filter of Td/10 would ring at half a sample time, and every design with it exceed the limits.
+// A filter of Td/10 would oscillate at half a sample time, and every design with it would exceed the limits.
 TEST(DeviceFilter, OfForwardDifferencesIsNoShorterThanASample) {
     for (const std::string product : {"matlab_pid", "simulink_pid_parallel", "simulink_pid_ideal"}) {
         const auto result = tune(fixed_request(product, Fopdt{2, 10, 3}, 0.5, 1.6), {});
@@ -63,13 +63,14 @@ TEST(DeviceSetpoint, OfAFixedWeightSaysWhatItOvershoots) {
         EXPECT_TRUE(result);
         const auto& verdict = result->controllers.front().verdict;
         const auto found = std::ranges::find(verdict, "overshoot", &verdict::Finding::code);
-        // One voice: no note tells of another filter of the set point.
+        // Consistent: no note mentions another filter of the set point.
         for (const auto& note : result->controllers.front().on_device->fitted.notes)
             EXPECT_TRUE(note.code != "prefilter" && note.code != "setpoint-filter") << product << ": " << note.detail;
         return found != verdict.end() ? found->text : std::string();
     };
     EXPECT_THAT(said("siemens_fb41_cont_c"), testing::HasSubstr("on the set point keeps it within 12.0 %"));
-    // The weight that can be set is chosen on the continuous twin: as sampled it is half a point more, and said.
+    // The weight that can be set is chosen with the continuous ideal form: the sampled loop overshoots by half a point
+    // more, which is reported.
     EXPECT_THAT(said("discretepids_jl"), testing::HasSubstr("by 12.5 %, more than the 12.0 % asked for"));
 }
 

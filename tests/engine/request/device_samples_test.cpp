@@ -1,5 +1,5 @@
-// Products whose filter is a number of samples, on plants that resonate or are mostly dead time: their designs against
-// everything that trying finds for that number. A sample of the plants; all 60 with TUNEWRIGHT_ALL_PLANTS=1.
+// Products whose filter is a number of samples, on plants that are resonant or mostly dead time: their designs compared
+// with brute force for that number. A sample of the plants; all 60 with TUNEWRIGHT_ALL_PLANTS=1.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,10 +18,10 @@ constexpr int kPlants = 60;
 
 struct Task {
     Case plant;
-    double Ts = 0, M = 1.4;  ///< Ms and Mt
+    double Ts = 0, M = 1.4;  ///< limits of Ms and Mt
 };
 
-/// From a seed each, so that a part of them is the same as in the whole.
+/// Each from its own seed, so that a part of them is the same as in the whole set.
 Task task_of(int seed) {
     std::mt19937 random(static_cast<unsigned>(seed));
     const auto log_uniform = [&](double low, double high) {
@@ -49,7 +49,7 @@ std::vector<int> seeds() {
     return all;
 }
 
-/// By how many times trying is better.
+/// The cost relative to the best by brute force.
 double cost_against_trying(const std::string& product, const Task& task) {
     TuningRequest request = request_of(task.plant, "robust");
     request.tune[0].options.set("Ms", task.M);
@@ -89,7 +89,7 @@ INSTANTIATE_TEST_SUITE_P(Products, DeviceSamples,
                          testing::Values("esphome_pid", "reprapfirmware", "openplc_iec_pid", "klipper", "marlin"),
                          name_of_case);
 
-// A resonance behind a dead time, where the best has complex zeros: Ti far below Td. Found by trying over all four
+// A resonance with dead time, where the optimum has complex zeros: Ti far below Td. Found by brute force over all four
 // numbers of ESPHome: kp 0.000943, ki 0.0000825, kd 0.2 and two samples have 13,436 (Ms 1.990).
 TEST(DeviceSamples, TheBestOfAResonanceLiesFarFromTheIdealDesign) {
     const Task task{.plant = {.name = "resonance",

@@ -1,4 +1,4 @@
-// Settings of a product, against everything that trying finds on its own law and grid of numbers.
+// Settings of a product, compared with brute force on its own law and grid of numbers.
 #include <gtest/gtest.h>
 
 #include "tests/engine/request/brute_force.h"
@@ -46,8 +46,8 @@ INSTANTIATE_TEST_SUITE_P(Products, DeviceSearch,
 
 class NearestSettings : public testing::TestWithParam<std::string> {};
 
-// The step rule of Ziegler and Nichols has Ti = 4 Td, which a series form with a filter of its lead cannot be;
-// Foxboro's lead has none and is that exactly, but not AMIGO's shorter Ti.
+// The step rule of Ziegler and Nichols has Ti = 4 Td, which a series form with a filter of its lead cannot represent;
+// Foxboro's lead has none and represents it exactly, but not AMIGO's shorter Ti.
 TEST_P(NearestSettings, AreAsRobustAsTheIdealLoopAndLeaveNothingToTrying) {
     const std::string product = GetParam();
     const bool exact = product == "foxboro_pid";

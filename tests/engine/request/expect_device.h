@@ -1,4 +1,4 @@
-// What the tests of controllers as built ask of every case.
+// Checks of every case in the tests of products.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -10,14 +10,14 @@
 
 namespace tunewright::test {
 
-/// Whoever reads it learns something: a refusal is never a word or a code.
+/// A refusal is informative: a sentence, never a word or a code.
 inline void expect_sentence(const std::string& text) {
     ASSERT_GT(text.size(), 30u) << text;
     EXPECT_TRUE(std::isupper(static_cast<unsigned char>(text.front()))) << text;
     EXPECT_EQ(text.back(), '.') << text;
 }
 
-/// Load IAE, ISE and peak to 0.1 %, the resolution of a simulation in steps of the sample time; Ms and Mt to 1e-4.
+/// Load IAE, ISE and peak to 0.1 %, the accuracy of a simulation in steps of the sample time; Ms and Mt to 1e-4.
 inline void expect_figures_of_own_program(const DeviceEntry& on_device, const std::string& product, const Case& c) {
     const double Ts = on_device.fitted.law.Ts;
     const Typed typed = typed_of(on_device.fitted, c, Ts);
@@ -40,7 +40,7 @@ inline void expect_figures_of_own_program(const DeviceEntry& on_device, const st
     EXPECT_NEAR(*on_device.loop.robustness.Mt, peaks.Mt, 1e-4 * peaks.Mt);
 }
 
-/// A test's name of a product.
+/// The name of a test from its product.
 inline std::string name_of_case(const testing::TestParamInfo<std::string>& info) { return info.param; }
 
 }  // namespace tunewright::test

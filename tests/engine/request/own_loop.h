@@ -1,5 +1,5 @@
-// The loop of a test's own plant and a product's own program: its load response, and its sensitivity from the answer of
-// the samples to a pulse on the measurement.
+// The loop of a test's own plant and a product's own program: its load response, and its sensitivity from the response
+// of the samples to a pulse on the measurement.
 #pragma once
 
 #include <algorithm>
@@ -14,11 +14,11 @@
 
 namespace tunewright::test {
 
-/// The integral of |y| after a unit load step at the plant's input; infinite where it does not come to rest within
-/// `max` samples, or exceeds `enough`.
+/// The integral of |y| after a unit load step at the plant's input; infinite if it does not settle within `max`
+/// samples, or exceeds `enough`.
 inline double own_load_iae(OwnLoopPlant& plant, OwnProgram program, int max = 3000000,
                            double enough = std::numeric_limits<double>::infinity()) {
-    constexpr double kRest = 2e-5;  // of the whole, in the second half of the time
+    constexpr double kRest = 2e-5;  // of the total, in the second half of the time
     double earlier = 0;
     int next = 512;
     for (int k = 1; k <= max; ++k) {
@@ -36,8 +36,8 @@ struct OwnPeaks {
     double Ms = 0, Mt = 0;
 };
 
-/// max |S| and |T| at 0 < omega <= pi/Ts: S is the z-transform of what the program reads after a pulse of 1 that is
-/// added to the measurement once. `Ts` in the plant's time.
+/// max |S| and |T| at 0 < omega <= pi/Ts: S is the z-transform of the program's input after a pulse of 1 that is added
+/// to the measurement once. `Ts` in the plant's time.
 inline OwnPeaks own_peaks(OwnLoopPlant plant, OwnProgram program, double Ts) {
     std::vector<double> read;
     double largest = 0, recent = 0;
@@ -45,7 +45,7 @@ inline OwnPeaks own_peaks(OwnLoopPlant plant, OwnProgram program, double Ts) {
         const double y = plant.y() + (k == 0 ? 1 : 0);
         read.push_back(y);
         plant.step(program(y));
-        // At rest where a stretch as long as a fifth of the whole stays small. The pulse itself is not counted.
+        // Settled if a stretch of a fifth of the whole stays small. The pulse itself is not counted.
         if (k > 0) largest = std::max(largest, std::abs(y));
         recent = std::max(recent, std::abs(y));
         if ((k & (k - 1)) == 0 && k > 256) {
@@ -56,12 +56,12 @@ inline OwnPeaks own_peaks(OwnLoopPlant plant, OwnProgram program, double Ts) {
     const auto S = [&](double omega) {
         const std::complex<double> step = std::polar(1.0, -omega * Ts);
         std::complex<double> sum = 0;
-        for (auto y = read.rbegin(); y != read.rend(); ++y) sum = sum * step + *y;  // Horner
+        for (auto y = read.rbegin(); y != read.rend(); ++y) sum = sum * step + *y;  // Horner's scheme
         return sum;
     };
     const auto peak = [&](auto&& value) {
         constexpr int kLooks = 400;
-        constexpr double kNear = 0.97;  // of the highest: other tops that may be higher still
+        constexpr double kNear = 0.97;  // relative to the highest: other maxima may be higher after refinement
         const double high = std::numbers::pi / Ts, low = high * 1e-7, ratio = std::pow(high / low, 1.0 / kLooks);
         std::vector<double> looked;
         for (int i = 0; i <= kLooks; ++i) looked.push_back(value(low * std::pow(ratio, i)));

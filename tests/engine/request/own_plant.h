@@ -1,5 +1,5 @@
-// A plant of a test's own, exact from change to change of its input, with nothing of the engine in it but the
-// description that it is made from.
+// A plant of the test's own, exact between changes of its input, which uses only the description of the plant from the
+// engine.
 #pragma once
 
 #include <Eigen/Dense>
@@ -56,8 +56,8 @@ inline Eigen::MatrixXd own_exponential(Eigen::MatrixXd M) {
     return sum;
 }
 
-/// y = P(s) e^(-Ls) (u + d), u held over each sample time from when it is given, d = `load` from t = 0 on. Strictly
-/// proper, at rest at t = 0, when the first sample is read.
+/// y = P(s) e^(-Ls) (u + d), u held for each sample time after its output, d = `load` from t = 0 on. Strictly proper,
+/// at rest at t = 0, when the first sample is read.
 class OwnLoopPlant {
 public:
     OwnLoopPlant(const Plant& plant, double Ts, double load) : load_(load) {
@@ -66,7 +66,8 @@ public:
         whole_ = static_cast<int>(std::floor(samples + 1e-9));
         const double rest = std::max(0.0, f.L - whole_ * Ts);
         n_ = static_cast<int>(f.den.size()) - 1;
-        // Time counts in units in which the poles are near 1; the integral of y is a state of its own, in the caller's.
+        // Time is counted in units in which the poles are near 1; the integral of y is a separate state in the caller's
+        // unit.
         double unit = Ts;
         for (int i = 1; i <= n_; ++i)
             if (f.den[static_cast<std::size_t>(i)] != 0)
@@ -106,7 +107,7 @@ public:
         return (C_.leftCols(n_).cast<std::complex<double>>() * x)(0) * std::pow(z, -whole_);
     }
 
-    /// One sample time on, u given at its beginning.
+    /// Advances by one sample, with u given at its beginning.
     void step(double u) {
         inputs_.push_back(u + load_);
         const double last = inputs_.front();
@@ -142,7 +143,7 @@ private:
     Piece before_, after_;
     Eigen::VectorXd state_, next_;
     Eigen::RowVectorXd C_;
-    std::deque<double> inputs_;  // of the samples that are still on their way, the oldest first
+    std::deque<double> inputs_;  // of the samples that are still delayed, the oldest first
     double iae_ = 0, ise_ = 0, peak_ = 0;
 };
 

@@ -9,7 +9,7 @@ OwnProgram turned(OwnProgram program) {
     return [program = std::move(program)](double y) { return -program(y); };
 }
 
-// Ti typed as 0 is off wherever these blocks say so; a gain of the integral as 0 is off by itself.
+// Ti typed as 0 means off in all blocks that document it; an integral gain of 0 is off by itself.
 double over(double K, double time) { return time > 0 ? K / time : 0; }
 
 OwnProgram compact(const Typed& t) {
@@ -98,7 +98,7 @@ OwnProgram smart_thermostat(const Typed& t) {
     return summing(percent * t.number("kp"), percent * t.number("ki"), percent * t.number("kd"), 0, t.Ts);
 }
 
-// Versatile Thermostat: coef_int times the error; the outdoor part does not move.
+// Versatile Thermostat: coef_int times the error; the outdoor part is constant.
 OwnProgram versatile(const Typed& t) {
     return [K = t.Su * t.number("coef_int")](double y) { return -K * y; };
 }
@@ -130,8 +130,8 @@ OwnProgram epid(const Typed& t) {
 
 OwnProgram ros(const Typed& t) { return summing(t.number("p"), t.number("i"), t.number("d"), 0, t.Ts); }
 
-// Foxboro PID: OUT = (100/PBAND)(1 + 1/(INT s))(SP - (1 + DERIV s) y_f), y_f through 1/(1 + Tf s + (Tf s)^2/2),
-// 1/Tf = KD (1/INT + 1/DERIV); how it is sampled was not read: backward Euler throughout.
+// Foxboro PID: OUT = (100/PBAND)(1 + 1/(INT s))(SP - (1 + DERIV s) y_f), y_f through 1/(1 + Tf s + (Tf s)^2/2), 1/Tf =
+// KD (1/INT + 1/DERIV); its sampling is not documented: backward Euler throughout.
 OwnProgram foxboro(const Typed& t) {
     const double K = 100 / t.number("PBAND") * t.Su / t.Sy, INT = 60 * t.number("INT"), DERIV = 60 * t.number("DERIV"),
                  Ts = t.Ts, Tf = DERIV > 0 ? 1 / (t.number("KD") * (1 / INT + 1 / DERIV)) : 0;
@@ -158,7 +158,7 @@ OwnProgram honeywell(const Typed& t) {
     };
 }
 
-/// Of blocks with a switch: its name, and what stands there for a plant whose gain is negative.
+/// For blocks with a switch: its name, and its value for a plant with negative gain.
 struct Switch {
     std::string name, direct;
 };

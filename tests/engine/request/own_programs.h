@@ -1,6 +1,6 @@
-// The programs of products, each written from its maker's published difference equation and nothing else: the texts
-// typed for its parameters go in, and out comes what it does with a measurement, sample for sample. The set point is 0
-// and every value a deviation from the operating point; times in seconds, spans as sizes.
+// The programs of products, each written only from its maker's published difference equation: the input is the texts
+// typed for its parameters, the output is its response to a measurement, sample for sample. The set point is 0 and
+// every value a deviation from the operating point; times in seconds, spans as sizes.
 #pragma once
 
 #include <cmath>
@@ -14,10 +14,10 @@
 
 namespace tunewright::test {
 
-/// What stands in a controller.
+/// The settings of a controller.
 struct Typed {
     std::map<std::string, std::string> text;
-    double Ts = 0;          ///< s; with which the program is called
+    double Ts = 0;          ///< s; sample time of the program
     double Sy = 1, Su = 1;  ///< spans
 
     double number(const std::string& name) const { return std::stod(text.at(name)); }
@@ -46,8 +46,8 @@ private:
     double Kd_, Tf_, Ts_, D_ = 0, last_ = 0;
 };
 
-// Position algorithms that add the error in full at the sample it is read (backward Euler), D of -PV or of the error,
-// which is the same with the set point at rest.
+// Position algorithms that add the complete error at the sample at which it is read (backward Euler), D of -PV or of
+// the error, which is the same with a constant set point.
 inline OwnProgram summing(double Kp, double Ki, double Kd, double Tf, double Ts) {
     return [=, I = 0.0, D = BackwardDerivative(Kd, Tf, Ts)](double y) mutable {
         I += Ki * Ts * -y;
@@ -66,8 +66,8 @@ inline OwnProgram trapezoidal_sum(double Kp, double Ki, double Kd, double Ts) {
     };
 }
 
-// dCV = Kp dE + Ki E dt + Kd d2(-PV)/dt: PIDE and Yokogawa's fieldbus block. `change_of_error`: the move for E as P
-// sees it, of the measurement alone in both (the set point is at rest).
+// dCV = Kp dE + Ki E dt + Kd d2(-PV)/dt: PIDE and Yokogawa's fieldbus block. `change_of_error`: the change of E for P,
+// in both cases of the measurement alone (the set point is constant).
 inline OwnProgram velocity(double Kp, double Ki, double Kd, double Ts) {
     return [=, u = 0.0, y1 = 0.0, y2 = 0.0](double y) mutable {
         u += -Kp * (y - y1) - Ki * y * Ts - Kd * (y - 2 * y1 + y2) / Ts;
@@ -77,9 +77,8 @@ inline OwnProgram velocity(double Kp, double Ki, double Kd, double Ts) {
     };
 }
 
-// Mitsubishi FNC 88: dMV = KP [ (EV_n - EV_n-1) + (TS/TI) EV_n + D_n ],
-// D_n = TD/(TS + KD TD) (-2 PV_n-1 + PV_n + PV_n-2) + KD TD/(TS + KD TD) D_n-1, of backward action with the sign of
-// -PV.
+// Mitsubishi FNC 88: dMV = KP [ (EV_n - EV_n-1) + (TS/TI) EV_n + D_n ], D_n = TD/(TS + KD TD) (-2 PV_n-1 + PV_n +
+// PV_n-2) + KD TD/(TS + KD TD) D_n-1, for backward action with the sign of -PV.
 inline OwnProgram mitsubishi(const Typed& typed) {
     const double KP = typed.number("KP") / 100, TI = typed.number("TI") / 10, TD = typed.number("TD") / 100,
                  KD = typed.number("KD", 0) / 100, TS = typed.number("TS") / 1000;
@@ -94,8 +93,8 @@ inline OwnProgram mitsubishi(const Typed& typed) {
     };
 }
 
-// DeltaV: OUT = GAIN (...) + F, the integral a lag of time RESET around the output less what it is not to contain: in
-// FORM Standard the derivative, in FORM Series nothing.
+// DeltaV: OUT = GAIN (...) + F, the integral is a lag of time RESET around the output without the excluded part: the
+// derivative in FORM Standard, none in FORM Series.
 inline OwnProgram deltav(const Typed& typed, bool series) {
     const double GAIN = typed.number("GAIN"), RESET = typed.number("RESET"), RATE = typed.number("RATE"),
                  ALPHA = typed.number("ALPHA", 0.125), Ts = typed.Ts;
@@ -145,7 +144,7 @@ inline OwnProgram forward_euler(double Kp, double Ki, double Kd, double Tf, doub
     };
 }
 
-/// num(z)/den(z), first powers first, of -y.
+/// num(z)/den(z) in ascending powers, applied to -y.
 class DirectForm {
 public:
     DirectForm(std::vector<double> num, std::vector<double> den)
@@ -167,7 +166,7 @@ private:
     std::deque<double> in_, out_;
 };
 
-// ControlSystems.jl: pid(...) as a transfer function, c2d by Tustin as a whole. The integrator apart keeps its root on
+// ControlSystems.jl: pid(...) as a transfer function, c2d by Tustin as a whole. A separate integrator keeps its root on
 // the circle: with w = (2/Ts)(z - 1)/(z + 1) for s, C = I Ts/2 (z + 1)/(z - 1) + R(s), or both times the filter.
 inline OwnProgram tustin(const Typed& typed) {
     const double Kp = typed.number("param_p"), Ti = typed.number("param_i"), Td = typed.number("param_d", 0),
@@ -178,7 +177,7 @@ inline OwnProgram tustin(const Typed& typed) {
     const double d0 = 1, d1 = Tf, d2 = second ? Tf * Tf / 2 : 0;
     DirectForm filter({n0 + n1 * w + n2 * w * w, 2 * n0 - 2 * n2 * w * w, n0 - n1 * w + n2 * w * w},
                       {d0 + d1 * w + d2 * w * w, 2 * d0 - 2 * d2 * w * w, d0 - d1 * w + d2 * w * w});
-    // What is left is 1/s: (Ts/2)(1 + z^-1)/(1 - z^-1).
+    // The remainder is 1/s: (Ts/2)(1 + z^-1)/(1 - z^-1).
     return [=, last = 0.0, sum = 0.0](double y) mutable {
         const double x = Kp * filter(-y);
         sum += Ts / 2 * (x + last);
@@ -225,7 +224,7 @@ inline OwnProgram slopes(double Kp, double Ki, double Kd, int M, double Ts) {
     };
 }
 
-// PX4: torque = P e + I - D dy/dt with the integral as it was; it is updated afterwards. DiscretePIDs.jl likewise, with
+// PX4: torque = P e + I - D dy/dt with the old integral, which is updated afterwards. DiscretePIDs.jl likewise, with
 // its derivative by backward Euler.
 inline OwnProgram late_integral(double Kp, double Ki, double Kd, double Tf, double Ts) {
     return [=, I = 0.0, D = BackwardDerivative(Kd, Tf, Ts)](double y) mutable {

@@ -1,4 +1,5 @@
-// The order of a comparison: nothing that oscillates or breaks a limit above what holds, and no reward for sharpness.
+// The order of a comparison: an entry that oscillates or exceeds a limit never ranks above one that holds, and higher
+// sharpness is not rewarded.
 #include "engine/request/ranking.h"
 
 #include <gmock/gmock.h>
@@ -42,7 +43,7 @@ bool comes_to_rest(const Evaluation& evaluation) {
     return does.setpoint.settling_time && does.load.recovery_time && does.setpoint.IAE && does.load.IAE;
 }
 
-// The figures of the answer alone, without its `standing`.
+// From the figures of the answer only, without its `standing`.
 bool holds(const TuningEntry& entry, double rank_Ms) {
     const Evaluation& evaluation = *entry.evaluation;
     const Figure& Ms = evaluation.region ? evaluation.region->worst_Ms : evaluation.robustness.Ms;
@@ -73,7 +74,7 @@ TEST(Ranking, SharpRowsDoNotOutrankTheOptimum) {
     EXPECT_EQ(at_rank(*result, 0).title, "Robust optimum (PID)");
     EXPECT_THAT(result->ranking_by, HasSubstr("excess of the load IAE over the least at the same Ms"));
     expect_order(*result, 2);
-    // By load IAE alone it was behind eight rows of Ms up to 2.
+    // By load IAE alone it ranked behind eight rows with Ms up to 2.
     int lower = 0;
     const double IAE = *at_rank(*result, 0).evaluation->performance.load.IAE;
     for (const TuningEntry& entry : result->controllers)
@@ -123,7 +124,7 @@ TEST(Ranking, TheEntryToShowFirstIsTheOneThatTheVerdictNames) {
     const auto result = tune(request_for(Fopdt{.K = 1, .T = 10, .L = 3}, {method("simc"), method("robust", 1.4)}), {});
     ASSERT_TRUE(result && result->proposed);
     EXPECT_EQ(*result->proposed, result->verdict.front().figures.at("entry"));
-    // Where the verdict names none, the first with a controller.
+    // If the verdict names none, the first with a controller.
     std::vector<TuningEntry> entries(2);
     EXPECT_FALSE(verdict::proposed(entries, {}));
     entries[1].unjudged.emplace();
@@ -131,7 +132,8 @@ TEST(Ranking, TheEntryToShowFirstIsTheOneThatTheVerdictNames) {
 }
 
 TEST(Ranking, OnANonlinearPlantTheEquationsDecideWhatSettles) {
-    // pH: a set-point step of 0.5 throws the sharper loops into a limit cycle, though their linearisation is calm.
+    // pH: a set-point step of 0.5 drives the sharper loops into a limit cycle, although their linearisation is well
+    // damped.
     const NonlinearPlant pH{.states = {{"x", -3.16}},
                             .parameters = {{"V", 20.0}, {"Fa", 4.0}, {"Ca", 100.0}, {"Cb", 1000.0}, {"Kw", 0.01}},
                             .equations = {{"x", "(Fb*(Cb - x) - Fa*(Ca + x))/V"}},
@@ -169,7 +171,7 @@ TEST(Ranking, TodaysSettingsAreHeldToTheLimitThatWasAskedOfTheDesign) {
 }
 
 TEST(Ranking, ARowWithoutAnOptimumIsComparedAtTheNearestMs) {
-    // Without dead time rules reach Ms = 1, where no optimum lies.
+    // Without dead time rules reach Ms = 1, where there is no optimum.
     const auto result =
         tune(request_for(Fopdt{.K = 1, .T = 5, .L = 0}, {method("lambda"), method("imc"), method("robust", 1.4)}), {});
     ASSERT_TRUE(result) << result.error().message;

@@ -62,7 +62,7 @@ TEST(UltimateAlone, AllAreTheRulesOnTheUltimatePointAndOthersSayWhatTheyNeed) {
     EXPECT_EQ(robust->ranking, std::vector<int>{1});
 }
 
-/// The same words as for every entry without a controller (docs/verdicts.md).
+/// The same words as for every other entry without a controller (docs/verdicts.md).
 TEST(UltimateAlone, AMethodWithoutAnAnswerHasTheVerdictOfEveryOther) {
     const auto result = tune(known_point({{"robust", {}}, {"tyreus_luyben", {}}}), {});
     ASSERT_TRUE(result);

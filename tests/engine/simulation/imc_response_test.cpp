@@ -1,4 +1,4 @@
-// The full revised IMC controller over time, where its model's dead time is next to nothing.
+// The full revised IMC controller over time, for a model with almost no dead time.
 #include "engine/simulation/imc/imc_response.h"
 
 #include <gtest/gtest.h>

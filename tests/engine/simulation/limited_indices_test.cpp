@@ -1,5 +1,6 @@
-// Indices within actuator limits against a fixed-step program: the classical Runge-Kutta method with 800 steps a dead
-// time, the delayed input kept at half steps, Simpson's rule; its own error, by 400 steps, is 2e-8 or less.
+// Indices within actuator limits compared with a fixed-step program: the classical Runge-Kutta method with 800 steps
+// per dead time, the delayed input stored at half steps, Simpson's rule; its own error, from 400 steps, is 2e-8 or
+// less.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,7 +13,7 @@ namespace {
 struct Case {
     Zpk plant;
     ParallelPid controller;
-    bool setpoint = true;  // a unit step of the set point, else of the load
+    bool setpoint = true;  // a unit step of the set point, or otherwise of the load
     ActuatorLimits limits;
     double horizon = 0;
     double IAE = 0, ISE = 0, ITAE = 0, TV = 0;

@@ -1,5 +1,5 @@
-// The loop with actuator limits against a plain simulation with tiny steps, against the loop without limits, and
-// against cases known in closed form.
+// The loop with actuator limits compared with a simple simulation in tiny steps, with the loop without limits, and with
+// closed-form cases.
 #include "engine/simulation/limited/limited_response.h"
 
 #include <gtest/gtest.h>
@@ -212,7 +212,7 @@ TEST(LimitedResponse, SaturatedIntegratorRampsExactly) {
 }
 
 TEST(LimitedResponse, AntiWindupCutsTheOvershootOfWindup) {
-    // The same law without tracking overshoots by far more: the plain simulation with Tt = infinity shows it.
+    // The same law without tracking overshoots by far more, as the simple simulation with Tt = infinity shows.
     const auto plant = made(Ipdt{.K = 1, .L = 0.2});
     const ParallelPid gains{.Kp = 1.5, .Ki = 0.6};
     const StepInputs in{5, 0};
@@ -269,9 +269,9 @@ TEST(LimitedResponse, EscapesEndFinitelyAndSaySo) {
         StepInputs in;
         ActuatorLimits limits;
     } escapes[] = {
-        {Fopdt{.K = -1, .T = -1, .L = 0.1}, {.Kp = 3, .Ki = 0.6}, {0, 1}, {-0.5, 0.5}},  // pushed out without end
+        {Fopdt{.K = -1, .T = -1, .L = 0.1}, {.Kp = 3, .Ki = 0.6}, {0, 1}, {-0.5, 0.5}},  // diverges
         {Fopdt{.K = -1, .T = -1, .L = 0}, {.Kp = 3, .Ki = 0.6}, {0, 1}, {-0.5, 0.5}},
-        {Ipdt{.K = 1, .L = 0.5}, {.Kp = 0.8, .Ki = 0.2}, {0, 1}, {-0.5, 0.5}},  // a ramp without end
+        {Ipdt{.K = 1, .L = 0.5}, {.Kp = 0.8, .Ki = 0.2}, {0, 1}, {-0.5, 0.5}},  // an endless ramp
         {Ipdt{.K = 1, .L = 1e-6}, {.Kp = 0.8, .Ki = 0.2}, {0, 1}, {-0.5, 0.5}},
         {Fopdt{.K = 1, .T = 1, .L = 1}, {.Kp = 10, .Ki = 10}, {1, 0}, {-1, 2}},  // a limit cycle
         {Fopdt{.K = 1, .T = 0, .L = 1}, {.Kp = 2, .Ki = 1}, {1, 0}, {-3, 2}},    // a neutral loop, q = 2

@@ -1,4 +1,5 @@
-// The loop under input/output linearisation: its output is the linear target's, its input what the paper's plant needs.
+// The loop with input/output linearisation: its output is that of the linear target, its input that of the paper's
+// plant.
 #include "engine/simulation/nonlinear/linearising_response.h"
 
 #include <gmock/gmock.h>
@@ -90,7 +91,7 @@ TEST(LinearisingResponse, ReferenceLoopsOfTheCstr) {
     }
 }
 
-// The paper's law for T written out, clipped, by Runge-Kutta steps too short to mind the kinks.
+// The paper's law for T, with limits, by Runge-Kutta steps so short that the kinks do not matter.
 double clipped_temperature(double r, double gamma, double low, double high, double end) {
     const auto system = made_system(cstr("T"));
     double CA = system.x_steady()[0], T = system.x_steady()[1];
@@ -214,7 +215,7 @@ TEST(LinearisingResponse, EndsAreSaid) {
     EXPECT_THAT(ended(inverse, 1), testing::HasSubstr("the input has left every bound: the plant's zero dynamics"));
 }
 
-// The tank's area vanishes at its tip, and with it all that tells one u from another.
+// The tank's area is zero at its tip, where the input has no effect.
 TEST(LinearisingResponse, EndsWhereAConicalTankIsAskedToBeLessThanEmpty) {
     const auto system = made_system({.states = {{"h", 1}},
                                      .parameters = {{"k", 0.6}, {"c", 0.2}},

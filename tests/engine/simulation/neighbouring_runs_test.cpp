@@ -1,4 +1,4 @@
-// Runs side by side against each by itself, on the same instants.
+// Simultaneous runs compared with separate ones, at the same instants.
 #include "engine/simulation/linear/neighbouring_runs.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 namespace tunewright {
 namespace {
 
-constexpr double kNeighbourMoved = 1e-5;  // of a parameter, as a gradient moves it
+constexpr double kNeighbourMoved = 1e-5;  // of a parameter, like the step of a gradient
 constexpr double kNeighbourAlike = 1e-9;  // of the IAE: the gradient is right to 1e-4
 
 struct StableLoop {
@@ -23,7 +23,7 @@ struct StableLoop {
     StepInputs in;
 };
 
-/// Stable loops on the given kind of plant, of P, I and D in all proportions.
+/// Stable loops on the given kind of plant, with P, I and D in all proportions.
 std::vector<StableLoop> stable_loops(bool resonant, bool with_dead_time, int wanted) {
     std::vector<StableLoop> cases;
     for (std::uint64_t seed = 1; static_cast<int>(cases.size()) < wanted && seed < 2000; ++seed) {
@@ -111,8 +111,8 @@ INSTANTIATE_TEST_SUITE_P(Plants, NeighbouringRuns,
                                          PlantKind{true, false}));
 
 TEST(NeighbouringRuns, EndWhereTheRunDid) {
-    // By its own rule the loop with a little more gain would end a wave sooner, and its IAE would lack that wave: the
-    // derivative by Kp came to -1.40 instead of -0.55.
+    // With its own end rule the loop with a slightly higher gain would end one oscillation earlier, and its IAE would
+    // lack that oscillation: the derivative by Kp was -1.40 instead of -0.55.
     const std::complex<double> mode(-0.28306572049552803, 0.63627834119853499);
     const auto plant = LinearPlant::make(Zpk{.K = 15.347451304062645,
                                              .zeros = {},

@@ -105,7 +105,7 @@ TEST(NonlinearStepTest, SaysWhyThereIsNone) {
     at_limit.input.max = at_limit.input.nominal + 3;
     EXPECT_EQ(simulate_step_test(made_system(at_limit), 5, {})->du, 3);
 
-    // x' = u - sqrt(x): below u = 0 the tank runs empty.
+    // x' = u - sqrt(x): with u < 0 the tank runs empty.
     const auto empties = simulate_step_test(made_system(scalar_plant("u-sqrt(x)-0.1", 1, 1.1)), -1.2, {});
     ASSERT_FALSE(empties);
     EXPECT_EQ(empties.error().kind, ErrorKind::unsupported);

@@ -1,4 +1,4 @@
-// Loops on nonlinear plants against independent integrators and independently written equations.
+// Loops on nonlinear plants compared with independent integrators and independently written equations.
 #include <cvode/cvode.h>
 #include <gtest/gtest.h>
 #include <nvector/nvector_serial.h>
@@ -37,7 +37,7 @@ void check(int flag) {
 
 /// x at `samples` even times from 0 to t_end, both included. Absolute tolerances are relative to `sizes`. The
 /// integrator is SUNDIALS' CVODE (backward differentiation formulas, Hindmarsh et al. 2005), which shares no code with
-/// ours.
+/// the engine.
 std::vector<std::vector<double>> cvode_states(const CvodeRates& rates, std::vector<double> x, double t_end, int samples,
                                               double relative_tolerance, const std::vector<double>& sizes) {
     const auto n = static_cast<sunindextype>(x.size());
@@ -82,7 +82,7 @@ Tank rates(double CA, double T, double Tj) {
     return {1 - CA - reaction, 400 - T - 200 * reaction + Tj - T};
 }
 
-/// The PID law with a derivative filter, limits and back-calculation, written down anew: states I (of u) and x_f.
+/// The PID law with a derivative filter, limits and back-calculation, written independently: states I (of u) and x_f.
 struct Law {
     double Kp, Ti, Td = 0, Tf = 0.1, c = 0, min = -HUGE_VAL, max = HUGE_VAL, delta_r = HUGE_VAL;
 
@@ -243,14 +243,14 @@ TEST(NonlinearOracle, LoopsWithDeadTimeAreThoseOfTinySteps) {
         ASSERT_EQ(response.ended, "");
         EXPECT_EQ(response.limited, std::isfinite(c.law.max));
         const auto fine = tiny_steps(c, kL, 400);
-        // Kinks where a limit is met fall between the tiny steps.
+        // Kinks at the limits are between the tiny steps.
         const double tolerance = response.limited ? 1e-5 : 1e-6;
         expect_same(response.even.y, fine.y, tolerance);
         expect_same(response.even.u, fine.u, tolerance);
     }
 }
 
-// A sensor chain a million times faster than the tank that it watches.
+// A sensor chain a million times faster than the measured tank.
 TEST(NonlinearOracle, AStiffPlantTakesFewSteps) {
     const NonlinearPlant plant{.states = {{"h", 1.0}, {"a", 1.0}, {"b", 1.0}},
                                .parameters = {},

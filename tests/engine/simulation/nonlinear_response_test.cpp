@@ -32,7 +32,7 @@ double difference(const NonlinearResponse& a, const StepResponse& b, double hori
     return std::max(dy / y, du / u);
 }
 
-/// `tolerance` is wider where the linear simulation's own steps are coarse for what follows a kick.
+/// `tolerance` is wider if the linear simulation's own steps are coarse after an impulse.
 struct LinearCase {
     const char* name;
     Plant plant;
@@ -144,7 +144,7 @@ TEST(NonlinearResponse, RunsUntilItIsAtRestAndClosesTheTail) {
     const auto response = simulate_nonlinear(system, pi, {-10, 5}, {});
     ASSERT_TRUE(response.loop.settles);
     EXPECT_EQ(response.loop.y_final, -10);
-    // Rest: f = 0 at T - 10, of which the first equation gives CA and the second Tj.
+    // Steady state: f = 0 at T - 10, where the first equation gives CA and the second Tj.
     const double T = system.y_steady() - 10, k = 4.71e8 * std::exp(-8000 / T), CA = 1 / (1 + k);
     EXPECT_NEAR(response.loop.u_final, 2 * T - 400 + 200 * k * CA - 493.87 - 5, 1e-9);
     ASSERT_TRUE(response.loop.error_integral_final);
@@ -187,7 +187,7 @@ TEST(NonlinearResponse, RestsAtALimitThatTheSetPointIsBeyond) {
 }
 
 TEST(NonlinearResponse, EndsEarlyWithAReason) {
-    // A tank with a constant outflow and an outlet: a load takes away more than comes in.
+    // A tank with a constant outflow and an outlet: a load removes more than flows in.
     const auto tank = made_system(scalar_plant("u-0.5-sqrt(x)", 1, 1.5));
     const auto empty = simulate_nonlinear(tank, {.Kp = 0.1, .Ki = 0.01}, {0, -1.4}, {});
     EXPECT_TRUE(empty.escaped);

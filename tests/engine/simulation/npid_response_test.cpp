@@ -19,7 +19,7 @@ struct Case {
     StepInputs in;
 };
 
-/// The oracle: Heun's method with a small step on e^(-Ls)/(T s + 1), the delayed u looked up in a table.
+/// The reference: Heun's method with a small step on e^(-Ls)/(T s + 1), with the delayed u from a table.
 ErrorIntegrals by_small_steps(const Case& c, double end, int steps_per_unit) {
     const double h = 1.0 / steps_per_unit;
     const int delay = static_cast<int>(std::lround(c.L * steps_per_unit)), n = static_cast<int>(end * steps_per_unit);
@@ -33,7 +33,7 @@ ErrorIntegrals by_small_steps(const Case& c, double end, int steps_per_unit) {
         const double rate = (v(k - delay) - y) / c.T;
         const double derivative = Tf > 0 ? (-y - z) / Tf : -rate;
         u[static_cast<std::size_t>(k)] = c.pid.Kp * (c.in.r - y + I / c.pid.Ti + c.pid.Td * derivative);
-        // v is taken as linear within the step, known at its end already since the delay is longer.
+        // v is assumed linear within the step; its end value is known already since the delay is longer.
         const double predicted = y + h * rate;
         const double next = y + 0.5 * h * (rate + (v(k + 1 - delay) - predicted) / c.T);
         const double e0 = c.in.r - y, e1 = c.in.r - next;
@@ -151,7 +151,7 @@ TEST(NpidResponse, AStalledIntegralEndsTheRunWithoutSettling) {
         simulate_npid(*LinearPlant::make(Fopdt{.K = 1, .T = 1, .L = 0.5}), to_parallel(kPid), 0.02, {0, 1}, options);
     EXPECT_FALSE(response.settles);
     for (const auto& node : response.nodes) ASSERT_TRUE(std::isfinite(node.y) && std::isfinite(node.u));
-    // Where P action alone holds it.
+    // Held by P action alone.
     EXPECT_NEAR(response.nodes.back().y, 1 / (1 + kPid.Kp), 0.05);
 }
 

@@ -1,4 +1,4 @@
-// The loop with actuator limits by a plain simulation in tiny steps, which shares nothing with the product's.
+// A simple simulation of the loop with actuator limits in tiny steps, which shares no code with the product's.
 #pragma once
 
 #include <algorithm>

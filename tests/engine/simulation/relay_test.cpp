@@ -1,4 +1,4 @@
-// The relay simulator against closed forms, Tsypkin's locus and superposed step responses.
+// The relay simulator compared with closed forms, Tsypkin's locus and superposed step responses.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ RelayExperiment run(const Plant& plant, const RelaySettings& settings) {
     return std::move(*experiment);
 }
 
-// Steady cycle of K e^(-Ls)/(T s + 1), T of either sign: y runs on exponentials toward K u_plus and K u_minus.
+// Steady cycle of K e^(-Ls)/(T s + 1), T of either sign: y follows exponentials toward K u_plus and K u_minus.
 struct FirstOrderCycle {
     double t_plus, t_minus, y_max, y_min;
 };
@@ -99,7 +99,8 @@ TEST(Relay, SymmetricCyclesLieOnTsypkinsLocus) {
         {TransferFunction{.num = {-2, 1}, .den = {1, 3, 3, 1}, .L = 0.5}, 0.1},
         {Zpk{.K = 1e6, .zeros = {}, .poles = {-1.0, -1000.0, -1000.0}, .L = 0.1}, 0.1},
         {OscillatorySopdt{.K = 1, .T = 1, .zeta = 0.1, .L = 0.5}, 1.3},
-        {OscillatorySopdt{.K = 1, .T = 1, .zeta = 0.01, .L = 20}, 0.1},  // six half periods of switches on their way
+        {OscillatorySopdt{.K = 1, .T = 1, .zeta = 0.01, .L = 20}, 0.1},  // six half periods of switches within the dead
+                                                                         // time
         {Ipdt{.K = 1, .L = 0.5, .T = 2}, 0.05},
     };
     for (const auto& [plant, hysteresis] : cases) {
@@ -130,7 +131,7 @@ TEST(Relay, TheRecordEndsInTheSteadyCycle) {
     }
 }
 
-// The first-order plant's response to the record's own u: steps superposed.
+// The first-order plant's response to the record's own u, by superposition of steps.
 double superposed(const Fopdt& plant, const RelayRecord& record, double t) {
     double y = 0, before = 0;
     for (std::size_t i = 0; i < record.t.size() && record.t[i] + plant.L < t; ++i) {
@@ -221,13 +222,13 @@ TEST(Relay, PlantsThatNoRelayHoldsAreRefusedWithTheReason) {
     EXPECT_NE(doubled.error().message.find("double integrator"), std::string::npos);
     const auto undamped = simulate_relay(TransferFunction{{1}, {1, 0, 1}, 1}, relay(1, -1, 0.1), {});
     EXPECT_FALSE(undamped);
-    // The bias narrows what a relay can hold: e^(L/|T|) (eps + |K| u) < |K| (u_plus - u_minus).
+    // The bias narrows the range in which a relay holds the plant: e^(L/|T|) (eps + |K| u) < |K| (u_plus - u_minus).
     EXPECT_TRUE(simulate_relay(Fopdt{-1, -1, 0.42}, relay(1.3, -0.7, 0), {}));
     EXPECT_FALSE(simulate_relay(Fopdt{-1, -1, 0.44}, relay(1.3, -0.7, 0), {}));
 }
 
-// Between switches y swings for a billionth of the dead time. A cycle that repeats after such a swing would hold
-// billions of switches in the dead time: it is not looked for.
+// Between switches y oscillates with a period of a billionth of the dead time. A cycle that repeats after one such
+// period would have billions of switches within the dead time: it is not searched for.
 TEST(Relay, ADeadTimeOfBillionsOfSwingsIsRefusedWithoutCountingThem) {
     const OscillatorySopdt ringing{.K = 1, .T = 1e-9, .zeta = 0.1, .L = 3};
     const auto refused = simulate_relay(ringing, relay(1, -1, 0), {});
@@ -281,7 +282,8 @@ TEST(SampledRelayTest, ItsCycleTendsToTheExactOneAndIsLongerByTheTimeNotLooked) 
         settings.cycles = 2;
         const double Pu = run(plant, settings).limit_cycle.Pu;
         EXPECT_GE(Pu, exact);
-        EXPECT_LE(Pu, exact + 5 * Ts);  // at most one sample late at each switch, more by the slower turn that follows
+        EXPECT_LE(Pu, exact + 5 * Ts);  // at most one sample late at each switch, and more by the slower oscillation
+                                        // that follows
         EXPECT_NEAR(Pu / Ts, std::round(Pu / Ts), 1e-6);
     }
 }

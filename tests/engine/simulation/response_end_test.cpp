@@ -1,4 +1,4 @@
-// Where a loop comes to rest: the closed form against the equations of the loop's states.
+// The final value of a loop: the closed form compared with the equations of the loop's states.
 #include "engine/simulation/linear/response_end.h"
 
 #include <gtest/gtest.h>

@@ -62,7 +62,7 @@ TEST(SampledNonlinear, OfALinearPlantInEquationsItIsTheLinearOne) {
     EXPECT_GT(compared, 30);
 }
 
-/// The spherical tank's level under the sampled law by classical Runge-Kutta steps of Ts/parts; deviations.
+/// The spherical tank's level with the sampled law, by classical Runge-Kutta steps of Ts/parts; deviations.
 struct OwnTank {
     double h = 0.3, q = 0.4 * std::sqrt(0.3), dead_time = 0;
 
@@ -133,7 +133,7 @@ TEST(SampledNonlinear, OfATankItIsThatOfRungeKutta) {
             }
 }
 
-// h = q + u = c sqrt(h) at rest: whatever the sample time is, a proportional law rests where u = Kp (r - y).
+// h = q + u = c sqrt(h) at rest: for any sample time, a proportional law settles at u = Kp (r - y).
 TEST(SampledNonlinear, WithoutIntegralActionRestsWhereTheLawDoes) {
     const OwnTank own;
     const NonlinearSystem tank = made_system(spherical_tank(own.h, own.q));
@@ -159,7 +159,7 @@ TEST(SampledNonlinear, ComesToRestAtALimit) {
     EXPECT_EQ(response.u_final, 0.05);
 }
 
-// More flows out than comes in: the level reaches 0, where the equations end.
+// More flows out than in: the level reaches 0, where the equations end.
 TEST(SampledNonlinear, EndsWhereTheStatesLeaveTheDomain) {
     const OwnTank own;
     const NonlinearSystem tank = made_system(spherical_tank(own.h, own.q));

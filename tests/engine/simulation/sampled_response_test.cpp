@@ -14,7 +14,7 @@ double to_multiple(double value, double resolution) {
     return resolution > 0 ? std::round(value / resolution) * resolution : value;
 }
 
-/// The program of pid_program.h written out: of a PID without a filter of the measurement, derivative as a difference
+/// The program of pid_program.h written out: for a PID without a filter of the measurement, derivative as a difference
 /// or filtered by the backward rule, integral by the backward or the trapezoidal rule.
 struct OwnProgram {
     SampledPid law;
@@ -72,7 +72,7 @@ Trace own_trace(const OwnPlant& plant, double dead_time, OwnProgram program, dou
     return trace;
 }
 
-/// Both ways over `samples` periods; y between nodes by their cubics.
+/// Compares both over `samples` periods; y between nodes by their cubics.
 void compare(const Plant& plant, const OwnPlant& own, const SampledPid& law, const ProgramLimits& limits,
              const StepInputs& in, int samples) {
     const LinearPlant linear = *LinearPlant::make(plant);
@@ -130,7 +130,7 @@ TEST(SampledResponse, IsThatOfThePlainLoopWithLimitsResolutionsAndDeadBand) {
 
 TEST(SampledResponse, IsThatOfThePlainLoopOnEveryKindOfPlant) {
     for (const KnownPlant& known : known_plants()) {
-        if (known.name == "eighth order" || known.name == "fast lag") continue;  // the others show as much
+        if (known.name == "eighth order" || known.name == "fast lag") continue;  // the others are sufficient
         SCOPED_TRACE(known.name);
         const double Ts = 0.1, L = 0.0275;
         SampledPid law = pid(0.4, 0.1, 0.05, Ts);
@@ -170,7 +170,7 @@ TEST(SampledResponse, NodesAscendAndTheOutputIsHeldBetweenThem) {
         const auto& nodes = response.nodes;
         EXPECT_EQ(nodes.front().t, 0);
         EXPECT_EQ(nodes.back().t, 7.3);  // between two samples
-        // What the first sample asks for: Kp b r + Ki Ts r + Kd c r/(Tf + Ts), from the end of the delay on.
+        // The command at the first sample: Kp b r + Ki Ts r + Kd c r/(Tf + Ts), from the end of the delay on.
         const double first = 0.5 * 0.8 + 0.4 * 0.2 + 0.1 * 0.3 / (0.17 + 0.2);
         EXPECT_NEAR(nodes.front().u, delay == 0 ? first : 0, 1e-14);
         for (const ResponseNode& node : nodes) {
@@ -217,7 +217,7 @@ TEST(SampledResponse, NeverLeavesItsLimitsWhateverTheResolution) {
     }
 }
 
-// What the limits cannot reach: y rests at K times the limit, u at the limit itself, not a step of its integral short
+// A target beyond the limits: y settles at K times the limit, u at the limit itself, not a step of its integral short
 // of it, and the run ends there.
 TEST(SampledResponse, ComesToRestAtALimit) {
     const LinearPlant plant = *LinearPlant::make(kLags);
@@ -235,8 +235,8 @@ TEST(SampledResponse, ComesToRestAtALimit) {
     }
 }
 
-// Sixteen whole swings a period, undamped but for a millionth: y is at the same place at every sample and halfway.
-// An integrator cannot rest at a limit: nothing but the horizon or the growth ends the run.
+// Sixteen whole oscillations per period, undamped up to a millionth: y is at the same place at every sample and
+// halfway. An integrator cannot settle at a limit: only the horizon or the growth ends the run.
 TEST(SampledResponse, DoesNotRestWhereALimitLeavesAnIntegratorMoving) {
     const LinearPlant plant = *LinearPlant::make(Ipdt{.K = 1, .L = 0.2});
     const ProgramLimits limits{.output = ActuatorLimits{-0.3, 0.3}};
@@ -247,7 +247,7 @@ TEST(SampledResponse, DoesNotRestWhereALimitLeavesAnIntegratorMoving) {
     EXPECT_NEAR(response.nodes.back().y_slope, 0.7, 1e-9);
 }
 
-// Whoever is not waited for any more stops it, at any moment.
+// A run can be stopped at any moment.
 TEST(SampledResponse, OneThatIsStoppedAtOnceHasItsBeginning) {
     const LinearPlant plant = *LinearPlant::make(kLags);
     std::stop_source stop;
@@ -261,7 +261,7 @@ TEST(SampledResponse, OneThatIsStoppedAtOnceHasItsBeginning) {
     }
 }
 
-// A run with a horizon is a run to infinity up to there, wherever that lies between two samples.
+// A run with a horizon is the run to infinity up to that time, wherever it lies between two samples.
 TEST(SampledResponse, IndicesEndExactlyAtTheHorizon) {
     const LinearPlant plant = *LinearPlant::make(kLags);
     SampledPid law = pid(0.9, 0.6, 0.2, 0.2);

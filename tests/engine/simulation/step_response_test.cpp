@@ -1,4 +1,4 @@
-// The exact open-loop step response against closed formulas.
+// The exact open-loop step response compared with closed formulas.
 #include "engine/simulation/linear/step_response.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The servo/regulation rules beyond the published tables: scaling, what is warned about, what is refused.
+// The servo/regulation rules beyond the published tables: scaling, warnings, refusals.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -68,7 +68,7 @@ TEST(ArrietaRule, InBetweenTheLevelsItSolvesAndSaysSo) {
 }
 
 TEST(ArrietaRule, ExactAtALevelLeavesTheTable) {
-    const Fopdt model{1, 1, 2};  // where Table 2 gives 0.28 for 0.35
+    const Fopdt model{1, 1, 2};  // where Table 2 gives 0.28 instead of 0.35
     const auto table = arrieta_tuned(model, "arrieta_degradation", {{"degradation", 0.35}});
     const auto exact = arrieta_tuned(model, "arrieta_degradation", {{"degradation", 0.35}, {"exact", true}});
     EXPECT_NEAR(degradation_on(model, table->controller), 0.2927, 1e-3);
@@ -113,7 +113,7 @@ TEST(ArrietaRule, TheSmallestMsWithTheDegradationIsTaken) {
     }
 }
 
-// Eq. 9 is a least-squares quadratic through four columns: what is left at a column is its residual, not a jump.
+// Eq. 9 is a least-squares quadratic through four columns: the difference at a column is its residual, not a jump.
 TEST(ArrietaRule, SettingsDoNotJumpAtTheLevelsOfMs) {
     for (const ArrietaLevel& column : arrieta_Ms_levels())
         for (const double tau : {0.1, 0.15, 0.3, 0.7, 1.2, 2.0})
@@ -148,7 +148,7 @@ TEST(ArrietaRule, ThePrintedC3IsTakenWhereItIsAskedFor) {
                 HasSubstr("c3 = 0.1331 M^2 - 0.4320 M + 0.3330"));
 }
 
-// Over the whole range, in between the levels too: the Ms achieved on the model is the one asked for within 2.5 %.
+// Over the whole range, also between the levels: Ms on the model is the requested one within 2.5 %.
 TEST(ArrietaRule, MsOnTheModelIsTheOneAskedFor) {
     for (int i = 0; i <= 24; ++i)
         for (const double tau : {0.1, 0.2, 0.4, 0.7, 1.0, 1.5, 2.0}) {

@@ -1,5 +1,5 @@
-// The best robust design that is known for a problem, from searches that share nothing with `fast` but the problem's
-// terms: the paper's two, and the quadratic programming from random feasible points.
+// The best known robust design for a problem, from searches that share only the problem's terms with `fast`: those of
+// the paper, and quadratic programming from random feasible points.
 #pragma once
 
 #include <algorithm>
@@ -31,7 +31,7 @@ inline Expected<TunedController> designed(const DesignTask& task, const std::str
     return find_method("robust")->tune({task.plant, *LinearPlant::make(task.plant), std::nullopt}, options, {});
 }
 
-/// The problem that a design answered. `linear` must outlive it.
+/// The problem of a design. `linear` must outlive it.
 inline robust::DesignProblem problem_of(const DesignTask& task, const LinearPlant& linear, const IdealPid& design) {
     robust::DesignProblem problem;
     problem.plant = &linear;
@@ -51,14 +51,14 @@ inline robust::DesignPoint point_of(const IdealPid& pid) {
     return {std::log(std::abs(pid.Kp)), std::log(pid.Ti), std::log(pid.Td)};
 }
 
-/// The cost to five digits or more; empty where a limit is exceeded by more than the product allows itself.
+/// The cost to five digits or more; empty if a limit is exceeded by more than the product's own tolerance.
 inline std::optional<double> checked_cost(const robust::DesignProblem& problem, const robust::DesignPoint& x) {
     if (robust::excess_on(*problem.plant, problem, x, {.step = 0.05, .density = 60}) > 2e-5) return std::nullopt;
     const double cost = robust::log_cost(problem, x, 1e-6);
     return std::isfinite(cost) ? std::optional(std::exp(cost)) : std::nullopt;
 }
 
-/// The least cost that quadratic programming reaches from `count` random feasible points of the (Ti, Td) plane.
+/// The smallest cost that quadratic programming reaches from `count` random feasible points of the (Ti, Td) plane.
 inline std::optional<double> best_from_random_starts(const robust::DesignProblem& problem, int count,
                                                      std::uint64_t seed) {
     const robust::Sweep sweep(problem, robust::reference_frequency(problem));
@@ -79,8 +79,8 @@ inline std::optional<double> best_from_random_starts(const robust::DesignProblem
     return best;
 }
 
-/// Both parts of a weighted objective are measured against the same optima for every search; of other objectives
-/// nothing changes.
+/// For every search, both parts of a weighted objective are relative to the same optima; other objectives are
+/// unchanged.
 inline void set_reference_optima(const DesignTask& task, robust::DesignProblem& problem) {
     if (task.objective != "weighted") return;
     for (const char* part : {"load_iae", "setpoint_iae"}) {

@@ -1,4 +1,4 @@
-// What the method emulation warns of and refuses, and how it stops.
+// Warnings and refusals of the method emulation, and its stop.
 #include <gmock/gmock.h>
 
 #include "engine/tuning/emulation/emulation_report.h"

@@ -1,4 +1,5 @@
-// The method emulation on plants of equations, for tests: a conical tank, a pendulum, and the options of their steps.
+// The method emulation on plants given by equations, for tests: a conical tank, a pendulum, and the options of their
+// steps.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -13,7 +14,7 @@
 
 namespace tunewright {
 
-/// A nonlinear plant as methods see it; what it points to lives as long as it does.
+/// A nonlinear plant in the form for methods; its references live as long as it does.
 struct EmulationPlant {
     std::shared_ptr<const NonlinearSystem> system;
     TuningProblem problem;
@@ -37,7 +38,7 @@ inline void set_range(MethodOptions& options, const std::string& path, double lo
     options.set(path + "/1", high);
 }
 
-/// h' = (q - c sqrt h)/(pi k^2 h^2): outflow by gravity from a cone; 1/time_unit of the time unit.
+/// h' = (q - c sqrt h)/(pi k^2 h^2): outflow by gravity from a cone; with time in units of time_unit.
 inline NonlinearPlant conical_tank(double time_unit = 1, double y_unit = 1) {
     return {.states = {{"h", 1.0}},
             .parameters = {{"c", 0.5}, {"k", 0.4}, {"pi", 3.14159265358979323846}, {"a", time_unit}, {"b", y_unit}},

@@ -1,5 +1,5 @@
-// The method emulation: exact cases, independent optima, properties and defaults. Mhaskar, El-Farra and
-// Christofides' own reactor is in tests/papers.
+// The method emulation: exact cases, independent optima, properties and defaults. The reactor of Mhaskar, El-Farra and
+// Christofides is in tests/papers.
 #include <gmock/gmock.h>
 
 #include <algorithm>

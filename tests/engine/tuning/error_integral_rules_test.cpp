@@ -1,5 +1,5 @@
-// Rules fitted to optima of error integrals: the published constants, and that their settings are near the optimum that
-// they claim.
+// Rules fitted to optima of error integrals: the published constants, and a check that their settings are near the
+// claimed optimum.
 #include "engine/loop/loop.h"
 #include "engine/loop/stability.h"
 #include "engine/numerics/optimise/direct_search.h"
@@ -156,7 +156,7 @@ struct Claim {
     Given given;
     std::string criterion;
     bool servo;
-    double c;  // weight of the set point in the derivative part that the source had
+    double c;  // weight of the set point in the derivative part, as in the source
 };
 
 double cost(const LinearPlant& plant, IdealPid pid, const Claim& claim) {
@@ -180,7 +180,7 @@ double min_cost(const LinearPlant& plant, const IdealPid& start, const Claim& cl
     return find_local_minimum(LocalSearch::nelder_mead, f, x, options).value;
 }
 
-// Wrong signs, columns or tables would show here: the fits are within 5 % of the optimum at L/T = 0.5.
+// Wrong signs, columns or tables would be visible here: the fits are within 5 % of the optimum at L/T = 0.5.
 TEST(ErrorIntegralRules, AreNearTheOptimumThatTheyClaim) {
     std::vector<Claim> claims;
     for (const auto& row : kLopez)

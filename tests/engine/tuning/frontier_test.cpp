@@ -1,4 +1,4 @@
-// The front of robust optima over the AMIGO batch and beside the method robust alone.
+// The frontier of robust optima over the AMIGO batch, compared with the method robust alone.
 #include "engine/tuning/robust/frontier.h"
 
 #include <gtest/gtest.h>
@@ -55,7 +55,8 @@ TEST(Frontier, HoldsItsLimitsAndItsOrderOverTheAmigoBatch) {
     }
 }
 
-// The derivative has nothing to work on, and the dead time repeats whatever it does until the lag, far away, ends it.
+// The derivative action has no effect, and the dead time repeats its output until the lag, at a much larger time, ends
+// that.
 TEST(Frontier, UnderADeadTimeAloneAPidIsNoWorseThanAPi) {
     for (const double T : {1e-3, 1e-4, 1e-6, 1e-9, 1e-12}) {
         SCOPED_TRACE(T);

@@ -1,4 +1,4 @@
-// The defaults and tolerances of one table: whoever names none has the same.
+// The defaults and tolerances of one table: every method without its own has these.
 #include "engine/tuning/limits.h"
 
 #include <gtest/gtest.h>

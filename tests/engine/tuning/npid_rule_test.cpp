@@ -77,7 +77,8 @@ TEST(NpidRule, ScalesWithGainAndTime) {
 }
 
 TEST(NpidRule, WorksOnTheModelOfLeastAbsoluteDifference) {
-    // Jin and Son reduce by a genetic algorithm to K 1, T 10.002, L 3.06; the least IAE is at 1.000, 10.006, 3.043.
+    // Jin and Son reduce with a genetic algorithm to K 1, T 10.002, L 3.06; the smallest IAE is at 1.000, 10.006,
+    // 3.043.
     const auto answer = npid_tuned("npid_ise", Sopdt{.K = 1, .T1 = 10, .T2 = 1, .L = 2});
     ASSERT_TRUE(answer->reduced_model.has_value());
     const auto& model = std::get<Fopdt>(*answer->reduced_model);
@@ -112,7 +113,7 @@ TEST(NpidOptimise, IsNeverWorseThanTheRuleOnItsOwnCriterion) {
                 EXPECT_LE(best, *by_rule->performance.setpoint.IAE * 1.0001);
             }
         }
-        // Nor than its neighbours.
+        // Nor than the neighbours of the reduced model.
         for (const double factor : {0.97, 1.03}) {
             for (double IdealPid::*parameter : {&IdealPid::Kp, &IdealPid::Ti, &IdealPid::Td}) {
                 TunedController neighbour = *optimum;

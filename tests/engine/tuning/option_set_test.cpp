@@ -1,4 +1,4 @@
-// OptionSet: a struct of options, its description and what a request gives, each made from the other.
+// OptionSet: conversions between a struct of options, its description and the options of a request.
 #include "engine/tuning/method/option_set.h"
 
 #include <gtest/gtest.h>
@@ -95,7 +95,7 @@ TEST(OptionSet, GivesBackWhatDiffers) {
     const Outer again = set.read(given);
     EXPECT_EQ(again.size, 5);
     EXPECT_EQ(again.inner->ratio, 0.3);
-    // A value that equals the default is stated where it differs from what it is compared with.
+    // A value that equals the default is stated if it differs from the compared one.
     Outer without;
     without.limit = {};
     EXPECT_EQ(set.given_for({}, without).number("limit"), 1.6);

@@ -1,4 +1,4 @@
-// The front of load IAE against robustness: each point as the method robust finds it alone, in whatever order.
+// The frontier of load IAE against robustness: each point as the method robust finds it alone, in any order.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -48,11 +48,11 @@ INSTANTIATE_TEST_SUITE_P(
                     Ipdt{.K = 0.3, .L = 2}, Sopdt{.K = 1, .T1 = 5, .T2 = 4, .L = 0.5},
                     OscillatorySopdt{.K = 1, .T = 1, .zeta = 0.2, .L = 0.3},
                     TransferFunction{.num = {-1, 1}, .den = {1, 3, 3, 1}, .L = 0},
-                    // Two resonances: a neighbour's valley is not the deepest.
+                    // Two resonances: a neighbour's local optimum is not the global one.
                     Zpk{.K = 7, .zeros = {}, .poles = {{-0.03, 1}, {-0.03, -1}, {-0.05, 2.7}, {-0.05, -2.7}}, .L = 0.3},
                     Fopdt{.K = -1, .T = -1, .L = 0.1}));
 
-// From its neighbours alone a PI's front was up to 2 % above, in the valley of another limit.
+// From its neighbours alone a PI's frontier was up to 2 % above, in the local optimum of another limit.
 TEST(ParetoFront, OfAPIBehindASlowZeroIsTheOptimaAlone) {
     const TuningProblem problem =
         problem_of(TransferFunction{.num = {-27.64, 1.057}, .den = {1, 2.7405, 1.7141}, .L = 2.279});

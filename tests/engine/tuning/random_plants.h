@@ -1,4 +1,4 @@
-// Random plants for the comparison of searches: each is its index's alone, the same on every machine.
+// Random plants for the comparison of searches: each depends only on its index, and is the same on every machine.
 #pragma once
 
 #include <algorithm>
@@ -73,7 +73,7 @@ inline RandomPlant random_plant(std::uint64_t seed, bool resonant) {
     if (room >= 3 && resonant && random.one_in(4))
         add_pair(plant.zeros, random.log_uniform(0.2, 10), random.log_uniform(0.02, 0.5));
     if (!random.one_in(6)) plant.L = slowest * random.log_uniform(0.01, 4);
-    // Scaled to a gain of random sign and size at s = 0 (integrators apart).
+    // Scaled to a gain of random sign and size at s = 0 (without integrators).
     std::complex<double> scale = random.log_uniform(0.1, 10) * (random.one_in(4) ? -1 : 1);
     for (const auto pole : plant.poles)
         if (pole != 0.0) scale *= -pole;

@@ -1,4 +1,4 @@
-// Cohen-Coon and Chien-Hrones-Reswick: the published tables, on plants where they can be read off.
+// Cohen-Coon and Chien-Hrones-Reswick: the published tables, on plants from whose parameters they can be read.
 #include "tests/engine/tuning/rule_support.h"
 
 namespace tunewright {
@@ -20,14 +20,14 @@ TEST(CohenCoon, ReproducesThePublishedFormulas) {
     expect_settings(tuned("cohen_coon", kPlant), 2.5 * (4 / 3.0 + 0.05), 2 * 33.2 / 14.6, 8 / 11.4);
 }
 
-// An example worked in textbooks: K = 1.25, T = 4, L = 0.9.
+// A textbook example: K = 1.25, T = 4, L = 0.9.
 TEST(CohenCoon, AgreesWithATextbookExample) {
     expect_settings(tuned("cohen_coon", Fopdt{.K = 1.25, .T = 4, .L = 0.9}, kPI), 3.2667, 2.045, 0, 5e-4);
 }
 
 struct Published {
     const char *controller, *mode, *overshoot;
-    double a_Kp, Ti, Td;  // Ti and Td in the plant's own time
+    double a_Kp, Ti, Td;  // Ti and Td in units of the plant's time
 };
 
 TEST(ChienHronesReswick, ReproducesThePublishedTable) {
@@ -43,7 +43,7 @@ TEST(ChienHronesReswick, ReproducesThePublishedTable) {
         SCOPED_TRACE(std::string(row.controller) + " " + row.mode + " " + row.overshoot);
         const Given given{word("controller", row.controller), word("mode", row.mode), word("overshoot", row.overshoot)};
         expect_settings(tuned("chien_hrones_reswick", kPlant, given), row.a_Kp / 0.4, row.Ti, row.Td);
-        // a = K L/T: the slope alone counts where T does not enter.
+        // a = K L/T: only the slope matters if T does not occur.
         if (std::string(row.mode) == "regulation")
             expect_settings(tuned("chien_hrones_reswick", Ipdt{.K = 0.2, .L = 2}, given), row.a_Kp / 0.4, row.Ti,
                             row.Td);
@@ -51,7 +51,7 @@ TEST(ChienHronesReswick, ReproducesThePublishedTable) {
     expect_settings(tuned("chien_hrones_reswick", kPlant), 0.95 / 0.4, 4.8, 0.84);  // PID, regulation, 0 %
 }
 
-// Both read T off the reaction curve as static gain over steepest slope: for 1/(s + 1)^2, T = e, L = 3 - e.
+// Both take T from the reaction curve as static gain over steepest slope: for 1/(s + 1)^2, T = e, L = 3 - e.
 TEST(ReactionCurveRules, UseTheSteepestSlope) {
     const double T = std::exp(1.0), L = 3 - T;
     const Sopdt plant{.K = 1, .T1 = 1, .T2 = 1};

@@ -1,5 +1,5 @@
-// Revised IMC: the properties of its branch, what its targets achieve and refuse, and the full controller beside its
-// PID.
+// Revised IMC: the properties of its branch, the results and refusals of its targets, and the full controller compared
+// with its PID.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -65,7 +65,7 @@ TEST(Rimc, ATargetIsMetByTheReturnedPid) {
         const auto by_error = rimc_tuned(model, {{"dead_time_error", 0.3 * model.L}});
         ASSERT_TRUE(by_error) << by_error.error().message;
         EXPECT_DOUBLE_EQ(*by_error->report_as<RimcReport>()->dead_time_error, 0.3 * model.L);
-        // Eq. 29 is sufficient: the loop stands the error, and the margin is no smaller.
+        // Eq. 29 is sufficient: the loop tolerates the error, and the margin is not smaller.
         EXPECT_GT(*evaluated(model, by_error->controller).robustness.delay_margin, 0.3 * model.L);
     }
 }
@@ -112,7 +112,7 @@ TEST(Rimc, AlongTheBranchMsFallsAndThePeakRises) {
 }
 
 TEST(Rimc, TheBranchEndsWhereMsIsLeast) {
-    // Recomputed independently: least Ms and its lambda/T; for L/T = 2 Td < 0 from 2.44 on comes first.
+    // Recomputed independently: smallest Ms and its lambda/T; for L/T = 2, Td < 0 from 2.44 on is reached first.
     const double cases[][3] = {{0.1, 1.04, 1.5}, {0.5, 1.16, 1.7}, {1, 1.25, 2.0}};
     for (const auto& [L, Ms, lambda] : cases) {
         const RimcBranch branch({1, 1, L}, {});
@@ -203,7 +203,7 @@ TEST(Rimc, LinearFractionalIsTheSamePidWithTheFilterThatMatchesTheFourthTerm) {
     EXPECT_DOUBLE_EQ(fraction->controller.Kp, plain->controller.Kp);
     EXPECT_DOUBLE_EQ(fraction->controller.Td, plain->controller.Td);
     ASSERT_EQ(fraction->controller.filter.type, FilterType::derivative);
-    // s C of PID and of Eq. 23 at a small real s differ by the fifth term with it, by the fourth without.
+    // s C of the PID and of Eq. 23 at a small real s differ by the fifth term with the filter, by the fourth without.
     const auto defect = [&](const IdealPid& pid, double s) {
         const ImcController c = rimc_controller(model, 0.8);
         const double Q = c.Q(s).real(), full = Q / (1 - c.model(s).real() * Q);
@@ -224,7 +224,7 @@ TEST(Rimc, LinearFractionalIsTheSamePidWithTheFilterThatMatchesTheFourthTerm) {
 }
 
 TEST(Rimc, AnEasyTargetLeavesTheLinearFractionAFilter) {
-    // Its filter time ends at 0, where noise passes without end: the paper's least share, 0.01, is the end.
+    // Its filter time ends at 0, where noise passes without limit: the paper's smallest ratio, 0.01, is the end.
     for (const double L : {0.5, 1.0, 3.0, 8.0}) {
         const Fopdt model{.K = 1, .T = 10, .L = L};
         const auto tuned =
@@ -311,7 +311,8 @@ TEST(Rimc, OnAnotherPlantTheFullControllersStabilityAgreesWithItsResponse) {
     EXPECT_TRUE(entry.full_controller->robustness.stable);
     ASSERT_TRUE(entry.full_controller->responses);
     EXPECT_TRUE(entry.full_controller->responses->settles);
-    // The integral of y is the inverse integral gain, the PID's and the full controller's alike; IAE is no less.
+    // The integral of y is the inverse of the integral gain, for the PID and the full controller alike; IAE is not
+    // smaller.
     const auto pid = rimc_tuned(plant, {{"Ms", 1.6}})->controller;
     EXPECT_GE(*entry.full_controller->load.IAE, pid.Ti / pid.Kp * (1 - 1e-6));
     EXPECT_LT(*entry.full_controller->load.IAE, 1.2 * pid.Ti / pid.Kp);

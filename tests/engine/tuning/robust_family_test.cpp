@@ -1,5 +1,5 @@
-// Robust design for more than one plant: the limits hold on every one of them, by evaluations that the search never
-// saw.
+// Robust design for more than one plant: the limits hold on every one of them, checked by evaluations that are
+// independent of the search.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -90,7 +90,7 @@ TEST(RobustFamily, LimitsHoldEverywhereInsideTheRanges) {
               .L = 3,
               .uncertainty = ranges(FactorRange{0.8, 1.2}, FactorRange{0.7, 1.1}, FactorRange{0.9, 1.2})},
         Ipdt{.K = 0.1, .L = 2, .uncertainty = ranges(FactorRange{0.7, 1.3}, std::nullopt, FactorRange{0.5, 1.5})},
-        // A resonance whose peak moves through the crossover: the corners alone would not do.
+        // A resonance whose peak moves through the crossover: the corners alone are not sufficient.
         OscillatorySopdt{.K = 1,
                          .T = 1,
                          .zeta = 0.15,
@@ -103,7 +103,7 @@ TEST(RobustFamily, LimitsHoldEverywhereInsideTheRanges) {
         EXPECT_EQ(entry.evaluation->region->stable_fraction, 1);
         const auto region = PlantRegion::of_ranges(plant);
         double worst = 0;
-        // Other points than the search's: shifted by an irrational step.
+        // Points other than the search's: shifted by an irrational step.
         for (const auto& z : region.spread(150)) {
             PlantRegion::Point other = z;
             for (double& x : other) x = std::remainder(x + 0.7548776662, 2.0);
@@ -173,7 +173,7 @@ TEST(RobustFamily, ImpossibleRangesNameTheLimitThatWorks) {
     ASSERT_FALSE(result.has_value());
     EXPECT_EQ(result.error().kind, ErrorKind::no_feasible_controller);
     EXPECT_NE(result.error().message.find("plants looked at"), std::string::npos) << result.error().message;
-    // The cure works, and hardly less does.
+    // The cure works, and a slightly smaller value does not.
     const auto within = [&](double limit) {
         request.tune[0].options.set("Ms", limit);
         request.tune[0].options.set("Mt", limit);

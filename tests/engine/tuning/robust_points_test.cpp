@@ -1,4 +1,4 @@
-// Measured points of a frequency response: the loop that they make, and the design of the largest Kp/Ti on them.
+// Measured points of a frequency response: their loop, and the design with the largest Kp/Ti.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -58,7 +58,7 @@ TEST(FrequencyResponse, DesignsAsTheKnownPlantDoes) {
         const IdealPid& a = std::get<IdealPid>(exact->controllers[0].evaluation->controller);
         const IdealPid& b = std::get<IdealPid>(measured->controllers[0].evaluation->controller);
         EXPECT_NEAR(b.Kp / b.Ti / (a.Kp / a.Ti), 1, 1e-3) << known.name;
-        // And on the plant itself the design from the points keeps its limits.
+        // The design from the points also keeps its limits on the plant itself.
         EvaluateOptions options;
         options.points = 0;
         const auto judged = evaluate(known.plant, b, options);
@@ -129,7 +129,7 @@ TEST(FrequencyResponse, PhaseThatCannotBeFollowedIsNotGuessed) {
     const auto sparse = MeasuredPlant::make(points_of(Fopdt{.K = 1, .T = 0.1, .L = 30}, 0.005, 5, 12));
     ASSERT_FALSE(sparse.has_value());
     EXPECT_NE(sparse.error().message.find("cannot be followed"), std::string::npos);
-    // Beyond the crossover such points are only left out.
+    // Beyond the crossover such points are left out.
     const auto tail = MeasuredPlant::make(points_of(Fopdt{.K = 1, .T = 10, .L = 3}, 0.01, 300, 50));
     ASSERT_TRUE(tail.has_value());
     EXPECT_LT(tail->high(), 300);

@@ -1,4 +1,4 @@
-// The search `fast` against the best design that other searches find, and the same problem in other units.
+// The search `fast` compared with the best design that other searches find, and with the same problem in other units.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,7 +10,7 @@
 namespace tunewright::test {
 namespace {
 
-constexpr double kAllowed = 1e-3;  // relative, of the cost
+constexpr double kAllowed = 1e-3;  // relative difference of the cost
 
 Zpk lightly_damped() { return {.K = 9, .zeros = {}, .poles = {{-0.24, 3}, {-0.24, -3}, -1.0}, .L = 0.2}; }
 
@@ -32,7 +32,7 @@ bool expect_best_known(const DesignTask& task, int random_starts, std::uint64_t 
     return true;
 }
 
-// Its least Td is a local optimum: 2.10478, where 2.07482 can be had at Td = 0.239.
+// Its smallest Td is a local optimum: 2.10478, compared with 2.07482 at Td = 0.239.
 TEST(RobustSearch, TheLeastTdIsNoAnswerWithoutALookElsewhere) {
     const DesignTask task{lightly_damped(), 1.5, "load_iae"};
     const auto fast = designed(task, "fast");
@@ -42,7 +42,7 @@ TEST(RobustSearch, TheLeastTdIsNoAnswerWithoutALookElsewhere) {
     EXPECT_TRUE(expect_best_known({lightly_damped(), 1.5, "setpoint_iae"}, 20, 1, "set point"));
 }
 
-// A search over Kp and Ti says nothing of Td; with zeros there the next one could take no step.
+// A search over Kp and Ti has no curvature for Td; with zeros there the next search could take no step.
 TEST(RobustSearch, TheCurvatureThatAPiHandsOnServesAPid) {
     const DesignTask task{Fopdt{2, 10, 3}, 1.4, "load_iae"};
     const LinearPlant linear = *LinearPlant::make(task.plant);
@@ -72,8 +72,9 @@ TEST(RobustSearch, FastIsWithinAThousandthOfTheBestKnown) {
     EXPECT_GE(compared, 15) << "the others have no controller within the limits";
 }
 
-// An integrator, a slow lag and little dead time: near -180 degrees for decades below the phase crossover. At 1.2 the
-// loop lives a hundred times below it; about the crossover alone 5261 was found, and at 1.224 nothing.
+// An integrator, a slow lag and little dead time: the phase is near -180 degrees for decades below the phase crossover.
+// With a limit of 1.2 the bandwidth is a hundred times below it; a search only around the crossover found 5261, and
+// with 1.224 nothing.
 TEST(RobustSearch, ALoopFarBelowThePhaseCrossoverIsFound) {
     const Plant plant = Zpk{.K = 3.03251, .zeros = {-8.17802521}, .poles = {0.0, -0.115633297}, .L = 0.0440133};
     const LinearPlant linear = *LinearPlant::make(plant);
@@ -85,7 +86,7 @@ TEST(RobustSearch, ALoopFarBelowThePhaseCrossoverIsFound) {
     }
 }
 
-// Two integrators with lags leave a PID little phase: far below the lags it has what Ms and Mt need, whatever they are.
+// Two integrators with lags leave a PID little phase: far below the lags it reaches any allowed Ms and Mt.
 TEST(RobustSearch, BehindTwoIntegratorsALoopSlowEnoughIsFound) {
     for (const Zpk& plant : {Zpk{.K = 1, .zeros = {}, .poles = {0.0, 0.0, -0.0561, -0.0156, -0.035}, .L = 2.3},
                              Zpk{.K = 1, .zeros = {4.86}, .poles = {0.0, 0.0, -18.3, -0.0681, -23.4}, .L = 0.037},
@@ -103,7 +104,8 @@ TEST(RobustSearch, BehindTwoIntegratorsALoopSlowEnoughIsFound) {
     }
 }
 
-// A lead slower than the loop is best met by a filter slower than itself: 1.23 times as dear without a look there.
+// For a lead slower than the loop the best filter is slower than the lead: without a search there the cost was 1.23
+// times as high.
 TEST(RobustSearch, AFilterBelowASlowZeroIsFound) {
     const DesignTask task{Zpk{.K = 1, .zeros = {-0.0518}, .poles = {-1.55, -1.18, -16.9}, .L = 1.92707}, 1.357};
     const LinearPlant linear = *LinearPlant::make(task.plant);
@@ -115,8 +117,8 @@ TEST(RobustSearch, AFilterBelowASlowZeroIsFound) {
     EXPECT_LE(cost, best_from_random_starts(problem, 20, 1).value_or(0) * (1 + kAllowed));
 }
 
-/// K/(s (s^2 + 2 zeta s + 1)) e^(-Ls): its gain is held down by the resonance alone, which a loop far below it never
-/// sees, and which a filter between the two takes down.
+/// K/(s (s^2 + 2 zeta s + 1)) e^(-Ls): only the resonance limits its gain. A loop far below the resonance is not
+/// affected by it, and a filter between the two reduces it.
 Plant integrator_with_resonance(double zeta, double L) {
     return TransferFunction{.num = {1}, .den = {1, 2 * zeta, 1, 0}, .L = L};
 }
@@ -149,7 +151,7 @@ TEST(RobustSearch, NoResonanceIsTooLightlyDampedForAnAnswer) {
     }
 }
 
-/// `fast` costs at most what `known` does, a design within the limits whose filter follows the same rule.
+/// `fast` costs at most as much as `known`, a design within the limits whose filter follows the same rule.
 void expect_no_costlier_than(const IdealPid& known, const DesignTask& task) {
     const LinearPlant linear = *LinearPlant::make(task.plant);
     const auto fast = designed(task, "fast");
@@ -160,7 +162,7 @@ void expect_no_costlier_than(const IdealPid& known, const DesignTask& task) {
     EXPECT_LE(*cost, *other * (1 + kAllowed));
 }
 
-// Round Td = 1.8 and beyond Ti = 100 of the loop's own times the gain is 20 times that of the ground about it.
+// Near Td = 1.8 and beyond Ti = 100 of the loop's own times the gain is 20 times that of the surrounding region.
 TEST(RobustSearch, ASmallIslandOfHighGainIsFound) {
     const RandomPlant drawn = random_plant(159, true);
     const DesignTask task{drawn.plant, drawn.M, "load_iae"};
@@ -169,7 +171,7 @@ TEST(RobustSearch, ASmallIslandOfHighGainIsFound) {
     expect_no_costlier_than(grid->controller, task);
 }
 
-// Kp and Td do nothing here but through Ki and the filter.
+// Kp and Td have an effect here only through Ki and the filter.
 TEST(RobustSearch, AnIntegralAloneBehindAHeavyFilterIsFound) {
     const RandomPlant drawn = random_plant(2070, true);
     const LinearPlant linear = *LinearPlant::make(drawn.plant);
@@ -183,10 +185,11 @@ TEST(RobustSearch, AnIntegralAloneBehindAHeavyFilterIsFound) {
     expect_no_costlier_than(known, {drawn.plant, drawn.M, "load_iae"});
 }
 
-// Where one start alone ended 0.2 to 140 % above the best: at an integral behind a heavy filter (27, 195, 246, 294), at
-// a Td too short to matter (96, 357), at a Ti of hundreds of the loop's own times (399, 492), on a kink of the
-// set-point error (139, 164, 2227, 2270, 2285) or of a resonant load's (1170), and beyond the frequency grid (459).
-// Where the weighted optimum lay in the valley of the optimum of one part, and others were looked into (137, 156, 264).
+// Plants for which a search from one start ended 0.2 to 140 % above the best: with an integral behind a heavy filter
+// (27, 195, 246, 294), with a Td too short to matter (96, 357), with a Ti of hundreds of the loop's own times (399,
+// 492), on a kink of the set-point error (139, 164, 2227, 2270, 2285) or of a resonant load's (1170), and beyond the
+// frequency grid (459); and plants whose weighted optimum is near the optimum of one part, while others were searched
+// (137, 156, 264).
 TEST(RobustSearch, PlantsWithSeveralValleysEndInTheCheapest) {
     struct Case {
         std::uint64_t plant;
@@ -214,7 +217,7 @@ Zpk in_other_units(Zpk plant, double time, double gain) {
     return plant;
 }
 
-// The objective without simulations shows that the search itself knows neither unit.
+// The objective without simulations shows that the search itself is independent of both units.
 TEST(RobustSearch, UnitsOfTimeAndGainChangeNothing) {
     for (const std::uint64_t seed : {3, 7, 12, 20}) {
         const RandomPlant drawn = random_plant(seed, seed % 3 == 0);

@@ -1,5 +1,4 @@
-// Robust design: properties that hold for any plant, the honest ways of having no answer, and the small solvers it is
-// made of.
+// Robust design: properties that hold for any plant, the refusals, and the small solvers that it uses.
 #include "engine/tuning/robust/robust.h"
 
 #include <gtest/gtest.h>
@@ -113,7 +112,7 @@ TEST(Robust, MksIsKept) {
 }
 
 TEST(Robust, ATightMksIsMetAtTheCheapestOfItsValleys) {
-    // The published gridding sees the whole plane; the fast search must not end in a costlier valley.
+    // The published gridding covers the whole plane; the fast search must not end in a worse local optimum.
     const Plant plant = Fopdt{.K = 2, .T = 3, .L = 1};
     const auto fast = design(plant, with({{"Mks", 2.0}})),
                grid = design(plant, with({{"Mks", 2.0}, {"search", std::string("grid")}}));
@@ -125,7 +124,7 @@ TEST(Robust, ATightMksIsMetAtTheCheapestOfItsValleys) {
 
 namespace {
 
-/// The limit that a refusal has as the smallest that works; 0 where it has none.
+/// The smallest feasible limit that a refusal states; 0 if it states none.
 double cure_of(const Error& refusal) {
     const auto Ms = refusal.cure.find("Ms"), Mt = refusal.cure.find("Mt");
     return Ms != refusal.cure.end() && Mt != refusal.cure.end() && Ms->second == Mt->second ? Ms->second : 0;
@@ -150,7 +149,7 @@ TEST(Robust, UnstablePlantsHaveASmallestPeakThatWorks) {
 
 TEST(Robust, BehindTwoIntegratorsTheSmallestPeakIsThatOfTheIntegratorsAlone) {
     // Far below its lags and its dead time each of these is K/s^2. There a PD with its filter, which no integral action
-    // improves, has peaks of 1.3169 at the least (a sweep over the gain on a grid, computed apart).
+    // improves, has peaks of at least 1.3169 (from an independent sweep over the gain on a grid).
     constexpr double kLeast = 1.3169;
     for (const Plant& plant : {Plant(Zpk{.K = 1, .zeros = {}, .poles = {0.0, 0.0}, .L = 0.02}),
                                Plant(Zpk{.K = 9.33, .zeros = {}, .poles = {0.0, 0.0, -6.166}, .L = 0.01936}),
@@ -202,8 +201,8 @@ TEST(Robust, AnIdentifiedPlantWithLagsHasAFilterWhateverItsLeads) {
     const auto identified = [](const Plant& plant, double L_std) {
         return robust_method().tune(TuningProblem{plant, *LinearPlant::make(plant), L_std}, {}, {});
     };
-    // Two lags, 1 and 2, and a lead that is shorter, almost as long, as long and longer than their sum; L = 2.4 is not
-    // known from 0.
+    // Two lags, 1 and 2, and a lead that is shorter, almost as long, as long and longer than their sum; L = 2.4 cannot
+    // be distinguished from 0.
     for (const auto& [lead, Tf] :
          {std::pair{1.5, 0.05 * 1.5}, {2.8, 0.05 * 0.2}, {3.0, 0.05 * 0.1}, {10.0, 0.05 * 0.1}}) {
         const auto tuned = identified(TransferFunction{{lead, 1}, {2, 3, 1}, 2.4}, 3);

@@ -1,4 +1,4 @@
-// Rules made for a robustness: their formulas, and that the loops have it.
+// Rules for a given robustness: their formulas, and the robustness of the loops.
 #include "engine/evaluation/evaluate.h"
 #include "engine/plant/plant_family.h"
 #include "tests/engine/tuning/rule_support.h"
@@ -35,7 +35,8 @@ TEST(Haalman, CancelsTheLagsSoThatMsIs1Point9WhateverTheyAre) {
     EXPECT_TRUE(warns(*tuned("haalman", Fopdt{.K = 1, .T = 2, .L = 1}), "no-derivative"));
 }
 
-// The arctangents are straight lines in the source: both margins within 7 %, exact at 3 and 60 degrees, where Ti = T.
+// The source approximates the arctangents by straight lines: both margins within 7 %, exact at 3 and 60 degrees, where
+// Ti = T.
 TEST(GainPhaseMargin, MeetsBothMargins) {
     expect_settings(tuned("gain_phase_margin", Fopdt{.K = 2, .T = 4, .L = 1}, kPI), 3.14159265358979 / 3, 4, 0);
     struct Wanted {
@@ -50,7 +51,7 @@ TEST(GainPhaseMargin, MeetsBothMargins) {
             EXPECT_NEAR(*margins.phase_margin_deg, phase_deg, 0.07 * phase_deg) << gain << " " << L;
         }
     }
-    // PID: the second lag is cancelled, the rest is the PI's.
+    // PID: the second lag is cancelled, the rest is a PI.
     const Sopdt plant{.K = 1, .T1 = 4, .T2 = 1, .L = 1};
     const auto pid = tuned("gain_phase_margin", plant, kUnfiltered);
     expect_settings(pid, 3.14159265358979 / 6 * 4 * 1.25, 5, 0.8);
@@ -71,7 +72,7 @@ TEST(ImprovedSimc, FollowsItsFormulasAndIsAsRobustAsItsSourceSays) {
     expect_settings(tuned("improved_simc", Fopdt{.K = 2, .T = 100, .L = 3}, kPI), 101 / 12.0, 24, 0);
     // Series 10/9, 10, 1.
     expect_settings(tuned("improved_simc", Fopdt{.K = 2, .T = 10, .L = 3}), 10 / 9.0 * 1.1, 11, 10 / 11.0);
-    // Pure dead time: integral action and its lead are a PI controller.
+    // Pure dead time: integral action and its lead form a PI controller.
     expect_settings(tuned("improved_simc", Fopdt{.K = 2, .T = 0, .L = 3}, kPI), 1 / 12.0, 1, 0);
     expect_settings(tuned("improved_simc", Fopdt{.K = 2, .T = 0, .L = 3}), 1 / 9.0, 1, 0);
     expect_settings(tuned("improved_simc", Ipdt{.K = 2, .L = 3}, kPI), 1 / 12.0, 24, 0);
@@ -109,7 +110,7 @@ TEST(KappaTau, ReproducesThePublishedTable) {
         }
 }
 
-// The same curves, printed in the source as Ti/T and Td/T too, agree within what their two digits leave.
+// The same curves, also printed in the source as Ti/T and Td/T, agree within their two digits.
 TEST(KappaTau, AgreesWithItsSecondPrintedForm) {
     for (const double tau : {0.3, 0.5, 0.7}) {
         const double L = 1, T = L * (1 - tau) / tau;

@@ -1,4 +1,4 @@
-// What the tests of the closed-form rules share.
+// Common helpers of the tests of the closed-form rules.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -27,7 +27,7 @@ inline Expected<TunedController> tuned(const std::string& id, const Plant& plant
     return find_method(id)->tune({plant, *LinearPlant::make(plant), std::nullopt}, options_of(given), {});
 }
 
-/// A word among options.
+/// A word as an option.
 inline std::pair<std::string, OptionValue> word(const std::string& path, const std::string& value) {
     return {path, value};
 }

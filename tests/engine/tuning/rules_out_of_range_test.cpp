@@ -1,4 +1,4 @@
-// Every rule outside its range warns, and where it does not apply refuses, with a sentence that says what and why.
+// Every rule warns outside its range, and refuses where it does not apply, with a sentence that gives the reason.
 #include "tests/engine/tuning/rule_support.h"
 
 namespace tunewright {

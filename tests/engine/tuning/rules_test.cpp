@@ -1,5 +1,4 @@
-// The closed-form rules: published settings, what they refuse, and properties that every rule on a first-order model
-// has.
+// The closed-form rules: published settings, refusals, and properties common to every rule for a first-order model.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -106,7 +105,7 @@ TEST(Simc, SeriesFormIsAnsweredExactlyWithAFilterThatStaysFasterThanTheLoop) {
     EXPECT_NEAR(pid.filter.Tf, 0.1 * pid.Td, 1e-15);
     const auto series = to_series(IdealPid{.Kp = pid.Kp, .Ti = pid.Ti, .Td = pid.Td});
     ASSERT_TRUE(series);
-    // The larger root is named Ti: here the lag 100; Kp/Ti stays.
+    // The larger root is called Ti: here the lag 100; Kp/Ti is unchanged.
     EXPECT_NEAR(series->Ti, 100, 1e-9);
     EXPECT_NEAR(series->Kp / series->Ti, 50 / 8.0, 1e-9);
 }
@@ -181,7 +180,7 @@ TEST(Lambda, WarnsBelowTheRecommendedLambda) {
     EXPECT_FALSE(warns(*tuned("lambda", plant), "outside-validity"));
 }
 
-// The rows that "all" makes of a method.
+// The rows for a method in "all".
 std::vector<MethodOptions> rows_of(const TuningMethod& method) {
     std::vector<MethodOptions> rows;
     for (const auto& variant : method.variants) rows.push_back(variant.options);
@@ -208,7 +207,7 @@ TEST(Rules, ScalingTimeAndGainScalesTheSettingsOfEveryRow) {
         }
     };
     for (const auto& method : method_registry()) {
-        if (method.id == "robust" || method.id == "emulation") continue;  // searches, tested apart
+        if (method.id == "robust" || method.id == "emulation") continue;  // searches, tested separately
         scales(method, Sopdt{.K = 1.5, .T1 = 4, .T2 = 3, .L = 1}, Sopdt{.K = -6, .T1 = 400, .T2 = 300, .L = 100});
         scales(method, Fopdt{.K = 1.5, .T = 4, .L = 3}, Fopdt{.K = -6, .T = 400, .L = 300});
         scales(method, Ipdt{.K = 1.5, .L = 3}, Ipdt{.K = -0.06, .L = 300});

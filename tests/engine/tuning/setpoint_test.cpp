@@ -1,4 +1,5 @@
-// Set-point weights and filters: limits on the overshoot held over many plants, regulation untouched, optima by grids.
+// Set-point weights and filters: limits on the overshoot hold over many plants, regulation is unchanged, optima by
+// grids.
 #include "engine/tuning/method/setpoint.h"
 
 #include <gtest/gtest.h>
@@ -83,7 +84,7 @@ TEST(Setpoint, AnyOvershootIsKeptOnPlantsOfManyKinds) {
             const double overshoot = *judged(plant, pid).performance.setpoint.overshoot_percent;
             EXPECT_LE(overshoot, std::max(limit, 5e-3)) << "plant " << i << " limit " << limit;
             if (pid.setpoint_lag > 0 || pid.b == 1) continue;
-            // Not lower than it must be, or than is best.
+            // Not lower than necessary, or than the optimum.
             IdealPid more = pid;
             more.b = std::min(1.0, pid.b + 2e-3);
             const SetpointPerformance with_more = judged(plant, more).performance.setpoint;
@@ -96,7 +97,7 @@ TEST(Setpoint, AnyOvershootIsKeptOnPlantsOfManyKinds) {
     EXPECT_GT(full, 0);
 }
 
-/// The shortest filter that keeps the limit with this weight, by halving; of each pair the evaluation's own figures.
+/// The shortest filter that keeps the limit with this weight, by bisection; evaluated by the engine's own figures.
 double min_IAE_of_a_grid(const Plant& plant, IdealPid pid, double limit) {
     double min = std::numeric_limits<double>::infinity();
     const auto over = [&](double T) {
@@ -169,8 +170,9 @@ TEST(Setpoint, WithoutAFilterTheWeightWithTheLeastOvershootIsTaken) {
     }
 }
 
-// Along the limits the IAE hardly jumps where the filter comes in, though weight and filter do. The shortest filter
-// grows with the root of the overshoot that it takes off, so 1e-5 of a limit still moves the IAE by some percent.
+// Along the limits the IAE is nearly continuous where the filter becomes necessary, although weight and filter are not.
+// The shortest filter grows with the root of the overshoot that it removes, so 1e-5 of a limit still changes the IAE by
+// some percent.
 TEST(Setpoint, TheIaeIsContinuousWhereTheFilterComesIn) {
     for (const double L : {1.0, 3.0, 10.0}) {
         const Plant plant = Fopdt{.K = 2, .T = 10, .L = L};
@@ -212,7 +214,7 @@ TEST(Setpoint, TheBestWeightHasTheLeastIaeOfAGrid) {
     }
 }
 
-// The filter alone, against the exact answer: y of a loop of first order 1/(s + 1) behind 1/(T s + 1).
+// Only the filter, compared with the exact answer: y of a first-order loop 1/(s + 1) behind 1/(T s + 1).
 TEST(Setpoint, AFilteredSetPointGivesTheLaggedResponse) {
     const IdealPid pid{.Kp = 1, .Ti = 1, .b = 1, .setpoint_lag = 0.5};  // 1/s + 1 = (s + 1)/s on 1/(s + 1)
     EvaluateOptions options;

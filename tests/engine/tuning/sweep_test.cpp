@@ -1,5 +1,5 @@
-// What a search trusts instead of counting or dividing again: the sweep's loops in every kind of register, the gains
-// that circles forbid, and what the grid tells of stability.
+// Parts of a search that replace exact computations: the sweep's loops in every kind of register, the gains that
+// circles exclude, and the stability that the grid implies.
 #include "engine/tuning/robust/sweep/sweep.h"
 
 #include <gtest/gtest.h>
@@ -90,7 +90,7 @@ TEST(SweepLoops, LevelsAreThoseOfComplexArithmetic) {
     }
 }
 
-// At the worst phase L is -|L|; beyond |L| = 1, where every turn encircles -1, far above any limit.
+// At the worst phase L is -|L|; beyond |L| = 1, where every turn encircles -1, the level is far above any limit.
 TEST(SweepLoops, LevelsWhereTheDeadTimeTurnsAreThoseOfTheWorstPhase) {
     const RandomGrid grid(11, 300);
     Random random(12);
@@ -117,7 +117,7 @@ TEST(SweepLoops, LevelsWhereTheDeadTimeTurnsAreThoseOfTheWorstPhase) {
     EXPECT_GT(above, 20);
 }
 
-// Of rounded numbers many are equal, at the ends and across the borders of what is looked at together.
+// Many rounded numbers are equal, also at the ends and across the borders of vectorised blocks.
 TEST(SweepLoops, TopsAreNoLowerThanBeforeAndHigherThanAfter) {
     Random random(13);
     int found = 0;
@@ -190,7 +190,7 @@ DesignProblem problem_on(const LinearPlant& plant, double M, double sign = 1) {
     return problem;
 }
 
-// The exact count of unstable poles is the judge of what the grid tells of each gap.
+// The exact count of unstable poles is the reference for the grid's statement on each gap.
 TEST(Sweep, WhatTheGridTellsOfStabilityIsTrue) {
     int told = 0, stable = 0, finite = 0;
     for (std::uint64_t seed = 0; seed < 300; ++seed) {
@@ -220,7 +220,8 @@ TEST(Sweep, WhatTheGridTellsOfStabilityIsTrue) {
     EXPECT_GT(told - stable, 0.1 * told);
 }
 
-// Judged on the loop's own grid, which goes as far down as the loop does: what the sweep's grid cannot see counts too.
+// Evaluated on the loop's own grid, which extends as far down as the loop needs: peaks between the sweep's grid points
+// count too.
 TEST(Sweep, GainsInsideAGapHoldTheLimits) {
     int judged = 0, integrating = 0;
     for (std::uint64_t seed = 0; seed < 300; ++seed) {

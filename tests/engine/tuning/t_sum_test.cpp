@@ -1,4 +1,4 @@
-// Kuhn's T-sum rule: the published factors on a T_sum that is found otherwise, and what the rule refuses.
+// Kuhn's T-sum rule: the published factors with an independently computed T_sum, and the refusals.
 #include "tests/engine/tuning/rule_support.h"
 
 namespace tunewright {

@@ -1,5 +1,4 @@
-// The rules on the ultimate point: plants whose Ku and Pu have a closed form, where the point comes from, what is
-// refused.
+// The rules on the ultimate point: plants with closed-form Ku and Pu, the source of the point, and refusals.
 #include <numbers>
 
 #include "engine/tuning/registry.h"
@@ -74,7 +73,7 @@ TEST(AmigoUltimate, FollowsItsFormulasFromDeadTimeToIntegrator) {
 
 TEST(UltimatePointOptions, GivenByHandTheyReplaceThePlantsOwn) {
     const Given by_hand{{"Ku", 10.0}, {"Pu", 2.0}};
-    // A first-order lag has no ultimate point of its own.
+    // A first-order lag has no ultimate point.
     const Fopdt lag{.K = 1, .T = 1, .L = 0};
     expect_settings(tuned("ziegler_nichols_ultimate", lag, by_hand), 6, 1, 0.25);
     expect_settings(tuned("tyreus_luyben", lag, by_hand), 10 / 2.2, 4.4, 2 / 6.3);
@@ -91,7 +90,7 @@ TEST(UltimatePointOptions, RelayTakesTheRecordedTests) {
     EXPECT_THAT(without.error().message, HasSubstr("there is no recorded relay test"));
     problem.relay_point = UltimatePoint{.Ku = 2, .Pu = 4};
     expect_settings(tune(problem, relay, {}), 1.2, 2, 0.5);
-    // The default stays the model's.
+    // The default is still the model's.
     EXPECT_NE(tune(problem, {}, {})->controller.Kp, 1.2);
 }
 

@@ -17,7 +17,7 @@ class TurnsTest : public testing::Test {
 protected:
     static ComputeSlots::Clock::time_point far() { return ComputeSlots::Clock::now() + 60s; }
 
-    /// Waits on a thread of its own, and writes its name down when its turn has come.
+    /// Waits on a thread of its own, and records its name when its turn has come.
     void wait_for_turn(const std::string& client, std::size_t already) {
         threads_.emplace_back([this, client] {
             if (turns_.take(client, far(), {}) != ComputeSlots::Wait::granted) return;
@@ -27,11 +27,11 @@ protected:
             }
             turns_.give_back(client);
         });
-        // Until it stands in the queue: one more is refused then, or it would have been granted.
+        // Until it is in the queue: one more is then refused, or it would have been granted.
         std::this_thread::sleep_for(20ms * (already + 1));
     }
 
-    /// All places that there are, by clients that have nothing else to do with the test.
+    /// Fills all slots with requests of other clients.
     void fill() {
         ASSERT_EQ(turns_.take("first", far(), {}), ComputeSlots::Wait::granted);
         ASSERT_EQ(turns_.take("second", far(), {}), ComputeSlots::Wait::granted);

@@ -1,4 +1,4 @@
-// Keys, rates and other sites: what the gate lets through.
+// Keys, rates and other sites: the requests that the gate admits.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ std::string line_of(const std::string& name, const std::string& key) {
     return name + " sha256:" + api::sha256_hex(key) + "\n";
 }
 
-/// A file that is gone when the test ends.
+/// A file that is deleted at the end of the test.
 class File {
 public:
     explicit File(const std::string& text)

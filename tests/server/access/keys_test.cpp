@@ -1,4 +1,4 @@
-// The file of keys while the service runs: what is revoked stays revoked, whatever happens to the file.
+// The file of keys while the service runs: a revoked key stays revoked, whatever happens to the file.
 #include "server/access/keys.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// By which names the service may be called, and from which pages.
+// The names by which the service may be called, and the pages that may call it.
 #include "server/access/sites.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-"""The binary as its user starts it."""
+"""The binary as its user calls it."""
 
 import json
 import os

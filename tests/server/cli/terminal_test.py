@@ -1,4 +1,4 @@
-"""The binary at a terminal: tables and sentences for a person, and how a wrong word is answered."""
+"""The binary at a terminal: tables and sentences for a person, and the answers to wrong arguments."""
 
 import json
 import os
@@ -16,7 +16,7 @@ PLANT = "2 e^(-3s)/(10s+1)"
 
 
 def at_terminal(*arguments):
-    """The exit code and what a person sees, on standard output and standard error together."""
+    """The exit code, with standard output and standard error together."""
     master, slave = pty.openpty()
     process = subprocess.Popen([BINARY, *arguments], stdin=subprocess.DEVNULL, stdout=slave, stderr=slave)
     os.close(slave)
@@ -34,7 +34,7 @@ def at_terminal(*arguments):
 
 
 def cells(table, name):
-    """The words of the row of a table that begins with that name."""
+    """The words of the table row that begins with that name."""
     return next(line.split() for line in table.splitlines() if line.startswith(name))
 
 
@@ -43,7 +43,7 @@ class TableTest(unittest.TestCase):
         code, shown = at_terminal("tune", "--plant", PLANT, "--method", "robust", "--method", "simc", "--Ms", "1.4")
         self.assertEqual(code, 0, shown)
         self.assertRegex(shown.splitlines()[0], r"^method +controller +Kp +Ti \(s\) +Td \(s\) +Ms +Mt +load IAE +verdict$")
-        # Kp, Ti and the least load IAE of this plant at Ms = Mt = 1.4, to the digits shown.
+        # Kp, Ti and the smallest load IAE of this plant at Ms = Mt = 1.4, to the digits shown.
         row = cells(shown, "robust")
         self.assertIn("0.8381", row)
         self.assertIn("5.691", row)
@@ -186,7 +186,7 @@ class WrongWordTest(unittest.TestCase):
 
 class ShellTest(unittest.TestCase):
     def complete(self, *words):
-        """What bash offers for the last word."""
+        """The completions of bash for the last word."""
         script = ('eval "$("$0" completion bash)"; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _tunewright; '
                   'printf "%s\\n" "${COMPREPLY[@]}"')
         return subprocess.run(["bash", "-c", script, BINARY, *words], check=True, capture_output=True,

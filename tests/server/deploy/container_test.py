@@ -1,4 +1,5 @@
-"""The Dockerfile, held to the tree, to the binary and to Debian, without a daemon; and what the user of the image may do."""
+"""Compares the Dockerfile with the tree, the binary and Debian, without a daemon; and checks the rights of the
+image's user."""
 
 import os
 import pathlib
@@ -18,7 +19,7 @@ SANITIZERS = ("libasan", "libubsan", "libtsan")
 
 
 def instructions():
-    """Each stage as a list of (instruction, rest), continued lines joined; what stands before the first is left out."""
+    """Each stage as a list of (instruction, rest), with continued lines joined; lines before the first are left out."""
     text = re.sub(r"^\s*#.*\n", "", (ROOT / "Dockerfile").read_text(), flags=re.M)
     stages = []
     for line in re.sub(r"\\\n\s*", " ", text).splitlines():
@@ -76,7 +77,7 @@ class DockerfileTest(unittest.TestCase):
             self.assertEqual(shown.returncode, 0, package + " is no package that is installed here")
             files |= {os.path.basename(line) for line in shown.stdout.splitlines()}
         self.assertEqual([library for library in libraries if library not in files], [])
-        # No more than these: a package each at most.
+        # No other packages: at most one for each library.
         self.assertLessEqual(len(named), len(libraries))
 
     def test_one_line_says_which_debian(self):
@@ -118,7 +119,7 @@ class BillOfMaterialsTest(unittest.TestCase):
 
 
 class KeysTest(unittest.TestCase):
-    """As documented: the key is made inside, by the user who serves, in the folder that is the volume."""
+    """As documented: the key is made inside, by the user of the service, in the folder of the volume."""
 
     def test_the_user_of_the_image_makes_keys_and_reads_them(self):
         folder = tempfile.TemporaryDirectory(prefix="tunewright-container-")

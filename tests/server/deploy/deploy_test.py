@@ -1,4 +1,4 @@
-"""What deploy/ says, held to the binary, and nginx in front of real replicas."""
+"""Compares deploy/ with the binary, and tests nginx in front of real replicas."""
 
 import http.client
 import json
@@ -18,7 +18,7 @@ from faulty_places import OwnPostgres
 from service import BINARY, FOPDT, QUICK, ROOT, Answer, Service
 
 DEPLOY = ROOT / "deploy"
-# Debian keeps it out of an ordinary user's PATH.
+# Debian does not put it in an ordinary user's PATH.
 NGINX = shutil.which("nginx") or shutil.which("nginx", path="/usr/sbin")
 
 
@@ -126,7 +126,7 @@ class KubernetesTest(unittest.TestCase):
 
 
 class OptionalManifestsTest(unittest.TestCase):
-    """What belongs to a cluster's own operators: ingress, Prometheus, its adapter."""
+    """Optional manifests for a cluster's operators: ingress, Prometheus, its adapter."""
 
     @classmethod
     def setUpClass(cls):
@@ -208,7 +208,7 @@ class ComposeTest(unittest.TestCase):
 
 
 class NginxConfiguration:
-    """deploy/nginx/nginx.conf with the places of this test in it, and nothing else changed."""
+    """deploy/nginx/nginx.conf with the addresses and paths of this test, otherwise unchanged."""
 
     def __init__(self, folder, ports):
         with socket.socket() as probe:
@@ -221,7 +221,7 @@ class NginxConfiguration:
         text = self.replaced(text, r"/run/secrets/tls-key", folder + "/key.pem", 1)
         for i, port in enumerate(ports, 1):
             text = self.replaced(text, r"tunewright-%d:8080" % i, "127.0.0.1:%d" % port, 1)
-        # Logs of a test go beside it, and it stays the test's child.
+        # The logs are in the test's folder, and nginx stays its child process.
         text = self.replaced(text, r"/dev/stdout", folder + "/access.log", 1)
         text = self.replaced(text, r"error_log stderr", "error_log " + folder + "/error.log", 1)
         self.path = pathlib.Path(folder, "nginx.conf")
@@ -290,7 +290,7 @@ class NginxTest(unittest.TestCase):
     def test_nginx_finds_nothing_wrong(self):
         done = subprocess.run([*self.command, "-t"], capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stderr)
-        # nginx 1.25 has another word for HTTP/2, which 1.22 of Debian 12 does not know.
+        # nginx 1.25 has another directive for HTTP/2, which 1.22 of Debian 12 does not have.
         others = [line for line in done.stderr.splitlines() if '"listen ... http2" directive is deprecated' not in line]
         self.assertNotIn("[warn]", "\n".join(others))
 

@@ -1,4 +1,5 @@
-"""What clients may hold: memory, threads, readers of the store, room on the disk. Each case stopped others once."""
+"""Resources that clients may hold: memory, threads, readers of the store, room on the disk. Each case once blocked
+other clients."""
 
 import concurrent.futures
 import json
@@ -34,7 +35,7 @@ class BodiesTest(unittest.TestCase):
         cls.addClassCleanup(cls.service.__exit__)
 
     def hold(self, *requests):
-        """Connections that have sent that and send no more."""
+        """Connections that have sent these bytes and send no more."""
         made = []
         for request in requests:
             made.append(connect(self.service))
@@ -56,7 +57,7 @@ class BodiesTest(unittest.TestCase):
             self.assertEqual(connection.recv(65536).split()[1], status)
 
     def test_small_values_in_large_numbers_are_refused_and_leave_nothing(self):
-        """A tree of them takes thirty times its text."""
+        """Their tree takes thirty times the memory of their text."""
         body = b"[" + b",".join([b'{"":0}'] * (8 * MEGABYTE // 7 - 1)) + b"]"
         with concurrent.futures.ThreadPoolExecutor(6) as pool:
             calls = [pool.submit(self.service.post, path, body) for path in ("/v1/jobs", "/v1/design", "/v1/evaluate") * 4]
@@ -86,7 +87,7 @@ class WaitsTest(unittest.TestCase):
                 self.assertLess(time.monotonic(), end)
             for connection in gone:
                 connection.close()
-            # Their threads serve others, or go after some seconds without work.
+            # Their threads serve other connections, or end after some seconds without work.
             end = time.monotonic() + 30
             while threads(service) > before + 5:
                 self.assertLess(time.monotonic(), end)

@@ -1,4 +1,4 @@
-"""What /metrics says, and that rules, dashboard and documents speak of nothing else."""
+"""The content of /metrics, and a check that rules, dashboard and documents mention only existing metrics."""
 
 import json
 import os
@@ -16,14 +16,14 @@ from service import FOPDT, QUICK, ROOT, Service
 
 RULES = ROOT / "deploy" / "prometheus" / "rules.yaml"
 DASHBOARD = ROOT / "deploy" / "grafana" / "tunewright.json"
-# Long enough to be seen, and to keep the one worker from the next.
+# Long enough to be observed, and to keep the only worker from the next job.
 SLOW = {"plant": FOPDT, "tune": [{"method": "all"}], "evaluate": {"points": 1500}}
-# Written only when something has gone wrong.
+# Written only after a fault.
 OF_FAULTS = {"tunewright_store_faults_total"}
 
 
 def figures(service):
-    """{name with labels: value}; each line is as Prometheus' text form has it."""
+    """{name with labels: value}; checks that each line has Prometheus' text form."""
     answer = service.get("/metrics")
     assert answer.status == 200, answer.status
     found = {}

@@ -17,7 +17,7 @@ using testing::StartsWith;
 
 bool at_batches(const Request& request) { return request.target == "/batches"; }
 
-/// Reads to the end and answers with what came, or with a sum of it where that is long.
+/// Reads to the end and answers with the body, or with its length if it is long.
 Response read_all(const Request& request) {
     Response response;
     if (!request.read_body) {
@@ -106,7 +106,7 @@ TEST(BodySource, RefusesWhatIsTooLongOrMalformedAndCloses) {
     EXPECT_EQ(answer(post(kChunked, "/other") + "0\r\n\r\n"), "HTTP/1.1 411");
 }
 
-/// Whether the whole body came, as the handler saw it.
+/// Reports whether the handler received the whole body.
 std::function<Response(Request)> telling(std::promise<bool>& whole) {
     return [&whole](const Request& request) {
         whole.set_value(request.read_body([](std::string_view) { return true; }));
@@ -150,7 +150,7 @@ TEST(BodySource, TakesNothingFromTheClientWhileNobodyReads) {
         sent = true;
     });
     asked.get_future().wait();
-    // Far more than the kernel's buffers of both sides would take if the service read along.
+    // Far more than the kernel's buffers on both sides if the service did not read.
     std::this_thread::sleep_for(300ms);
     EXPECT_FALSE(sent);
     go.set_value();
@@ -195,7 +195,7 @@ TEST(BodySource, ATrickleIsCutOffAndASlowReaderIsNot) {
     Client trickle(server);
     trickle.send(post("Content-Length: 100\r\n") + "x");
     EXPECT_THAT(trickle.read_all(), StartsWith("HTTP/1.1 408"));
-    // By now the other one has waited longer than that, but for us.
+    // By now the other client has waited longer than that, but because of the service.
     patient.send("hello");
     EXPECT_THAT(patient.read_to(" end"), EndsWith("hello end"));
 }
@@ -245,12 +245,12 @@ TEST(BodySource, BodiesBeyondTheBudgetAreRefusedAndALengthAloneTakesNothing) {
     const std::string refused = second.read_all();
     EXPECT_THAT(refused, StartsWith("HTTP/1.1 503"));
     EXPECT_THAT(refused, HasSubstr("Retry-After: "));
-    // What has no body needs no room.
+    // A request without a body needs no room.
     small.send(get("/"));
     EXPECT_THAT(small.read_to("whole"), EndsWith("whole"));
     go.set_value();
     EXPECT_THAT(first.read_to("whole"), EndsWith("whole"));
-    // An answered request has given its room back.
+    // An answered request has released its room.
     Client third(server);
     third.send(post("Content-Length: 700000\r\n") + std::string(700'000, 'x'));
     EXPECT_THAT(third.read_to("whole"), EndsWith("whole"));

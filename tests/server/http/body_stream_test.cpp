@@ -1,4 +1,4 @@
-// Answers that are made while they are sent.
+// Answers that are produced while they are sent.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 
-/// Answers /stream with what the producer writes, everything else with "plain".
+/// Answers /stream with the producer's output, everything else with "plain".
 std::function<Response(Request)> streaming(const BodyProducer& producer) {
     return [producer](const Request& request) {
         Response response;
@@ -96,7 +96,7 @@ TEST(BodyStream, IsMadeOnlyAsTheClientTakesIt) {
     Client other(server);
     client.send(get("/stream"));
     client.read_to("\r\n\r\n");
-    // The client takes nothing: the kernel's buffers fill, then the producer rests and others are served.
+    // The client reads nothing: the kernel's buffers fill, then the producer waits and others are served.
     for (int i = 0; i < 50; i++) {
         other.send(get("/other"));
         EXPECT_THAT(other.read_to("plain"), EndsWith("plain"));
@@ -126,7 +126,7 @@ TEST(BodyStream, IsGivenUpWhereTheClientTakesNothing) {
     limits.writing = std::chrono::milliseconds(300);
     std::promise<bool> taken;
     Loopback server(streaming([&](BodyWriter& out) {
-                        // Small, so that the time is that of one piece and not of its length.
+                        // Small, so that the time limit applies to one piece and not to its length.
                         for (int i = 0; i < 100'000; i++)
                             if (!out.write(std::string(4096, 'x'))) return taken.set_value(false), false;
                         return taken.set_value(true), true;
@@ -194,7 +194,7 @@ TEST(BodyStream, FourHundredOpenOnesAreAllServed) {
         clients.back()->send(get("/"));
     }
     for (const auto& client : clients) client->read_to("\r\n\r\n");
-    const std::lock_guard lock(mutex);  // all are there; the lock says so to who watches
+    const std::lock_guard lock(mutex);  // all are there; the lock makes that visible to the observer
     for (const auto& stream : streams) stream->write("data: x\n\n");
     for (const auto& client : clients) EXPECT_THAT(client->read_to("x\n\n"), HasSubstr("data: x\n\n"));
     for (const auto& stream : streams) stream->end();

@@ -1,4 +1,4 @@
-// Requests that take more memory than there is for all, and the one that gives way.
+// Requests that need more memory than the total, and the one that gives way.
 #include <gtest/gtest.h>
 
 #include <atomic>

@@ -28,7 +28,7 @@ std::string value_of(const Response& response, const std::string& name) {
     return value;
 }
 
-/// What zlib itself makes of it; shorter where it is cut off.
+/// The output of zlib itself; shorter if the input is cut off.
 std::string unpacked(const std::string& packed) {
     z_stream state{};
     inflateInit2(&state, 16 + 15);

@@ -1,4 +1,4 @@
-// What a connection makes of a client's bytes, however they are cut.
+// The requests that a connection reads from a client's bytes, independent of the cuts.
 #include "server/http/guard/connection.h"
 
 #include <gtest/gtest.h>
@@ -16,12 +16,12 @@ const std::string kChunkedHead = "POST / HTTP/1.1\r\nHost: x\r\nTransfer-Encodin
 
 struct Outcome {
     bool whole = false;
-    int status = 0;    ///< of the refusal; 0 where the bytes end too soon
+    int status = 0;    ///< of the refusal; 0 if the bytes end too early
     std::string body;  ///< as far as it was read
     bool operator==(const Outcome&) const = default;
 };
 
-/// One body that begins behind `head`, and whether the next head behind it is read as such.
+/// One body that begins after `head`, and whether the next head after it is read correctly.
 Outcome body_of(const std::string& head, const std::string& bytes, std::size_t split = kAny, std::size_t limit = 1000) {
     ServerLimits limits;
     limits.max_batch_body = limit;

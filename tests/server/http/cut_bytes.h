@@ -1,4 +1,4 @@
-// Bytes that reach a connection in pieces of the test's choice: packets of a local socket, each of which is one read.
+// Bytes that reach a connection in chosen pieces: packets of a local socket, each of which is one read.
 #pragma once
 
 #include <sys/socket.h>
@@ -15,7 +15,7 @@ namespace tunewright::server::http {
 /// A client that sends all the bytes, then the end, and reads nothing.
 class CutBytes {
 public:
-    /// At most some 270 pieces.
+    /// At most about 270 pieces.
     template <class Size>
     CutBytes(std::string_view bytes, const Size& next_size) {
         if (::socketpair(AF_UNIX, SOCK_SEQPACKET, 0, ends_) != 0) std::abort();
@@ -30,14 +30,14 @@ public:
     CutBytes(const CutBytes&) = delete;
     CutBytes& operator=(const CutBytes&) = delete;
 
-    /// The other end, which belongs to whoever asks.
+    /// The other end, which the caller owns.
     int socket() const { return ends_[0]; }
 
 private:
     int ends_[2];
 };
 
-/// Reads the rest of the body; false where it does not come to its end.
+/// Reads the rest of the body; false if it is incomplete.
 inline bool read_body(Connection& connection, std::string& body) {
     char piece[4096];
     ssize_t n = 0;

@@ -9,7 +9,7 @@ constexpr std::size_t kBody = 1000;
 
 std::string head_of(const std::string& fields) { return "GET /a HTTP/1.1\r\nHost: x\r\n" + fields + "\r\n"; }
 
-/// What becomes of it at a call that takes up to 1,000 bytes.
+/// The head for a call that accepts up to 1,000 bytes.
 Head judge(const std::string& text, bool streamed = false) {
     Head head = read_head(text);
     if (head.state == Head::State::complete) refuse_body(head, streamed, kBody);
@@ -53,7 +53,7 @@ TEST(Head, GivesTheLibraryNothingThatItWouldActUpon) {
     EXPECT_TRUE(head.expects_continue);
     EXPECT_EQ(head.clean, "GET /a HTTP/1.1\r\n\r\n");
     EXPECT_EQ(read_head(head_of("Content-Length: 007\r\n")).clean, "GET /a HTTP/1.1\r\nContent-Length: 7\r\n\r\n");
-    // Handlers get the fields as they were sent.
+    // Handlers get the fields as sent.
     using Field = std::pair<std::string, std::string>;
     EXPECT_EQ(head.fields.back(), Field("A", "c"));
     EXPECT_EQ(head.fields.at(head.fields.size() - 2), Field("A", "b%41"));

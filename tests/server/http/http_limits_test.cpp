@@ -1,4 +1,4 @@
-// What clients may hold together: unsent bytes, connections.
+// The total resources of clients: unsent bytes, connections.
 #include <gmock/gmock.h>
 
 #include <array>
@@ -29,7 +29,7 @@ TEST(Unsent, AnswersThatNobodyTakesGoTheOldestFirst) {
     for (auto& client : clients) {
         client = std::make_unique<Client>(server);
         client->send(get("/large"));
-        // Their order is that of the answers' beginnings.
+        // The order is that in which the answers began.
         client->read_to("\r\n\r\n");
     }
     std::this_thread::sleep_for(2 * Connection::kSocketTimeout);
@@ -40,7 +40,7 @@ TEST(Unsent, AnswersThatNobodyTakesGoTheOldestFirst) {
     EXPECT_THAT(other.read_to("small"), EndsWith("small"));
 }
 
-/// Connections that have sent so much of a request.
+/// Connections that have sent this part of a request.
 std::vector<std::unique_ptr<Client>> begun(const Loopback& server, std::size_t count, std::uint32_t from,
                                            const std::string& bytes) {
     std::vector<std::unique_ptr<Client>> clients;
@@ -64,7 +64,7 @@ TEST(Connections, UnfinishedRequestsOfWhoeverHasTheMostGiveWay) {
         Loopback server(answer, limits);
         Client idle(server, 0, 3);
         EXPECT_TRUE(is_served(idle));
-        // Three times as many as there is room for: those of this address push each other out, and nobody else.
+        // Three times the number of available slots: those of this address displace each other, and no others.
         const auto crowd = begun(server, 60, 2, sent);
         for (int i = 0; i < 20; i++) {
             Client other(server, 0, 4);

@@ -1,4 +1,4 @@
-// A server with a handler of the test's own, and clients that send and read bytes as the test says.
+// A server with a handler of the test's own, and clients that send and read given bytes.
 #pragma once
 
 #include <arpa/inet.h>
@@ -61,7 +61,7 @@ private:
 /// A blocking socket. Each wait ends after 20 s: a test that hangs fails instead.
 class Client {
 public:
-    /// `from`: the last byte of the loopback address that it calls from.
+    /// `from`: the last byte of the client's loopback address.
     explicit Client(const Loopback& server, int receive_buffer = 0, std::uint32_t from = 1)
         : fd_(::socket(AF_INET, SOCK_STREAM, 0)) {
         timeval patience{20, 0};
@@ -93,7 +93,7 @@ public:
         return true;
     }
 
-    /// What has come up to and with `end`; shorter where the server closes before.
+    /// The input up to and including `end`; shorter if the server closes before.
     std::string read_to(std::string_view end) {
         std::size_t at = 0;
         while ((at = pending_.find(end)) == std::string::npos)
@@ -103,7 +103,7 @@ public:
         return found;
     }
 
-    /// All that comes until the server closes.
+    /// All input until the server closes.
     std::string read_all() {
         while (receive()) {
         }
@@ -122,7 +122,7 @@ private:
     std::string pending_;
 };
 
-/// The body of an answer as the test dictates it: what the test writes goes out when the client takes it.
+/// The body of an answer as controlled by the test: written pieces are sent when the client reads them.
 class Dictation {
 public:
     void write(std::string piece) { put(std::move(piece), End::no); }
@@ -132,7 +132,7 @@ public:
     BodyProducer producer() {
         return [this](BodyWriter& out) { return dictate(out); };
     }
-    /// Waits until the producer has ended; true where that was because the client had gone.
+    /// Waits until the producer has ended; true if the reason was that the client had disconnected.
     bool client_left() { return left_.get_future().get(); }
 
 private:

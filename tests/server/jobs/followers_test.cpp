@@ -15,7 +15,7 @@ namespace {
 using Kind = JobNews::Kind;
 using namespace std::chrono_literals;
 
-/// Keeps what one follower has heard.
+/// Stores the news of one follower.
 class Ear {
 public:
     Followers::Listener listener() {
@@ -94,7 +94,7 @@ TEST_F(FollowersTest, AWaitingJobIsToldAtOnceThenItsStartItsProgressAndItsEnd) {
     Ear ear;
     followers_->follow("a", ear.listener());
     EXPECT_EQ(ear.next().view->job.status, JobStatus::queued);
-    // Claimed by another process, which tells its progress through the store.
+    // Claimed by another process, which reports its progress through the store.
     const JobRecord job = claim();
     EXPECT_EQ(ear.next().view->job.status, JobStatus::running);
     done<std::vector<Holding>>([&](auto callback) {
@@ -126,7 +126,7 @@ TEST_F(FollowersTest, WhatDoesNotChangeIsToldOnce) {
     Ear b;
     followers_->follow("a", a.listener());
     a.next();
-    // Looked at again and again, and after a hint.
+    // Checked repeatedly, and after a notice.
     followers_->changed("a");
     followers_->follow("b", b.listener());
     b.next();

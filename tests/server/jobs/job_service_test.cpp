@@ -20,7 +20,7 @@ using Status = api::JobOutcome::Status;
 class Gate {
 public:
     void open() { promise_.set_value(); }
-    /// False where the stop comes first.
+    /// False if the stop comes first.
     bool pass(const std::stop_token& stop) const {
         while (future_.wait_for(std::chrono::milliseconds(1)) != std::future_status::ready)
             if (stop.stop_requested()) return false;
@@ -70,7 +70,7 @@ protected:
         };
         settings.now = [this] { return ++now_; };
         if (change) change(settings);
-        // The store may be about to tell the one before of something: it goes after the store.
+        // The store may be about to call the earlier service: it is destroyed after the store.
         if (service_) earlier_.push_back(std::move(service_));
         service_ = std::make_unique<JobService>(*store_, timer_, settings);
         service_->start();
@@ -93,7 +93,7 @@ protected:
         return service_->find(id).value().job;
     }
 
-    /// Until its computation stands at the gate.
+    /// Waits until its computation is at the gate.
     void until_running(const std::string& id) {
         while (!service_->find(id).value().progress) std::this_thread::yield();
     }
@@ -159,7 +159,7 @@ TEST_F(JobServiceTest, AJobDuringWhichProcessesEndedRunsAloneAndTheOthersGoOn) {
     start(0);
     const std::string suspect = submit("suspect").job.id;
     service_->drain(std::chrono::seconds(0));
-    // Two processes that took it have gone.
+    // Two processes that claimed it have died.
     for (int i = 0; i < 2; i++) {
         std::promise<void> claimed;
         store_->claim({"gone", ++now_, std::chrono::milliseconds(0), 1}, [&](const auto&) { claimed.set_value(); });

@@ -1,4 +1,4 @@
-// Pauses between tries, by a clock that stands still, and the threads that try.
+// Pauses between attempts, with a constant clock, and the threads that deliver.
 #include "server/notify/schedule.h"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ TEST(Schedule, EndsADayAfterTheEndWithALastTry) {
     }
     EXPECT_EQ(now, kEnd + 24 * kHour);
     EXPECT_EQ(tries, 7);
-    // A service that was down for two days tries once.
+    // A service that was down for two days makes one attempt.
     EXPECT_EQ(pause_after({0, kEnd, kEnd + 48 * kHour}), std::nullopt);
 }
 
@@ -76,7 +76,7 @@ TEST(Schedule, ReadsRetryAfter) {
         EXPECT_EQ(read_retry_after(text, now), std::nullopt) << text;
 }
 
-/// Tasks that wait until they are let go.
+/// Tasks that wait until they are released.
 class LanesTest : public testing::Test {
 protected:
     bool add(const std::string& machine) {

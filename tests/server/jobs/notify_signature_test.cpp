@@ -1,4 +1,4 @@
-// Signatures and the file of secrets. The expected signatures come from elsewhere: python's hmac, and the example of
+// Signatures and the file of secrets. The expected signatures are independent: from Python's hmac, and the example of
 // Standard Webhooks' own libraries.
 #include "server/notify/signature.h"
 

@@ -1,4 +1,4 @@
-// What the service may be made to call: tricks that would lead elsewhere than the operator allows.
+// The addresses that the service may be made to call: tricks that would lead elsewhere than the operator allows.
 #include "server/notify/target.h"
 
 #include <gmock/gmock.h>

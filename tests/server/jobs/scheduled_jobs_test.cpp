@@ -1,4 +1,4 @@
-// Jobs at a time, unique jobs and the limit of jobs under way, as the service of a process has them.
+// Scheduled jobs, unique jobs and the limit of jobs per client, in the service of a process.
 #include <gmock/gmock.h>
 
 #include <filesystem>
@@ -110,7 +110,8 @@ TEST_F(ScheduledJobs, AJobThatCameDueWhileNoProcessRanBeginsWithTheNext) {
     store_.reset();
 }
 
-/// What is taken back while it is thrown: memory may run out anywhere between the place in the queue and the store.
+/// Reservations are released by exceptions: memory may be exhausted anywhere between the place in the queue and the
+/// store.
 TEST_F(ScheduledJobs, APlaceInTheQueueIsGivenBackWhereThereIsNoMemoryForTheJob) {
     struct OutOfMemory : SharedStore {
         using SharedStore::SharedStore;

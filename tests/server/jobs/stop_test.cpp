@@ -95,12 +95,12 @@ TEST(Stop, DoesNotWaitForWhoNeverEnds) {
     Client half(server);
     half.send("GET / HT");
     Client silent(server);
-    // Ends at all: the test has a time-out.
+    // It must return: the test has a timeout.
     server.stop();
     EXPECT_EQ(waiting.read_all(), "");
     EXPECT_EQ(half.read_all(), "");
     EXPECT_EQ(silent.read_all(), "");
-    // Whoever stops the port learns that somebody is left on it.
+    // The caller that stops the server learns that a handler still runs.
     EXPECT_FALSE(server.idle_within(1ms));
     go.set_value();
     EXPECT_TRUE(server.idle_within(20s));

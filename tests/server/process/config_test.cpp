@@ -1,4 +1,4 @@
-// What the process is given at its start: sizes, times, and options that do not go together.
+// The settings at the start: sizes, times, and options that exclude each other.
 #include "server/config.h"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-// What a request is weighed as before it is answered, and how large one may be for the memory that there is.
+// The estimated memory of a request before it is answered, and the largest request for the available memory.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

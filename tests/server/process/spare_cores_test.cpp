@@ -17,7 +17,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Whether two calls are in progress at the same time: each waits for the other, for a while.
+/// Detects whether two calls are in progress at the same time: each waits for the other, for a while.
 class Meeting {
 public:
     explicit Meeting(std::chrono::milliseconds patience) : patience_(patience) {}

@@ -1,4 +1,4 @@
-"""Records that something is wrong with: each is refused, or answered with a warning, naming the line or the reason."""
+"""Records with faults: each is refused, or answered with a warning, which names the line or the reason."""
 
 import json
 import math
@@ -12,7 +12,7 @@ LENGTH, SPACING, STEP_AT = 300, 0.5, 40
 
 
 def plant(u, spacing=SPACING, gain=2.0, lag=10.0, delay=6, start=20.0):
-    """y of a first-order lag behind a dead time of `delay` samples, from rest at the first u."""
+    """y of a first-order lag with a dead time of `delay` samples, from rest at the first u."""
     y, x = [], 0.0
     decay = math.exp(-spacing / lag)
     for k in range(len(u)):
@@ -65,7 +65,7 @@ def request(**record):
 
 T, U, Y = step()
 
-# name: the file, arguments, and what the answer (an error's text, or a warning's code and text) must hold.
+# name: the file, arguments, and a text that the answer (an error's text, or a warning's code and text) must contain.
 BROKEN = {
     "empty": ("", (), "csv is empty"),
     "header only": ("t,u,y\n", (), "csv has headings but no line of numbers"),

@@ -1,14 +1,14 @@
-"""Files as loggers, printers, historians and home automation write them, each of a test on a plant that is known.
+"""Files in the formats of loggers, printers, historians and home automation, each of a test on a known plant.
 
-A test is simulated once and then written in a format; what the format hides (rows between moves, rounding) is what a
-real file hides too. Everything comes from seeds."""
+A test is simulated once and then written in a format, which hides the same data as a real file (rows between moves,
+rounding). Everything comes from seeds."""
 
 import datetime
 import json
 import math
 import random
 
-PARTS = 20  # steps of the simulation in a row
+PARTS = 20  # steps of the simulation per row
 
 
 class Plant:
@@ -18,7 +18,7 @@ class Plant:
         self.K, self.T1, self.L, self.T2 = K, T1, L, T2
 
     def run(self, u, row, y0=20.0):
-        """y at each row of an input that holds from its row to the next."""
+        """y at each row for an input that is constant between rows."""
         h = row / PARTS
         a1 = math.exp(-h / self.T1)
         a2 = math.exp(-h / self.T2) if self.T2 > 0 else 0.0
@@ -58,7 +58,7 @@ def csv(test, heading="time,output,temp", form="%g,%g,%.2f"):
 
 
 def klipper(test, dump=0, dump_first=False, heater="extruder"):
-    """Reports of a second, and lines of traffic of the microcontroller."""
+    """Reports every second, and lines of the microcontroller's traffic."""
     reports = ["Stats %.1f: gcodein=0 mcu: mcu_awake=0.002 freq=71999000 sysload=0.10 %s: target=0 temp=%.1f pwm=%.3f"
                % (31.4 + t, heater, y, u) for t, u, y in test.rows()]
     traffic = ["Receive: %d %.6f %.6f 12: seq: 1%x, analog_in_state oid=7 next_clock=%d value=%d"
@@ -80,19 +80,19 @@ def countdown(test, settling=9, first=0.0):
 
 
 def restarts(tests, heading="time,pwm,temp"):
-    """Several runs in one file, each with its heading: a board that was started again."""
+    """Several runs in one file, each with its heading: a board that was restarted."""
     return "".join(csv(test, heading) for test in tests)
 
 
 def heater_test(test):
-    """Lines of the duty where it changes, then times and temperatures, as with WRITE_FILE=1."""
+    """Lines of the duty when it changes, then times and temperatures, as with WRITE_FILE=1."""
     changes = [(test.t[k], test.u[k]) for k in range(len(test.u)) if k == 0 or test.u[k] != test.u[k - 1]]
     return ("".join("pwm: %.3f %.3f\n" % (1034.2 + t, u) for t, u in changes)
             + "".join("%.3f %.3f\n" % (1034.2 + t, y) for t, _, y in test.rows()))
 
 
 def home_assistant(test, others=0, seed=3):
-    """One line for each entity where its state changes."""
+    """One line for each entity when its state changes."""
     draw = random.Random(seed)
     lines, last = ["entity_id,state,last_changed"], {}
     for t, u, y in test.rows():
@@ -176,7 +176,7 @@ def ardupilot(test):
 
 
 def trend_export(test):
-    """Quoted keys and values, then rows that say that they are data."""
+    """Quoted keys and values, then rows that are marked as data."""
     lines = ['"Trend Name:","TIC_2"', '"Sample Period:","%g Sec"' % test.row, "",
              '"Header:","Date;Time;Millitm","TIC2.PV","TIC2.CVEU","TIC2.SP"']
     for t, u, y in test.rows():
@@ -220,7 +220,7 @@ def joined(lines):
 
 
 def public_logs(test):
-    """One file of each of many kinds, by name; u is in the test's units, ten times that where the name says x10."""
+    """One file each of many kinds, by name; u is in the test's units, multiplied by ten if the name contains x10."""
     rows = list(test.rows())
     return {
         "thermostat app (x10)": joined(

@@ -1,4 +1,5 @@
-"""Files of many kinds of loggers are read as what they are: the plant behind each comes out within its stated errors."""
+"""Files of many kinds of loggers are read correctly: the identified plant agrees with the true one within its stated
+errors."""
 
 import json
 import os
@@ -36,7 +37,8 @@ class LogFileTest(unittest.TestCase):
         return answer["model"]
 
     def holds(self, model, plant, widest=0.3, lag_total=True):
-        """K, and the sum of lags and dead time, within four stated errors, which are no wider than `widest` of them."""
+        """Checks K, and the sum of lags and dead time, within four stated errors, which are at most `widest` of the
+        values."""
         found, errors = model["plant"], model["standard_errors"]
         K, K_error = found["K"], errors["K"]
         shown = json.dumps({"plant": found, "errors": errors})

@@ -1,12 +1,12 @@
-// What the tables of every store refuse, whoever writes: one list for all of them, because their columns have the same
-// names. A store that forgot a rule would be caught here and not by a job that is in two states.
+// Changes that the tables of every store refuse from any writer: one list for all, because their columns have the same
+// names. A missing rule is found here and not through a job that is in two states.
 #pragma once
 
 namespace tunewright::server {
 
-/// Of single jobs "ended" (with success, in its first attempt), "running" (in its first attempt) and "waiting".
+/// The single jobs are "ended" (succeeded, in its first attempt), "running" (in its first attempt) and "waiting".
 inline constexpr const char* kForbiddenChanges[] = {
-    // An end is one of three, at a moment; a success had an attempt.
+    // An end has one of three states and a time; a success had an attempt.
     "INSERT INTO ended (seq, single, status, attempts, cancel_requested, finished_at) "
     "SELECT seq, TRUE, 'queued', 0, FALSE, 1 FROM jobs WHERE id = 'waiting'",
     "INSERT INTO ended (seq, single, status, attempts, cancel_requested, started_at, finished_at) "
@@ -26,7 +26,7 @@ inline constexpr const char* kForbiddenChanges[] = {
     "UPDATE ended SET attempts = 0",
     "UPDATE ended SET started_at = NULL",
 
-    // What runs has a worker and an attempt more than it has crashed.
+    // A running job has a worker and at least one more attempt than crashes.
     "INSERT INTO running (seq, class, turn, flow, worker, attempts, crashes, started_at) "
     "SELECT seq, class, turn, flow, 'worker', 0, 0, 1 FROM jobs WHERE id = 'waiting'",
     "INSERT INTO running (seq, class, turn, flow, worker, attempts, crashes, started_at) "
@@ -44,13 +44,13 @@ inline constexpr const char* kForbiddenChanges[] = {
     "UPDATE running SET crashes = attempts",
     "UPDATE running SET started_at = NULL",
 
-    // What waits has crashed at most as often as it was claimed, and waits at one place of the queue.
+    // A waiting job has crashed at most as often as it was claimed, and has one position in the queue.
     "UPDATE waiting SET attempts = -1",
     "UPDATE waiting SET crashes = -1",
     "UPDATE waiting SET crashes = attempts + 1",
     "INSERT INTO waiting (class, turn, seq, flow) SELECT class, turn, seq, flow FROM jobs WHERE id = 'waiting'",
 
-    // The facts of a job, and whom a note is about.
+    // The constant data of a job, and the subject of a notification.
     "UPDATE jobs SET id = '' WHERE id = 'waiting'",
     "UPDATE jobs SET id = 'running' WHERE id = 'waiting'",
     "UPDATE jobs SET timeout_s = 0 WHERE id = 'waiting'",

@@ -1,4 +1,4 @@
-// A store on PostgreSQL, and its database to look into past the store.
+// A store on PostgreSQL, with its database for direct access.
 #pragma once
 
 #include <thread>
@@ -33,7 +33,7 @@ protected:
         const Claim claim{"worker", 2000, std::chrono::minutes(10), max};
         return completed<std::vector<JobRecord>>([&](auto done) { store.claim(claim, done); });
     }
-    /// Until the database says so. Throws where it has not within a minute.
+    /// Waits until the query is true. Throws if it is not within a minute.
     void wait_until(const std::string& question) const {
         const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
         while (database_->run(question) != "t") {

@@ -34,7 +34,7 @@ PostgresDatabase::PostgresDatabase(std::string cluster, std::string name)
 PostgresDatabase::~PostgresDatabase() {
     try {
         run_at(cluster_, "DROP DATABASE " + name_ + " WITH (FORCE)");
-    } catch (const std::exception&) {  // the cluster goes as a whole anyway
+    } catch (const std::exception&) {  // the whole cluster is removed anyway
     }
 }
 

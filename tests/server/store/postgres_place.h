@@ -1,4 +1,4 @@
-// A database of its own for a test, on the cluster that TUNEWRIGHT_TEST_POSTGRES names (tests/server/postgres.py).
+// A database for one test, on the cluster that TUNEWRIGHT_TEST_POSTGRES names (tests/server/postgres.py).
 #pragma once
 
 #include <memory>
@@ -8,19 +8,19 @@ namespace tunewright::server {
 
 class PostgresDatabase {
 public:
-    /// Nothing where no cluster is named.
+    /// Null if no cluster is named.
     static std::unique_ptr<PostgresDatabase> make();
     ~PostgresDatabase();
     PostgresDatabase(const PostgresDatabase&) = delete;
     PostgresDatabase& operator=(const PostgresDatabase&) = delete;
 
     const std::string& url() const { return url_; }
-    /// Runs statements in it; the first column of the first row of the last one, "" if there is none. Throws what
-    /// PostgreSQL says.
+    /// Runs statements in it; the first column of the first row of the last one, "" if there is none. Throws the errors
+    /// of PostgreSQL.
     std::string run(const std::string& sql) const;
     /// Ends every connection to it.
     void cut_connections() const;
-    /// Whether anybody may connect to it; false ends every connection too.
+    /// Allows or forbids connections; false also ends every existing one.
     void allow_connections(bool allowed) const;
 
 private:

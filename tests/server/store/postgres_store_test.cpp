@@ -128,7 +128,7 @@ TEST_F(PostgresStore, WithoutADatabaseItFailsAndTellsAndComesBack) {
     EXPECT_THROW(store->find("a"), StoreError);
     EXPECT_FALSE(store->healthy());
     database_->allow_connections(true);
-    wait_until_healthy(*store);  // by itself, without being asked for anything
+    wait_until_healthy(*store);  // automatically, without any call
     EXPECT_TRUE(store->find("a"));
     EXPECT_TRUE(accept(*store, "c"));
 }
@@ -153,18 +153,19 @@ TEST_F(PostgresStore, WhatIsReportedAsAcceptedIsThereHoweverOftenConnectionsBrea
     EXPECT_EQ(database_->run("SELECT count(*) = count(DISTINCT id) FROM tunewright.jobs"), "t");
 }
 
-/// What every database of the cluster feels: no other test may run beside it (tests/CMakeLists.txt sees to that). A
-/// commit that notifies holds a lock of the whole cluster, so that one of another database would be waited for.
+/// Changes that affect every database of the cluster: no other test may run at the same time (see
+/// tests/CMakeLists.txt). A commit that notifies holds a lock of the whole cluster, so that one in another database
+/// would delay it.
 class PostgresCluster : public PostgresStore {
 protected:
     void TearDown() override {
         if (database_) stop_waiting_for_standbys();
     }
-    /// From now on a commit waits for ever, after it has become durable.
+    /// From now on a commit waits forever, after it has become durable.
     void wait_for_standbys() const {
         database_->run("ALTER SYSTEM SET synchronous_standby_names = 'nobody'");
         database_->run("SELECT pg_reload_conf()");
-        // Commits wait once the checkpointer has read it, which a checkpoint of another database may hold up.
+        // Commits wait once the checkpointer has read the setting, which a checkpoint of another database may delay.
         wait_until("SELECT current_setting('synchronous_standby_names') = 'nobody'");
         database_->run("CHECKPOINT");
     }
@@ -234,7 +235,7 @@ TEST_F(PostgresStore, ACommitThatNobodyCanAskAboutIsSaidToBeUnknown) {
 TEST_F(PostgresStore, WithoutNoticesItStaysHealthyAndAcceptsJobs) {
     const auto store = open();
     EXPECT_TRUE(accept(*store, "a"));
-    // Nobody may connect any more, and the connection that listens is cut; those that write and read stay.
+    // No new connections are allowed, and the listening one is cut; those that write and read stay.
     EXPECT_EQ(database_->run("UPDATE pg_database SET datallowconn = false WHERE datname = current_database();"
                              "SELECT pg_terminate_backend(pid) FROM pg_stat_activity WHERE query LIKE 'LISTEN%' AND "
                              "datname = current_database()"),

@@ -1,4 +1,4 @@
-// Several services on one store: what each does for the others, and what becomes of jobs whose service is gone.
+// Several services on one store: their effects on each other, and the jobs of a service that is gone.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ using testing::HasSubstr;
 using Status = api::JobOutcome::Status;
 using namespace std::chrono_literals;
 
-constexpr UnixMs kLease = 60'000;  // of the tests' own clock, which stands still unless a test moves it
+constexpr UnixMs kLease = 60'000;  // on the tests' own clock, which changes only when a test moves it
 
 /// A service with a name, its view of the store, and a gate at which its long jobs wait.
 class Process {
@@ -52,7 +52,7 @@ public:
     std::atomic<int> waiting = 0;  ///< computations at the gate
 
 private:
-    /// Requests that begin with "long" wait at the gate; "deaf" ones do not even listen to a stop.
+    /// Requests that begin with "long" wait at the gate; "deaf" ones ignore a stop.
     api::JobOutcome compute(std::string_view request, const RunControl& control) {
         {
             const std::lock_guard lock(mutex_);
@@ -125,7 +125,7 @@ protected:
         promise.get_future().get();
     }
 
-    /// Twenty entries whose requests begin so.
+    /// Twenty entries whose requests begin with this text.
     void add_batch(const std::string& request) {
         std::promise<void> opened;
         store_->open_batch({"batch", "", "", "", now_}, [&](const auto&) { opened.set_value(); });
@@ -216,7 +216,7 @@ TEST_F(SharedJobs, AWorkerThatWasThoughtDeadEndsNothing) {
     Process& heir = add("heir", 1);
     now_ += kLease + 1;
     until([&] { return heir.waiting == 1; });
-    // It comes back, computes to the end and offers its result while the other is at it.
+    // It returns, computes to the end and offers its result while the other computes.
     slow.open_gate();
     slow.view.mute = false;
     until([&] { return slow.dropped == 1; });
@@ -249,7 +249,7 @@ TEST_F(SharedJobs, AJobWhoseClaimWasNeverAnsweredIsGivenBackByItsWorkerItself) {
     const std::string stray = post(process, "a");
     until([&] { return store_->find(stray)->status == JobStatus::running; });
     process.view.lossy = false;
-    // In steps that are no jump of the clock, each with a sign of life in it: no lease is ever over.
+    // In steps that are not a jump of the clock, each with a heartbeat: no lease ever expires.
     for (UnixMs end = now_ + kLease + 1; now_ <= end;) {
         now_ += kLease / 5;
         until([&] { return process.view.last_beat == now_.load(); });
@@ -325,7 +325,7 @@ TEST_F(SharedJobs, ResultsThatTheStoreCannotTakeAreKeptUntilItCan) {
     const int reclaims = process.view.reclaims;
     const int claims = process.view.claims;
     until([&] { return process.view.reclaims >= reclaims + 5; });
-    // No spinning: a claim is tried again with the upkeep, not before.
+    // No busy loop: a claim is repeated with the upkeep, not earlier.
     EXPECT_LE(process.view.claims, claims + 8);
     EXPECT_EQ(store_->find(id)->status, JobStatus::running);
     process.view.broken = false;
@@ -342,15 +342,15 @@ TEST_F(SharedJobs, EndedJobsAreSweptWhenTheirRetentionIsOver) {
     now_ += 61'000;
     const std::string young = post(process, "young");
     ended(process, young);
-    // What is swept at the start of a service needs no waiting for the next round.
+    // The sweep at the start of a service does not wait for the next round.
     add("sweeper", 0, settings);
     until([&] { return !store_->find(old); });
     EXPECT_TRUE(store_->find(young));
 }
 
 TEST_F(SharedJobs, SingleJobsOvertakeEntriesOfABatch) {
-    // Now and then a claim takes entries first; the first ones do not. So that none of these is spent on an empty
-    // queue, the worker's first job is there before the worker.
+    // Some claims take entries first, but the first ones do not. The worker's first job exists before the worker, so
+    // that none of these claims meets an empty queue.
     const std::string blocker = post(add("api", 0), "long");
     Process& process = add("worker", 1);
     until([&] { return process.waiting == 1; });

@@ -1,6 +1,6 @@
-// One store seen by several processes: each has a view of its own, over one store that is really there. A view can be
-// deaf (no notices reach it), mute (its signs of life and its results do not reach the store: its process seems dead),
-// lossy (what it claims is handed out, but the answer never comes) or out of order (every write fails).
+// One store seen by several processes: each has a view of its own, over one real store. A view can be deaf (it gets no
+// notices), mute (its heartbeats and results do not reach the store: its process seems dead), lossy (its claims are
+// executed, but the answer is lost) or out of order (every write fails).
 #pragma once
 
 #include <atomic>
@@ -17,7 +17,7 @@ namespace tunewright::server {
 
 class SharedStore;
 
-/// Carries notices from one view to all others.
+/// Forwards notices from one view to all others.
 class NoticeBoard {
 public:
     void add(SharedStore* view);
@@ -36,9 +36,9 @@ public:
     std::atomic<bool> mute = false;
     std::atomic<bool> lossy = false;
     std::atomic<bool> broken = false;
-    std::atomic<int> claims = 0;        ///< asked for so far
-    std::atomic<int> reclaims = 0;      ///< likewise
-    std::atomic<UnixMs> last_beat = 0;  ///< the moment of the last sign of life that the store has heard
+    std::atomic<int> claims = 0;        ///< number of calls so far
+    std::atomic<int> reclaims = 0;      ///< number of calls so far
+    std::atomic<UnixMs> last_beat = 0;  ///< time of the last heartbeat that reached the store
 
     void hear(const StoreNotice& notice) {
         const std::lock_guard lock(mutex_);
@@ -51,7 +51,7 @@ public:
         notify_ = std::move(notify);
     }
     bool healthy() const override { return !broken && store_.healthy(); }
-    /// Whoever recovers while others are at work must leave theirs alone: signs of life tell.
+    /// A process that recovers while others work must leave their jobs alone, which their heartbeats show.
     Recovery recover(UnixMs, int, const std::string&) override { return {}; }
     void reclaim(Reclaim what, Done<Recovery> done) override {
         reclaims++;

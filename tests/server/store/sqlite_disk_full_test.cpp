@@ -1,4 +1,4 @@
-// A file system without room: reported as such, read as before, and as good as new when there is room again.
+// A file system without room: reported as such, readable as before, and fully usable once there is room again.
 #include <sys/mount.h>
 
 #include <fstream>
@@ -16,7 +16,7 @@ namespace {
 constexpr const char* kNoMount =
     "a small file system needs the right to mount one: run script/test as root, in a container with CAP_SYS_ADMIN";
 
-/// A file system in memory of so many kilobytes, where this process may mount one.
+/// A file system in memory with this number of kilobytes, if this process may mount one.
 class SmallDisk {
 public:
     explicit SmallDisk(const std::filesystem::path& path) : path_(path) {
@@ -93,7 +93,7 @@ TEST(SqliteDiskFull, IsNotHealthyForAsLongAsOnlySmallChangesFit) {
     for (int i = 0; i < 30; i++) {
         ASSERT_TRUE(accept("small" + std::to_string(i), 10));
         ASSERT_FALSE(store->healthy());
-        std::this_thread::sleep_for(std::chrono::milliseconds(50));  // room is looked for twice a second
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));  // free space is checked twice a second
     }
     disk.grow();
     while (!store->healthy()) std::this_thread::sleep_for(std::chrono::milliseconds(5));

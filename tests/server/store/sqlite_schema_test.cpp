@@ -1,4 +1,4 @@
-// Files of earlier versions, and what the schema refuses whoever writes.
+// Files of earlier versions, and changes that the schema refuses from any writer.
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -58,7 +58,7 @@ TEST(SqliteSchema, AFileOfTheFirstVersionKeepsEverythingItHolds) {
     EXPECT_EQ(run_sqlite(folder.file(), "PRAGMA integrity_check"), "ok");
 }
 
-/// A file of the fourth schema with jobs on every way, opened.
+/// A file of the fourth schema with jobs in every state, opened.
 class SqliteFourthSchema : public testing::Test {
 protected:
     SqliteFourthSchema() {
@@ -226,7 +226,7 @@ TEST_F(SqliteFourthSchema, WorkGoesOnWhereItWas) {
     EXPECT_EQ(run_sqlite(folder_.file(), "PRAGMA integrity_check"), "ok");
 }
 
-/// A file with one job in each place: "ended", "running" and "waiting".
+/// A file with one job in each table: "ended", "running" and "waiting".
 class SqliteRules : public testing::Test {
 protected:
     SqliteRules() {
@@ -241,7 +241,7 @@ protected:
         const JobEnd end{claimed.at(0).seq, "ended", 1, JobStatus::succeeded, "{}", "", "1", 2};
         completed<bool>([&](auto done) { store_->finish(end, done); });
     }
-    /// What SQLite says to that change; "" where it is done.
+    /// SQLite's error for that change; "" if it succeeds.
     std::string refusal(const std::string& change) {
         try {
             run_sqlite(folder_.file(), change);
@@ -263,7 +263,7 @@ protected:
 };
 
 TEST_F(SqliteRules, TheFileItselfRefusesWhatTheStatesDoNotAllow) {
-    // By a rule of the table, not because the statement could not be understood.
+    // By a rule of the table, not because the statement is not valid.
     const auto by_rule =
         testing::AnyOf(HasSubstr("constraint failed"), HasSubstr("does not change"), HasSubstr("is its worker's"));
     for (const char* change : kForbiddenChanges) EXPECT_THAT(refusal(change), by_rule) << change;

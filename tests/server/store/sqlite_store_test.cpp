@@ -80,7 +80,7 @@ TEST(SqliteStore, AFailedWriteIsToldAndTheStoreRecovers) {
     NewJob job;
     job.id = "big";
     job.request.assign(4 * 1024 * 1024, 'x');
-    // A limit on the size of files stands for the disk: writing beyond it fails.
+    // A limit on the size of files simulates the disk: writing beyond it fails.
     std::signal(SIGXFSZ, SIG_IGN);
     rlimit old{};
     ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &old), 0);
@@ -93,7 +93,7 @@ TEST(SqliteStore, AFailedWriteIsToldAndTheStoreRecovers) {
     ASSERT_TRUE(std::holds_alternative<StoreFault>(outcome));
     EXPECT_EQ(std::get<StoreFault>(outcome).kind, StoreFault::Kind::full);
     EXPECT_FALSE(store->find("big"));
-    while (!store->healthy()) std::this_thread::sleep_for(std::chrono::milliseconds(5));  // it looks by itself
+    while (!store->healthy()) std::this_thread::sleep_for(std::chrono::milliseconds(5));  // it checks automatically
 
     const auto accepted = completed<Accepted>([&](auto done) { store->accept(job, done); });
     EXPECT_EQ(accepted.kind, Accepted::Kind::created);
@@ -108,7 +108,7 @@ TEST(SqliteStore, OneBadChangeDoesNotTakeTheOthersOfItsGroupWithIt) {
     job.id = "twice";
     std::vector<std::promise<bool>> created(20);
     for (std::size_t i = 0; i < created.size(); i++) {
-        // The same id again and again between good ones: the table refuses it.
+        // The same id repeatedly between good ones: the table refuses it.
         job.id = i % 2 == 0 ? "twice" : "job" + std::to_string(i);
         store->accept(job, [&created, i](const Outcome<Accepted>& outcome) {
             created[i].set_value(std::holds_alternative<Accepted>(outcome));

@@ -9,7 +9,7 @@ using testing::IsEmpty;
 using testing::UnorderedElementsAre;
 using namespace std::chrono_literals;
 
-/// More than any store handles in one piece.
+/// More than any store processes in one piece.
 constexpr std::int64_t kLarge = 1300;
 
 TEST_P(StoreConformance, ABatchIsReceivedPieceByPieceAndItsEntriesAreJobs) {
@@ -226,7 +226,7 @@ TEST_P(StoreConformance, WhatIsLeftOfABatchThatIsBeingDroppedCountsNoMore) {
     make_batch("y", 1);
     std::promise<void> dropped;
     store_->drop_batch("x", [&](const Outcome<bool>&) { dropped.set_value(); });
-    // Its entries go slice by slice, and nobody may post less because of them meanwhile.
+    // Its entries are deleted slice by slice, without reducing anybody's limit meanwhile.
     std::set<std::size_t> seen;
     for (auto end = dropped.get_future(); end.wait_for(0s) != std::future_status::ready;)
         seen.insert(store_->depth().entries);

@@ -1,5 +1,5 @@
-// What every store must do, whatever it is made of: the fixture of the tests in store_*_conformance.cpp. A store's own
-// test instantiates them with a way to open it: again and again on the same place, to see what survives.
+// Requirements on every store: the fixture of the tests in store_*_conformance.cpp. A store's own test instantiates
+// them with a function that opens it, repeatedly in the same place, to see which data survive.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -30,22 +30,22 @@ T completed(Start start) {
     return std::get<T>(std::move(outcome));
 }
 
-/// A place for a store, empty at first; open() may be called again after the store before has gone.
+/// A place for a store, empty at first; open() may be called again after the previous store is destroyed.
 class StorePlace {
 public:
     virtual ~StorePlace() = default;
     virtual std::unique_ptr<JobStore> open() = 0;
 };
 
-/// Makes a place, or says by nothing that it is not to be had here.
+/// Makes a place, or returns null if it is not available here.
 using MakePlace = std::function<std::unique_ptr<StorePlace>()>;
 
 class StoreConformance : public testing::TestWithParam<MakePlace> {
 protected:
     using Ids = std::vector<std::string>;
     using Milliseconds = std::chrono::milliseconds;
-    /// The lease of a worker that is dead as soon as it has its jobs, and of one that outlives the test. Workers of one
-    /// name share one life: who is to die needs a name of his own.
+    /// The lease of a worker that is dead as soon as it has its jobs, and of one that outlives the test. Workers with
+    /// the same name share a lease: a worker that is to die needs a name of its own.
     static constexpr Milliseconds kDead{0};
     static constexpr Milliseconds kAlive{600'000};
 
@@ -65,7 +65,7 @@ protected:
     }
 
     static UnixMs now() { return wall_clock(); }
-    /// What a store's own clock calls now lies before it.
+    /// Later than the current time of a store's own clock.
     static UnixMs soon() { return now() + 1000; }
 
     // ---- jobs
@@ -85,7 +85,7 @@ protected:
         made.priority = Priority::low;
         return made;
     }
-    /// Its end is to be told to somebody.
+    /// A job with a notification.
     static NewJob noted_job(const std::string& id) {
         NewJob made = job(id);
         made.notify = {"https://example.org/" + id, "main"};
@@ -107,13 +107,13 @@ protected:
         if (claimed.empty()) return std::nullopt;
         return std::move(claimed.front());
     }
-    /// Ids in the order in which they are handed out, until none waits.
+    /// Ids in the order of claiming, until none waits.
     Ids claim_all() {
         Ids ids;
         for (auto claimed = claim(); claimed; claimed = claim()) ids.push_back(claimed->id);
         return ids;
     }
-    /// 0 where there is no such job.
+    /// 0 if there is no such job.
     std::int64_t seq_of(const std::string& id) {
         const std::optional<JobRecord> found = store_->find(id);
         return found ? found->seq : 0;
@@ -145,7 +145,7 @@ protected:
     std::size_t sweep(UnixMs at, const Retention& retention, std::size_t max = 10) {
         return completed<std::size_t>([&](auto done) { store_->sweep(at, retention, max, done); });
     }
-    /// Whatever state they ended in.
+    /// Sweeps jobs in any final state.
     std::size_t sweep(UnixMs ended_before, std::size_t max) {
         constexpr Milliseconds none{0};
         return sweep(ended_before, {none, none, none}, max);
@@ -153,15 +153,15 @@ protected:
     void pause(bool paused) {
         EXPECT_TRUE(completed<bool>([&](auto done) { store_->pause(paused, done); }));
     }
-    /// Jobs in the queue, those of batches included.
+    /// Jobs in the queue, including those of batches.
     std::size_t waiting() { return store_->depth().single + store_->depth().entries; }
     JobStatus status(const std::string& id) { return store_->find(id).value().status; }
 
-    // ---- signs of life
+    // ---- heartbeats
     ProgressNote note(const std::string& id, const std::string& progress, int attempts = 1) {
         return {seq_of(id), id, attempts, progress};
     }
-    /// What the store takes for that worker's, in the order of acceptance.
+    /// The jobs that the store has recorded for that worker, in the order of acceptance.
     std::vector<Holding> beat(const std::string& worker = "worker", Milliseconds lease = kAlive,
                               std::vector<ProgressNote> progress = {}) {
         const Heartbeat beat{worker, now(), lease, std::move(progress)};
@@ -169,13 +169,13 @@ protected:
         std::sort(found.begin(), found.end(), [](const Holding& a, const Holding& b) { return a.seq < b.seq; });
         return found;
     }
-    /// The same as the numbers of the jobs alone.
+    /// Only the numbers of these jobs.
     std::vector<std::int64_t> holdings(const std::string& worker = "worker", Milliseconds lease = kAlive) {
         std::vector<std::int64_t> seqs;
         for (const Holding& holding : beat(worker, lease)) seqs.push_back(holding.seq);
         return seqs;
     }
-    /// That job as the worker learns of it; nothing where it is not the worker's.
+    /// The worker's record of that job; empty if it is not the worker's.
     std::optional<Holding> holding(const std::string& id, const std::string& worker = "worker") {
         const std::int64_t seq = seq_of(id);
         for (const Holding& holding : beat(worker))
@@ -226,7 +226,7 @@ protected:
     RemoveEffect remove_batch(const std::string& batch) {
         return completed<RemoveEffect>([&](auto done) { store_->remove_batch(batch, done); });
     }
-    /// A sealed batch of so many waiting entries.
+    /// A sealed batch with this number of waiting entries.
     void make_batch(const NewBatch& batch, std::int64_t count) {
         open_batch(batch);
         add_waiting(batch.id, 0, count);
@@ -244,7 +244,7 @@ protected:
     bool settle(std::int64_t seq, UnixMs at = 0, std::optional<Milliseconds> pause = std::nullopt) {
         return completed<bool>([&](auto done) { store_->settle_delivery(seq, at, pause, true, done); });
     }
-    /// Ids of the jobs and batches whose ends are to be told; they are, and nothing is left.
+    /// Ids of the jobs and batches with a pending notification; all are settled.
     Ids tell() {
         Ids ids;
         for (const Delivery& delivery : take(soon())) {

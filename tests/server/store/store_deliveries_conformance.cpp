@@ -1,4 +1,4 @@
-// Notes to whoever asked to hear of an end: each end has one, and it stays until it is settled.
+// Notifications of ends: each end has one, which is kept until it is settled.
 #include "tests/server/store/store_conformance.h"
 
 namespace tunewright::server {

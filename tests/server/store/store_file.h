@@ -1,4 +1,4 @@
-// A folder for one test with the store's file in it, and statements that go past the store to the database itself.
+// A folder for one test with the store's file in it, and statements that access the database directly.
 #pragma once
 
 #include <sqlite3.h>
@@ -11,7 +11,7 @@
 
 namespace tunewright::server {
 
-/// The folder is deleted when the test ends.
+/// The folder is deleted at the end of the test.
 class TemporaryFolder {
 public:
     explicit TemporaryFolder(const std::filesystem::path& in = std::filesystem::temp_directory_path()) {
@@ -28,13 +28,13 @@ private:
     std::filesystem::path path_;
 };
 
-/// In memory where that can be: a disk would take minutes to make durable what these tests write.
+/// In memory if possible: a disk would take minutes to make the writes of these tests durable.
 inline std::string scratch() {
     const bool memory = std::filesystem::is_directory("/dev/shm");
     return memory ? "/dev/shm" : std::filesystem::temp_directory_path().string();
 }
 
-/// Runs statements; the first column of the last row, "" if there is none. Throws what SQLite says.
+/// Runs statements; the first column of the last row, "" if there is none. Throws SQLite's errors.
 inline std::string run_sqlite(const std::string& file, const std::string& sql) {
     sqlite3* opened = nullptr;
     const int open = sqlite3_open(file.c_str(), &opened);

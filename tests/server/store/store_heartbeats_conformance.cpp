@@ -1,4 +1,4 @@
-// Signs of life: a worker gives one for all its jobs, brings their progress with it, and learns what it has.
+// Heartbeats: a worker sends one for all its jobs, with their progress, and gets the list of its jobs.
 #include "tests/server/store/store_conformance.h"
 
 namespace tunewright::server {

@@ -1,4 +1,4 @@
-// Jobs that a worker has: attempts as fencing tokens, what becomes of a job whose worker is gone or gives it back.
+// Jobs held by a worker: attempts as fencing tokens, and jobs whose worker is gone or returns them.
 #include <thread>
 
 #include "tests/server/store/store_conformance.h"

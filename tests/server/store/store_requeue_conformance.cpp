@@ -1,5 +1,4 @@
-// Jobs that failed or were cancelled and are to be tried once more: single ones, and entries with the counts of their
-// batch.
+// Jobs that failed or were cancelled and are queued again: single ones, and entries with the counts of their batch.
 #include "tests/server/store/store_conformance.h"
 
 namespace tunewright::server {

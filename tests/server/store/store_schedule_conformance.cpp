@@ -1,4 +1,4 @@
-// Jobs at a time, unique jobs, and how many jobs of one client may be under way.
+// Scheduled jobs, unique jobs, and the limit of jobs per client.
 #include <thread>
 
 #include "tests/server/store/store_conformance.h"
@@ -9,7 +9,7 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-/// A shared store goes by its own clock: times are counted from now.
+/// A shared store uses its own clock: times are relative to now.
 constexpr UnixMs kHour = 3'600'000;
 
 NewJob at(NewJob job, UnixMs time) {
@@ -29,12 +29,12 @@ NewJob limited(NewJob job, std::size_t limit) {
     return job;
 }
 
-/// Moved by now.
+/// Number of jobs moved.
 std::size_t start_due(JobStore& store, UnixMs time = wall_clock()) {
     return completed<std::size_t>([&](auto done) { store.start_due(time, done); });
 }
 
-/// Asks until so many have been moved: a shared store's clock may be some milliseconds behind.
+/// Repeats until this number have been moved: a shared store's clock may be some milliseconds behind.
 std::size_t start_soon_due(JobStore& store, std::size_t count) {
     std::size_t started = 0;
     for (int tries = 0; tries < 1000 && started < count; tries++) {

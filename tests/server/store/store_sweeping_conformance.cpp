@@ -1,4 +1,4 @@
-// What has ended goes when its time is over: single jobs by their state, batches as a whole.
+// Ended jobs are deleted after their retention: single jobs by their state, batches as a whole.
 #include <limits>
 
 #include "tests/server/store/store_conformance.h"

@@ -1,5 +1,5 @@
-// Who is next: flows take turns, jobs of low priority and entries of batches come after the others; nobody while the
-// queue is paused.
+// The order of claims: flows take turns, jobs of low priority and entries of batches come after the others; no claim
+// succeeds while the queue is paused.
 #include "tests/server/store/store_conformance.h"
 
 namespace tunewright::server {

@@ -1,4 +1,5 @@
-"""The backup of a SQLite store as docs/operations.md has it: made while the service writes, put back after a kill."""
+"""The backup of an SQLite store according to docs/operations.md: made while the service writes, restored after a
+kill."""
 
 import os
 import re
@@ -13,7 +14,7 @@ from service import BINARY, QUICK, ROOT, Service
 
 
 def documented():
-    """The commands of the document's part: the statement that copies, and the lines that put the copy back."""
+    """The commands of that section of the document: the statement that copies, and the lines that restore the copy."""
     text = (ROOT / "docs" / "operations.md").read_text(encoding="utf-8")
     part = text.split("\n## Backup\n")[1].split("\nPostgreSQL ")[0]
     lines = [line.strip() for line in part.splitlines() if line.startswith("    ")]

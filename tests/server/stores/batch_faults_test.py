@@ -1,4 +1,4 @@
-"""Batches where something breaks: a killed service, a stop amid uploads, a full queue, bodies that are too large."""
+"""Batches with failures: a killed service, a stop amid uploads, a full queue, bodies that are too large."""
 
 import json
 import socket

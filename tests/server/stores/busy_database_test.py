@@ -1,4 +1,4 @@
-"""A database that does not answer, and one that one client keeps busy: what the others see meanwhile."""
+"""A database that does not answer, and one that one client keeps busy: the effect on other clients."""
 
 import os
 import pathlib
@@ -14,7 +14,7 @@ from service import QUICK, Service
 
 
 class Frozen:
-    """All processes of a cluster stopped: what is sent to them arrives, and nothing comes back."""
+    """Stops all processes of a cluster: data sent to them arrives, but no answer comes."""
 
     def __init__(self, cluster):
         children = [int(stat.parent.name) for stat in pathlib.Path("/proc").glob("[0-9]*/stat")
@@ -81,7 +81,7 @@ class FrozenTest(unittest.TestCase):
 
 
 class SearchTest(unittest.TestCase):
-    # Outlines so long that to look through them all takes half a second or more.
+    # Outlines so long that a search through all of them takes half a second or more.
     FILL = """INSERT INTO tunewright.jobs (id, name, class, turn, owner, flow, created_at, timeout_s, request_hash, request)
         SELECT 'id' || lpad(i::text, 24, '0'), 'loop', 0, i, '', 'f', 1795730000000 + i, 60, 'h', '{}'
         FROM generate_series(1, 1200) i;

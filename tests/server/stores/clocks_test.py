@@ -1,4 +1,4 @@
-"""Machines whose clocks are days apart share one database: its clock decides, theirs change nothing."""
+"""Machines whose clocks differ by days share one database: only its clock counts."""
 
 import glob
 import time
@@ -11,7 +11,7 @@ LIBRARY = glob.glob("/usr/lib/*/faketime/libfaketimeMT.so.1")
 
 
 def days_away(days):
-    """The environment of a process whose wall clock is that far off; its steady clock is as it is."""
+    """The environment of a process whose wall clock has this offset; its steady clock is unchanged."""
     return {"LD_PRELOAD": LIBRARY[0], "FAKETIME": "%+dd" % days, "FAKETIME_DONT_FAKE_MONOTONIC": "1"}
 
 
@@ -35,10 +35,10 @@ class ClocksTest(unittest.TestCase):
             answer = service.post("/v1/jobs", QUICK, {"Prefer": "wait=30"})
             self.assertEqual((answer.status, answer.json["status"]), (200, "succeeded"))
             ids.append(answer.json["id"])
-            # All times are the database's: a job that was begun elsewhere is not begun before it came.
+            # All times are the database's: a job that was begun elsewhere is not begun before it arrived.
             self.assertLessEqual(answer.json["created_at"], answer.json["finished_at"])
             self.assertEqual(answer.json["finished_at"][:10], time.strftime("%Y-%m-%d", time.gmtime()))
-        time.sleep(2.5)  # every process has looked for what is to be swept or rescued
+        time.sleep(2.5)  # every process has swept and rescued
         listed = [job["id"] for job in right.get("/v1/jobs").json["jobs"]]
         self.assertEqual(sorted(listed), sorted(ids), "nothing is deleted too early")
         self.assertEqual({job["attempts"] for job in right.get("/v1/jobs").json["jobs"]}, {1}, "nor taken from anybody")

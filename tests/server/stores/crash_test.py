@@ -1,4 +1,4 @@
-"""What survives the end of the process, asked for or not."""
+"""Data that survive the end of the process, requested or not."""
 
 import signal
 import threading

@@ -1,6 +1,6 @@
-"""What breaks around the service while it works: itself, its database, its disk. On both stores.
+"""Failures around the service while it works: of itself, its database, its disk. On both stores.
 
-Nothing here depends on how fast the machine is: loads end when their jobs have ended, with much patience."""
+The tests do not depend on the speed of the machine: loads end when their jobs have ended, with long timeouts."""
 
 import signal
 import threading
@@ -11,7 +11,7 @@ from faulty_places import (Caller, OwnPostgres, Poster, SmallDisk, SqliteFile, a
                            may_mount)
 from service import LONG, QUICK, Service
 
-# Some 20 ms of work: long enough to be caught in the middle, short enough for hundreds.
+# About 20 ms of work: long enough to be interrupted, short enough for hundreds.
 SOME_WORK = {"plant": {"type": "sopdt", "K": 1, "T1": 5, "T2": 2, "L": 1},
              "tune": [{"method": "robust", "search": "nelder_mead", "Ms": ms} for ms in (1.4, 1.6, 1.8)],
              "evaluate": {"points": 0}}
@@ -59,7 +59,7 @@ class ReplicaTest(unittest.TestCase):
             replicas = [Service("--workers", "1", "--lease", str(LEASE), store=place.store) for _ in range(3)]
             self.addCleanup(lambda: [replica.__exit__() for replica in replicas])
             victim = replicas[2]
-            # A job may end between the look at the victim and its kill: then once more.
+            # A job may end between the choice of the victim and its kill: then the test repeats it.
             for _ in range(5):
                 poster = Poster(replicas[0], SOME_WORK, 300, threads=4)
                 poster.wait_for(100)
@@ -74,7 +74,7 @@ class ReplicaTest(unittest.TestCase):
                 again = [job for job in jobs.values() if job["attempts"] > 1]
                 if again:
                     break
-            # The one that the victim computed, and those that it had claimed ahead (claims.cpp: 16 short ones at most).
+            # The job that the victim computed, and those that it had claimed ahead (claims.cpp: at most 16 short ones).
             self.assertIn(len(again), range(1, 18))
             late = max(self.seconds(job["finished_at"]) for job in again) - killed
             print("%d jobs of the killed replica had ended %.1f s after it, with a lease of %d s" % (len(again), late, LEASE))
@@ -110,8 +110,8 @@ class DatabaseTest(unittest.TestCase):
             self.assertEqual(service.get("/readyz").status, 200)
 
     def test_numbers_that_a_crashed_server_gives_a_second_time_prove_nothing(self):
-        # A commit waits for the disk as long as it may: a crash meets it there, its transaction never was, and the next
-        # transaction has its number and is committed.
+        # A commit waits for the disk as long as possible: a crash interrupts it, its transaction is lost, and the next
+        # transaction gets its number and is committed.
         slow = {"commit_delay": "100000", "commit_siblings": "0", "wal_writer_delay": "10s"}
         with OwnPostgres(**slow) as place, Service(*OPTIONS, store=place.store) as service:
             poster = Poster(service, SOME_WORK, 400, threads=6)
@@ -125,7 +125,7 @@ class DatabaseTest(unittest.TestCase):
 
 
 class DrainTest(unittest.TestCase):
-    """SIGTERM under load: whatever was sent whole is answered whole, and what was accepted is kept."""
+    """SIGTERM under load: every complete request is answered completely, and accepted jobs are kept."""
 
     def hold(self, place):
         with place, Service("--workers", "2", "--lease", str(LEASE), "--drain-timeout", "1", store=place.store) as service:
@@ -169,15 +169,15 @@ class DrainTest(unittest.TestCase):
 
 @unittest.skipUnless(may_mount(), "a small file system needs the right to mount one: run script/test as root, in a container with CAP_SYS_ADMIN")
 class DiskTest(unittest.TestCase):
-    """The disk of the store fills up, and is emptied again."""
+    """The disk of the store becomes full, and is emptied again."""
 
-    # Some 50 kB: a step test with noise that is the same each time.
+    # About 50 kB: a step test with reproducible noise.
     LARGE = {"record": {"dt": 1, "u": [0] * 20 + [1] * 4980,
                         "y": [0] * 20 + [round(2 - 2 * 0.99**i + 1e-4 * (i * 7919 % 13), 6) for i in range(4980)]},
              "tune": [{"method": "simc", "tau_c": 10}], "evaluate": {"points": 0}}
 
     def fill_up(self, disk, service, leave_kib):
-        """A load until it is refused for want of room; what was accepted."""
+        """Posts until the service refuses for lack of room; returns the accepted jobs."""
         before = service.post_job(QUICK, wait=30)
         disk.fill(leave_kib)
         poster = Poster(service, self.LARGE, 10_000, threads=2)
@@ -212,7 +212,7 @@ class DiskTest(unittest.TestCase):
                 self.assertLessEqual(set(poster.refusals), {503, 507})
                 self.assertEqual(service.get("/healthz").status, 200)
                 disk.empty()
-                # It ends itself where it cannot write its log; what runs it would start it again.
+                # It ends itself if it cannot write its log; its supervisor would restart it.
                 place.cluster.start()
                 jobs = all_end(service, poster.ids)
                 self.assertEqual({jobs[job_id]["status"] for job_id in poster.ids}, {"succeeded"})

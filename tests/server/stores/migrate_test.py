@@ -1,4 +1,4 @@
-"""A store of an older program: brought up to date at the start or by hand, with what it kept, by whoever may do it."""
+"""A store of an older program: migrated at the start or by hand, with its data, by a role with the rights."""
 
 import http.client
 import os
@@ -22,7 +22,7 @@ def migrate(store, *more):
 
 
 class Starting:
-    """A service that is not ready yet, on a port that is known."""
+    """A service that is not ready yet, on a known port."""
 
     def __init__(self, port, *arguments):
         self.port = port

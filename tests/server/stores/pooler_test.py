@@ -1,4 +1,4 @@
-"""Behind a pooler that gives each transaction another connection: nothing of ours may rest on a session."""
+"""Behind a pooler that gives each transaction another connection: the store must not depend on a session."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""Several processes on one PostgreSQL: what a client sees does not depend on which of them he asks."""
+"""Several processes on one PostgreSQL: a client's answers do not depend on the process that it asks."""
 
 import json
 import os
@@ -14,7 +14,7 @@ from webhook_test import Receiver, make_secret
 
 
 class ReplicasTest(unittest.TestCase):
-    """One process that only answers, one that only computes, and a third that does both but has other work."""
+    """One process that only answers, one that only computes, and a third that does both but is busy."""
 
     @classmethod
     def setUpClass(cls):
@@ -94,7 +94,7 @@ class ReplicasTest(unittest.TestCase):
             job = self.api.wait_for(job_id)
         finally:
             self.worker.start()
-        # It ran again, and this time to the end of its time.
+        # It ran again, and this time until its time limit.
         self.assertEqual((job["attempts"], job["error"]["type"]), (2, "timeout"))
 
     def test_waits_are_answered_when_their_process_is_stopped(self):
@@ -111,7 +111,7 @@ class ReplicasTest(unittest.TestCase):
 
 
 class ToldByReplicasTest(unittest.TestCase):
-    """Two processes tell, and a third that may tell nobody gives up nothing of theirs."""
+    """Two processes send notifications, and a third without permission gives up none of theirs."""
 
     def test_each_end_is_told_once(self):
         with OwnPostgres() as place, Receiver() as receiver, tempfile.TemporaryDirectory() as folder:

@@ -1,5 +1,5 @@
-"""Jobs at a time, unique jobs, and a limit of jobs under way for each client: on SQLite and, where there is one, on
-PostgreSQL, whose processes share them."""
+"""Scheduled jobs, unique jobs, and a limit of jobs per client: on SQLite and, if available, on PostgreSQL, whose
+processes share them."""
 
 import datetime
 import time
@@ -10,7 +10,7 @@ from service import LONG, QUICK, Service
 
 
 def moment(seconds):
-    """So many seconds from now, as a request says it."""
+    """The time this number of seconds from now, in the notation of a request."""
     at = datetime.datetime.now(datetime.timezone.utc) + datetime.timedelta(seconds=seconds)
     return at.strftime("%Y-%m-%dT%H:%M:%S.") + "%03dZ" % (at.microsecond // 1000)
 
@@ -20,7 +20,7 @@ def seconds(text):
 
 
 class Cases:
-    """What holds on every store. `processes` are on one."""
+    """Properties of every store. `processes` share one."""
 
     @classmethod
     def start(cls, count, *options):
@@ -49,7 +49,7 @@ class Cases:
         job = self.first.post_job(dict(QUICK, not_before=at))
         self.assertEqual((job["status"], job["not_before"]), ("queued", at))
         self.assertEqual(job["progress"]["message"], "Waits for its time.")
-        # Counted once a second: nobody's turn has come, and nothing is late.
+        # Counted once a second: no job's turn has come, and none is late.
         while self.first.get("/v1/queue").json["next_accepted_at"]["single"] is not None:
             self.assertLess(time.time(), seconds(at))
             time.sleep(0.02)
@@ -108,7 +108,7 @@ class Cases:
         self.assertEqual(job["status"], "succeeded")
         for service in self.processes:
             self.assertEqual(service.post_job(request)["id"], job["id"])
-            # The order of members does not matter, nor when it may begin and whom it tells.
+            # The order of members is irrelevant, and so are the start time and the notification.
             same = dict(reversed(list(request.items())), priority="low", not_before=moment(60))
             self.assertEqual(service.post_job(same, wait=5)["id"], job["id"])
         self.assertNotEqual(self.last.post_job(dict(request, timeout_s=7))["id"], job["id"])
@@ -211,7 +211,7 @@ class LimitTest(unittest.TestCase):
 
             at = moment(3600)
             self.assertEqual([post("192.0.2.1", "k"), post("192.0.2.1"), post("192.0.2.2")], [202, 429, 202])
-            self.assertEqual(post("192.0.2.1", "k"), 202)  # the job that is there
+            self.assertEqual(post("192.0.2.1", "k"), 202)  # the existing job
 
     def test_it_counts_in_all_processes_together(self):
         with OwnPostgres() as place:

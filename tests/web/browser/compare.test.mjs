@@ -9,7 +9,7 @@ const { withPage, jobOf } = tests;
 const PLANT = "#/new/fopdt?K=1.25&T=40&L=8";
 const table = (page) => page.getByRole("region", { name: "Comparison table" });
 
-/** Compares all methods on the plant of the address, with today's settings as a row. */
+/** Compares all methods on the plant in the address, with today's settings as a row. */
 async function compareAll(page) {
   await page.getByLabel("Kp", { exact: true }).fill("1.2");
   await page.getByLabel("Ti", { exact: true }).fill("40");
@@ -17,7 +17,7 @@ async function compareAll(page) {
   await table(page).waitFor();
 }
 
-/** Texts of a column's cells from top to bottom, rows without an answer left out. */
+/** Texts of a column's cells from top to bottom, without rows that have no answer. */
 async function column(page, name) {
   const headings = await table(page).locator("thead th").allInnerTexts();
   const at = headings.findIndex((text) =>
@@ -43,7 +43,7 @@ test("every method of the service is a row, ranked as the service ranks, with th
     const { request, result } = await jobOf(page);
     assert.deepEqual(request.tune, [{ method: "all" }]);
     const { methods } = await (await fetch(`${tests.service.base}/v1/methods`)).json();
-    // On a linear plant nobody asks for the emulation of a nonlinear controller, and a front is no rule.
+    // On a linear plant the emulation of a nonlinear controller is not requested, and a frontier is not a rule.
     for (const { id } of methods.filter((method) => !["all", "emulation", "frontier"].includes(method.id)))
       assert.ok(
         result.controllers.some((entry) => entry.method === id),
@@ -140,7 +140,7 @@ test("two rows are overlaid in every plot, four at most, by the keyboard alone",
     await tracesShown(page, "Nyquist curve of L", 4);
     const rows = /rows=([\d.]+)/.exec(page.url())[1];
     assert.equal(rows.split(".").length, 4);
-    // The same rows stand on Design, and the way back leads to the same table.
+    // The same rows are on Design, and Back leads to the same table.
     await table(page).getByRole("link").first().click();
     await page.getByRole("heading", { name: /^Settings to enter/ }).waitFor();
     await tracesShown(page, "Nyquist curve of L", 4);
@@ -344,7 +344,7 @@ test("a nonlinear PID is taken as today's settings, and shown in its own form wi
     assert.match(verdict, /belong to the controller.s linear part/);
     const today = result.controllers.find((entry) => entry.method === "baseline");
     if (today.nonlinear) assert.ok(verdict.includes(today.nonlinear.statement));
-    // It comes back into the form as it was entered.
+    // It returns to the form as entered.
     await page.getByRole("link", { name: "Change the request" }).click();
     await page.getByRole("button", { name: "Tune this model" }).waitFor();
     await page.waitForFunction(() => [...document.querySelectorAll("input")].some((input) => input.value === "0.5"));

@@ -42,7 +42,7 @@ test("equations are tuned as they were typed, and the page shows their operating
       /Poles[^\n]*\s+−0\.125\s+Zeros[^\n]*\s+none\s+Gain\s+4\.000/,
     );
     await operating(page).getByRole("math").waitFor();
-    // The request can be changed where it was written.
+    // The request can be changed in the form in which it was entered.
     await page.getByRole("link", { name: "Change the request" }).click();
     assert.equal(await field(page, "Value of unused").inputValue(), "2*A");
     assert.equal(await field(page, "Dead time (s)").inputValue(), "0.2");
@@ -104,7 +104,7 @@ test("what is missing is said without asking the service", async () => {
     await summary.getByRole("heading", { name: "2 problems to fix" }).waitFor();
     for (const label of ["dh/dt =", "Its value"])
       assert.equal(await field(page, label).getAttribute("aria-invalid"), "true", label);
-    // The model card's faults are its own.
+    // The model card shows its own faults only.
     assert.equal(await page.getByLabel("K", { exact: true }).first().getAttribute("aria-invalid"), null);
   });
 });
@@ -116,7 +116,7 @@ async function tuneReactor(page) {
   assert.equal(await field(page, "Name of the input").inputValue(), "Tj");
   await tune(page);
   await designShown(page);
-  // Design opens on the entry that the answer says to take, which is the robust optimum.
+  // Design opens with the entry that the answer proposes, which is the robust optimum.
   await page.getByRole("button", { name: "emulation", exact: true }).click();
   await emulationCard(page).waitFor();
 }
@@ -146,7 +146,7 @@ test("a reactor tuned by emulation shows both levels and the responses on both p
     assert.match(facts, /before J grows by 5 %/);
     assert.ok((await emulationCard(page).innerText()).includes(emulation.fit.sentence));
     await tracesShown(page, "PID and nonlinear controller", 4);
-    // Classical settings join on request.
+    // Classical settings are added on request.
     await emulationCard(page).getByRole("checkbox", { disabled: false }).first().check();
     await tracesShown(page, "PID and nonlinear controller", 6);
     // Two controllers, each on the equations and on their linear model, in y and u.
@@ -155,7 +155,7 @@ test("a reactor tuned by emulation shows both levels and the responses on both p
     await page.getByText("Responses are those of the equations").waitFor();
     assert.match(await operating(page).innerText(), /CA\s+0\.520330\s+0\.520000/);
     assert.deepEqual(await accessibilityViolations(page), []);
-    // Of another method there is no such card.
+    // For another method there is no such card.
     await page.getByRole("button", { name: "robust", exact: true }).click();
     await emulationCard(page).waitFor({ state: "hidden" });
   });

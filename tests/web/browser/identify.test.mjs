@@ -40,7 +40,7 @@ test("a dropped record is identified at once, and Use and tune leads to its desi
 
 test("a relay test shows its limit cycle, the plant's ultimate point, measured points and what warns of them", async () => {
   await withPage("", {}, async (page) => {
-    // As the service answers it, whatever its figures are.
+    // In the form of the service's answer, with arbitrary figures.
     const limit_cycle = {
       Pu: 14.391,
       Au: 0.22326,
@@ -148,7 +148,7 @@ test("the part that counts is chosen by slider, by keys and by number, and ident
     assert.ok(Math.abs(part.plant.K / 2 - 1) < 0.02, `K ${part.plant.K}`);
     assert.ok(part.fit_percent > 99 && whole.fit_percent < part.fit_percent);
     assert.equal(part.fit.t.at(-1), 240);
-    // The rest of the record stays in sight.
+    // The rest of the record stays visible.
     assert.ok((await page.locator("section.plot svg.canvas rect[fill='var(--accent)']").count()) > 0);
     const third = identified(page);
     await slider.focus();
@@ -158,7 +158,7 @@ test("the part that counts is chosen by slider, by keys and by number, and ident
     const fourth = identified(page);
     await page.getByRole("button", { name: "Use all of it" }).click();
     assert.equal((await fourth).request().postDataJSON().record.to, undefined);
-    // The part goes with the record to the tuner, and back with the job.
+    // The part is sent with the record to the tuner, and returns with the job.
     const fifth = identified(page);
     await page.getByLabel("Use up to (s)", { exact: true }).fill("230");
     await page.keyboard.press("Enter");
@@ -248,7 +248,7 @@ test("a record that cannot be read says why at its field, and is mended there", 
 });
 
 test("a record that no model explains is still drawn, and the part that one explains can be chosen", async () => {
-  // After the step something else drags y far away.
+  // Long after the step another influence moves y.
   const dragged = ["t,u,y", ...rows.map((row, t) => (t < 250 ? row : `${t},5,${30 + 0.1 * (t - 250)}`))].join("\n");
   await withPage(
     "",
@@ -286,7 +286,7 @@ test("a record in which nothing happens is refused in the service's words", asyn
       const { detail, errors = [] } = await (await refused).json();
       const summary = page.getByRole("group", { name: "Problems to fix" });
       await summary.waitFor();
-      // In the page's names, at the text that the column stands in.
+      // In the page's words, at the text that contains the column.
       const said = await summary.innerText();
       assert.ok(said.includes((errors[0]?.detail ?? detail).replace("u0", '"u before"')), said);
       assert.doesNotMatch(said, /\/record/);

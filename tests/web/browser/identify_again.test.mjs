@@ -6,7 +6,7 @@ import { candidatesShown, identified, rows, stepTest } from "../step_record.mjs"
 const { withPage, jobOf } = browserTests();
 
 
-/** Another text in place of the record, identified. */
+/** Replaces the record by another text, and identifies it. */
 async function replaceText(page, text) {
   await page.getByText("How the record is read").click();
   await page.getByLabel("The record as text").fill(text);
@@ -33,7 +33,7 @@ test("a longer record in place of the first is used whole, also with another mod
     await page.getByLabel("Model", { exact: true }).selectOption("fopdt");
     const again = (await second).request().postDataJSON();
     assert.deepEqual([again.record.from, again.record.to, again.identify.model], [undefined, undefined, "fopdt"]);
-    // A part of it that is chosen stays with it.
+    // A chosen part of it stays with it.
     const third = identified(page);
     await to.fill("249");
     await to.press("Enter");

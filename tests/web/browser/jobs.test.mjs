@@ -1,4 +1,4 @@
-// Jobs: the list, a CSV of loops as a batch, and requests to take along.
+// Jobs: the list, a CSV of loops as a batch, and requests to copy.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import path from "node:path";
@@ -136,7 +136,7 @@ test("loops that failed say why; gain and risk order the table", async () => {
     await page.getByRole("button", { name: "Largest improvement over today" }).click();
     assert.equal((await page.getByRole("rowheader").allInnerTexts())[0], "wild");
     assert.equal(await overflow(page), 0);
-    // What could be read runs again, as a batch of its own.
+    // The readable entries run again, as a new batch.
     await page.getByRole("button", { name: "Retry the failed jobs" }).click();
     await page.waitForFunction((old) => !location.hash.includes(old), batch.id);
     await page.getByText("1 loop: 0 tuned, 1 failed", { exact: true }).waitFor();

@@ -1,4 +1,4 @@
-// Answers that come late, or not at first: each belongs to the screen that asked, and what was lost is found again.
+// Answers that come late, or not at first: each belongs to the screen that asked, and lost data are loaded again.
 import assert from "node:assert/strict";
 import test from "node:test";
 import { browserTests } from "../harness.mjs";
@@ -10,7 +10,7 @@ const PLANT = { type: "fopdt", K: 9, T: 90, L: 9 };
 const screen = (page, name) =>
   page.getByRole("navigation", { name: "Screens" }).getByRole("link", { name, exact: true });
 
-/** Calls to these addresses wait until they are let go; `done` is when the page has had their answers. */
+/** Delays calls to these addresses until they are released; `done` resolves when the page has had their answers. */
 async function hold(page, pattern) {
   let letGo;
   const gate = new Promise((resolve) => (letGo = resolve));
@@ -22,7 +22,7 @@ async function hold(page, pattern) {
     const reply = page.waitForResponse(answered);
     letGo();
     await (await reply).finished();
-    // What the page does with an answer is done before the next frame is drawn.
+    // The page processes an answer before the next frame is drawn.
     await page.evaluate(() => new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn))));
   };
 }
@@ -72,7 +72,7 @@ test("a job that comes after its form was left does not replace what is typed", 
   });
 });
 
-/** Calls to these addresses find no service until it is back. */
+/** Calls to these addresses fail as without a service until it is back. */
 async function lose(page, pattern) {
   let lost = true;
   await page.route(pattern, (route) => (lost ? route.abort() : route.continue()));

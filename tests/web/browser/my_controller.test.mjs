@@ -1,4 +1,4 @@
-// The user's own controller: chosen, typed, remembered, judged as it is built, and as code.
+// The user's own controller: chosen, typed, stored, evaluated as implemented, and as code.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import test from "node:test";
@@ -25,7 +25,7 @@ const post = async (path, body) => {
   return { status: response.status, body: await response.json() };
 };
 
-/** Finds a product by what is typed; the first that is found is taken. */
+/** Searches for a product with these words and takes the first result. */
 async function choose(page, words, title) {
   await search(page).fill(words);
   await found(page).first().waitFor();
@@ -40,7 +40,7 @@ async function giveRange(page, name, low, high) {
   await range.getByLabel("to").press("Tab");
 }
 
-/** What stands in the list to type: label, value, unit. */
+/** The rows of the list to type: label, value, unit. */
 const rowsOf = (page) =>
   typed(page)
     .locator("table.typed tr")
@@ -52,7 +52,7 @@ async function tuneModel(page, address = "#/new/fopdt?K=1.25&T=40&L=8") {
   await designShown(page);
 }
 
-/** Designs anew for what is chosen, and answers the new job. */
+/** Designs for the chosen controller, and returns the new job. */
 async function designForMine(page, button = "Design for this controller") {
   const before = page.url();
   await page.getByRole("button", { name: button }).click();
@@ -62,7 +62,7 @@ async function designForMine(page, button = "Design for this controller") {
   return jobOf(page);
 }
 
-/** A setting as it is typed, as the value that it is. */
+/** A typed setting, converted to its value. */
 const valueOf = (text) => (text === "true" || text === "false" ? text === "true" : text === "" || isNaN(text) ? text : Number(text));
 
 const close = (a, b, what) => assert.ok(Math.abs(a - b) <= 1e-9 * Math.max(1, Math.abs(b)), `${what}: ${a} against ${b}`);
@@ -95,7 +95,7 @@ test("from a record to the settings of three products, each read back as the con
         Object.values(entry.as_entered.as_typed)[0],
       );
 
-      // The list holds what the service says, under the product's own labels.
+      // The list shows the service's settings, under the product's own labels.
       const product = await (await fetch(`${tests.service.base}/v1/controllers/${id}`)).json();
       const rows = await rowsOf(page);
       assert.deepEqual(
@@ -105,7 +105,7 @@ test("from a record to the settings of three products, each read back as the con
           .map(({ name, label }) => [label, entry.as_entered.as_typed[name], entry.as_entered.units[name] ?? ""]),
       );
 
-      // What a person then types is that controller.
+      // The typed settings represent that controller.
       const settings = Object.fromEntries(
         Object.entries(entry.as_entered.as_typed).map(([name, text]) => [name, valueOf(text)]),
       );
@@ -115,7 +115,7 @@ test("from a record to the settings of three products, each read back as the con
         close(back.body.controller[name], entry.as_entered.realised[name], `${title} ${name}`);
       close(back.body.controller.filter.Tf ?? 0, entry.as_entered.realised.filter.Tf ?? 0, `${title} Tf`);
 
-      // The loop as built stands beside the ideal one.
+      // The implemented loop is next to the ideal one.
       const built = await typed(page).locator("table.built tbody tr").first().locator("td").allInnerTexts();
       assert.equal(Number(built[0]), Number(entry.robustness.Ms.toPrecision(3)));
       assert.equal(Number(built[1]), Number(entry.implemented.robustness.Ms.toPrecision(3)));
@@ -207,7 +207,7 @@ test("only what a product needs is asked for; it is remembered and sent with lat
     assert.equal(await end.getAttribute("aria-invalid"), null);
     await giveRange(page, /^Output range/, 0, 100);
     await typed(page).waitFor();
-    // Before anything is designed for it, the settings are those of the ideal design.
+    // Before a design for it, the settings are those of the ideal design.
     const [entry] = (await jobOf(page)).result.controllers;
     const asked = await post("controllers/emerson_deltav_standard/settings", {
       controller: { ...entry.controller, action: undefined },
@@ -263,7 +263,7 @@ test("a loop that its sampling makes unstable is said to be so, in the verdict t
     await picker(page).getByLabel("Sample time (s)").fill("60");
     await picker(page).getByLabel("Sample time (s)").press("Tab");
     await typed(page).getByText("On the controller as it is built the loop is unstable", { exact: false }).waitFor();
-    // Designed for that sample time it holds its limits again.
+    // A design for that sample time holds its limits again.
     const job = await designForMine(page);
     const [entry] = job.result.controllers;
     assert.ok(entry.implemented.robustness.stable && entry.implemented.robustness.Ms <= 1.4 * (1 + 1e-4));
@@ -312,7 +312,7 @@ test("today's settings are typed as the product names them, on Design and on Sta
     close(job.result.controllers.at(-1).controller.Ti, twin.body.controller.Ti, "Ti of today's settings");
     assert.equal(await picker(page).getByLabel("PBAND (%)", { exact: true }).inputValue(), "150");
 
-    // Back in the form they stand there still, and are sent again.
+    // They are still in the form on return, and are sent again.
     await page.getByRole("link", { name: "Change the request" }).click();
     const form = page.getByRole("region", { name: /^Today's settings/ });
     await form.getByLabel("PBAND (%)", { exact: true }).waitFor();

@@ -1,4 +1,4 @@
-// A new loop's request has what was chosen for it, and nothing of an example, of a loop before or of another card.
+// A new loop's request contains the choices for it, and nothing of an example, of an earlier loop or of another card.
 import assert from "node:assert/strict";
 import test from "node:test";
 import { browserTests, dropFile } from "../harness.mjs";
@@ -10,7 +10,7 @@ const { withPage, post } = tests;
 const start = (page) => page.getByRole("navigation", { name: "Screens" }).getByRole("link", { name: "Start" }).click();
 const press = (page, name) => page.getByRole("button", { name, exact: true }).click();
 
-/** A loop of somebody's, with all that a form can have of it. */
+/** An earlier loop that uses every part of the form. */
 const EARLIER = {
   name: "TIC-EARLIER",
   units: { time: "min", u: "bar", y: "K" },
@@ -23,7 +23,7 @@ const EARLIER = {
   evaluate: { setpoint_step: 7, actuator: { min: -3, max: 4 } },
 };
 
-/** Each way to a tuning job, from whatever stands in the page, up to the press that posts it. */
+/** Each way to a tuning job, from any state of the page, up to the button that posts it. */
 const FLOWS = {
   async "an example of a model in the form"(page) {
     await page.evaluate(() => (location.hash = "#/examples/uncertain-heater"));
@@ -98,12 +98,12 @@ function everyPair(names) {
   return walk.reverse();
 }
 
-/** Runs flows one after the other in one page; answers the requests that they post, of which cheap ones are run. */
+/** Runs flows one after the other in one page; returns the posted requests, with cheap ones executed instead. */
 async function posted(page, names, job) {
   const requests = [];
   await page.route("**/v1/jobs", async (route) => {
     const request = route.request().method() === "POST" ? route.request().postDataJSON() : null;
-    // The front beside a design is asked for by itself.
+    // The frontier next to a design is requested automatically.
     if (!request || request.tune?.[0]?.method === "frontier") return route.continue();
     requests.push(request);
     await route.continue({ postData: JSON.stringify({ plant: { type: "fopdt", K: 3, T: 7, L: 2 }, tune: [{ method: "simc" }] }) });
@@ -162,7 +162,7 @@ test("what was typed for a loop stays when its record comes, and goes when it wa
   });
 });
 
-/** The same test with times in milliseconds, which nothing names. */
+/** The same test with times in milliseconds, without a stated unit. */
 const milliseconds = ["time,u,y", ...stepTest.split("\n").slice(1).map((row) => row.replace(/^(\d+)/, (t) => String(1000 * Number(t))))].join("\n");
 const slower = ["time,u,y", ...stepTest.split("\n").slice(1).map((row) => row.replace(/^(\d+)/, (t) => String(10_000 * Number(t))))].join("\n");
 
@@ -181,7 +181,7 @@ for (const [what, text, doubt] of [
       await press(page, "Use and tune");
       assert.equal((await job).postDataJSON().units, undefined);
       await page.locator(".verdict").getByText(doubt).waitFor();
-      // It leads to where the unit is chosen, and is over when it was.
+      // The link leads to the choice of the unit, and disappears after it.
       await page.locator(".verdict").getByRole("link", { name: "Choose the unit" }).click();
       await press(page, "Choose the unit");
       await page.getByLabel("Times are in").selectOption("ms");

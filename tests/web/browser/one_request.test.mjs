@@ -1,4 +1,5 @@
-// Design shows one request: a slider alters one member of it, what is kept is what was shown, and verdicts belong to it.
+// Design shows one request: a slider changes one member of it, the kept design is the displayed one, and verdicts
+// belong to it.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import path from "node:path";
@@ -70,7 +71,7 @@ test("the model of a record is sent while a slider moves, not the record", async
 test("a design that takes long says that it follows, and follows when it is let go", async () => {
   await withPage("", {}, async (page) => {
     const settled = watchCalls(page);
-    // As a job would tell whose design took a second.
+    // Like a job whose design took a second.
     await page.route("**/v1/jobs/*", async (route) => {
       const response = await route.fetch();
       if (response.status() !== 200) return route.fulfill({ response });

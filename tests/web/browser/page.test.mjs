@@ -1,4 +1,4 @@
-// What the whole page keeps: accessibility, widths, weight.
+// Properties of the whole page: accessibility, widths, weight.
 import assert from "node:assert/strict";
 import path from "node:path";
 import test from "node:test";

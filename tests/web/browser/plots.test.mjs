@@ -1,4 +1,4 @@
-// Plots under the hand: zoom, what is zoomed together, focus that moves nothing, and curves that can be read.
+// Plots in use: zoom, linked zoom, focus that moves nothing, and curves that are readable.
 import assert from "node:assert/strict";
 import test from "node:test";
 import { browserTests } from "../harness.mjs";

@@ -36,7 +36,7 @@ async function tuned(request) {
   return job;
 }
 
-/** How many pieces of text each page of a PDF of the browser writes. */
+/** The number of text pieces on each page of a PDF from the browser. */
 function textPieces(pdf) {
   const text = pdf.toString("latin1");
   const object = (number) => text.slice(text.search(new RegExp(`(^|\\n)${number} 0 obj`)));

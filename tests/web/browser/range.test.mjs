@@ -68,7 +68,7 @@ test("a row moves by keys and by the pointer, the curves follow, and the design 
     await changed(page, designed);
     await page.getByRole("heading", { name: "Schedule, moved by hand" }).waitFor();
     assert.notEqual(await cell(page, "Place of row 2").inputValue(), place);
-    // Held by the pointer, and let go.
+    // Held by the pointer, and released.
     const after = await curve(page);
     const box = await handle(page, 3).boundingBox();
     await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
@@ -212,7 +212,7 @@ test("files of recorded tests become points; faults stand at their rows", async 
     assert.ok(sent.points[0].record.csv.startsWith("t,u,y"));
     await verdict(page).waitFor();
     assert.match(await page.getByRole("region", { name: "Figures at each point" }).innerText(), /fit 100 %|fit 99/);
-    // Under the hand the models answer, then the records for themselves.
+    // During the drag the answer is for the models, then for the records themselves.
     const quick = answered(page, (request) => request.schedule.given && request.points[0].plant);
     const whole = answered(page, (request) => request.schedule.given && request.points[0].record);
     await handle(page, 1).focus();
@@ -232,7 +232,7 @@ test("a fault of the service stands at the row that it is about", async () => {
       await page.getByRole("button", { name: "Design", exact: true }).click();
       await page.getByText("1 problem to fix").waitFor();
       assert.equal(await cell(page, "Plant").nth(1).getAttribute("aria-invalid"), "true");
-      // The verdict is of the request before, and says so.
+      // The verdict belongs to the previous request, and says so.
       const mark = page.getByText("These results belong to the last answered request");
       await mark.waitFor();
       const colours = page.locator(".range-results > .verdict").evaluate((card) => getComputedStyle(card).filter);

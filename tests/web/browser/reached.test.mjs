@@ -1,4 +1,5 @@
-// What is asked of a set-point step and what the design on the screen reaches stand beside each other wherever they differ.
+// The requested value for a set-point step and the value reached by the displayed design are shown next to each other
+// if they differ.
 import assert from "node:assert/strict";
 import test from "node:test";
 import { openDesign, PLANT, slider } from "../design_page.mjs";
@@ -14,17 +15,17 @@ const field = (page, name = OVERSHOOT) => page.locator(".controls").getByRole("t
 const beside = (page, name = OVERSHOOT) => page.locator(".controls .slider").filter({ has: page.getByRole("textbox", { name }) }).locator(".reached");
 const three = (value) => Number(value.toPrecision(3));
 
-/** The number beside a slider; null where there is none. */
+/** The number next to a slider; null if there is none. */
 async function reached(page, name) {
   const text = await beside(page, name).textContent();
   if (text === "") return null;
   return Number(/^reached (\S+)/.exec(text)[1]);
 }
 
-/** The overshoot of the loop that runs. */
+/** The overshoot of the implemented loop. */
 const overshootOf = ({ implemented, performance }) => (implemented?.performance ?? performance).setpoint.overshoot_percent;
 
-/** The text beside the slider is the answer's, or nothing where the answer has as much as is asked for. */
+/** The text next to the slider is that of the answer, or empty if the answer has the requested value. */
 async function assertBeside(page, entry, asked) {
   const percent = three(overshootOf(entry));
   assert.equal(await reached(page), asked !== null && percent === three(asked) ? null : percent);
@@ -63,7 +64,7 @@ for (const [product, more] of [
       assert.ok(await beside(page).evaluate((span) => span.classList.contains("missed")));
       assert.match(await slider(page, OVERSHOOT).getAttribute("aria-valuetext"), new RegExp(`reached ${three(overshootOf(entry))}`));
 
-      // Page, report and code know one lag: the verdict's, which the firmware does not have.
+      // Page, report and code use one lag: the verdict's, which the firmware does not have.
       const lag = String(three(figures.setpoint_lag));
       await openMore(page);
       const lags = (text) => [...text.matchAll(/lag of (\S+) s|1\/\(1 \+ (\S+) s\)|Set-point filter\D*(\d\S*)/g)].map((found) => found[1] ?? found[2] ?? found[3]);
@@ -80,7 +81,7 @@ for (const [product, more] of [
         assert.doesNotMatch(await code.text(), /setpoint_f\b|\bTr\b/, `${language} has a filter that the firmware has not`);
       }
 
-      // Turned: another limit is asked, and what is reached is the new answer's.
+      // After a move: another limit is requested, and the value reached is that of the new answer.
       const modified = await askedOf(page, async () => {
         await field(page).fill("12");
         await field(page).press("Enter");

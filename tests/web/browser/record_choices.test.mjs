@@ -1,4 +1,4 @@
-// The choice of a part where a file holds more than one record: a run of several, a further measured input.
+// The choice of a part if a file holds more than one record: a run of several, a further measured input.
 import assert from "node:assert/strict";
 import test from "node:test";
 import { browserTests, dropFile } from "../harness.mjs";
@@ -22,7 +22,7 @@ const SECOND = { K: 3, T: 12, L: 4 };
 const idle = Array.from({ length: 60 }, (_, t) => row(t, 0, 20 + ripple(t)));
 const threeRuns = ["t,u,y", ...stepRun(FIRST, 300), ...stepRun(SECOND, 200), ...idle].join("\n");
 
-// Both inputs behind a lag and a dead time of their own; each holds from its sample to the next.
+// Both inputs with a lag and a dead time of their own; each is constant between samples.
 const HEATER = { K: 2, T: 30, L: 5 };
 const AMBIENT = { K: 1.5, T: 25, L: 8 };
 const ambientAt = (t) => (t < 150 ? 0 : t < 260 ? 4 : -2);
@@ -74,7 +74,7 @@ test("of a file with several runs the first test is read, and each other one whe
       const [to] = [page.getByRole("textbox", { name: "Use up to" })];
       assert.equal(await to.inputValue(), "299");
 
-      // A part of the first run means nothing in the second.
+      // A part of the first run is not meaningful in the second.
       const part = identified(page);
       await to.fill("249");
       await to.press("Enter");
@@ -84,7 +84,7 @@ test("of a file with several runs the first test is read, and each other one whe
       assertNear(second.answer.model.plant, SECOND, "the second");
       await page.waitForFunction(() => document.querySelectorAll(".part input[type=text]")[1].value === "199");
 
-      // A run without a test is refused at its place, and the one before can be chosen again.
+      // A run without a test is refused at its place, and the previous one can be chosen again.
       const third = await chosen(page, "Run of the file", "3");
       assert.deepEqual([third.status, third.asked.record.run], [422, 3]);
       assert.ok(third.answer.errors.every(({ pointer }) => pointer.startsWith("/record")), JSON.stringify(third.answer.errors));
@@ -121,7 +121,7 @@ test("a run that is chosen on Start is the one that is tuned, and another file k
     assert.equal(job.request.record.run, 2);
     assertNear(job.result.model.plant, SECOND, "tuned");
 
-    // The request of a job brings its run back, also before the file is looked at.
+    // The request of a job restores its run, even before the preview of the file.
     await page.getByRole("link", { name: "Change the request" }).click();
     await page.getByRole("heading", { name: "What do you have?" }).waitFor();
     await page.waitForFunction(() => [...document.querySelectorAll("select")].some((select) => select.value === "2"));
@@ -188,7 +188,7 @@ test("a request with two further inputs keeps both through the form, which shows
     await page.getByRole("heading", { name: "Model from the record" }).waitFor();
     const { result } = await jobOf(page);
     assertNear(result.model.plant, HEATER, "u");
-    // The door moves nothing: it is left out, and a note names it.
+    // The door has no effect: it is left out, and a note names it.
     assert.deepEqual(result.model.disturbances.map(({ name }) => name), ["ambient"]);
   });
 });

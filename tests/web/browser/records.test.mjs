@@ -1,4 +1,4 @@
-// Files as loggers write them, from the drop to a tuned loop; what is found beforehand; the part that counts by dragging.
+// Files in the formats of loggers, from the drop to a tuned loop; the preview; the choice of a part by dragging.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import path from "node:path";
@@ -20,7 +20,7 @@ const utf16 = (text) => Buffer.concat([Buffer.from([0xff, 0xfe]), Buffer.from(te
 const german = (i) => `${fixed(i, ",")};${fixed(u(i), ",")};${fixed(y(i), ",")}`;
 const plain = (i) => `${i},${u(i)},${fixed(y(i))}`;
 
-/** No name of the API where people read. */
+/** Texts for readers contain no name of the API. */
 const noApiWords = async (page) => {
   const text = await page.locator("main").innerText();
   assert.doesNotMatch(text, /columns\.[tuyr]|units\.time|record\/|\bcsv is\b|columns\/|time_unit|\bdt\b/);

@@ -1,4 +1,4 @@
-// The report as its reader meets it: led to from a result, without scripts, printed on A4 and Letter.
+// The report for its reader: the link from a result, without scripts, printed on A4 and Letter.
 import assert from "node:assert/strict";
 import test from "node:test";
 import { accessibilityViolations, browserTests, openPage, overflow } from "../harness.mjs";
@@ -37,7 +37,7 @@ test("a screen with a result leads to the report of the entry that it shows", as
 
 test("the link itself has the entry, chosen or not: a middle click or a copy leads to the same report", async () => {
   const job = await tuned({ ...REQUEST, tune: [{ method: "cohen_coon" }, { method: "robust" }] });
-  // If none is chosen it is the one that the answer says to take.
+  // If none is chosen it is the one that the answer proposes.
   for (const [address, index] of [
     ["design", 1],
     ["design?entry=0", 0],
@@ -59,7 +59,7 @@ test("on a phone the report is as wide as the window; wide tables scroll by them
 
 test("axe finds nothing in the report", async () => {
   const job = await tuned(REQUEST);
-  // axe is a script, which the report's own policy keeps out: its markup is looked at without the policy.
+  // axe is a script, which the report's own policy blocks: its markup is checked without the policy.
   const text = await (await fetch(`${tests.service.base}/v1/jobs/${job.id}/report.html`)).text();
   const opened = await openPage(tests.browser, {});
   await opened.page.setContent(text);

@@ -1,4 +1,4 @@
-// A request that is changed on Start: what of it is sent again, and what is still there when one comes back.
+// A request that is changed on Start: the parts that are sent again, and the content of the form on return.
 import assert from "node:assert/strict";
 import test from "node:test";
 import { browserTests } from "../harness.mjs";
@@ -65,7 +65,7 @@ test("Change the request keeps what was typed over it when one comes back, and b
     await page.goBack();
     await page.waitForURL(/edit$/);
     await page.getByRole("heading", { name: "What do you have?" }).waitFor();
-    // What would be loaded again comes later than the screen.
+    // A second load would come later than the screen.
     await page.waitForLoadState("networkidle");
     assert.deepEqual([await name.inputValue(), await Kp.inputValue()], ["TIC-2", "1.2"]);
     await page.goto(`${tests.service.base}/#/jobs/${first}/design`);

@@ -1,4 +1,4 @@
-// Whatever is done in whichever order: the request that Design hands out gives the design and the verdict that it shows.
+// Any actions in any order: the request that Design hands out gives the displayed design and verdict.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import path from "node:path";
@@ -23,7 +23,7 @@ const onDesign = (page) => page.locator(".settings tbody tr").first();
 const start = (page) => page.getByRole("navigation", { name: "Screens" }).getByRole("link", { name: "Start" }).click();
 const sliders = (page) => page.locator(".controls .field.slider:not([hidden])");
 
-/** Actions; each answers whether it could be done. */
+/** Actions; each returns whether it was possible. */
 const ACTIONS = {
   async model(page) {
     await page.goto(new URL(PLANT, page.url()).href);

@@ -38,7 +38,7 @@ test("the chart shows the curve of this plant with the design on it, and its fig
       .locator("text")
       .allTextContents();
     assert.ok(labels.includes(`Ms ${Number(rimc.Ms).toPrecision(3)}`), labels.join());
-    // Of another method there is no such card.
+    // For another method there is no such card.
     await page.getByRole("button", { name: "robust", exact: true }).click();
     await card(page).waitFor({ state: "hidden" });
   });
@@ -63,7 +63,7 @@ test("the slider shows what a lambda would buy while it moves, and designs it wh
       (Ms) => [...document.querySelectorAll(".rimc td")].some((item) => item.textContent === Ms),
       Number(next.Ms).toPrecision(3),
     );
-    // Who holds the slider keeps it, and the settings are those of the new design.
+    // The slider keeps its focus, and the settings are those of the new design.
     assert.ok(await slider.evaluate((element) => element === document.activeElement));
     await page.getByRole("heading", { name: "Settings to enter: rimc" }).waitFor();
     const Kp = await page.locator(".settings td").first().innerText();
@@ -99,7 +99,7 @@ test("of several steps in a row the last is shown and kept, however late the oth
 
 test("the full controller stands beside its PID, in figures and in its load response", async () => {
   await withPage("#/new/fopdt?K=1&T=10&L=2", {}, async (page) => {
-    // As the service answers it, whatever its figures are.
+    // In the form of the service's answer, with arbitrary figures.
     await page.route("**/v1/jobs/*", async (route) => {
       const reply = await route.fetch();
       if (reply.status() !== 200) return route.fulfill({ response: reply });

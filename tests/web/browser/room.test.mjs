@@ -1,4 +1,4 @@
-// Long words and long units have room, a press is not lost, and an outage that is over is not told any more.
+// Long words and long units have room, a press is not lost, and the notice of an outage disappears after it.
 import assert from "node:assert/strict";
 import test from "node:test";
 import { slider } from "../design_page.mjs";

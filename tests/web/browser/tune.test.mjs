@@ -61,7 +61,7 @@ test("the FOPDT form runs a job; table, settings and plots show what the API ans
       await tracesShown(page, title, traces);
     }
     assert.match(await page.getByRole("region", { name: "Verdict" }).innerText(), /Robust/);
-    // The address alone brings the job back.
+    // The address alone restores the job.
     await page.reload();
     await designShown(page);
     assert.equal(Number(await figure(page, "Controller", "Kp")), asShown(entry.controller.Kp));
@@ -139,7 +139,7 @@ test("faults that the service finds stand at their fields, several at once", asy
         errors.find((error) => error.pointer === pointer).detail,
       );
     }
-    // Chromium reports every 4xx answer on the console; nothing else may stand there.
+    // Chromium reports every 4xx answer on the console; nothing else may be there.
     assert.deepEqual(
       (await opened.faults()).filter((fault) => !fault.includes("422")),
       [],
@@ -303,7 +303,7 @@ test("a running job shows its fraction, stage, message and best design, and Canc
         best: { controller: { Kp: 2.5, Ti: 16 }, load_IAE: 8.4, Ms: 1.4, Mt: 1.3 },
       },
     };
-    // The service is asked for nothing here: how long a real search takes must not decide the test.
+    // The service gets no request here: the test must not depend on the duration of a real search.
     await page.route("**/v1/jobs/running", (route) => route.fulfill({ json: job }));
     await page.route("**/v1/jobs/running/cancel", (route) => {
       job.status = "cancelled";

@@ -1,4 +1,4 @@
-// A design that was turned is not lost: while it is being kept, behind another entry, and by a reload.
+// A modified design is not lost: while it is being kept, behind another entry, and by a reload.
 import assert from "node:assert/strict";
 import test from "node:test";
 import { designedBy, openDesign, PLANT, setting, shows, slider } from "../design_page.mjs";
@@ -7,7 +7,7 @@ import { browserTests } from "../harness.mjs";
 const { withPage, jobOf } = browserTests();
 const designAt = designedBy(jobOf);
 
-/** A job of the API, whose request says no more than it has to. */
+/** A job from the API, with a minimal request. */
 async function openJob(page, tune) {
   const request = { plant: { type: "fopdt", K: 1.25, T: 40, L: 8 }, tune };
   const { id } = await (await page.request.post(new URL("v1/jobs", page.url()).href, { data: request })).json();

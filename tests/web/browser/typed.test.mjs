@@ -1,4 +1,4 @@
-// A model in one line: its formula while it is typed, the fields that follow, and what is wrong with it.
+// A model in one line: its formula during typing, the fields that follow, and its faults.
 import assert from "node:assert/strict";
 import test from "node:test";
 import { browserTests } from "../harness.mjs";
@@ -12,7 +12,7 @@ test("a line that is typed becomes a formula, fields and a job", async () => {
   await withPage("", {}, async (page) => {
     const line = page.getByLabel("Model in one line", { exact: true });
     await line.fill("");
-    // Key by key: what is unfinished says what is missing, and nothing of it reaches the console.
+    // Key by key: an incomplete text reports what is missing, and writes nothing to the console.
     await line.pressSequentially("2 e^(-3s)/((10s+1)(2s+1");
     await page.getByText("A bracket is open since position").waitFor();
     await line.pressSequentially("))");

@@ -1,4 +1,4 @@
-// A plant of which Ku and Pu alone are known: the settings of the rules in a table, and no figure of a loop.
+// A plant with only Ku and Pu: the settings of the rules in a table, and no figure of a loop.
 import assert from "node:assert/strict";
 import test from "node:test";
 import { accessibilityViolations, browserTests, overflow, WINDOWS } from "../harness.mjs";
@@ -19,7 +19,7 @@ async function fill(page, values) {
 const press = (page) => card(page).getByRole("button", { name: "Settings by these rules" }).click();
 const answered = (page) => page.getByRole("region", { name: "Verdict" }).locator("table tbody tr").first().waitFor();
 
-/** Kp, Ti, Td and Tf of each rule as the table has them; NaN for a dash. */
+/** Kp, Ti, Td and Tf of each rule in the table; NaN for a dash. */
 const table = (page) =>
   page
     .getByRole("region", { name: "Verdict" })
@@ -31,7 +31,7 @@ const table = (page) =>
       ]),
     );
 
-/** By the rules as their authors print them: Ziegler and Nichols 1942, Tyreus and Luyben 1992. */
+/** The rules as printed by their authors: Ziegler and Nichols 1942, Tyreus and Luyben 1992. */
 const printed = (Ku, Pu) => ({
   "Ziegler-Nichols, ultimate gain (PI)": [0.45 * Ku, Pu / 1.2, 0],
   "Ziegler-Nichols, ultimate gain (PID)": [0.6 * Ku, Pu / 2, Pu / 8],
@@ -73,10 +73,10 @@ test("Ku and Pu alone give the printed rules' settings in the table, and nothing
       if (Tf === undefined) assert.ok(Number.isNaN(shown[at][4]), `Tf ${shown[at][4]}`);
       else assert.equal(shown[at][4], Number(Tf.toPrecision(5)));
     }
-    // No slider, no plot, no form of settings: they would be of a loop.
+    // No slider, no plot, no form of settings: these need a loop.
     for (const gone of [".controls", "section.plot", ".settings", ".figures-card"])
       assert.equal(await page.locator(gone).filter({ visible: true }).count(), 0, gone);
-    // The address alone brings it back, and the request that is handed out gives the same.
+    // The address alone restores it, and the request that is handed out gives the same.
     await page.reload();
     await answered(page);
     assert.deepEqual(await table(page), shown);

@@ -1,4 +1,4 @@
-// Each way in, to its end, by roles and names alone, in the windows and themes that people have.
+// Each kind of input, to its result, by roles and names only, in common window sizes and themes.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import path from "node:path";
@@ -69,7 +69,8 @@ const WINDOWS = [
   ["phone", { width: 390, height: 844 }],
 ];
 
-// Every window meets both themes, and every way three windows; all of them times all would only be slower.
+// Every window size is used with both themes, and every kind of input with three window sizes; all combinations would
+// only be slower.
 Object.entries(WAYS).forEach(([way, walk], place) => {
   WINDOWS.forEach(([window, size], turn) => {
     const scheme = (place + turn) % 2 === 0 ? "light" : "dark";

@@ -1,4 +1,4 @@
-// The design that moves: sliders, the front, steps back and forth, the address, a slow network and a busy service.
+// The adjustable design: sliders, the frontier, undo and redo, the address, a slow network and a busy service.
 import assert from "node:assert/strict";
 import test from "node:test";
 import { designedBy, openDesign, PLANT, setting, shows, slider } from "../design_page.mjs";
@@ -7,7 +7,7 @@ import { browserTests, tracesShown } from "../harness.mjs";
 const { withPage, jobOf } = browserTests();
 const designAt = designedBy(jobOf);
 
-/** Drags a slider's thumb from one share of its way to another. */
+/** Drags a slider's thumb from one fraction of its range to another. */
 async function drag(page, target, from, to, steps, pause = 0) {
   const box = await target.boundingBox();
   const x = (share) => box.x + 8 + (box.width - 16) * share;
@@ -258,7 +258,7 @@ test("the point on the front is taken and moves the limit", async () => {
     const plot = page.locator(".front section.plot");
     await plot.getByText("best PID").waitFor();
     await page.waitForFunction(() => [...document.querySelectorAll(".front svg.canvas path")].some((item) => (item.getAttribute("d").match(/L/g) ?? []).length > 20));
-    // In one look: the front is drawn anew when its answers come.
+    // In one evaluation: the frontier is drawn again when its answers arrive.
     const box = await page.evaluate(() => [...document.querySelectorAll(".front svg.canvas circle")].at(-1).getBoundingClientRect().toJSON());
     await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
     await page.mouse.down();

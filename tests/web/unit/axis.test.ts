@@ -50,7 +50,7 @@ test("linear ticks are round, inside the range and at least three", () => {
 
 test("log ticks cover narrow and wide ranges", () => {
   assert.deepEqual(ticks("log", [0.001, 1], 3), [0.001, 0.01, 0.1, 1]);
-  // Where they stand apart, 1, 2 and 5; and never two alone.
+  // If they do not overlap, 1, 2 and 5; and never only two of them.
   assert.deepEqual(ticks("log", [0.01, 1], 3), [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1]);
   assert.deepEqual(ticks("log", [0.04, 2], 1.6), [0.1, 0.3, 1]);
   assert.ok(ticks("log", [20, 2e8], 4).length >= 3);

@@ -32,7 +32,7 @@ const make = (method: string, Ms: number | null, IAE: number | null, extra: Part
   }) as Entry;
 
 type Group = NonNullable<NonNullable<Entry["standing"]>["group"]>;
-/** As the service ranks: `order` without a limit on the Ms of all, `least`: the least such limit with which it holds. */
+/** Like the service's ranking: `order` without a limit on Ms, `least`: the smallest such limit that it holds. */
 const standing = (order: number, least: number | null, group: Group = "holds", why = ""): Partial<Entry> => {
   const settles = group === "holds" || group === "above_limit";
   return { standing: { group, order, least_limit: least, settles, within: true, Ms: least, excess_percent: 0, ...(why ? { why } : {}) } };

@@ -154,7 +154,7 @@ test("the chart has the PID, the nonlinear controller and chosen settings; class
     ],
   );
   assert.deepEqual(frame.panes[0]!.marks, [{ kind: "level", value: 409, role: "setpoint", label: "set point" }]);
-  // The upper limit of the input is near, the lower one far away.
+  // The input approaches its upper limit; the lower one is far away.
   assert.deepEqual(frame.panes[1]!.marks, [{ kind: "level", value: 545, role: "limit" }]);
   assert.equal(emulationFrame(emulation, 1, chosen, plant, units)!.panes[0]!.traces.length, 2);
   assert.equal(emulationFrame({ J: null }, 0, [], plant, units), null);
@@ -214,7 +214,7 @@ test("the linear model is read as a transfer function with poles and zeros", () 
     [-1.9218572983488496, -0.024107735705294824],
     [-184.3714596697699, -6.821547141058964],
   ];
-  // Reference values: reactor of Mhaskar, El-Farra and Christofides (2004), linearised about its steady state.
+  // Reference values: reactor of Mhaskar, El-Farra and Christofides (2004), linearised around its steady state.
   const T = transferFunction({ type: "state_space", A, B: [0, 1], C: [0, 1], L: 0 })!;
   assert.equal(T.num[0], 1);
   assert.ok(Math.abs(T.num[1]! - 1.9218572983488496) < 1e-12);

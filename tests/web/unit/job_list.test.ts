@@ -22,7 +22,7 @@ test("plants of few parameters are a formula, others their kind", () => {
   assert.equal(short({ type: "ipdt", K: 0.1, L: 2 }), "0.1 e^(−2s)/s");
   assert.equal(short({ type: "ipdt", K: 0.1, L: 2, T: 4 }), "0.1 e^(−2s)/(s(4s + 1))");
   assert.equal(short({ type: "state_space" }), "state space");
-  // A list says of equations that they are some; how many states is not known from it.
+  // For equations a list contains only their kind; the number of states is not known from it.
   assert.equal(short({ type: "nonlinear" }), "nonlinear plant");
   assert.equal(short({ type: "nonlinear", states: { h: "u - h" }, L: 2 }), "1 state, from u to y, L 2 s");
 });

@@ -4,7 +4,7 @@ import { latest, newest } from "../../../web/src/api/latest.ts";
 
 const settle = (): Promise<void> => new Promise((resolve) => setImmediate(resolve));
 
-/** Calls whose answers come when the test lets them. */
+/** Calls whose answers arrive when the test releases them. */
 function gated(underWay?: number) {
   const sent: number[] = [];
   const answers: number[] = [];

@@ -3,7 +3,7 @@ import test from "node:test";
 import type { TreeNode } from "../../../web/src/dom.ts";
 import { lawFormulas } from "../../../web/src/form/law.ts";
 
-/** A formula as text again: fractions with a colon, so that they show what stands above and below. */
+/** A formula as text again: fractions with a colon, which separates numerator and denominator. */
 function told(tree: TreeNode | string): string {
   if (typeof tree === "string") return tree;
   const parts = (tree.children ?? []).map(told).filter((part) => part !== "" && part !== "\u2062");

@@ -22,7 +22,7 @@ const limit = { from: 1.1, to: 2.5, step: 0.01, low: "calm", high: "sharp" };
 const noise = { logarithmic: true, group: "noise", relative: true, from: 0.2, to: 5 };
 const setpoint = { from: 0, to: 40, group: "setpoint" };
 const ratio = { from: 0.02, to: 1, logarithmic: true, group: "noise", value_of: "Tf_over_Td", reached: "Tf_over_Td" } as const;
-/** As GET /v1/methods describes it. */
+/** In the form of GET /v1/methods. */
 const robust: Method = {
   id: "robust",
   title: "Robust",

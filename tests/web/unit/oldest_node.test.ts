@@ -1,5 +1,6 @@
-// The page's code, its tools and its tests run on the oldest Node.js that package.json allows, which Debian 12 has. Tests have no
-// types to tell what came later, so it is found here by name, on whatever Node.js runs this; the page's own code has tsc.
+// The page's code, its tools and its tests run on the oldest Node.js that package.json allows, which Debian 12 has. The
+// tests have no types that show newer names, so these are searched for here, on any version of Node.js; the page's own
+// code has tsc.
 import assert from "node:assert/strict";
 import { readFileSync, readdirSync } from "node:fs";
 import { createRequire } from "node:module";
@@ -12,13 +13,13 @@ const web = path.join(root, "web");
 const fromWeb = createRequire(path.join(web, "package.json"));
 const ts = fromWeb("typescript") as typeof TypeScript;
 
-// The newest edition of the language that each Node.js has whole.
+// The newest edition of the language that each Node.js supports completely.
 const EDITION_OF_NODE: Record<string, number> = { "18": 2022, "20": 2023, "22": 2024 };
 // Names of Node.js itself that are newer than 18.
 const LATER_IN_NODE = ["import.meta.dirname", "import.meta.filename", "import.meta.resolve", "process.loadEnvFile",
   "process.getBuiltinModule", "util.styleText", "util.parseEnv", "fs.glob", "fs.globSync", "fs.openAsBlob", "path.matchesGlob",
   "assert.partialDeepStrictEqual", "mock.timers", "t.plan", "t.assert", "t.waitFor", "AbortSignal.any"];
-// Words that others name their own things by as well; a call of these says nothing.
+// Words that are also used for other things; a call with such a name proves nothing.
 const COMMON_WORDS = ["difference", "drop", "take"];
 const LATER_MODULES = ["node:sqlite", "node:sea"];
 
@@ -33,7 +34,7 @@ function walk(node: TypeScript.Node, visit: (node: TypeScript.Node) => void): vo
   node.forEachChild((child) => walk(child, visit));
 }
 
-/** Names of methods in TypeScript's own descriptions of the language, of those files that are wanted. */
+/** Names of methods in TypeScript's own descriptions of the language, from the selected files. */
 function methods(wanted: (name: string) => boolean): Set<string> {
   const names = new Set<string>();
   const folder = path.dirname(fromWeb.resolve("typescript"));
@@ -45,14 +46,14 @@ function methods(wanted: (name: string) => boolean): Set<string> {
 }
 
 function isLater(file: string): boolean {
-  if (file === "lib.esnext.disposable.d.ts") return false; // common words throughout
+  if (file === "lib.esnext.disposable.d.ts") return false; // only common words
   const year = /^lib\.es(\d{4})/.exec(file)?.[1];
   return /^lib\.esnext/.test(file) || Number(year ?? 0) > edition;
 }
 const known = methods((file) => /^lib\.es\d/.test(file) && !isLater(file));
 const later = new Set([...methods(isLater)].filter((name) => !known.has(name) && !COMMON_WORDS.includes(name)));
 
-/** Uses in a source of what the oldest Node.js lacks, one line each. */
+/** Uses of names that the oldest Node.js does not have, one line each. */
 function tooNew(file: string, text?: string): string[] {
   const source = parsed(file, text);
   const found: string[] = [];

@@ -251,7 +251,7 @@ test("names of marks stand neither on one another nor where the curve runs, wher
     markLabels(layoutFrame(of, 400, 300, wholeView(of)).boxes[0]!).map(({ attributes }) => attributes as Record<string, number | string>);
   const [first, second] = boxes(frame);
   assert.ok(first!["text-anchor"] !== second!["text-anchor"] || Math.abs(Number(first!["y"]) - Number(second!["y"])) >= 14);
-  // A curve along the upper right sends the name to another side of its line.
+  // A curve along the upper right moves the name to another side of its line.
   const x = [...Array(200).keys()].map((k) => k / 100);
   const crossed: Frame = { ...frame, panes: [{ ...frame.panes[0]!, traces: [{ name: "y", look: 1, x, y: x.map(() => 1.06) }], marks: [level(1, "limit")] }] };
   assert.ok(Number(boxes(crossed)[0]!["y"]) > layoutFrame(crossed, 400, 300, wholeView(crossed)).boxes[0]!.y.toPixel(1));

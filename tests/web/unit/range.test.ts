@@ -105,7 +105,7 @@ test("records are read in one way for all rows, and only with them limits hold o
   const { request } = read(texts, parts);
   assert.deepEqual(request.points![0], { at: 30, record: { csv: "t,u,y", time_unit: "min" } });
   assert.deepEqual([request.uncertainty, request.identify], ["identified", { model: "fopdt" }]);
-  // The service's own default is no part of what is sent.
+  // The service's own default is not sent.
   texts.terms.identified = false;
   assert.equal(read(texts, parts).request.uncertainty, "none");
   assert.equal(textsOf(loads).terms.identified, true);
@@ -219,7 +219,7 @@ test("while a hand moves a row the schedule is given, records stand for the mode
     [asked.points![0], asked.identify, asked.runs],
     [{ at: 30, plant: fopdt(4, 20, 4) }, undefined, false],
   );
-  // Over what they leave open they are asked about themselves, but not under the hand.
+  // With regions the records themselves are used, but not during a drag.
   const region = { ...request, uncertainty: "identified" };
   assert.deepEqual(givenRequest(region, content, rows, { runs: false, quick: false }).points, request.points);
   const quick = givenRequest(region, content, rows, { runs: false, quick: true });
@@ -283,7 +283,7 @@ test("a run shows the target with y, or a parameter of its own; a run that ended
   assert.deepEqual(names(null), [["schedule", "set point"], ["schedule"], ["schedule"]]);
   assert.deepEqual(names("c"), [["schedule"], ["c"], ["schedule"], ["schedule"]]);
   assert.deepEqual(passageFrame(passage, null, units).panes[0]!.traces[0]!.x, [0, 1]);
-  // A nonlinear controller runs beside it; it has no gain to draw.
+  // A nonlinear controller runs in addition; it has no gain to draw.
   const nonlinear = { y: [1, 2, 2], u: [1, 1, 1], tau: 3, IAE: 0.5, limited: false, settled: true };
   const beside = passageFrame({ ...passage, nonlinear }, null, units).panes.map((pane) => pane.traces.length);
   assert.deepEqual(beside, [3, 2, 1]);

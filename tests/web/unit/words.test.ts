@@ -1,4 +1,4 @@
-// Words that users could not make sense of, held away from what the page says.
+// Words that users would not understand, which the page must not contain.
 import assert from "node:assert/strict";
 import { readdirSync, readFileSync } from "node:fs";
 import test from "node:test";

@@ -1,6 +1,7 @@
-""""""Writes the wheel of the client for pip (PEP 517) with the standard library alone. The module goes in as a package,
-because only packages can carry py.typed, which tells type checkers to use its annotations (PEP 561). Name, version and
-description are those of pyproject.toml. """
+"""Writes the wheel of the client for pip (PEP 517) with the standard library alone.
+
+The module goes in as a package, because only packages can carry py.typed, which tells type checkers to use its
+annotations (PEP 561). Name, version and description are those of pyproject.toml.
 """
 
 import base64
@@ -37,8 +38,7 @@ def build_wheel(wheel_directory: str, config_settings: Optional[Dict[str, Any]] 
     wheel = name + "-py3-none-any.whl"
     with zipfile.ZipFile(os.path.join(wheel_directory, wheel), "w", zipfile.ZIP_DEFLATED) as archive:
         for path, content in files.items():
-            archive.writestr(zipfile.ZipInfo(path), content, zipfile.ZIP_DEFLATED)  # no date: equal sources give equal
-                                                                                    # wheels
+            archive.writestr(zipfile.ZipInfo(path), content, zipfile.ZIP_DEFLATED)  # no date: equal wheels
     return wheel
 
 

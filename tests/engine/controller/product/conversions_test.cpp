@@ -1,4 +1,4 @@
-// What the conversions promise beyond single settings: round trips, units of time, resolution, clocks, sampled laws.
+// Properties of the conversions beyond single settings: round trips, units of time, resolution, clocks, sampled laws.
 #include <random>
 #include <stdexcept>
 
@@ -29,7 +29,7 @@ TEST(ProductConversions, RandomSettingsGoToTheTwinAndBack) {
     std::uniform_real_distribution<double> exponent(-1, 1), share(0, 1);
     for (const Product& product : catalogue()) {
         for (int k = 0; k < 20; ++k) {
-            // Wide of every limit: Ti above 4 Td/(1 - alpha), gains within Yokogawa's, filters within DeltaV's.
+            // Far from every limit: Ti above 4 Td/(1 - alpha), gains within Yokogawa's, filters within DeltaV's.
             IdealPid pid{.Kp = 1.5 * std::pow(3, exponent(random)), .Ti = 120 * std::pow(3, exponent(random))};
             pid.Td = pid.Ti * (0.05 + 0.15 * share(random));
             pid.filter = {FilterType::derivative, pid.Td * (0.06 + 0.5 * share(random))};

@@ -1,11 +1,11 @@
-// Every entry of the catalogue against the example that was published with it: digits as printed there.
+// Every product of the catalogue compared with its published example, in the printed digits.
 #include "engine/controller/product/to_controller.h"
 #include "tests/engine/controller/product/support.h"
 
 namespace tunewright::product {
 namespace {
 
-constexpr double kSixDigits = 5e-6;  // half a step of the sixth digit, at a leading 1
+constexpr double kSixDigits = 5e-6;  // half a unit of the sixth digit, for a leading 1
 
 class Examples : public ::testing::TestWithParam<std::size_t> {
 protected:
@@ -21,7 +21,7 @@ void expect_value(const Product& product, const Setting& computed, const Value& 
     }
     ASSERT_TRUE(std::holds_alternative<double>(computed.value)) << computed.name;
     double value = std::get<double>(computed.value);
-    // A parameter of whole steps is printed as it is typed; PID_K1 is printed with four digits.
+    // A parameter with whole steps is printed as typed; PID_K1 is printed with four digits.
     const Parameter& parameter = *parameter_named(product, computed.name);
     if (parameter.resolution > 0) value = std::round(value / parameter.resolution) * parameter.resolution;
     EXPECT_TRUE(to_digits(value, *number, parameter.shape == Shape::lag_per_sample ? 5e-5 : kSixDigits))
@@ -55,7 +55,7 @@ TEST_P(Examples, SettingsGiveTheControllerAndBackTheSettings) {
     for (std::size_t i = 0; i < forward->settings.size(); ++i) {
         const double* number = std::get_if<double>(&forward->settings[i].value);
         if (!number) continue;
-        // A parameter of the filter is left at its default where the block's own twin has none.
+        // A parameter of the filter has its default if the block's ideal form has no filter.
         EXPECT_TRUE(to_digits(*number, std::get<double>(again->settings[i].value), 1e-9)) << forward->settings[i].name;
     }
 }

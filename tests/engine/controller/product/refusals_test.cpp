@@ -1,4 +1,4 @@
-// What a block cannot be is refused with a sentence; what it does differently is said in notes.
+// Settings that a block cannot represent are refused with a sentence; deviations are in notes.
 #include <stdexcept>
 
 #include <gmock/gmock.h>
@@ -47,7 +47,7 @@ TEST(ProductRefusals, ComplexZerosHaveNoSeriesForm) {
     EXPECT_NEAR(near.realised.Kp / near.realised.Ti, pid.Kp / pid.Ti, 1e-15);
     EXPECT_NEAR(near.realised.Kp / pid.Kp, 1.0825, 1e-4);
     EXPECT_NEAR(near.realised.Kp * near.realised.Td / (pid.Kp * pid.Td), 0.765625, 1e-12);
-    // Without a filter in the lead the derivative gain is kept too, and P rises by 15.5 % at Ti = 3 Td.
+    // Without a filter in the lead the derivative gain is also kept, and P rises by 15.5 % at Ti = 3 Td.
     const Converted foxboro = nearest("foxboro_pid", pid);
     EXPECT_NEAR(foxboro.realised.Kp / pid.Kp, 2 / std::sqrt(3), 1e-12);
     EXPECT_NEAR(foxboro.realised.Kp * foxboro.realised.Td, pid.Kp * pid.Td, 1e-12);
@@ -131,7 +131,7 @@ TEST(ProductRefusals, MissingSpansAndSampleTimesAreNamedWithTheCure) {
     }
     EXPECT_EQ(refused("klipper", kDesign, no_time).message, "not refused");
     EXPECT_EQ(refused("siemens_pid_compact", kDesign, {}).message, "not refused");
-    // The period in the settings is enough to read them.
+    // The period in the settings is sufficient to read them.
     std::vector<Note> notes;
     const auto twin =
         to_controller(product_of("openplc_iec_pid"), {{"KP", -1.5}, {"TD", 20.0}, {"CYCLE_s", 0.5}}, {}, notes);

@@ -1,5 +1,5 @@
-// The second design of every product, and the blocks' own transfer functions, written out by the published conversions
-// and not by the terms of the catalogue.
+// The second design of every product, and the blocks' own transfer functions, written from the published conversions
+// and not from the terms of the catalogue.
 #pragma once
 
 #include <complex>
@@ -16,7 +16,7 @@ inline constexpr double Kp = 0.8, Ti = 37, Td = 6, Tf = 0.9, b = 0.35, Sy = 400,
 inline constexpr double kPi = 3.14159265358979323846;
 inline const IdealPid kDesign{.Kp = Kp, .Ti = Ti, .Td = Td, .b = b, .c = 0, .filter = {FilterType::derivative, Tf}};
 
-/// From r and from -y to u.
+/// Transfer functions from r and from -y to u.
 struct Law {
     Complex r, y;
 };
@@ -34,7 +34,7 @@ inline Law series(double K, double ti, double td, double alpha, Complex s) {
     return {PI, PI * (1.0 + td * s) / (1.0 + alpha * td * s)};
 }
 
-/// Numbers of the settings, and words as they are.
+/// Numbers of the settings, and words unchanged.
 struct Typed {
     const Settings& settings;
     double operator[](const char* name) const { return number(settings, name); }
@@ -42,12 +42,12 @@ struct Typed {
 };
 
 struct Row {
-    std::map<std::string, double> numbers;     ///< what has to be typed
+    std::map<std::string, double> numbers;     ///< the settings to type
     std::map<std::string, std::string> words;  ///< choices
     std::function<Law(const Typed&, Complex)> block;
 };
 
-// With the filter's ratio given; for alpha = 0 the interacting form without a filter.
+// The filter's ratio is given; for alpha = 0 the interacting form without a filter.
 struct SeriesTimes {
     explicit SeriesTimes(double alpha)
         : td((Ti - std::sqrt(Ti * Ti - 4 * Ti * Td / (1 - alpha))) / 2), ti(Ti - (1 - alpha) * td) {}
@@ -57,7 +57,7 @@ struct SeriesTimes {
 
 inline const SeriesTimes kDeltaV(0.125), kHoneywell(0.1), kFoxboro(0);
 
-/// By id: of industrial blocks, of heaters and small boards, of software.
+/// By id: industrial blocks, heaters and small boards, software.
 const std::map<std::string, Row>& industrial_rows();
 const std::map<std::string, Row>& heater_rows();
 const std::map<std::string, Row>& software_rows();

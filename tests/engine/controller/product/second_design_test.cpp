@@ -1,4 +1,4 @@
-// A second design for every product: its settings, and its twin against the block's own transfer functions.
+// A second design for every product: its settings, and its ideal form compared with the block's own transfer functions.
 #include "tests/engine/controller/product/second_design.h"
 #include "engine/controller/product/to_controller.h"
 

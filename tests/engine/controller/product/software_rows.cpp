@@ -1,11 +1,11 @@
-// The second design on heaters and small boards, and on software.
+// The second design for heaters and small boards, and for software.
 #include "tests/engine/controller/product/second_design.h"
 
 namespace tunewright::product::second {
 
 namespace {
 
-// In duties of 255, of 1 or of 100.
+// With duties of 255, of 1 or of 100.
 Row heater(double full, const char* P, const char* I, const char* D) {
     return {{{P, full * Kp / Su}, {I, full * Kp / (Su * Ti)}, {D, full * Kp * Td / Su}}, {}, {}};
 }

@@ -1,5 +1,5 @@
-// Choices that decide a block's weights and actions are typed too: form, structure, equation, switches. Whoever types
-// a design into a block that stood otherwise before has the design's loop.
+// Choices that determine a block's weights and actions are typed too: form, structure, equation, switches. A design
+// typed into a block with other previous settings gives the same loop.
 #include "engine/controller/product/to_controller.h"
 #include "engine/controller/product/typed.h"
 #include "tests/engine/controller/product/support.h"
@@ -7,7 +7,7 @@
 namespace tunewright::product {
 namespace {
 
-/// Weights of each kind that a structure may fix, and one between them; with and without a derivative.
+/// Weights of each kind that a structure may fix, and one in between; with and without a derivative.
 std::vector<IdealPid> designs() {
     std::vector<IdealPid> all;
     for (const double Td : {0.0, 20.0}) {
@@ -51,7 +51,7 @@ TEST_P(Structures, AWeightIsTypedOnlyWhereItCounts) {
     }
 }
 
-/// The product with every choice standing otherwise by default.
+/// The product with another default of every choice.
 Product other_defaults(Product product) {
     for (Parameter& parameter : product.parameters) std::ranges::reverse(parameter.options);
     return product;
@@ -98,7 +98,7 @@ struct Chosen {
     const char *name, *value;
 };
 
-/// As the makers' texts name them: which signal P and D see.
+/// The signals of P and D in the makers' notation.
 const Chosen kChosen[] = {
     {"emerson_deltav_standard", 1, 0, "STRUCTURE", "PI action on error, D action on PV"},
     {"emerson_deltav_standard", 1, 1, "STRUCTURE", "PID action on error"},

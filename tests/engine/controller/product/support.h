@@ -1,4 +1,4 @@
-// What the tests of products share.
+// Common helpers of the tests of products.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@
 namespace tunewright::product {
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
-/// What most of them convert, and where.
+/// The design that most of them convert, and its context.
 const IdealPid kDesign{.Kp = 1.5, .Ti = 120, .Td = 20, .b = 0.6, .c = 0, .filter = {FilterType::derivative, 2}};
 const Context kContext = Context::with_spans({.y_low = 0, .y_high = 200, .u_low = 0, .u_high = 100}, 0.25);
 
@@ -60,7 +60,7 @@ inline std::string note(const std::vector<Note>& notes, std::string_view code) {
     return "";
 }
 
-/// Equal to so many significant digits.
+/// Equal to this number of significant digits.
 inline ::testing::AssertionResult to_digits(double a, double b, double relative) {
     if (a == b || std::abs(a - b) <= relative * std::max(std::abs(a), std::abs(b)))
         return ::testing::AssertionSuccess();

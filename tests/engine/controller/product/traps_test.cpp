@@ -1,4 +1,4 @@
-// What a block does that its settings alone do not show: each is said, or kept from happening.
+// Behaviour of a block that its settings alone do not show: each is reported, or prevented.
 #include <gmock/gmock.h>
 
 #include <limits>
@@ -30,7 +30,7 @@ std::vector<Note> notes_of(std::string_view id, const Settings& settings) {
 }
 
 TEST(ProductTraps, BackCalculationOfAPIHasItsIntegralTime) {
-    // The library divides by Tt: 0 would make its integral infinite in the first call.
+    // The library divides by Tt: with 0 its integral would be infinite in the first call.
     const IdealPid PI{.Kp = 1.5, .Ti = 120};
     EXPECT_EQ(number(typed("discretepids_jl", PI).settings, "Tt"), 120);
     EXPECT_NEAR(number(typed("discretepids_jl", kDesign).settings, "Tt"), std::sqrt(120.0 * 20), 1e-12);

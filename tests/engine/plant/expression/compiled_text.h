@@ -1,4 +1,4 @@
-// A text compiled for its tests: variables x and u.
+// A text compiled for the tests: variables x and u.
 #pragma once
 
 #include <string>

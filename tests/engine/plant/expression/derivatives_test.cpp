@@ -1,5 +1,5 @@
-// Programs over other numbers than doubles: derivatives against the complex step, Taylor coefficients against dual
-// numbers and known series; and that a program does nothing twice.
+// Programs with number types other than double: derivatives compared with the complex step, Taylor coefficients with
+// dual numbers and known series; and no program computes an expression twice.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -30,7 +30,7 @@ constexpr const char* kTexts[] = {
 };
 
 TEST(Derivatives, DualNumbersAgreeWithTheComplexStep) {
-    constexpr double h = 1e-150;  // nothing is subtracted: as small as may be
+    constexpr double h = 1e-150;  // nothing is subtracted: as small as possible
     for (const char* text : kTexts)
         for (const double x : {0.3, 1.7, 2.9}) {
             const double u = 1.9;

@@ -1,4 +1,4 @@
-// What a text means, and what is said about one that means nothing.
+// The meaning of a text, and the errors of one that is not valid.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -104,7 +104,7 @@ TEST(Grammar, LimitsHoldWithoutExhaustingTheStack) {
     EXPECT_THAT(complaint(sum), testing::HasSubstr("more than 5000 numbers, names and operations"));
     std::string tower = "2";
     for (int i = 0; i < 6; ++i) tower = "2^(" + tower + ")";
-    EXPECT_EQ(complaint(tower), "");  // overflows when it is evaluated, at once
+    EXPECT_EQ(complaint(tower), "");  // overflows in the first evaluation
     EXPECT_TRUE(std::isinf(value(tower)));
 }
 

@@ -1,4 +1,4 @@
-// A caller of a store that fails: he keeps book of what was reported to him, and holds the store to it.
+// A caller of a store that fails: it records the reported results, and checks the store against them.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ class Bookkeeper {
 public:
     explicit Bookkeeper(JobStore& store) : store_(store) {}
 
-    /// A job of everybody's life: accepted, claimed, ended; every third is deleted.
+    /// An ordinary job: accepted, claimed, ended; every third is deleted.
     void live(int number) {
         const OwnAllocations these;
         const std::string id = "job" + std::to_string(number);
@@ -46,9 +46,9 @@ public:
         for (const JobRecord& one : claimed.value_or(std::vector<JobRecord>())) end(one, number % 3 == 0);
     }
 
-    /// The jobs that were reported; each may be further on than that.
+    /// The reported jobs, in the reported state or a later one.
     const std::map<std::string, JobStatus>& there() const { return there_; }
-    /// The jobs that were refused, and not only left in doubt.
+    /// The jobs that were refused, not only left in doubt.
     const std::set<std::string>& refused() const { return refused_; }
 
 private:
@@ -57,11 +57,11 @@ private:
         if (!reported<bool>([&](auto done) { store_.finish(end, done); }).value_or(false)) return;
         there_[job.id] = JobStatus::succeeded;
         if (!then_delete) return;
-        there_.erase(job.id);  // from now on either is right
+        there_.erase(job.id);  // from now on both states are right
         reported<RemoveEffect>([&](auto done) { store_.remove(job.id, done); });
     }
 
-    /// Nothing where the store could not do it, or does not know whether it has.
+    /// Empty if the store failed, or does not know whether it has succeeded.
     template <class T, class Start>
     std::optional<T> reported(Start start) {
         in_doubt_ = false;
@@ -88,7 +88,7 @@ private:
     bool in_doubt_ = false;
 };
 
-/// Every job that was reported is there, and as far on as was reported.
+/// Checks that every reported job exists, in the reported state or a later one.
 inline void expect_kept(JobStore& store, const std::map<std::string, JobStatus>& there, const std::string& where) {
     for (const auto& [id, status] : there) {
         const auto found = store.find(id);

@@ -29,7 +29,7 @@ bool send_all(int to, const char* bytes, std::size_t count) {
     return true;
 }
 
-/// The number of bytes that came; 0 at the end.
+/// The number of received bytes; 0 at the end.
 std::size_t receive(int from, std::array<char, 65536>& bytes) {
     const ssize_t count = ::recv(from, bytes.data(), bytes.size(), 0);
     return count > 0 ? static_cast<std::size_t>(count) : 0;
@@ -90,7 +90,7 @@ void CutLine::carry(int client) {
         if (cut && when_ == When::before) break;
         open = count > 0 && send_all(server, bytes.data(), count);
         if (!cut) continue;
-        receive(server, bytes);  // it has been done
+        receive(server, bytes);  // the call has been executed
         break;
     }
     ::close(client);

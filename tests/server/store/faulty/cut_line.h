@@ -1,4 +1,4 @@
-// A line to a database that is cut when a test says so.
+// A connection to a database that the test can cut.
 #pragma once
 
 #include <atomic>
@@ -10,7 +10,7 @@
 
 namespace tunewright::server {
 
-/// Listens on the loopback and carries bytes to and from `port` there. A message is what a client sends in one piece.
+/// Listens on the loopback and forwards bytes to and from `port`. A message is a piece of data sent by a client.
 class CutLine {
 public:
     enum class When {
@@ -24,7 +24,7 @@ public:
     CutLine& operator=(const CutLine&) = delete;
 
     int port() const { return port_; }
-    /// From now on: the line of message `number` (from 0) is cut; those that are opened later work.
+    /// From now on: the connection of message `number` (from 0) is cut; those that are opened later work.
     void cut(std::int64_t number, When when);
     /// Messages since cut().
     std::int64_t messages() const { return messages_; }

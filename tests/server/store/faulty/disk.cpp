@@ -9,11 +9,11 @@ namespace tunewright::server {
 
 FaultyDisk* FaultyDisk::now_ = nullptr;
 
-/// SQLite's own file behind ours, in one piece of memory.
+/// SQLite's own file, in one piece of memory.
 struct FaultyDisk::File {
     sqlite3_file head;
     sqlite3_io_methods methods;
-    const char* path;  ///< SQLite keeps it for as long as the file is open; null for temporary ones
+    const char* path;  ///< SQLite stores it as long as the file is open; null for temporary files
 
     sqlite3_file* real() { return reinterpret_cast<sqlite3_file*>(this + 1); }
 };

@@ -1,4 +1,4 @@
-// A disk that fails when a test says so: SQLite's own file system with a counter in front of it.
+// A disk that fails on demand: SQLite's own file system with a counter in front of it.
 #pragma once
 
 #include <sqlite3.h>
@@ -14,7 +14,7 @@
 
 namespace tunewright::server {
 
-/// In front of SQLite's file system for as long as it lives, for every file that is opened then; one at a time.
+/// Replaces SQLite's file system during its lifetime, for every file that is then opened; one at a time.
 class FaultyDisk {
 public:
     enum class Fault {
@@ -30,19 +30,19 @@ public:
     FaultyDisk(const FaultyDisk&) = delete;
     FaultyDisk& operator=(const FaultyDisk&) = delete;
 
-    /// The call `number` (from 0) to write, shorten or make durable fails so; those that follow work again.
+    /// The call `number` (from 0) to write, truncate or sync fails in this way; later ones work again.
     void fail(std::int64_t number, Fault fault);
     /// Calls so far, since fail().
     std::int64_t calls() const { return calls_; }
-    /// Called after each call to write, shorten or make durable, on the thread that did it.
+    /// Called after each call to write, truncate or sync, on its thread.
     void after_each(std::function<void()> called);
-    /// Writes to `folder` what a disk has that loses power now: of each file what was made durable, and of the sectors
-    /// that were written since then those that `survives` says, in any order.
+    /// Writes to `folder` the content of a disk that loses power now: for each file the synced data, and those sectors
+    /// written since then that `survives` selects, in any order.
     void lose_power(const std::filesystem::path& folder, const std::function<bool()>& survives);
 
 private:
     struct File;
-    /// Bytes at a place; or the file's new end.
+    /// Bytes at an offset; or the file's new length.
     struct Change {
         std::int64_t at = 0;
         std::string bytes;

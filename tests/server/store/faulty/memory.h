@@ -1,12 +1,12 @@
-// Memory that runs out when a test says so: operator new of this program, and SQLite's own allocations.
+// Memory that is exhausted on demand: operator new of this program, and SQLite's own allocations.
 #pragma once
 
 #include <cstdint>
 
 namespace tunewright::server {
 
-/// While it lives, one allocation of the program, on whichever thread, finds no memory; those after it do. One at a
-/// time. Of SQLite's allocations it knows those after `take_sqlite_memory()`.
+/// During its lifetime, one allocation of the program, on any thread, fails; later ones succeed. One at a time.
+/// SQLite's allocations are included after `take_sqlite_memory()`.
 class FailingAllocation {
 public:
     explicit FailingAllocation(std::int64_t number);  ///< from 0
@@ -18,7 +18,7 @@ public:
     std::int64_t calls() const;
 };
 
-/// While it lives, this thread's allocations are not among them: a test's own.
+/// During its lifetime, this thread's allocations are excluded: those of the test itself.
 class OwnAllocations {
 public:
     OwnAllocations();
@@ -26,7 +26,7 @@ public:
     OwnAllocations(const OwnAllocations&) = delete;
     OwnAllocations& operator=(const OwnAllocations&) = delete;
 
-    /// Runs it as if this were not there.
+    /// Runs the work with these allocations included again.
     template <class Work>
     static void except(Work work) {
         struct Pause {
@@ -40,10 +40,10 @@ private:
     static void swap();
 };
 
-/// Before SQLite's first call.
+/// To be called before SQLite's first call.
 void take_sqlite_memory();
 
-/// False where a sanitizer has operator new for itself.
+/// False if a sanitizer replaces operator new.
 bool can_fail_allocations();
 
 }  // namespace tunewright::server

@@ -1,5 +1,5 @@
-// One allocation that fails, anywhere in the store or in the reading of a request: no answer is wrong, nothing that was
-// reported is lost, and the next call works.
+// One allocation that fails, anywhere in the store or in reading a request: no answer is wrong, no reported result is
+// lost, and the next call works.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -52,7 +52,8 @@ std::vector<std::string> requests() {
 
 enum class Read { right, refused, ended, wrong, crashed };
 
-/// In a process of its own. `ended`: std::terminate, which a destructor of the JSON library comes to: it allocates.
+/// In a separate process. `ended`: std::terminate, which a destructor of the JSON library may call because it
+/// allocates.
 Read read_with_failure(const std::string& request, std::int64_t number, const std::string& right) {
     const pid_t child = ::fork();
     if (child == 0) {

@@ -1,5 +1,5 @@
-// The PostgreSQL store on a line that is cut at any one of its messages, before it arrives or before its answer does:
-// what was reported is there, what was refused is not, and the next call works.
+// The PostgreSQL store with a connection that is cut at any one of its messages, before the message or its answer
+// arrives: reported results exist, refused ones do not, and the next call works.
 #include <gtest/gtest.h>
 
 #include <chrono>

@@ -1,5 +1,5 @@
-// The SQLite store on a disk that fails at any one of its calls, or that loses power: what was reported is there, what
-// was refused is not, and the file is whole.
+// The SQLite store on a disk that fails at any one of its calls, or that loses power: reported results exist, refused
+// ones do not, and the file is intact.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -18,7 +18,7 @@ namespace {
 
 using Fault = FaultyDisk::Fault;
 
-/// Every job that was reported is there when the file is opened again.
+/// Checks that every reported job exists when the file is opened again.
 void expect_kept_in(const std::string& file, const std::map<std::string, JobStatus>& there, const std::string& where) {
     ASSERT_EQ(run_sqlite(file, "PRAGMA integrity_check"), "ok") << where;
     const auto store = open_sqlite_store(file, SchemaSteps::take);
@@ -57,7 +57,7 @@ TEST_P(SqliteFaults, AtAnyCallLoseNothing) {
 INSTANTIATE_TEST_SUITE_P(Each, SqliteFaults,
                          testing::Values(Fault::write, Fault::short_write, Fault::full, Fault::sync));
 
-/// The machine loses power after any one of its calls: of what was not made durable any part may be left.
+/// The machine loses power after any one of its calls: any part of the data that was not synced may remain.
 TEST(SqlitePowerLoss, LosesNothingThatWasReported) {
     constexpr int jobs = 40, max = 500;
     struct Moment {

@@ -79,7 +79,7 @@ function fault(reason: unknown): void {
     h(
       "p",
       { class: "trouble", role: "alert" },
-      `Something went wrong in this page: ${words}. Reload it; your jobs are kept by the service.`,
+      `This page failed: ${words}. Reload it; the service keeps your jobs.`,
     ),
   );
 }

@@ -161,7 +161,7 @@ test("the limit on Ms ranks anew, unstable rows go on request, columns are chose
           method !== "baseline" && standing?.settles && standing.within && standing.Ms <= limit * 1.0001,
       ).length;
     assert.equal(await ranked(), within(2));
-    const limit = page.getByLabel("ranked by excess over the optimum*, among Ms ≤");
+    const limit = page.getByLabel("ranked by excess over the optimum*, with Ms ≤");
     await limit.fill("1,45");
     await page.keyboard.press("Enter");
     assert.equal(await ranked(), within(1.45));
@@ -197,7 +197,7 @@ test("the limit on Ms is the request's on every way in, and a typed one stays af
   });
   const { id } = await response.json();
   await withPage(`#/jobs/${id}/design`, {}, async (page) => {
-    const limit = page.getByLabel(/among Ms/);
+    const limit = page.getByLabel(/with Ms/);
     const table = page.locator(".comparison-table tbody a");
     const stands = async (value) => {
       await table.first().waitFor();

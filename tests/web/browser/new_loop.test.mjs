@@ -167,7 +167,7 @@ const milliseconds = ["time,u,y", ...stepTest.split("\n").slice(1).map((row) => 
 const slower = ["time,u,y", ...stepTest.split("\n").slice(1).map((row) => row.replace(/^(\d+)/, (t) => String(10_000 * Number(t))))].join("\n");
 
 for (const [what, text, doubt] of [
-  ["a plant slower than a day", slower, /The plant comes out slower than a day/],
+  ["a plant slower than a day", slower, /The identified plant is slower than a day/],
   ["any other", milliseconds, /The unit of the record's times is not given/],
 ])
   test(`a unit of time that nobody named is not sent, and its doubt stands beside the result: ${what}`, async () => {

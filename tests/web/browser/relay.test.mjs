@@ -22,7 +22,7 @@ const shown = (value, digits) => Number(Number(value).toPrecision(digits));
 test("from a model to the relay test on it: record, limit cycle and plan as the service answers, and on to its model", async () => {
   await withPage("#/new/fopdt?K=1&T=10&L=2", {}, async (page) => {
     const first = simulated(page);
-    await page.getByRole("button", { name: "What would a relay test on it show?" }).click();
+    await page.getByRole("button", { name: "Simulate a relay test on it" }).click();
     await first;
     assert.match(page.url(), /#\/relay\/fopdt\?K=1&T=10&L=2$/);
     await page.getByLabel("Upper level").fill("1,3");

@@ -96,7 +96,7 @@ test("both levels stand in one table, refusals with their reason", () => {
 test("the optimum's flatness names only what was sought", () => {
   assert.equal(
     flatnessWords(emulation),
-    "Kp may move by ±0.325, Ti by ±0.0165 before J grows by 5 %, the others following; alone Kp by ±0.197, Ti by ±0.0100.",
+    "Kp may move by ±0.325, Ti by ±0.0165 before J grows by 5 %, with the others re-optimised; alone Kp by ±0.197, Ti by ±0.0100.",
   );
   assert.equal(flatnessWords({ J: 1, flatness: { Kp: null, why_null: { Kp: "flat" } } }), "");
 });

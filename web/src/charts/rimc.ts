@@ -24,12 +24,12 @@ export function rimcFrame(rimc: Rimc, tau: number, lambda: number, units: UnitNa
   const name = withUnit("λ", units.time);
   return {
     title: "Effect of λ: load peak and Ms",
-    description: `At ${name} ${formatNumber(lambda)} a load step moves y by ${formatNumber(peak)} times what it would without control; Ms is ${formatNumber(Ms)}.`,
+    description: `At ${name} ${formatNumber(lambda)} a load step moves y by ${formatNumber(peak)} times its response without control; Ms is ${formatNumber(Ms)}.`,
     x: { kind: "log", label: "λ/τ" },
     panes: [
       {
         y: { kind: "linear", label: "DP/k_p" },
-        traces: [{ name: "load peak over the gain", look: 1, x: curve.lambda_over_tau, y: curve.DP_over_kp }],
+        traces: [{ name: "load peak divided by the gain", look: 1, x: curve.lambda_over_tau, y: curve.DP_over_kp }],
         marks: marks(peak, "DP/k_p"),
         weight: 1.2,
       },

@@ -186,11 +186,11 @@ export interface TradeoffRow {
 
 export const tradeoffRows = (time: string): TradeoffRow[] => [
   { label: withUnit("J_r", time), meaning: "IAE of a unit set-point step", name: "J_r" },
-  { label: withUnit("J_d", time), meaning: "IAE of a unit load step, over the plant's gain", name: "J_d" },
+  { label: withUnit("J_d", time), meaning: "IAE of a unit load step, divided by the plant's gain", name: "J_d" },
   { label: withUnit("J_rd", time), meaning: "distance from the best of both", name: "J_rd" },
   { label: withUnit("J_r at best", time), meaning: "if only the set point mattered", name: "J_r_opt" },
   { label: withUnit("J_d at best", time), meaning: "if only the load mattered", name: "J_d_opt" },
-  { label: "I_perf", meaning: "J_rd of the rule without a limit on Ms, over this J_rd", name: "I_perf" },
+  { label: "I_perf", meaning: "J_rd of the rule without a limit on Ms, divided by this J_rd", name: "I_perf" },
   { label: "Deg", meaning: "1 − I_perf: the cost of robustness; negative is better than that rule", name: "Deg" },
   { label: "Ms", meaning: "peak of |S|", name: "Ms" },
 ];

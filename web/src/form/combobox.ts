@@ -84,7 +84,7 @@ export function combobox(options: ComboboxOptions, errors: FormErrors): Combobox
     list.replaceChildren(...found.map(optionOf));
     list.hidden = found.length === 0;
     none.hidden = found.length > 0;
-    none.textContent = `Nothing is called "${input.value.trim()}" here.`;
+    none.textContent = `There is no entry "${input.value.trim()}".`;
     count.textContent = found.length === 0 ? none.textContent : `${found.length} ${found.length === 1 ? "entry" : "entries"}`;
     input.setAttribute("aria-expanded", String(!list.hidden));
     const at = all ? found.findIndex((choice) => choice.id === chosen?.id) : input.value.trim() === "" ? -1 : 0;

@@ -75,7 +75,7 @@ const matrixField = (name: string, hint: string, example: string): PlantField =>
 });
 
 const gain = numberField("K", "steady-state change in y per unit of u", "gain", "1.25");
-const deadTime = numberField("L", "dead time: nothing happens before it", "time", "8");
+const deadTime = numberField("L", "dead time: time before y responds", "time", "8");
 const optionalDeadTime = numberField("L", "dead time; empty is 0", "time", "", true);
 
 /** Factors of the parameters that bound the plant. */
@@ -151,7 +151,7 @@ export const PLANT_FORMS: PlantForm[] = [
     type: "zpk",
     title: "Zeros, poles and gain",
     fields: [
-      numberField("K", "factor in front; not the static gain", "", "2"),
+      numberField("K", "leading factor; not the static gain", "", "2"),
       rootField("zeros", "empty: none. Pairs as -1±2i", ""),
       rootField("poles", "for example -1 -2±1i", "-1 -2±1i"),
       optionalDeadTime,

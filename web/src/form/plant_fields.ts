@@ -46,7 +46,7 @@ export function plantFields(errors: FormErrors, active: () => boolean, onChange:
   const line = textField(
     {
       label: "Model in one line",
-      hint: "a formula, K=2 T=10 L=3, or zeros and poles; 3 min and 500 ms are understood",
+      hint: "a formula, K=2 T=10 L=3, or zeros and poles; times may have units, such as 3 min and 500 ms",
       placeholder: "2 e^(-3s)/((10s+1)(2s+1))",
       pointer: () => (active() ? "/plant" : null),
       wide: true,

@@ -57,7 +57,7 @@ export function comparisonControls(events: ComparisonControlEvents): ComparisonC
     element: h(
       "div",
       { class: "comparison-controls" },
-      h("label", { for: input.id }, "ranked by excess over the optimum*, among Ms ≤"),
+      h("label", { for: input.id }, "ranked by excess over the optimum*, with Ms ≤"),
       input,
       error,
       h("span", { class: "check" }, stable, h("label", { for: stable.id }, "only those that settle")),

@@ -48,7 +48,7 @@ const SETTINGS: {
     value: "0",
   },
   { name: "cycles", label: "Cycles", hint: "recorded from the start", unit: "", value: "6" },
-  { name: "noise_std", label: "Noise of y", hint: "standard deviation; the relay sees it", unit: "y", value: "0" },
+  { name: "noise_std", label: "Noise of y", hint: "standard deviation; it also affects the relay", unit: "y", value: "0" },
   {
     name: "relay_sample_time",
     label: "Relay sample time",
@@ -65,7 +65,7 @@ export function relayView(announce: (sentence: string) => void, events: RelayEve
   let units = unitNames(undefined);
   let answer: RelayAnswer | null = null;
   let plot: Plot | null = null;
-  const heading = h("h1", { tabindex: -1 }, "What would a relay test on this plant show?");
+  const heading = h("h1", { tabindex: -1 }, "A relay test on this plant");
   const busy = h("p", { class: "hint busy", hidden: true }, "Simulating...");
   const plant = plantFields(
     errors,

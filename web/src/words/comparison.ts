@@ -105,7 +105,7 @@ export function comparisonColumns(units: UnitNames): ComparisonColumn[] {
     column(
       "excess",
       "+% over optimum*",
-      "of the load IAE, over the least that any PID reaches on this plant at the same Ms",
+      "of the load IAE over the least of any PID on this plant at the same Ms",
       true,
       (entry) => figureOf(entry.optimum_at_Ms, "excess_percent", "It was not compared with the optimum.", excessText),
     ),

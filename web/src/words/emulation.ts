@@ -84,7 +84,7 @@ export function flatnessWords(emulation: Emulation): string {
   const [together, alone] = [listed(emulation.flatness), listed(emulation.flatness_alone)];
   if (!together && !alone) return "";
   if (!together) return `${alone.replace(" by", " may move by")}, each alone, before J grows by 5 %.`;
-  const first = `${together.replace(" by", " may move by")} before J grows by 5 %, the others following`;
+  const first = `${together.replace(" by", " may move by")} before J grows by 5 %, with the others re-optimised`;
   return alone ? `${first}; alone ${alone}.` : `${first}.`;
 }
 

@@ -117,7 +117,7 @@ export function figureGroups(units: UnitNames, region = false, nonlinear = false
               controller(
                 withUnit("delta_r", units.y),
                 "delta_r",
-                "errors well beyond it do not feed the integral",
+                "much larger errors hardly enter the integral",
                 "a linear controller",
               ),
             ]

@@ -36,7 +36,7 @@ export function needSentence(missing: readonly Need[]): string {
   if (missing.length === 0) return "";
   const list = missing.map((need) => NEED_WORDS[need]).join(" and ");
   const why = missing.includes("sample_time")
-    ? "its parameters count in them"
+    ? "its parameters use them"
     : "its gain is in percent or counts of them";
   return `Give ${list}: ${missing.length === 1 ? why.replace("them", "it") : why}. Until then designs are made for an ideal controller.`;
 }
@@ -167,7 +167,7 @@ export function samplingSentences(
   if (typeof longest !== "number") return sentences;
   sentences.push(
     period !== null && period > longest
-      ? `That is slow: up to ${formatNumber(longest)} ${time} would keep Ms within 5 % of the ideal loop's.`
+      ? `That is slow: up to ${formatNumber(longest)} ${time} would keep Ms within 5 % of that of the ideal loop.`
       : `Sampling up to every ${formatNumber(longest)} ${time} keeps Ms within 5 %.`,
   );
   return sentences;

@@ -101,7 +101,7 @@ function rowsOf(model: Model, units: UnitNames): [string, string][] {
 
 /** "K 1.5, T 25 s, L 8 s; 49 % of the movement of y": its own unit is not known. */
 function disturbanceWords(plant: Plant, share: number | null, units: UnitNames): string {
-  const part = share === null ? "" : `; ${formatNumber(100 * share, 2)} % of what moves y`;
+  const part = share === null ? "" : `; ${formatNumber(100 * share, 2)} % of the movement of y`;
   return `${plantWords(plant, { ...units, u: "", y: "" })}${part}`;
 }
 

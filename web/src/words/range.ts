@@ -80,7 +80,7 @@ export function verdictOf(content: RangeContent): Finding {
 const QUANTITIES: Record<WorstPlace["quantity"], string> = {
   Ms: "Ms",
   Mt: "Mt",
-  relative_IAE: "IAE over the own optimum",
+  relative_IAE: "IAE relative to the own optimum",
 };
 
 /** "Ms is largest at load 30 %: 1.40, limit 1.40." */

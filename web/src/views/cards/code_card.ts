@@ -131,7 +131,7 @@ export function codeCard(announce: (sentence: string) => void): CodeCard {
       element.hidden = !next;
       if (!next) return;
       const what = next.index === "schedule" ? `The schedule over ${next.name}` : `The controller of ${next.name}`;
-      whose.textContent = `${what} as a program of its own, for a controller without a PID block or a simulation. All times in it are in seconds.`;
+      whose.textContent = `${what} as a separate program, for a controller without a PID block or for a simulation. All times in it are in seconds.`;
       period.setUnit(next.units.time);
       low.setUnit(next.units.u);
       high.setUnit(next.units.u);

@@ -54,7 +54,7 @@ export function modelCard(errors: FormErrors, active: () => boolean, events: Mod
       "div",
       { class: "actions" },
       h("button", { type: "button", onclick: () => events.onCompare() }, "Compare all methods"),
-      h("button", { type: "button", class: "quiet", onclick: relay }, "What would a relay test on it show?"),
+      h("button", { type: "button", class: "quiet", onclick: relay }, "Simulate a relay test on it"),
     ),
   );
   element.addEventListener("submit", (event) => {

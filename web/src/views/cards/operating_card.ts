@@ -26,7 +26,7 @@ export function operatingCard(result: Result, request: TuningRequest | undefined
     h(
       "table",
       { class: "figures" },
-      h("caption", { class: "visually-hidden" }, "Steady state that all responses start from"),
+      h("caption", { class: "visually-hidden" }, "Steady state from which all responses start"),
       h("thead", {}, h("tr", {}, h("td", {}), h("th", { scope: "col" }, "steady"), h("th", { scope: "col" }, "given"))),
       h(
         "tbody",

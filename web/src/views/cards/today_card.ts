@@ -65,7 +65,7 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
   const delta = textField(
     {
       label: "delta_r",
-      hint: "errors well beyond it do not feed the integral; empty is the set-point step",
+      hint: "much larger errors hardly enter the integral; empty is the set-point step",
       pointer: () => "/baseline/delta_r",
     },
     errors,

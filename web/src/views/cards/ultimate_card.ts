@@ -28,7 +28,7 @@ export function ultimateCard(errors: FormErrors, onTune: () => void): UltimateCa
     h(
       "p",
       { class: "hint" },
-      "You raised a proportional gain until the loop oscillated, and know nothing else. Rules give settings, but the robustness of the loop is unknown.",
+      "You raised a proportional gain until the loop oscillated, and have no other data. Rules give settings, but the robustness of the loop is unknown.",
     ),
     h(
       "details",

@@ -93,8 +93,8 @@ void check_config(const Config& config) {
     if (config.auth == "none" && !is_loopback(address.host) && !config.allow_anonymous)
         throw std::invalid_argument(
             "--listen " + config.listen +
-            " can be reached from other machines, and no keys are asked for. Give --auth keys --keys FILE, or "
-            "--allow-anonymous where the network itself keeps strangers out, or listen on 127.0.0.1.");
+            " can be reached from other machines, and no keys are required. Give --auth keys --keys FILE, or "
+            "--allow-anonymous if the network itself is protected, or listen on 127.0.0.1.");
     if (config.job_timeout_s > config.max_timeout_s)
         throw std::invalid_argument("--job-timeout is longer than --max-timeout.");
 }

@@ -241,7 +241,8 @@ private:
         router_.guard([this](http::Request& request) {
             auto refusal = gate_.admit(request);
             if (!refusal && request.has_body() && memory_.tight())
-                refusal = http::problem_response(503, "The service has no memory left for now. Try again in a moment.");
+                refusal =
+                    http::problem_response(503, "The service has no free memory at the moment. Try again shortly.");
             return refusal;
         });
         add_health_routes(router_, jobs_, *store_, gate_, memory_, [this] { return metrics_.text(standing()); });
@@ -392,7 +393,7 @@ int serve(Config config) {
     wait_for_stop(signals);
     log_info("stopping: running jobs get " + std::to_string(static_cast<int>(config.drain_timeout_s)) + " s");
     const bool idle = service->stop();
-    log_info(idle ? "stopped" : "stopped; a computation that did not listen runs again at the next start");
+    log_info(idle ? "stopped" : "stopped; a computation that did not stop in time runs again at the next start");
     stop_log();
     if (!idle) ::_exit(0);
     return 0;

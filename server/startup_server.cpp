@@ -17,8 +17,8 @@ constexpr std::chrono::milliseconds kQuietOpenTime{700};       // most stores op
 constexpr std::chrono::seconds kRetryInterval{2};              // if another process migrates the store
 constexpr std::chrono::milliseconds kSignalPollInterval{100};  // between checks whether the process is to end
 constexpr const char* kNotYet =
-    "The store is not open yet: its tables are being brought up to date, or its disk is full; the log says which. Try "
-    "again in a while.";
+    "The store is not open yet: its tables are being migrated, or its disk is full; the log has the reason. Try again "
+    "later.";
 
 /// A server that reports the state of the startup.
 class StartupServer {
@@ -97,7 +97,7 @@ std::unique_ptr<JobStore> open_behind_startup_server(const Config& config, const
     const timespec look{0, std::chrono::nanoseconds(kSignalPollInterval).count()};
     while (store.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
         if (sigtimedwait(&signals, nullptr, &look) > 0) {
-            log_info("asked to stop before the store was there");
+            log_info("stopped before the store was open");
             opening.request_stop();
             // A step in progress is rolled back by the end of the process.
             if (store.wait_for(std::chrono::seconds(1)) != std::future_status::ready) ::_exit(0);

@@ -158,9 +158,8 @@ std::optional<Response> Gate::check_site(Request& request) const {
     const bool follows_link = !changes(request) && request.header("Sec-Fetch-Mode") == "navigate";
     const bool crossing = (site == "cross-site" || site == "same-site") && !follows_link;
     if (!foreign && !crossing) return std::nullopt;
-    api::Problem problem = http::problem(403,
-                                         "Pages of other sites may not use this service through a visitor's browser. "
-                                         "--cors-origin allows a site.");
+    api::Problem problem =
+        http::problem(403, "Pages of other sites may not call this service. --cors-origin allows a site.");
     problem.type = "cross-site-request";
     return problem_response(problem);
 }
@@ -181,7 +180,7 @@ std::optional<Response> Gate::check_key(Request& request) {
     }
     Response response =
         problem_response(401, key.empty() ? "This service asks for a key: send it as Authorization: Bearer KEY."
-                                          : "The key is not known here. Ask whoever runs the service for one.");
+                                          : "The key is not known here. Ask the operator of the service for one.");
     return response.set("WWW-Authenticate", key.empty() ? R"(Bearer realm="tunewright")"
                                                         : R"(Bearer realm="tunewright", error="invalid_token")");
 }

@@ -26,8 +26,8 @@ KeyLine parse_line(const NamedLine& line) {
     const bool known = role.empty() || role == kAdmin;
     if (!is_key_name(line.name) || digest.size() != 64 || !std::ranges::all_of(digest, is_hex) || !known)
         throw std::invalid_argument("line " + std::to_string(line.number) +
-                                    " must be NAME sha256:DIGEST, with admin after it for whoever runs the service, as "
-                                    "`tunewright key NAME` writes it");
+                                    " must be NAME sha256:DIGEST, with admin after it for an administrator, as written "
+                                    "by `tunewright key NAME`");
     return {std::string(line.name), std::string(digest), role == kAdmin};
 }
 
@@ -95,8 +95,9 @@ int make_key(const KeyCommand& command) {
         return kBadName;
     }
     if (!command.rotate && has_key(command.file, command.name)) {
-        std::cerr << "tunewright: " << command.name << " has a key in " << command.file
-                  << ". Use --rotate for one more: both work until the old line is deleted. Or choose another name.\n";
+        std::cerr
+            << "tunewright: " << command.name << " has a key in " << command.file
+            << ". Use --rotate for a second one: both work until the old line is deleted. Or choose another name.\n";
         return kBadName;
     }
     const std::string key = new_key();

@@ -112,8 +112,8 @@ void WatchedFile::look() {
     // A file that could not be read may be readable again without a change.
     if (!stamp || stamp != stamp_ || !usable_) read_again(stamp);
     if (broken_since_ && now - *broken_since_ >= kMaxBrokenTime)
-        hold_nothing("it has had a line that is no " + meaning_.kind + "'s for " +
-                     std::to_string(kMaxBrokenTime.count()) + " s");
+        hold_nothing("for " + std::to_string(kMaxBrokenTime.count()) + " s it has contained a line that is not a " +
+                     meaning_.kind);
 }
 
 void WatchedFile::read_again(const std::optional<Stamp>& stamp) {

@@ -18,7 +18,7 @@ constexpr int kUsage = 2;
 int usage_error(std::string sentence, const CLI::App* command) {
     if (sentence.empty() || std::string_view(".?!").find(sentence.back()) == std::string_view::npos) sentence += ".";
     const std::string name = command ? command->get_name() + " " : "";
-    std::cerr << "tunewright: " << sentence << " `tunewright " << name << "--help` says what there is.\n";
+    std::cerr << "tunewright: " << sentence << " `tunewright " << name << "--help` lists the possibilities.\n";
     return kUsage;
 }
 
@@ -56,7 +56,7 @@ std::string of_unknown_word(const std::string& word, const CLI::App& command) {
 }  // namespace
 
 CommandTree::CommandTree()
-    : app_("Tunes PID controllers: a plant or a recorded test in, controllers with their robustness out.") {
+    : app_("Tunes PID controllers for a plant or a recorded test, and evaluates their robustness.") {
     app_.name("tunewright");
     app_.set_version_flag("--version", "tunewright " TUNEWRIGHT_VERSION);
     app_.require_subcommand(1);
@@ -122,7 +122,7 @@ std::vector<std::string> strange_variables(const std::vector<std::string>& envir
         if (!name.starts_with(kPrefix) || std::ranges::find(known, name) != known.end()) continue;
         if (is_of_kubernetes(name, value)) continue;
         const std::string meant = api::nearest(name.substr(kPrefix.size()), endings);
-        std::string sentence = "the variable " + name + " is set, and there is no such setting.";
+        std::string sentence = "the variable " + name + " is set, but there is no such setting.";
         sentence += meant.empty() ? " `tunewright serve --help` names all"
                                   : " Did you mean " + std::string(kPrefix) + meant + "?";
         sentences.push_back(std::move(sentence));

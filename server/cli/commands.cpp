@@ -54,7 +54,7 @@ Tuned tuned(const api::PreparedJob& job) {
     Error error;
     error.kind = ErrorKind::timeout;
     error.where = "timeout_s";
-    error.message = "The computation was stopped after timeout_s. Ask for less, or raise timeout_s.";
+    error.message = "The computation was stopped after timeout_s. Reduce the request, or raise timeout_s.";
     return {false, api::to_json(api::to_problem(error))};
 }
 

@@ -14,7 +14,7 @@ void add_output_options(CLI::App& app, OutputWords& words, bool has_table) {
     CLI::Option* pretty = app.add_flag("--pretty", words.pretty, "JSON with a line for each member");
     json->excludes(pretty);
     if (!has_table) return;
-    CLI::Option* table = app.add_flag("--table", words.table, "The short table, even into a file or a pipe");
+    CLI::Option* table = app.add_flag("--table", words.table, "The short table, also for a file or a pipe");
     table->excludes(json)->excludes(pretty);
 }
 
@@ -50,9 +50,9 @@ void add_record_options(CLI::App& app, api::CsvRequest& question) {
 
 void add_tune_options(CLI::App& app, TuneCommand& command) {
     app.add_option("file", command.file, "A request as JSON, or a recorded test as CSV; - reads standard input");
-    app.add_option("--plant", command.words.plant, "A plant in place of a file: \"2 e^(-3s)/(10s+1)\"")
+    app.add_option("--plant", command.words.plant, "A plant instead of a file: \"2 e^(-3s)/(10s+1)\"")
         ->type_name("TEXT");
-    app.add_option("--Ku", command.words.Ku, "In place of a plant: the gain at which the loop oscillates, with --Pu")
+    app.add_option("--Ku", command.words.Ku, "Instead of a plant: the gain at which the loop oscillates, with --Pu")
         ->type_name("NUMBER");
     app.add_option("--Pu", command.words.Pu, "The period of that oscillation")->type_name("TIME");
     app.add_option("--K", command.words.K, "The static gain, if it is known")->type_name("NUMBER");
@@ -94,11 +94,11 @@ void code_word(CLI::App& app, const std::string& name, api::CodeWords& words, co
 
 void add_code_words(CLI::App& app, api::CodeWords& words) {
     code_word(app, "language", words, "st, c or python");
-    code_word(app, "sample-time", words, "Time from call to call, in the result's unit of time");
+    code_word(app, "sample-time", words, "Time from one call to the next, in the result's unit of time");
     code_word(app, "integral", words, "backward, forward or trapezoidal");
     code_word(app, "derivative", words,
               "difference, filtered_backward, filtered_forward, filtered_trapezoidal, slope or four_points");
-    code_word(app, "slope-samples", words, "Sample times that the rule slope spans");
+    code_word(app, "slope-samples", words, "Number of sample times that the rule slope spans");
     code_word(app, "form", words, "position or velocity");
     code_word(app, "anti-windup", words, "back_calculation or clamping");
     code_word(app, "tracking-time", words, "Tracking time of back-calculation");
@@ -168,7 +168,7 @@ void add_loop_commands(CommandTree& tree) {
 
 void add_list_commands(CommandTree& tree) {
     add_list_command(tree, "methods", "The tuning methods with their options", "Id of one entry to print", methods);
-    add_list_command(tree, "controllers", "The controllers that settings can be converted for",
+    add_list_command(tree, "controllers", "The products for which settings can be converted",
                      "Id of one entry to print", controllers);
     add_list_command(tree, "examples", "Requests to start from", "Id or number of an example to print", examples);
 }

@@ -58,22 +58,22 @@ void add_process_options(CLI::App& app, Config& config) {
     option(app, "listen", config.listen, "HOST:PORT; port 0 lets the system choose")->capture_default_str();
     option(app, "metrics-listen", config.metrics_listen,
            "Another HOST:PORT, for /metrics and probes only; it needs no key");
-    option(app, "store", config.store, "Where jobs are kept: sqlite:PATH or postgresql://USER@HOST/DATABASE")
+    option(app, "store", config.store, "Store of the jobs: sqlite:PATH or postgresql://USER@HOST/DATABASE")
         ->capture_default_str();
     option(app, "migrate", config.migrate,
            "auto: an older store is migrated at the start; manual: by `tunewright migrate`")
         ->capture_default_str();
     flag(app, "pooled", config.pooled,
          "PostgreSQL is behind a pooler in transaction mode: no notices, all processes poll");
-    option(app, "role", config.role, "all; api (takes requests, computes nothing) or worker (computes only)")
+    option(app, "role", config.role, "all; api (accepts requests, computes nothing) or worker (computes only)")
         ->capture_default_str();
-    option(app, "workers", config.workers, "Jobs computed at the same time (default: one a core)")
+    option(app, "workers", config.workers, "Jobs computed at the same time (default: one per core)")
         ->check(CLI::Range(1, 1024));
     size(app, "memory", config.memory, "512MiB, or the limit of the control group",
          "Memory that the process may use; it bounds what is buffered for clients");
     option(app, "web", config.web, "Folder of the built page (default: web next to the binary's folder)");
     duration(app, "drain-timeout", config.drain_timeout_s, "5s", {0, 3600},
-             "Time that running jobs get when the service is stopped");
+             "Time for running jobs when the service is stopped");
     option(app, "log-format", config.log_format, "text or json, on standard error")->capture_default_str();
     option(app, "log-level", config.log_level, "debug, info, warn, error or off")->capture_default_str();
 }
@@ -94,11 +94,12 @@ void add_job_options(CLI::App& app, Config& config) {
         ->capture_default_str();
     duration(app, "lease", config.lease_s, "10s", {0.5, 3600},
              "Time without a renewal after which another worker takes a job");
-    duration(app, "retention", config.retention_s, "7d", {0, 1e9}, "How long ended jobs are kept; 0: without limit");
+    duration(app, "retention", config.retention_s, "7d", {0, 1e9},
+             "Time for which ended jobs are kept; 0: without limit");
     duration(app, "retention-failed", config.retention_failed_s, "as --retention", {0, 1e9},
-             "The same for failed jobs");
+             "Time for which failed jobs are kept");
     duration(app, "retention-cancelled", config.retention_cancelled_s, "as --retention", {0, 1e9},
-             "The same for cancelled jobs");
+             "Time for which cancelled jobs are kept");
     duration(app, "job-timeout", config.job_timeout_s, "60s", {0.1, 3600}, "Time limit of a job without timeout_s");
     duration(app, "max-timeout", config.max_timeout_s, "3600s", {0.1, 3600}, "Largest timeout_s of a request");
 }
@@ -118,7 +119,7 @@ void add_port_options(CLI::App& app, Config& config) {
     option(app, "auth", config.auth, "none or keys: whether a call below /v1 needs a key")->capture_default_str();
     option(app, "keys", config.keys, "File of keys, made by `tunewright key`");
     flag(app, "allow-anonymous", config.allow_anonymous, "Listen beyond loopback without keys");
-    option(app, "rate-limit", config.rate_limit, "Calls a second that one client may make; 0: no limit")
+    option(app, "rate-limit", config.rate_limit, "Calls per second of one client; 0: no limit")
         ->check(number_within(0, 1e6))
         ->capture_default_str();
     option(app, "allowed-host", config.allowed_hosts,

@@ -292,7 +292,7 @@ RescuerSettings JobService::rescuer_settings() {
     made.now = settings_.now;
     made.clock_jumped = [this] { heartbeats_.beat(); };
     made.recovered = [this](const Recovery& found) {
-        log_info(std::to_string(found.interrupted) + " jobs of a process that has gone wait again, " +
+        log_info(std::to_string(found.interrupted) + " jobs of a process that has died are queued again, " +
                  std::to_string(found.given_up) + " were given up");
         if (settings_.observer.recovered) settings_.observer.recovered(found);
         for (const std::string& id : found.ended) tell_ended(id);

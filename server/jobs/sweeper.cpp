@@ -69,7 +69,7 @@ void Sweeper::swept(std::size_t count) {
     if (more_) return;
     if (*first_ > 0)
         log_info("the first sweep since the start has deleted " + std::to_string(*first_) +
-                 " ended jobs that had been kept as long as --retention says");
+                 " ended jobs whose --retention was over");
     first_.reset();
 }
 

@@ -87,7 +87,7 @@ struct Metrics::Families {
     prometheus::Family<Counter>& requests = family(BuildCounter(), registry, "tunewright_http_requests_total",
                                                    "Answered requests by route, method and status");
     TimesByLabel latency{family(BuildHistogram(), registry, "tunewright_http_request_duration_seconds",
-                                "Time from a whole request to its answer, by route"),
+                                "Time from a complete request to its answer, by route"),
                          "route",
                          {0.0001, 0.0003, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1, 10}};
     prometheus::Family<Counter>& jobs =
@@ -100,48 +100,48 @@ struct Metrics::Families {
                             "operation",
                             {0.0001, 0.0003, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1, 3}};
     prometheus::Family<Counter>& store_faults = family(BuildCounter(), registry, "tunewright_store_faults_total",
-                                                       "Calls that the store could not do, by operation");
-    Counter& dropped = counter("tunewright_jobs_dropped_total",
-                               "Results that came too late: the job's lease had gone to another process");
+                                                       "Calls in which the store failed, by operation");
+    Counter& dropped =
+        counter("tunewright_jobs_dropped_total", "Results that came too late: another process had the job's lease");
     Counter& limited = counter("tunewright_client_limit_refusals_total",
-                               "Jobs refused because their client has --client-jobs of them that wait or run");
+                               "Jobs refused because their client already has --client-jobs that wait or run");
     Counter& interrupted =
-        counter("tunewright_jobs_interrupted_total", "Jobs found running without a process, which wait again");
+        counter("tunewright_jobs_interrupted_total", "Jobs found running without a process, and queued again");
     Counter& given_up =
         counter("tunewright_jobs_given_up_total", "Jobs that were interrupted too often and have failed");
     prometheus::Family<Counter>& told_family =
         family(BuildCounter(), registry, "tunewright_notify_deliveries_total",
-               "Tries to tell somebody of an end, by outcome: delivered, failed (it is tried again), given_up");
+               "Attempts to deliver a notification, by outcome: delivered, failed (with another attempt), given_up");
     Counter& delivered = told_family.Add({{"outcome", "delivered"}});
     Counter& failed_deliveries = told_family.Add({{"outcome", "failed"}});
     Counter& abandoned_deliveries = told_family.Add({{"outcome", "given_up"}});
     prometheus::Family<Histogram>& wait_family =
         family(BuildHistogram(), registry, "tunewright_job_wait_seconds",
-               "Time from a job's acceptance to the begin of its computation, by class: single, or entry of a batch");
+               "Time from a job's acceptance to the start of its computation, by class: single, or entry of a batch");
     Histogram& single_wait = wait_family.Add({{"class", "single"}}, kLongTimes);
     Histogram& entry_wait = wait_family.Add({{"class", "entry"}}, kLongTimes);
-    Gauge& queued = gauge("tunewright_jobs_queued", "Accepted jobs that no worker has yet, in all processes together");
+    Gauge& queued =
+        gauge("tunewright_jobs_queued", "Accepted jobs that no worker has claimed yet, in all processes together");
     prometheus::Family<Gauge>& age_family =
         family(BuildGauge(), registry, "tunewright_queue_age_seconds",
-               "How long the job that is next has waited, by class, in all processes together; 0 where none waits");
+               "Waiting time of the next job, by class, in all processes together; 0 if none waits");
     Gauge& single_age = age_family.Add({{"class", "single"}});
     Gauge& entry_age = age_family.Add({{"class", "entry"}});
     Gauge& running = gauge("tunewright_jobs_running", "Jobs that workers have");
     Gauge& workers = gauge("tunewright_workers", "Threads that compute jobs");
     Gauge& connections = gauge("tunewright_http_connections", "Open connections of clients");
     Gauge& body_bytes = gauge("tunewright_http_body_bytes", "Bytes of requests that are not answered yet");
-    Gauge& unsent_bytes = gauge("tunewright_http_unsent_bytes", "Bytes of answers that clients have not taken");
-    Gauge& memory_limit = gauge("tunewright_memory_limit_bytes", "Memory that the process may take");
+    Gauge& unsent_bytes = gauge("tunewright_http_unsent_bytes", "Bytes of answers that clients have not read");
+    Gauge& memory_limit = gauge("tunewright_memory_limit_bytes", "Memory that the process may use");
     Gauge& streams = gauge("tunewright_event_streams", "Followers of jobs by server-sent events");
     Gauge& synchronous = gauge("tunewright_synchronous_waiting", "Synchronous calls that wait to be computed");
     Gauge& batch_tasks = gauge("tunewright_batch_tasks_waiting", "Pieces of batches that wait for a thread");
-    Counter& log_dropped =
-        counter("tunewright_log_lines_dropped_total", "Lines that a slow reader of the log made room for");
+    Counter& log_dropped = counter("tunewright_log_lines_dropped_total", "Log lines dropped because of a slow reader");
     Counter& cpu = counter("process_cpu_seconds_total", "User and system time");
     Gauge& resident = gauge("process_resident_memory_bytes", "Resident memory");
     Gauge& address_space = gauge("process_virtual_memory_bytes", "Virtual memory");
     Gauge& files = gauge("process_open_fds", "Open file descriptors");
-    Gauge& max_files = gauge("process_max_fds", "Most file descriptors that may be open");
+    Gauge& max_files = gauge("process_max_fds", "Maximum number of open file descriptors");
     Gauge& threads = gauge("process_threads", "Threads of this process");
     Gauge& started = gauge("process_start_time_seconds", "Start of this process, in seconds since 1970");
 

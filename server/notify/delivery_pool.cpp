@@ -40,7 +40,7 @@ void DeliveryPool::grow() {
     try {
         threads_.emplace_back([this] { work(); });
     } catch (const std::system_error& fault) {
-        log_error(std::string("no thread to tell others of ends: ") + fault.what());
+        log_error(std::string("no thread for notifications: ") + fault.what());
     }
 }
 
@@ -80,7 +80,7 @@ void DeliveryPool::work() {
         try {
             task.run();
         } catch (const std::exception& fault) {
-            log_error(std::string("somebody could not be told of an end: ") + fault.what());
+            log_error(std::string("a notification failed: ") + fault.what());
         }
         const auto time = Clock::now() - begun;
         task.run = nullptr;

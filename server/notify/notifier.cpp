@@ -91,7 +91,7 @@ void Notifier::take() {
     const auto when = DeliveryPool::Clock::now();
     store_.take_deliveries(settings_.now(), kHold, max, [this, when, max](Outcome<std::vector<Delivery>> outcome) {
         if (const auto* fault = std::get_if<StoreFault>(&outcome)) {
-            if (!store_failed_.exchange(true)) log_error("nobody is told of an end: " + fault->detail);
+            if (!store_failed_.exchange(true)) log_error("notifications are not sent: " + fault->detail);
             taking_ = false;
             return;
         }
@@ -116,13 +116,13 @@ void Notifier::tell(const Delivery& delivery) {
     const auto address = policy_.address_of(delivery.target.url);
     if (const auto* why = std::get_if<std::string>(&address)) return leave_to_others(delivery, *why);
     if (store_.shared() && policy_.secrets(delivery.target.secret_id).empty())
-        return leave_to_others(delivery, "no secret of its name is there to sign with");
+        return leave_to_others(delivery, "there is no secret with its name for the signature");
     const auto& where = std::get<WebAddress>(address);
     std::optional<News> news;
     try {
         news = news_of(delivery);
     } catch (const StoreError& error) {
-        log_error(what_ended(delivery) + " cannot be read, to tell of its end: " + error.what());
+        log_error(what_ended(delivery) + " cannot be read for its notification: " + error.what());
         return;
     }
     // Deleted, or queued again, meanwhile: there is no end to report.
@@ -136,7 +136,7 @@ void Notifier::tell(const Delivery& delivery) {
         settings_.count(DeliveryOutcome::delivered);
         return settle(delivery, std::nullopt);
     }
-    if (reply.status == kHttpGone) return give_up(delivery, "it answers 410: it wants no more");
+    if (reply.status == kHttpGone) return give_up(delivery, "it answers 410: it accepts no more notifications");
     std::string why = reply.status == 0 ? reply.fault : "it answers " + std::to_string(reply.status);
     if (reply.status >= 300 && reply.status < 400) why += ", and redirects are not followed";
     failed(delivery, where.origin(), why, read_retry_after(reply.retry_after, settings_.now()));
@@ -159,7 +159,7 @@ std::optional<Notifier::News> Notifier::news_of(const Delivery& delivery) {
 
 Reply Notifier::send(const Delivery& delivery, const WebAddress& address, const News& news) {
     const std::vector<std::string> secrets = policy_.secrets(delivery.target.secret_id);
-    if (secrets.empty()) return {0, "no secret of its name is there to sign with", {}};
+    if (secrets.empty()) return {0, "there is no secret with its name for the signature", {}};
     const std::string ended = delivery.batch.empty() ? delivery.job : delivery.batch;
     const SignedNote note{"evt_" + ended + "_" + std::to_string(delivery.seq), settings_.now() / 1000, news.body};
     const auto under_way = std::make_shared<UnderWay>();
@@ -191,15 +191,15 @@ void Notifier::failed(const Delivery& delivery, const std::string& where, const 
     const auto pause = pause_after({delivery.tries, delivery.created_at, settings_.now(), chance(), retry_after});
     if (!pause) return give_up(delivery, why);
     settings_.count(DeliveryOutcome::failed);
-    log_info(what_ended(delivery) + " could not be told to " + where + ": " + why + "; the next try comes in " +
+    log_info(what_ended(delivery) + " could not be reported to " + where + ": " + why + "; the next attempt is in " +
              std::to_string(pause->count() / 1000) + " s");
     settle(delivery, pause);
 }
 
 void Notifier::give_up(const Delivery& delivery, const std::string& why) {
     settings_.count(DeliveryOutcome::given_up);
-    log_error(what_ended(delivery) + " will not be told to " + shown(delivery.target.url) + " any more, after " +
-              std::to_string(delivery.tries + 1) + " tries: " + why);
+    log_error(what_ended(delivery) + " will not be reported to " + shown(delivery.target.url) + " any more, after " +
+              std::to_string(delivery.tries + 1) + " attempts: " + why);
     settle(delivery, std::nullopt);
 }
 
@@ -211,7 +211,7 @@ void Notifier::leave_to_others(const Delivery& delivery, const std::string& why)
     const auto pause = pause_for_others({0, delivery.created_at, settings_.now(), chance()}, min);
     if (!pause) return give_up(delivery, why);
     if (!left_some_.exchange(true))
-        log_info("ends of jobs that this process may not tell (" + why + ") are left to others");
+        log_info("notifications that this process may not send (" + why + ") are left to other processes");
     settle(delivery, pause, false);
 }
 
@@ -219,7 +219,8 @@ void Notifier::settle(const Delivery& delivery, std::optional<std::chrono::milli
     store_.settle_delivery(
         delivery.seq, settings_.now(), pause, tried, [what = what_ended(delivery)](const auto& outcome) {
             if (const auto* fault = std::get_if<StoreFault>(&outcome))
-                log_error(what + " may be told again, as the store could not take down that it was: " + fault->detail);
+                log_error(what +
+                          " may be reported again, because the store could not record the delivery: " + fault->detail);
         });
 }
 

@@ -33,7 +33,7 @@ NotifyPolicy::NotifyPolicy(const std::vector<std::string>& targets, const std::s
 std::variant<WebAddress, std::string> NotifyPolicy::address_of(const std::string& url) const {
     auto read = parse_address(url);
     if (const auto* address = std::get_if<WebAddress>(&read); address != nullptr && !targets_.allow(*address))
-        return "the operator of this service has not allowed it: name one that is allowed, or ask for "
+        return "the operator of this service has not allowed it: give an allowed one, or ask the operator for "
                "--notify-target " +
                address->origin();
     return read;
@@ -55,12 +55,12 @@ std::optional<api::Problem> NotifyPolicy::refuse(const api::Notify& notify, cons
         fault("url", notify.url, *why);
     } else if (!signs) {
         fault("url", notify.url,
-              "this service has no secret to sign with: ask its operator for --notify-secrets FILE, of which "
-              "`tunewright secret NAME --file FILE` makes the lines, or leave it out and ask for the job instead");
+              "this service has no secret for signatures: ask its operator for --notify-secrets FILE, whose lines "
+              "`tunewright secret NAME --file FILE` makes, or leave it out and poll the job instead");
     }
     if (signs && !notify.secret_id.empty() && secrets(notify.secret_id).empty())
         fault("secret_id", notify.secret_id,
-              "the operator has no secret of that name: give the name of one, or leave it out for the first");
+              "the operator has no secret with that name: give another name, or leave it out for the first");
     if (errors.empty()) return std::nullopt;
     return invalid(std::move(errors));
 }

@@ -24,15 +24,15 @@ Secrets::Secrets(const std::string& path, std::function<Clock::time_point()> now
 }
 
 WatchedFile::Meaning Secrets::meaning() {
-    WatchedFile::Meaning made{"file of secrets", "nobody is told of an end", "secret", "--notify-secrets", {}, {}};
+    WatchedFile::Meaning made{"file of secrets", "no notifications are sent", "secret", "--notify-secrets", {}, {}};
     made.take = [this](std::string_view text) {
         std::vector<std::pair<std::string, std::string>> lines;
         for (const NamedLine& line : named_lines(text)) {
             auto bytes = secret_bytes(line.value);
             if (!is_key_name(line.name) || !bytes)
-                throw std::invalid_argument("line " + std::to_string(line.number) +
-                                            " must be NAME whsec_BASE64 of 24 to 64 bytes, as `tunewright secret "
-                                            "NAME` writes it");
+                throw std::invalid_argument(
+                    "line " + std::to_string(line.number) +
+                    " must be NAME whsec_BASE64 of 24 to 64 bytes, as written by `tunewright secret NAME`");
             lines.emplace_back(line.name, *std::move(bytes));
         }
         lines_ = std::move(lines);

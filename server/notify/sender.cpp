@@ -23,11 +23,11 @@ std::string fault_of(httplib::Error error) {
     switch (error) {
         case httplib::Error::Connection: return "it cannot be reached";
         case httplib::Error::ConnectionTimeout: return "it cannot be reached within 5 s";
-        case httplib::Error::SSLConnection: return "it speaks no TLS that fits";
-        case httplib::Error::SSLLoadingCerts: return "this machine has no certificates of authorities to check it by";
-        case httplib::Error::SSLServerVerification: return "its certificate is not one that this machine trusts";
-        case httplib::Error::Read: return "it did not answer in time, or not whole";
-        case httplib::Error::Write: return "it did not take the note";
+        case httplib::Error::SSLConnection: return "it has no suitable version of TLS";
+        case httplib::Error::SSLLoadingCerts: return "this machine has no CA certificates to verify it";
+        case httplib::Error::SSLServerVerification: return "this machine does not trust its certificate";
+        case httplib::Error::Read: return "it did not answer in time, or not completely";
+        case httplib::Error::Write: return "it did not accept the notification";
         default: return "the exchange failed (" + httplib::to_string(error) + ")";
     }
 }

@@ -49,8 +49,8 @@ Fault check_path(std::string_view path) {
     std::string segment;
     for (std::size_t i = 1; i <= path.size(); i++) {
         if (i == path.size() || path[i] == '/') {
-            if (is_dots(segment)) return "its path must have no segment of dots";
-            if (segment.empty() && i < path.size()) return "its path must have no empty segment, as // makes one";
+            if (is_dots(segment)) return "its path must have no segment . or ..";
+            if (segment.empty() && i < path.size()) return "its path must have no empty segment, such as in //";
             segment.clear();
             continue;
         }
@@ -103,7 +103,7 @@ Fault read_port(std::string_view text, int& port) {
 
 Fault read_authority(std::string_view text, WebAddress& address) {
     if (text.find('@') != std::string_view::npos)
-        return "it must name no user before an @: secrets belong into the path or the query";
+        return "it must have no user before an @: secrets belong in the path or the query";
     if (text.starts_with('[')) {
         const std::size_t close = text.find(']');
         if (close == std::string_view::npos) return "the bracket of its IPv6 address must be closed";

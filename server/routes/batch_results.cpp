@@ -46,7 +46,7 @@ private:
             out_.hold(text.capacity());
             return next;
         } catch (const StoreError& error) {
-            log_error(std::string("results of a batch are broken off: ") + error.what());
+            log_error(std::string("sending the results of a batch failed: ") + error.what());
             return Next::broken;
         }
     }
@@ -80,7 +80,7 @@ private:
     }
 
     Next deleted() const {
-        log_info("results of the batch " + question_.batch + " are broken off: it was deleted meanwhile");
+        log_info("results of the batch " + question_.batch + " ended early: the batch was deleted meanwhile");
         return Next::broken;
     }
 

@@ -67,8 +67,8 @@ std::optional<Response> read_form(const http::Request& request, std::optional<ap
         form = api::BatchForm::csv;
     } else {
         return problem_response(415,
-                                "The body must be application/json ({\"jobs\": [...]}), application/x-ndjson (a "
-                                "request a line) or text/csv (a loop a line).");
+                                "The body must be application/json ({\"jobs\": [...]}), application/x-ndjson (one "
+                                "request per line) or text/csv (one loop per line).");
     }
     return std::nullopt;
 }
@@ -80,9 +80,9 @@ std::optional<Response> judge_notify(NotifyPolicy& policy, const http::Request& 
     const std::string secret_id = secret == request.query.end() ? "" : secret->second;
     api::Problem problem = bad_parameters("batch");
     if (request.query.count("notify_url") > 1)
-        refuse_parameter(problem, "notify_url", url->second, "it must be given once: a batch tells one address.");
+        refuse_parameter(problem, "notify_url", url->second, "it must be given once: a batch has one webhook.");
     if (url == request.query.end() && secret != request.query.end())
-        refuse_parameter(problem, "notify_secret_id", secret_id, "it goes with notify_url, which is missing.");
+        refuse_parameter(problem, "notify_secret_id", secret_id, "it needs notify_url, which is missing.");
     if (!problem.errors.empty()) return http::problem_response(problem);
     if (url == request.query.end()) return std::nullopt;
     order.question.notify = api::Notify{url->second, secret_id};
@@ -99,7 +99,7 @@ std::optional<Response> read_order(const http::Request& request, NotifyPolicy& p
     if (auto refusal = refuse_key(order.idempotency_key)) return refusal;
     for (const auto& [name, value] : request.query) {
         if (!api::is_utf8(name) || !api::is_utf8(value))
-            return problem_response(422, "The parameters of the call are no UTF-8 text.");
+            return problem_response(422, "The parameters of the call are not valid UTF-8.");
         order.asked.append(name).append("=").append(value).append("\n");
         if (name == "name")
             order.question.name = value;
@@ -130,12 +130,12 @@ Response receipt_response(Batches& batches, const http::Request& request, const 
             return problem_response(409, "This Idempotency-Key was used before with another batch. Use a new key.");
         case BatchReceipt::Kind::refused: return http::problem_response(receipt.problem);
         case BatchReceipt::Kind::queue_full:
-            return problem_response(429, "The queue of batches' jobs is full. Try again when some have ended.");
+            return problem_response(429, "The queue for entries of batches is full. Try again when some have ended.");
         case BatchReceipt::Kind::draining:
-            return problem_response(503, "The service is being stopped and takes no more jobs. Try again shortly.");
+            return problem_response(503, "The service is being stopped and accepts no more jobs. Try again shortly.");
         case BatchReceipt::Kind::cancelled:
-            return problem_response(409, "The batch was cancelled while it was being received; nothing of it is kept.");
-        case BatchReceipt::Kind::abandoned: return problem_response(400, "The body did not come to its end.");
+            return problem_response(409, "The batch was cancelled during its upload; none of it is kept.");
+        case BatchReceipt::Kind::abandoned: return problem_response(400, "The body is incomplete.");
         case BatchReceipt::Kind::store_failed: break;
     }
     return store_failed(receipt.fault);
@@ -176,7 +176,7 @@ Response list_batches(Batches& batches, ComputeSlots& listers, const Call& call)
             owner = value;
         } else {
             refuse_parameter(problem, name, value,
-                             "the list knows only limit and cursor, and owner for whoever runs the service.");
+                             "the only parameters of the list are limit and cursor, and owner for administrators.");
         }
     }
     if (!problem.errors.empty()) return http::problem_response(problem);
@@ -201,7 +201,7 @@ std::optional<Response> read_results_question(const http::Request& request, Resu
             if (!read_whole<std::int64_t>(value, 0, INT64_MAX, question.from))
                 refuse_parameter(problem, name, value, "it must be the index of a request, a whole number >= 0.");
         } else {
-            refuse_parameter(problem, name, value, "the results know only format, follow and from.");
+            refuse_parameter(problem, name, value, "the only parameters of the results are format, follow and from.");
         }
     }
     if (!problem.errors.empty()) return http::problem_response(problem);
@@ -210,8 +210,7 @@ std::optional<Response> read_results_question(const http::Request& request, Resu
     question.csv = format.empty() ? csv > ndjson : format == "csv";
     if (format.empty() && ndjson == 0 && csv == 0)
         return problem_response(406,
-                                "The results are application/x-ndjson or text/csv, neither of which the Accept field "
-                                "allows.");
+                                "The results are application/x-ndjson or text/csv; the Accept field allows neither.");
     return std::nullopt;
 }
 

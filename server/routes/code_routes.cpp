@@ -20,7 +20,8 @@ api::CodeWords words_of(const Call& call) { return {call.request.query.begin(), 
 
 Response code_of(const JobRecord& job, const Call& call, const std::function<Written(const JobRecord&)>& write) {
     if (!has_ended(job.status))
-        return problem_response(409, "The job has not ended; its controllers' code is there when it has succeeded.");
+        return problem_response(
+            409, "The job has not ended; the code of its controllers is available when it has succeeded.");
     if (job.result.empty())
         return problem_response(
             404, "The job " + job.id + " has ended as " + std::string(to_string(job.status)) + ", without a result.");

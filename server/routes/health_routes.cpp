@@ -11,13 +11,13 @@ using http::Response;
 Response ready(const JobService& jobs, const JobStore& store, Gate& gate, const Memory& memory) {
     if (jobs.draining()) return http::problem_response(503, "The service is being stopped.");
     if (!store.healthy())
-        return http::problem_response(
-            503, "The store could not be written to when it was last tried, or it does not answer.");
+        return http::problem_response(503, "The last write to the store failed, or the store does not answer.");
     if (!gate.ready())
-        return http::problem_response(503, "The file of keys cannot be used, so nobody is admitted; the log says why.");
+        return http::problem_response(
+            503, "The file of keys cannot be used, so nobody is admitted; the log has the reason.");
     if (memory.tight())
         return http::problem_response(503,
-                                      "Eight tenths of the memory that the process may take (--memory) are taken.");
+                                      "Eight tenths of the memory that the process may use (--memory) are in use.");
     return http::json_response(R"({"status":"ready"})");
 }
 

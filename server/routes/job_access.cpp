@@ -20,10 +20,12 @@ Response store_failed(const StoreFault& fault) {
         return problem_response(507,
                                 "The disk of the service is full; nothing was kept. Try again when there is room.");
     if (fault.kind == StoreFault::Kind::unknown)
-        return problem_response(503,
-                                "The store was lost while it made this durable: whether it is kept is not known. Look "
-                                "it up, or send it again with the same Idempotency-Key, which makes it happen once.");
-    return problem_response(503, "The store of the service cannot be used just now; nothing was changed. Try again.");
+        return problem_response(
+            503,
+            "The connection to the store was lost during the commit, so it is not known whether this was stored. Look "
+            "it up, or send it again with the same Idempotency-Key, which prevents a second one.");
+    return problem_response(503,
+                            "The store of the service is not available at the moment; nothing was changed. Try again.");
 }
 
 Response in_turn(ComputeSlots& readers, const http::Request& request, const std::function<Response()>& work) {

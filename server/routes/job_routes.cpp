@@ -35,8 +35,8 @@ Response queue_full(const JobService& jobs, bool of_client = false) {
     if (of_client) {
         problem.type = "too-many-jobs";
         problem.detail = "This client has " + std::to_string(jobs.client_jobs()) +
-                         " jobs that wait or run, the limit of this service. Wait for one to end, cancel one, or post "
-                         "many as a batch.";
+                         " jobs that wait or run, the limit of this service. Wait for the end of one, cancel one, or "
+                         "post many as a batch.";
     }
     problem.detail += " Try again in " + std::to_string(seconds) + " s (Retry-After).";
     return problem_response(problem, std::chrono::seconds(seconds));
@@ -53,7 +53,7 @@ Response submitted(const JobService& jobs, const Submission& submission) {
         case Submission::Kind::queue_full: return queue_full(jobs);
         case Submission::Kind::too_many: return queue_full(jobs, true);
         case Submission::Kind::draining:
-            return problem_response(503, "The service is being stopped and takes no more jobs. Try again shortly.");
+            return problem_response(503, "The service is being stopped and accepts no more jobs. Try again shortly.");
         case Submission::Kind::existing:
         case Submission::Kind::store_failed: break;
     }
@@ -121,9 +121,9 @@ std::optional<Submitted> submit(JobService& jobs, Order order, const http::Reque
 std::optional<Response> refuse_parameters(const http::Request& request) {
     api::Problem problem = bad_parameters("call");
     for (const auto& [name, value] : request.query)
-        refuse_parameter(problem, name, value,
-                         "this call has no parameters: what the job is to do stands in its body, and how long to wait "
-                         "for it in the field Prefer.");
+        refuse_parameter(
+            problem, name, value,
+            "this call has no parameters: the request is in the body, and the time to wait in the field Prefer.");
     if (problem.errors.empty()) return std::nullopt;
     return http::problem_response(problem);
 }
@@ -162,7 +162,7 @@ Response post_job(JobService& jobs, LongRequestSlots& places, const SharedTurns&
     Order order;
     order.job = std::get<api::PreparedJob>(std::move(prepared));
     if (order.job.unique && !key.empty())
-        return problem_response(422, "The request says unique and has an Idempotency-Key. Remove one.");
+        return problem_response(422, "The request has unique and an Idempotency-Key. Remove one.");
     if (order.job.notify)
         if (const auto problem = policy.refuse(*order.job.notify, "notify.")) return http::problem_response(*problem);
     order.idempotency_key = key;
@@ -244,8 +244,8 @@ api::Problem read_query(const http::Request& request, JobQuery& query) {
             query.owner = value;
         } else {
             refuse(
-                "the list knows only status, name, q, batch, limit and cursor, and owner for whoever runs the "
-                "service.");
+                "the only parameters of the list are status, name, q, batch, limit and cursor, and owner for "
+                "administrators.");
         }
     }
     return problem;
@@ -277,15 +277,15 @@ Response cancel_job(JobService& jobs, ComputeSlots& readers, const Call& call) {
 Response not_requeued(const JobService& jobs, const std::string& id, RequeueEffect effect) {
     if (effect == RequeueEffect::queue_full) return queue_full(jobs);
     if (effect == RequeueEffect::batch_cancelled)
-        return problem_response(409, "The batch of this job was cancelled as a whole. Post its request anew.");
+        return problem_response(409, "The batch of this job was cancelled as a whole. Post its request again.");
     if (effect == RequeueEffect::superseded)
         return problem_response(409,
-                                "A later job of this request, which is unique, has taken the place of this one. Post "
-                                "the request again: the answer is that job.");
+                                "A later job with this request, which is unique, has replaced this one. Post the "
+                                "request again: the answer is that job.");
     if (effect == RequeueEffect::not_failed)
         return problem_response(409,
                                 "Only a job that failed or was cancelled, and whose request could be read, can be "
-                                "queued again. Post its request anew.");
+                                "queued again. Post its request again.");
     return no_such_job(id);
 }
 
@@ -313,8 +313,7 @@ std::optional<Response> refuse_other_state(JobService& jobs, const Call& call) {
         // A job that has not ended is not deleted, whatever its tag.
         if (!has_ended(state->status) || http::matches_entity_tag(call.request, entity_tag_of(*state, "")))
             return Response();
-        return problem_response(412,
-                                "The job has changed since the answer whose ETag is in If-Match. Look at it again.");
+        return problem_response(412, "The job has changed since the answer whose ETag is in If-Match. Read it again.");
     });
     if (found.status == 200) return std::nullopt;
     return found;

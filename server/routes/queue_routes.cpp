@@ -16,8 +16,8 @@ std::optional<Response> refuse_others(const Call& call) {
     if (auto refusal = refuse_call(call.request)) return refusal;
     if (call.request.admin) return std::nullopt;
     return http::problem_response(403,
-                                  "Only whoever runs the service may do this: with a key made by `tunewright key NAME "
-                                  "--admin`, or without keys from the machine that it runs on.");
+                                  "Only an administrator may do this: with a key made by `tunewright key NAME "
+                                  "--admin`, or without keys from the service's own machine.");
 }
 
 std::string queue_json(const JobService& jobs) {

@@ -20,7 +20,7 @@ std::optional<Response> read_controller(const http::Request& request, std::strin
         if (name == "controller")
             controller = value;
         else
-            refuse_parameter(problem, name, value, "known is controller, a number of the result.");
+            refuse_parameter(problem, name, value, "the only parameter is controller, a number of the result.");
     }
     if (problem.errors.empty()) return std::nullopt;
     return problem_response(problem);
@@ -34,7 +34,7 @@ std::string origin_of(const http::Request& request) {
 
 Response report_of(const JobRecord& job, const Call& call, const std::string& controller) {
     if (!has_ended(job.status))
-        return problem_response(409, "The job has not ended; its report is there when it has succeeded.");
+        return problem_response(409, "The job has not ended; its report is available when it has succeeded.");
     if (job.result.empty())
         return problem_response(
             404, "The job " + job.id + " has ended as " + std::string(to_string(job.status)) + ", without a result.");

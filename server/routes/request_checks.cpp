@@ -46,7 +46,7 @@ std::string fit_body(std::size_t& max_body, std::size_t memory) {
     max_body = max;
     const auto kib = [](std::size_t bytes) { return std::to_string(bytes >> 10) + "KiB"; };
     return "--max-body is lowered from " + kib(asked) + " to " + kib(max) +
-           ", the largest whose answer takes no more than half of --memory, " + kib(memory) +
+           ", the largest whose answer needs at most half of --memory, " + kib(memory) +
            ". Give more --memory for larger bodies.";
 }
 

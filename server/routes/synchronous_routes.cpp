@@ -44,15 +44,16 @@ Response too_slow(std::chrono::seconds limit) {
     Error error;
     error.kind = ErrorKind::timeout;
     error.message = "The computation was stopped after " + std::to_string(limit.count()) +
-                    " s. Ask for less, or post it as a job, which may take longer.";
+                    " s. Reduce the request, or post it as a job, which may take longer.";
     return http::problem_response(api::to_problem(error));
 }
 
 /// The answer to a call that was never begun.
 Response too_busy(std::chrono::seconds limit) {
-    return problem_response(503, "The service was busy with other computations for " + std::to_string(limit.count()) +
-                                     " s, and this one was not begun. Try again in a moment, or post it as a job, "
-                                     "which waits for its turn.");
+    return problem_response(
+        503,
+        "The service was busy with other computations for " + std::to_string(limit.count()) +
+            " s, and this one was not started. Try again in a moment, or post it as a job, which waits for its turn.");
 }
 
 Response closing_down() { return problem_response(503, "The service is being stopped. Try again shortly."); }

@@ -24,7 +24,7 @@ std::optional<Response> read_traces(const http::Request& request, api::Traces& t
             api::Problem problem = http::problem(422, "The parameters of the call are not valid.");
             problem.errors.push_back(
                 {"/" + name, name + " is \"" + value.substr(0, 64) +
-                                 "\"; known is traces, which must be responses, frequency or model."});
+                                 "\"; the only parameter is traces, which must be responses, frequency or model."});
             return http::problem_response(problem);
         }
     }
@@ -33,15 +33,15 @@ std::optional<Response> read_traces(const http::Request& request, api::Traces& t
 
 Response traces_of(const JobRecord& job, api::Traces traces) {
     if (!has_ended(job.status))
-        return problem_response(409, "The job has not ended; its traces are there when it has succeeded.");
+        return problem_response(409, "The job has not ended; its traces are available when it has succeeded.");
     if (job.result.empty())
         return problem_response(
             404, "The job " + job.id + " has ended as " + std::string(to_string(job.status)) + ", without a result.");
     auto text = api::traces_csv(job.result, traces);
     if (!text)
         return problem_response(404, traces == api::Traces::model
-                                         ? "The result has no model beside a record: the request gave a plant, or "
-                                           "did not ask for it (identify.traces true)."
+                                         ? "The result has no model with a record: the request gave a plant, or did "
+                                           "not ask for it (identify.traces true)."
                                          : "The result has no traces: the request asked for none (evaluate.points 0, "
                                            "which is the default in a batch), or no entry has any.");
     Response response;

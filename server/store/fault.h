@@ -43,7 +43,7 @@ public:
     explicit SchemaBehind(const std::string& sentence) : StoreError({StoreFault::Kind::unavailable, sentence}) {}
     explicit SchemaBehind(const SchemaState& state)
         : SchemaBehind("its schema is at step " + std::to_string(state.have) + " of " + std::to_string(state.known) +
-                       "; `tunewright migrate` brings it up to date") {}
+                       "; `tunewright migrate` migrates it") {}
 };
 
 /// Runs `work`, which opens the store with the printable address `shown`; an exception becomes a sentence about that.

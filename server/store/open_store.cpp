@@ -20,13 +20,13 @@ bool is_shared_store(const std::string& address) {
 void check_store_address(const std::string& address) {
     if (is_shared_store(address)) return;
     if (address == "sqlite::memory:" || address.starts_with("sqlite:file:"))
-        throw std::invalid_argument(
-            "--store is \"" + address +
-            "\"; it must name a file, such as sqlite:tunewright.db: several connections and the "
-            "next start are to find the same jobs.");
+        throw std::invalid_argument("--store is \"" + address +
+                                    "\"; it must name a file, such as sqlite:tunewright.db, so that several "
+                                    "connections and the next start find the same jobs.");
     if (address.starts_with(kSqlite) && address.size() > kSqlite.size()) return;
     // A text with the form user:password@host is not repeated.
-    const std::string shown = address.find('@') == std::string::npos ? "\"" + address + "\"" : "no address of a store";
+    const std::string shown =
+        address.find('@') == std::string::npos ? "\"" + address + "\"" : "not the address of a store";
     throw std::invalid_argument("--store is " + shown +
                                 "; it must be sqlite:PATH, such as sqlite:tunewright.db, or "
                                 "postgresql://USER:PASSWORD@HOST:PORT/DATABASE.");
@@ -45,7 +45,8 @@ void migrate_store(const MigrateCommand& command, std::ostream& out) {
         throw std::invalid_argument(
             "--compact is for SQLite; PostgreSQL returns space by itself, and VACUUM FULL all of it.");
     if (!shared && !command.grant.empty())
-        throw std::invalid_argument("--grant is for PostgreSQL; a SQLite file belongs to whom its permissions name.");
+        throw std::invalid_argument(
+            "--grant is for PostgreSQL; the access to a SQLite file follows from its permissions.");
     if (shared) return migrate_postgres(command.store, command.grant, out);
     migrate_sqlite(command.store.substr(kSqlite.size()), command.compact, out);
 }

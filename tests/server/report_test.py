@@ -180,7 +180,7 @@ class ReportTest(unittest.TestCase):
         for index, told in enumerate(("Robust", "SIMC")):
             self.assertIn(told, self.checked(job, "?controller=%d" % index)[1])
         for query, status, told in (("?controller=9", 404, b"numbers 0 to 2"), ("?controller=x", 404, b"There is no controller"),
-                                    ("?colour=red", 422, b"known is controller")):
+                                    ("?colour=red", 422, b"the only parameter is controller")):
             answer = self.service.get("/v1/jobs/%s/report.html%s" % (job["id"], query), {"Accept": "text/html"})
             self.assertEqual(answer.status, status, answer.body)
             self.assertIn(told, answer.body)

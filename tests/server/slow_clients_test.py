@@ -108,7 +108,7 @@ class LeavingTest(unittest.TestCase):
         for answer in stopped:
             self.assertIn("stopped after 10 s", answer.json["detail"])
         for answer in late:
-            self.assertIn("was not begun", answer.json["detail"])
+            self.assertIn("was not started", answer.json["detail"])
             self.assertIn("Retry-After", answer.headers)
 
     def test_a_computation_ends_with_its_client(self):

@@ -183,7 +183,7 @@ class AgainTest(WebhookTest):
         self.assertEqual(two["webhook-signature"], signature(self.secret, two, again))
         self.assertLess(int(one["webhook-timestamp"]), int(two["webhook-timestamp"]))
         self.wait_for_log(service, "try 2")
-        self.assertIn("it answers 500; the next try comes in", service.read_log())
+        self.assertIn("it answers 500; the next attempt is in", service.read_log())
         self.assertEqual((self.metric(service, "failed"), self.metric(service, "delivered")), (1, 1))
 
     def test_retry_after_is_respected(self):
@@ -206,7 +206,7 @@ class AgainTest(WebhookTest):
         receiver = self.receiver([410])
         service = self.service(receiver.origin)
         service.post_job(self.told(receiver, "/in?token=s3cret"))
-        self.wait_for_log(service, "will not be told to %s any more" % receiver.origin)
+        self.wait_for_log(service, "will not be reported to %s any more" % receiver.origin)
         time.sleep(7)
         self.assertEqual(len(receiver.notes), 1)
         self.assertEqual(self.metric(service, "given_up"), 1)
@@ -218,7 +218,7 @@ class AgainTest(WebhookTest):
         receiver.__exit__()
         service = self.service(receiver.origin)
         job = service.wait_for(service.post_job(self.told(receiver))["id"])
-        self.wait_for_log(service, "it cannot be reached; the next try comes in")
+        self.wait_for_log(service, "it cannot be reached; the next attempt is in")
         service.kill()
         back = self.receiver(port=port)
         service.start()
@@ -228,7 +228,7 @@ class AgainTest(WebhookTest):
         receiver = self.receiver([500])
         service = self.service(receiver.origin)
         service.wait_for(service.post_job(self.told(receiver))["id"])
-        self.wait_for_log(service, "the next try comes in")
+        self.wait_for_log(service, "the next attempt is in")
         service.stop()
         service.arguments = service.arguments[:-1] + ("http://127.0.0.1:1",)
         service.start()
@@ -239,12 +239,12 @@ class AgainTest(WebhookTest):
         receiver = self.receiver([500])
         service = self.service(receiver.origin)
         job = service.wait_for(service.post_job(self.told(receiver))["id"])["id"]
-        self.wait_for_log(service, "the next try comes in")
+        self.wait_for_log(service, "the next attempt is in")
         self.assertEqual(service.call("DELETE", "/v1/jobs/" + job).status, 204)
         time.sleep(8)
         self.assertEqual(len(receiver.notes), 1)
         self.assertEqual(self.metric(service, "given_up"), 0)
-        self.assertNotIn("will not be told", service.read_log())
+        self.assertNotIn("will not be reported", service.read_log())
 
     def test_a_slow_receiver_holds_up_no_other_and_no_stop(self):
         slow, quick = self.receiver(), self.receiver()
@@ -306,7 +306,7 @@ class RefusedTest(WebhookTest):
         rows = [json.loads(row) for row in
                 service.get("/v1/batches/%s/results?follow=true" % batch).body.splitlines()]
         self.assertEqual([row["status"] for row in rows], ["failed", "succeeded"])
-        self.assertIn("told as a whole", rows[0]["error"]["detail"])
+        self.assertIn("has one notification as a whole", rows[0]["error"]["detail"])
 
     def test_calls_that_are_answered_at_once_do_not_know_it(self):
         service = self.service("https://hooks.example.com")
@@ -337,7 +337,7 @@ class TlsTest(WebhookTest):
         receiver = self.receiver(tls=context)
         strict = self.service(receiver.origin)
         strict.post_job(self.told(receiver))
-        self.wait_for_log(strict, "its certificate is not one that this machine trusts")
+        self.wait_for_log(strict, "this machine does not trust its certificate")
         self.assertEqual(receiver.notes, [])
         trusting = self.service(receiver.origin, environment={"SSL_CERT_FILE": certificate})
         job = trusting.post_job(self.told(receiver))["id"]

@@ -121,7 +121,7 @@ Response Router::unrouted(const Request& request) const {
     }
     if (methods.empty() && request.target != "*")
         return problem_response(
-            404, "There is nothing at " + std::string(request.path()) + "; /openapi.json lists what there is.");
+            404, "There is nothing at " + std::string(request.path()) + "; /openapi.json lists all calls.");
     const std::string allow = allow_text(methods);
     Response response;
     response.status = 204;

@@ -141,7 +141,7 @@ bool Connection::receive_body() {
     receiving = true;
     const bool came = receive(patience_);
     receiving = false;
-    if (!came && gives_way_) return refuse_body("Others need the memory that this request takes; send it again later.");
+    if (!came && gives_way_) return refuse_body("Other requests need the memory of this one; send it again later.");
     if (!came) return fail(408, at_pace_ ? "The body arrives too slowly." : "The body did not arrive in time.");
     patience_ -= Clock::now() - start;
     come_ += in_.size() - before;
@@ -173,7 +173,7 @@ bool Connection::next_chunk() {
     if (!take_line(line, kMaxSizeDigits, sizes)) return false;
     const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), left_, 16);
     if (error != std::errc{} || end != line.data() + line.size()) return fail(400, sizes);
-    if (left_ > room_) return fail(413, "The chunks are more than is accepted in one body.");
+    if (left_ > room_) return fail(413, "The chunks exceed the largest body that is accepted.");
     room_ -= left_;
     chunked_ = left_ > 0;
     return chunked_ || take_line(line, 0, ends);

@@ -105,7 +105,7 @@ bool take_field(std::string_view name, std::string_view value, Fields& seen, Hea
         seen.keeps = seen.keeps || has_word(value, "keep-alive");
     } else if (equals(name, "Expect")) {
         if (!equals(value, "100-continue")) {
-            head = refuse(417, "The only expectation that can be met is 100-continue.");
+            head = refuse(417, "The only supported expectation is 100-continue.");
             return false;
         }
         head.expects_continue = true;
@@ -147,7 +147,7 @@ bool read_request_line(std::string_view line, RequestLine& read, Head& head) {
     const std::string_view version = line.substr(last + 1);
     if (version != "HTTP/1.1" && version != "HTTP/1.0") {
         const bool is_http = version.substr(0, 5) == "HTTP/";
-        head = is_http ? refuse(505, "This service speaks HTTP/1.1 and HTTP/1.0.")
+        head = is_http ? refuse(505, "This service supports HTTP/1.1 and HTTP/1.0.")
                        : refuse(400, "The first line must be METHOD TARGET HTTP/1.1.");
         return false;
     }
@@ -162,7 +162,7 @@ bool read_request_line(std::string_view line, RequestLine& read, Head& head) {
     }
     read.method = line.substr(0, first);
     if (!is_known(read.method)) {
-        head = refuse(501, "There is no such method here; /openapi.json lists what can be done.");
+        head = refuse(501, "There is no such method here; /openapi.json lists all calls.");
         return false;
     }
     head.http_1_0 = version == "HTTP/1.0";
@@ -249,7 +249,7 @@ Head read_strictly(std::string_view input) {
     if (seen.hosts > 0 && !read.authority.empty() && !equals(read.authority, seen.host))
         return refuse(400, "The target names another host than the field Host.");
     if (seen.transfers > 0 && (seen.lengths > 0 || head.http_1_0))
-        return refuse(400, "Transfer-Encoding is not possible with HTTP/1.0, nor beside a Content-Length.");
+        return refuse(400, "Transfer-Encoding is not possible with HTTP/1.0, or together with a Content-Length.");
     head.size = skipped + end + 4;
     head.keep_alive = !seen.closes && (!head.http_1_0 || seen.keeps);
     head.state = Head::State::complete;
@@ -289,7 +289,7 @@ void refuse_body(Head& head, bool streamed, std::size_t limit) {
     if (head.transfer != Head::Transfer::length && !streamed)
         refused = refuse(411, "Transfer-Encoding is not accepted here; send the body with a Content-Length.");
     else if (head.transfer == Head::Transfer::unknown)
-        refused = refuse(400, "The only Transfer-Encoding that is accepted is chunked, once.");
+        refused = refuse(400, "The only accepted Transfer-Encoding is chunked, once.");
     else if (head.content_length > limit)
         refused = refuse(413, "The body has " + std::to_string(head.content_length) + " bytes; at most " +
                                   std::to_string(limit) + " are accepted.");

@@ -16,7 +16,7 @@ void run_guarded(const std::function<void()>& task) {
     try {
         task();
     } catch (const std::exception& fault) {
-        log_error(std::string("a thread of the port met a fault: ") + fault.what());
+        log_error(std::string("a thread of the server failed: ") + fault.what());
     }
 }
 

@@ -9,7 +9,7 @@ void Rescuer::look() {
     const Reclaim what{settings_.now(), settings_.max_attempts, settings_.given_up, settings_.shared, settings_.period};
     queue_.reclaim(what, [this](const auto& outcome) {
         if (const auto* fault = std::get_if<StoreFault>(&outcome)) {
-            outage_.failed("nobody looks for jobs of processes that have gone", *fault);
+            outage_.failed("jobs of processes that have died are not searched for", *fault);
         } else {
             const auto& found = std::get<Recovery>(outcome);
             if (found.interrupted > 0 || !found.ended.empty()) settings_.recovered(found);

@@ -66,14 +66,14 @@ std::string timeout_problem(double timeout_s) {
     error.kind = ErrorKind::timeout;
     error.where = "timeout_s";
     error.message = "The job was stopped after timeout_s = " + text(timeout_s, 6) +
-                    " s. Ask for fewer methods or a simpler search, or raise timeout_s.";
+                    " s. Use fewer methods or a simpler search, or raise timeout_s.";
     return api::to_json(api::to_problem(error));
 }
 
 std::string given_up_problem(int attempts) {
     return fault_problem("The job was interrupted " + std::to_string(attempts) +
                          " times because the process that computed it ended, and is not tried again. If other jobs "
-                         "end well, this one may be the cause: ask for a simpler search. Else post it anew.");
+                         "succeed, this one may be the cause: use a simpler search. Otherwise post it again.");
 }
 
 std::string fault_problem(const std::string& detail) {

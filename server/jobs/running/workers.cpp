@@ -62,7 +62,8 @@ api::JobOutcome Workers::compute(const std::shared_ptr<HeldJob>& held) {
     } catch (const std::exception& fault) {
         log_error("job " + held->job.id + " met a fault: " + fault.what());
         return {Status::failed, "",
-                fault_problem("The computation met a fault of the service; its log says more under the job's id.")};
+                fault_problem("The computation failed because of an internal error of the service; its log has details "
+                              "under the job's id.")};
     }
 }
 
@@ -84,7 +85,7 @@ void Workers::end(const std::shared_ptr<HeldJob>& held, api::JobOutcome outcome,
     end.result = std::move(outcome.result_json);
     end.error = std::move(outcome.error_json);
     if (end.status == JobStatus::failed && end.error.empty())
-        end.error = fault_problem("The computation failed without saying why.");
+        end.error = fault_problem("The computation failed without a reason.");
     end.outline = outcome.outline_json.empty() && !end.error.empty() ? api::error_outline(end.error)
                                                                      : std::move(outcome.outline_json);
     end.first = held->job.batch.empty();

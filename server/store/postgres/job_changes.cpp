@@ -279,7 +279,7 @@ CancelEffect cancel_job(Session& session, const std::string& id, UnixMs now) {
             return CancelEffect::requested;
         if (has_ended(session, found->seq)) return CancelEffect::ended;
     }
-    throw Failure(Failure::Kind::conflict, "a job moves too often to be cancelled");
+    throw Failure(Failure::Kind::conflict, "the job changed its state too often to be cancelled");
 }
 
 RequeueEffect requeue_job(Session& session, const std::string& id) {

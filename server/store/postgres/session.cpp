@@ -49,7 +49,7 @@ std::map<std::string, std::string> options_of(const std::string& uri) {
         if (option->val != nullptr) options[option->keyword] = option->val;
     if (!parsed || !makes_sense(options))  // libpq's own message may quote the password
         throw StoreError({StoreFault::Kind::unavailable,
-                          "The address of the store cannot be read. It looks like "
+                          "The address of the store cannot be read. Its form is "
                           "postgresql://user:password@host:5432/database; signs such as / @ : ? # % in user and "
                           "password are written as %2F %40 %3A %3F %23 %25."});
     return options;

@@ -33,7 +33,7 @@ void make_folder(const std::string& path) {
     if (std::filesystem::exists(folder)) return;
     if (!std::filesystem::exists(folder.parent_path()) || folder.parent_path() == folder.root_path())
         throw StoreError({StoreFault::Kind::unavailable,
-                          "there is no folder " + folder.string() + "; make it, or correct the path"});
+                          "there is no folder " + folder.string() + "; create it, or correct the path"});
     std::filesystem::create_directory(folder);
 }
 
@@ -43,9 +43,9 @@ void refuse_foreign_log(const std::string& path) {
     const auto size = std::filesystem::file_size(log, none);
     // SQLite marks the file before it creates a log, and removes the log before it removes the mark.
     if (none || size == 0 || may_have_log(file)) return;
-    throw StoreError({StoreFault::Kind::unavailable, "the file is a copy that was put in its place, and " + log +
-                                                         " belongs to the file that was there before; remove it and " +
-                                                         file + "-shm, then start again"});
+    throw StoreError({StoreFault::Kind::unavailable, "the file is a copy that replaced the original, and " + log +
+                                                         " belongs to the original; remove it and " + file +
+                                                         "-shm, then start again"});
 }
 
 FileLock::FileLock(const std::string& path) {

@@ -217,12 +217,12 @@ std::optional<StoreFault> SqliteWriter::commit_where_room(std::vector<Change>& g
     const bool needs_room = any(Change::Kind::job);
     if (needs_room && is_scarce()) refill();
     if (needs_room && is_scarce())
-        return StoreFault{StoreFault::Kind::full, "the disk is nearly full; what is left is for jobs that are there"};
+        return StoreFault{StoreFault::Kind::full, "the disk is nearly full; the rest is reserved for existing jobs"};
     auto fault = commit(group, first, count);
     if (!fault || fault->kind != StoreFault::Kind::full) return fault;
     refilled_at_ = {};  // immediately: the attempt has filled the log, and other programs would take the freed space
     if (count == 1 && any(Change::Kind::gives_room) && reserve_.release()) {
-        if (healthy_) log_info("the disk of the store is full: the room that was kept for deleting is given away");
+        if (healthy_) log_info("the disk of the store is full: the space reserved for deleting is released");
         fault = commit(group, first, count);
     }
     return fault;

@@ -98,7 +98,7 @@ class CommandLineTest(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             done = run("serve", "--listen", "127.0.0.1:0", "--store", "sqlite:" + folder + "/a/b/jobs.db")
             self.assertEqual(done.returncode, 4, done.stderr)
-            self.assertIn("there is no folder %s/a/b; make it, or correct the path" % folder, done.stderr)
+            self.assertIn("there is no folder %s/a/b; create it, or correct the path" % folder, done.stderr)
             self.assertEqual(os.listdir(folder), [])
         done = run("serve", "--listen", "127.0.0.1:0", "--store", "sqlite:/tunewright-none/jobs.db")
         self.assertEqual(done.returncode, 4, done.stderr)
@@ -233,9 +233,9 @@ class CommandLineTest(unittest.TestCase):
                    "TUNEWRIGHT_PORT_80_TCP_ADDR": "10.0.0.1"}
         with Service(environment=strange) as service:
             log = service.read_log()
-        self.assertIn("the variable TUNEWRIGHT_RETENTON is set, and there is no such setting. Did you mean "
+        self.assertIn("the variable TUNEWRIGHT_RETENTON is set, but there is no such setting. Did you mean "
                       "TUNEWRIGHT_RETENTION?", log)
-        self.assertIn("TUNEWRIGHT_NOTHING_AT_ALL is set, and there is no such setting. `tunewright serve --help`", log)
+        self.assertIn("TUNEWRIGHT_NOTHING_AT_ALL is set, but there is no such setting. `tunewright serve --help`", log)
         for known in ("WORKERS", "SERVICE_HOST", "PORT", "PORT_80_TCP_ADDR"):
             self.assertNotIn("TUNEWRIGHT_%s is set" % known, log)
 

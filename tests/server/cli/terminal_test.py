@@ -161,7 +161,7 @@ class WrongWordTest(unittest.TestCase):
             self.assertEqual((done.returncode, done.stdout), (2, ""), arguments)
             self.assertTrue(done.stderr.startswith("tunewright: "), done.stderr)
             self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
-            self.assertIn("--help` says what there is.", done.stderr)
+            self.assertIn("--help` lists the possibilities.", done.stderr)
             self.assertIn(words, done.stderr)
 
     def test_nothing_and_too_much_to_tune_are_told(self):

@@ -143,7 +143,7 @@ TEST_F(SecretsTest, WhatIsNotAllowedIsRefusedWithItsNameAndItsCure) {
     EXPECT_EQ(policy.refuse({"https://evil.example/x", ""}, "notify_")->errors[0].pointer, "/notify_url");
     NotifyPolicy without({"https://hooks.example.com"}, "");
     EXPECT_THAT(without.refuse({"https://hooks.example.com", ""}, "notify.")->errors[0].detail,
-                HasSubstr("no secret to sign with"));
+                HasSubstr("no secret for signatures"));
     NotifyPolicy nowhere({}, path());
     EXPECT_TRUE(nowhere.refuse({"https://hooks.example.com", ""}, "notify."));
     EXPECT_FALSE(nowhere.allows_any());

@@ -81,7 +81,7 @@ TEST(Targets, SayWhatIsWrong) {
     };
     EXPECT_THAT(fault("https://a@b/"), HasSubstr("no user before an @"));
     EXPECT_THAT(fault("https://a/#b"), HasSubstr("no fragment"));
-    EXPECT_THAT(fault("https://a/../b"), HasSubstr("no segment of dots"));
+    EXPECT_THAT(fault("https://a/../b"), HasSubstr("no segment . or .."));
     EXPECT_THAT(fault("https://a//b"), HasSubstr("no empty segment"));
     EXPECT_THAT(fault("https://a/b c"), HasSubstr("without blanks"));
     EXPECT_THAT(fault("ftp://a/"), HasSubstr("must be https"));

@@ -11,7 +11,7 @@ namespace {
 Problem not_found(std::string sentence) { return {404, "not-found", "Not Found", std::move(sentence), {}, {}}; }
 
 std::string count_of(const Json& controllers) {
-    if (controllers.size() == 1) return "the result has one, number 0.";
+    if (controllers.size() == 1) return "the result has only number 0.";
     return "the result has " + std::to_string(controllers.size()) + ", numbers 0 to " +
            std::to_string(controllers.size() - 1) + ".";
 }
@@ -76,7 +76,7 @@ bool has_schedule(const Json& result) {
 }
 
 Problem not_a_result() {
-    return not_found("This is no result with controllers. Give what `tune` or a succeeded job has answered.");
+    return not_found("This is not a result with controllers. Give the answer of `tune` or of a succeeded job.");
 }
 
 std::variant<ChosenEntry, Problem> choose_entry(const ResultSource& source, std::string_view index) {

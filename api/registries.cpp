@@ -65,9 +65,10 @@ Answer no_such_controller(std::string_view id) {
 /// for.
 Expected<IdealPid> ideal_of(const SettingsRequest& request) {
     if (std::holds_alternative<Npid>(*request.controller) && !request.nearest)
-        return Error{ErrorKind::not_representable, "controller/form",
-                     "No product of the catalogue has an integral that sees little of large errors. The nearest is the "
-                     "form ideal with the same Kp, Ti and Td."};
+        return Error{
+            ErrorKind::not_representable, "controller/form",
+            "No product of the catalogue has an integral that reduces the effect of large errors. The nearest is the "
+            "form ideal with the same Kp, Ti and Td."};
     auto ideal = to_ideal(*request.controller);
     if (!ideal) {
         ideal.error().kind = ErrorKind::not_representable;
@@ -86,8 +87,9 @@ std::optional<Problem> unknown_names(const Product& product, const product::Sett
     for (const product::Setting& setting : settings) {
         if (std::find(names.begin(), names.end(), setting.name) != names.end()) continue;
         const std::string meant = nearest(setting.name, names);
-        reader.fault_at(setting.name, setting.name + " is not a parameter here; known are " + listed(names, "and") +
-                                          "." + (meant.empty() ? "" : " Did you mean " + meant + "?"));
+        reader.fault_at(setting.name, setting.name + " is not a parameter here; the parameters are " +
+                                          listed(names, "and") + "." +
+                                          (meant.empty() ? "" : " Did you mean " + meant + "?"));
     }
     return reader.problem();
 }

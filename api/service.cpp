@@ -218,8 +218,8 @@ std::variant<std::string, Problem> request_of_result(std::string_view result, co
         if (!answer.is_object() || !answer.contains(hash) || answer.at(hash) == prepared.request_hash) continue;
         Problem problem{422, "invalid-request", "The request is not valid", {}, {}, {}};
         problem.detail =
-            "This is not the request of the result, whose request_hash is another. Give the one that was sent, without "
-            "words of the command line beside it, or leave it out.";
+            "This is not the request of the result: its request_hash differs. Give the request that was sent, without "
+            "further options of the command line, or leave it out.";
         return problem;
     }
     return std::move(prepared.request_json);

@@ -45,8 +45,8 @@ std::optional<Problem> without_csv(const CsvRequest& question) {
     for (const auto& [name, is] : given)
         if (is)
             return unclear(std::string(name) +
-                           " says how a CSV file is read, and there is none; a request as JSON has it in its record. "
-                           "Leave it out.");
+                           " is an option for reading a CSV file, but the input is not one; a request as JSON has this "
+                           "in its record. Leave it out.");
     return std::nullopt;
 }
 
@@ -54,13 +54,13 @@ bool of_ultimate(const TuneWords& words) { return !words.Ku.empty() || !words.Pu
 
 std::variant<Json, Problem> subject(const TuneWords& words, const std::optional<std::string>& file) {
     if (!words.plant.empty() && file)
-        return unclear("Both a plant and a file are given; the file says which plant. Leave one of them out.");
+        return unclear("Both a plant and a file are given; the file already has a plant. Leave one of them out.");
     const auto request = file ? request_text(*file) : std::nullopt;
     if (auto problem = without_csv(words.record); problem && (!words.plant.empty() || of_ultimate(words) || request))
         return *problem;
     if (of_ultimate(words)) {
         if (file || !words.plant.empty())
-            return unclear("--Ku and --Pu stand in place of a plant and of a file; leave one of them out.");
+            return unclear("--Ku and --Pu replace a plant or a file; give only one of these.");
         Json ultimate = Json::object();
         for (const auto& [name, word] : {std::pair{"Ku", &words.Ku}, {"Pu", &words.Pu}, {"K", &words.K}})
             if (!word->empty()) ultimate[name] = number_or_word(*word);
@@ -161,7 +161,7 @@ std::variant<std::string, Problem> tuning_request(const TuneWords& words, std::o
     put_methods(words, request);
     if (!words.record.model.empty()) {
         if (!request.contains("record"))
-            return unclear("--model chooses the model of a recorded test, and there is none. Leave it out.");
+            return unclear("--model chooses the model of a recorded test, but no test is given. Leave it out.");
         if (request.value("identify", Json::object()).is_object()) request["identify"]["model"] = words.record.model;
     }
     // --time-unit is the file's if a record is read as text; otherwise it is that of the whole request.

@@ -90,7 +90,7 @@ std::optional<Problem> JobsArray::step(char c, std::vector<RawEntry>& entries) {
         case At::start:
             if (c == '{') return at_ = At::first_member, std::nullopt;
             if (c == '[')
-                return not_valid("", "The body is an array; the requests of a batch stand in the member jobs. " +
+                return not_valid("", "The body is an array; the requests of a batch must be in the member jobs.  " +
                                          std::string(kCure));
             return unexpected(c, "{");
         case At::first_member:
@@ -104,20 +104,18 @@ std::optional<Problem> JobsArray::step(char c, std::vector<RawEntry>& entries) {
             at_ = text_ == "jobs" ? At::array : text_ == "name" ? At::name_value : At::notify_value;
             return std::nullopt;
         case At::name_value:
-            if (c == 'n') return not_valid("/name", "name is not a string; leave it out where the batch has none.");
+            if (c == 'n') return not_valid("/name", "name is not a string; leave it out if the batch has none.");
             if (c != '"') return not_valid("/name", "name is not a string; it must be one of at most 200 characters.");
             return text_.clear(), at_ = At::name_text, std::nullopt;
         case At::name_text: return c == '"' && !escaped_ ? end_name() : collect(c);
         case At::notify_value:
             if (c != '{')
-                return not_valid(
-                    "/notify",
-                    R"(notify is no object; it must be one such as {"url": "https://hooks.example.com/x"}.)");
+                return not_valid("/notify",
+                                 R"(notify must be an object such as {"url": "https://hooks.example.com/x"}.)");
             in_notify_ = true;
             return open_element(c);
         case At::array:
-            if (c != '[')
-                return not_valid("/jobs", "jobs is no array; it must hold the requests. " + std::string(kCure));
+            if (c != '[') return not_valid("/jobs", "jobs must be an array of requests. " + std::string(kCure));
             return at_ = At::first_element, std::nullopt;
         case At::first_element:
             if (c == ']') return at_ = At::after_member, std::nullopt;
@@ -152,8 +150,9 @@ std::optional<Problem> JobsArray::collect(char c) {
     escaped_ = !escaped_ && c == '\\';
     text_ += c;
     if (text_.size() <= kMaxQuoteLength) return std::nullopt;
-    if (at_ == At::name_text) return not_valid("/name", "name is longer than 200 characters; a shorter one is needed.");
-    return not_valid("", "A member's name at " + place() + " is longer than any of a batch. " + std::string(kCure));
+    if (at_ == At::name_text) return not_valid("/name", "name is longer than 200 characters; give a shorter one.");
+    return not_valid(
+        "", "A member's name at " + place() + "is longer than that of any member of a batch. " + std::string(kCure));
 }
 
 std::optional<Problem> JobsArray::end_member_name() {
@@ -162,10 +161,10 @@ std::optional<Problem> JobsArray::end_member_name() {
     if (*name != "jobs" && *name != "name" && *name != "notify") {
         return not_valid("", (name->size() > 40 ? "A long name" : *name) +
                                  " is not a member of a batch; known are jobs, name and notify. " + std::string(kCure) +
-                                 " Requests one a line are sent with Content-Type: application/x-ndjson.");
+                                 " Send one request per line with Content-Type: application/x-ndjson.");
     }
     bool& found = *name == "jobs" ? found_jobs_ : *name == "name" ? found_name_ : found_notify_;
-    if (found) return not_valid("/" + *name, *name + " is given twice; only one value can hold. Remove one.");
+    if (found) return not_valid("/" + *name, *name + " is given twice. Remove one.");
     found = true;
     text_ = *name;
     at_ = At::colon;

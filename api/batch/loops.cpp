@@ -112,13 +112,12 @@ Loops::Loops(const LoopOptions& options) {
 }
 
 std::optional<Problem> Loops::check_options() const {
-    constexpr const char* kTitle = "What is asked for all loops is not valid";
+    constexpr const char* kTitle = "The parameters for all loops are not valid";
     if (!names_given_twice_.empty()) {
-        return not_valid(kTitle,
-                         {{"/" + pointer_segment(names_given_twice_.front()),
-                           in_quotes(names_given_twice_.front()) +
-                               " is given twice, or nests too deep. A CSV of loops asks for one method; batches "
-                               "of JSON may ask for several."}});
+        return not_valid(
+            kTitle, {{"/" + pointer_segment(names_given_twice_.front()),
+                      in_quotes(names_given_twice_.front()) + " is given twice, or nests too deep. A CSV of loops has "
+                                                              "one method; batches of JSON may have several."}});
     }
     const auto tried = prepare_entry(request("", {1, 1, 1}, nullptr));
     const auto* problem = std::get_if<Problem>(&tried);
@@ -265,7 +264,7 @@ std::optional<Problem> Loops::find_columns(long number, const std::vector<std::s
     const auto known = [](std::string_view heading) { return column_named(split_heading(heading).name).has_value(); };
     if (std::ranges::none_of(headings, known))
         return refused("Line " + std::to_string(number) +
-                       " has no heading of a loop's columns. Put name,K,T,L into the first line, above the loops.");
+                       " has no heading of a column of loops. Put name,K,T,L into the first line, above the loops.");
     width_ = headings.size();
     while (width_ > 0 && headings[width_ - 1].empty()) --width_;
     std::array<std::string, kColumns> units;
@@ -282,9 +281,9 @@ std::optional<Problem> Loops::find_columns(long number, const std::vector<std::s
         if (!column)
             return refused(
                 where + in_quotes(headings[i]) +
-                " is no column of loops. They are name, K, T and L; of today's settings Kp, Ti, Td, Tf, b, c "
+                " is not a column of loops. The columns are name, K, T and L; of today's settings Kp, Ti, Td, Tf, b, c "
                 "and form, or product and its own settings as \"today GAIN\". Remove that column: "
-                "method and limits are chosen once for all loops.");
+                "method and limits are set once for all loops.");
         if (at_[*column] != kMissing) return refused(where + "two columns say " + kTitles[*column] + ". Remove one.");
         at_[*column] = i;
         units[*column] = heading.unit;
@@ -296,7 +295,7 @@ std::optional<Problem> Loops::find_columns(long number, const std::vector<std::s
     if (!missing.empty())
         return refused(
             where + listed(missing, "and") + (missing.size() == 1 ? " is" : " are") +
-            " missing. Each loop is K e^(-L s)/(T s + 1): K the gain, T the time constant, L the dead time.");
+            " missing. Each loop is K e^(-L s)/(T s + 1), with K the gain, T the time constant, L the dead time.");
     if (auto problem = find_unit(where, units)) return problem;
     const bool own = std::ranges::any_of(todays_, [](const TodaysColumn& one) { return one.member.empty(); });
     if (own) todays_product_ = implement_.value("product", "");
@@ -360,7 +359,7 @@ double Loops::read_number(std::string_view cell, const char* name, std::vector<F
 }
 
 void Loops::read_row(const Held& row, std::vector<RawEntry>& entries) {
-    constexpr const char* kTitle = "The line is no loop";
+    constexpr const char* kTitle = "The line is not a loop";
     split(row.text);
     if (is_blank(cells_)) return;
     RawEntry entry{row.number, {}, {}, {}};
@@ -371,7 +370,7 @@ void Loops::read_row(const Held& row, std::vector<RawEntry>& entries) {
     if (row.unclosed) {
         entry.fault =
             not_valid(kTitle, {{"",
-                                "A cell begins with a quotation mark, and none ends it within 20 lines. Write "
+                                "A cell begins with a quotation mark that is not closed within 20 lines. Write "
                                 "\"...\" around the cell, and \"\" for a mark inside, or leave it out."}});
     } else if (filled > width_) {
         entry.fault = not_valid(

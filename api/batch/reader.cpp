@@ -108,7 +108,7 @@ private:
         return [&](long number, std::string_view text, std::size_t bytes) {
             if (bytes > kMaxLoop)
                 problem = not_valid("", "Line " + std::to_string(number) +
-                                            " has more than 65536 bytes; it is no line of a CSV of loops.");
+                                            " has more than 65536 bytes; a line of a CSV of loops must be shorter.");
             else
                 problem = loops_.feed(number, text, entries);
             return !problem;
@@ -227,7 +227,7 @@ std::optional<Problem> BatchReader::refuse_options() const {
     if (question_.options.empty() || cutter_->takes_options()) return std::nullopt;
     const std::string& name = question_.options.front().first;
     return not_valid("/" + pointer_segment(name),
-                     name + " is a parameter for a CSV of loops; requests in JSON say themselves what they ask for.");
+                     name + " is a parameter for a CSV of loops; requests in JSON have their own members.");
 }
 
 std::optional<Problem> BatchReader::take_notify() {
@@ -236,8 +236,7 @@ std::optional<Problem> BatchReader::take_notify() {
     if (text.empty()) return std::nullopt;
     notify_taken_ = true;
     if (question_.notify)
-        return not_valid("/notify",
-                         "notify stands in the body and in the parameter notify_url; only one can hold. Remove one.");
+        return not_valid("/notify", "notify is in the body and in the parameter notify_url. Remove one.");
     auto read = read_notify(text);
     if (auto* problem = std::get_if<Problem>(&read)) return std::move(*problem);
     question_.notify = std::get<Notify>(std::move(read));

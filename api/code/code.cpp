@@ -33,7 +33,7 @@ Controller controller_of(const Json& entry, Reader& reader) {
     controller_contract().read(entry.at("controller"), controller, reader);
     if (const auto* npid = std::get_if<Npid>(&controller); npid != nullptr && !npid->delta_r)
         reader.fault_at("delta_r",
-                        "delta_r is missing; the nonlinear form needs the size of error that it was made for.");
+                        "delta_r is missing; the nonlinear form needs the size of error for which it was designed.");
     return controller;
 }
 
@@ -104,8 +104,8 @@ Problem no_schedule() {
     return {404,
             "not-found",
             "Not Found",
-            "This is no answer about an operating range with a schedule. Give what `range` or a succeeded job about a "
-            "range has answered.",
+            "This is not an answer about an operating range with a schedule. Give the answer of `range` or of a "
+            "succeeded job about a range.",
             {},
             {}};
 }

@@ -40,8 +40,8 @@ void check_question(const Json& value, CodeQuestion& question, Reader& reader) {
                         "slope_samples belongs to the derivative slope. Choose that rule, or leave it out.");
     if (question.velocity && question.anti_windup)
         reader.fault_at("anti_windup",
-                        "anti_windup is given for the velocity form, which winds nothing up: it adds to the limited "
-                        "output. Leave it out.");
+                        "anti_windup is given for the velocity form, which does not wind up because it adds to the "
+                        "limited output. Leave it out.");
     if (question.tracking_time && (question.velocity || question.anti_windup == AntiWindup::clamping))
         reader.fault_at("tracking_time",
                         "tracking_time belongs to anti_windup back_calculation. Choose that, or leave it out.");
@@ -55,28 +55,28 @@ void check_question(const Json& value, CodeQuestion& question, Reader& reader) {
 const Description<CodeQuestion>& code_contract() {
     static const auto description = [] {
         using Q = CodeQuestion;
-        Description<Q> d("CodeQuestion", "What a controller's code is to be like.");
+        Description<Q> d("CodeQuestion", "Options of a controller's code.");
         d.field("language", &Q::language,
                 choice<Language>({{"st", Language::structured_text}, {"c", Language::c}, {"python", Language::python}}),
                 "st, c or python.", {.required = true})
-            .field("sample_time", &Q::sample_time, maybe(number({.exclusive_minimum = 0})), "Time from call to call.",
-                   {.unit = "time"})
+            .field("sample_time", &Q::sample_time, maybe(number({.exclusive_minimum = 0})),
+                   "Time from one call to the next.", {.unit = "time"})
             .field("integral", &Q::integral, integral_rule(), "Rule of the integral.")
             .field("derivative", &Q::derivative, derivative_rule(), "Rule of the derivative.")
             .field("slope_samples", &Q::slope_samples, maybe(integer(1, code::kMaxSlopeSamples)),
-                   "Sample times that the rule slope spans.")
+                   "Number of sample times that the rule slope spans.")
             .field("form", &Q::velocity, choice<bool>({{"position", false}, {"velocity", true}}),
-                   "Whether u is a sum or what it last was and its increments.")
+                   "position: u is a sum; velocity: the last u plus its increment.")
             .field("anti_windup", &Q::anti_windup,
                    maybe(choice<AntiWindup>(
                        {{"back_calculation", AntiWindup::back_calculation}, {"clamping", AntiWindup::clamping}})),
-                   "What the integral does at a limit.")
+                   "Behaviour of the integral at a limit.")
             .field("tracking_time", &Q::tracking_time, maybe(number({.exclusive_minimum = 0})),
                    "Tracking time of back-calculation.", {.unit = "time"})
             .field("u_min", &Q::u_min, maybe(number()), "Least u.", {.unit = "u"})
             .field("u_max", &Q::u_max, maybe(number()), "Largest u.", {.unit = "u"})
             .field("rate_limit", &Q::rate_limit, maybe(number({.exclusive_minimum = 0})),
-                   "Most that u moves in a unit of time.", {.unit = "u/time"})
+                   "Largest change of u per unit of time.", {.unit = "u/time"})
             .field("bias", &Q::bias, maybe(number()), "u at the operating point.", {.unit = "u"})
             .field("y0", &Q::y0, maybe(number()), "y at the operating point.", {.unit = "y"})
             .check(check_question);
@@ -125,7 +125,7 @@ double unit_of(const Json& result, Reader& reader) {
     if (const auto seconds = code::seconds_in(label)) return *seconds;
     const Reader::At units(reader, "units");
     reader.fault_at("time", "units.time is " + shown(Json(label)) +
-                                "; code counts seconds and knows s, ms, min, h and d. Tune in one of these.");
+                                "; code counts in seconds and can convert s, ms, min, h and d. Tune in one of these.");
     return 1;
 }
 
@@ -162,13 +162,13 @@ std::variant<SampleTime, Problem> sample_time_of(const AskedCode& asked, const J
     constexpr double kNoLimit = std::numeric_limits<double>::infinity();
     if (const auto proposed = code::proposed_sample_time(gains, longest.value_or(kNoLimit)))
         return SampleTime{*proposed, proposed == code::proposed_sample_time(gains)
-                                         ? "proposed, as none was asked for: a tenth of the shorter of Ti and Td, no "
+                                         ? "proposed, because none was given: a tenth of the shorter of Ti and Td, no "
                                            "more than Tf, rounded down"
-                                         : "proposed, as none was asked for: the longest that raises Ms by no more "
+                                         : "proposed, because none was given: the longest that raises Ms by no more "
                                            "than 5 %, rounded down"};
     Reader reader;
     reader.fault_at("sample_time",
-                    "sample_time is missing; this controller has no time of its own to propose one from.");
+                    "sample_time is missing; this controller has no time from which one can be proposed.");
     return *reader.problem();
 }
 

@@ -103,9 +103,10 @@ code::Provenance provenance_of_schedule(const Json& result, const Json& request)
     rows.emplace_back("Range", word_at(scheduling, "/name") + " from " + value_text(scheduling.at("from")) + " to " +
                                    value_text(scheduling.at("to")) + (unit.empty() ? "" : " " + unit));
     for (const Json& worst : range.value("/worst/schedule"_json_pointer, Json::array()))
-        rows.emplace_back("Largest " + (word_at(worst, "/quantity") == "relative_IAE" ? "IAE over a place's own least"
-                                                                                      : word_at(worst, "/quantity")),
-                          value_text(worst.at("value")) + " at " + value_text(worst.at("at")));
+        rows.emplace_back(
+            "Largest " + (word_at(worst, "/quantity") == "relative_IAE" ? "IAE relative to the place's own optimum"
+                                                                        : word_at(worst, "/quantity")),
+            value_text(worst.at("value")) + " at " + value_text(worst.at("at")));
     add_origin(result, rows);
     return rows;
 }

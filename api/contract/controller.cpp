@@ -45,7 +45,7 @@ const Description<GivenFilter>& filter_contract() {
             "Filter",
             "derivative: Td s becomes Td s/(1 + s Tf), acting on c r - y. measurement_first_order: y_f = y/(1 + s Tf). "
             "measurement_second_order: y_f = y/(1 + s Tf + (s Tf)^2/2); these act on y only.");
-        d.field("type", &GivenFilter::type, filter_type(), "Which filter.")
+        d.field("type", &GivenFilter::type, filter_type(), "Kind of filter.")
             .field("Tf", &GivenFilter::Tf, maybe(number({.exclusive_minimum = 0})), "Filter time constant, > 0.",
                    {.unit = "time"})
             .field("N", &GivenFilter::N, maybe(number({.exclusive_minimum = 0})),
@@ -104,13 +104,13 @@ Description<Form>& with_filter_and_action(Description<Form>& description) {
                 schema["default"] = {{"type", "none"}};
                 return schema;
             },
-            "How the derivative or the measurement is filtered.")
+            "Filter of the derivative or the measurement.")
         .field(
             "action", {}, [](const Form& pid, Writer& out) { out.text(sign_of(pid) < 0 ? "direct" : "reverse"); },
             [](SchemaBook&) {
                 return Json{{"type", "string"}, {"enum", {"reverse", "direct"}}};
             },
-            "reverse for Kp > 0, direct for Kp < 0. Follows from the sign; in requests it is ignored.",
+            "reverse for Kp > 0, direct for Kp < 0. It follows from the sign; in requests it is ignored.",
             {.answer_only = true});
 }
 
@@ -141,7 +141,7 @@ void add_setpoint_filter(Description<Form>& description) {
         },
         [](const Form& pid, Writer& out) { setpoint_filter_contract().write({pid.setpoint_lag}, out); },
         [](SchemaBook& book) { return setpoint_filter_contract().schema(book); },
-        "What the set point passes before the controller sees it; left out: nothing.", {},
+        "Filter of the set point before the controller; left out: none.", {},
         [](const Form& pid) { return pid.setpoint_lag == 0; });
 }
 
@@ -161,9 +161,9 @@ Description<Form>& with_weights(Description<Form>& description) {
 }
 
 NumberRule proportional_rule() {
-    return {.not_zero = true, .cure = "Pure integral action is the form parallel with Kp 0 and a Ki."};
+    return {.not_zero = true, .cure = "For pure integral action use the form parallel with Kp 0 and a Ki."};
 }
-NumberRule Ti_rule() { return {.exclusive_minimum = 0, .cure = "No integral action is \"Ti\": null."}; }
+NumberRule Ti_rule() { return {.exclusive_minimum = 0, .cure = "For no integral action give \"Ti\": null."}; }
 const char* kNoIntegral = "No integral action.";
 
 const Description<IdealPid>& ideal() {
@@ -172,7 +172,7 @@ const Description<IdealPid>& ideal() {
                                 "u = Kp [(b r - y_f) + (1/Ti) int (r - y_f) dt + Td d/dt (c r - y_f)].");
         d.tag("form", "ideal", false)
             .field("Kp", &IdealPid::Kp, number(proportional_rule()),
-                   "Proportional gain, of the sign that the plant needs.", {.required = true, .unit = "u/y"})
+                   "Proportional gain, with the sign that the plant needs.", {.required = true, .unit = "u/y"})
             .field("Ti", &IdealPid::Ti, number_or_infinite(Ti_rule(), kNoIntegral),
                    "Integral time, > 0; null: no integral action.", {.unit = "time"})
             .field("Td", &IdealPid::Td, number({.minimum = 0}), "Derivative time, >= 0.", {.unit = "time"});
@@ -185,7 +185,7 @@ const Description<IdealPid>& ideal() {
 const Description<ParallelPid>& parallel() {
     static const auto description = [] {
         Description<ParallelPid> d("ParallelController",
-                                   "Kp + Ki/s + Kd s, weights and filter as in the ideal form; carries Kp = 0 too.");
+                                   "Kp + Ki/s + Kd s, weights and filter as in the ideal form; allows Kp = 0.");
         d.tag("form", "parallel")
             .field("Kp", &ParallelPid::Kp, number(), "Proportional gain.", {.unit = "u/y"})
             .field("Ki", &ParallelPid::Ki, number(), "Integral gain.", {.unit = "u/(y time)"})
@@ -209,9 +209,10 @@ const Description<SeriesPid>& series() {
             .field("Ti", &SeriesPid::Ti, number_or_infinite(Ti_rule(), kNoIntegral),
                    "Integral time, > 0; null: no integral action.", {.required = true, .unit = "time"})
             .field("Td", &SeriesPid::Td, number({.minimum = 0}), "Derivative time, >= 0.", {.unit = "time"});
-        with_weights(d).field("b_equivalent", &SeriesPid::b_equivalent, number(),
-                              "Ti'/Ti: what b = 1 in the series form amounts to in the ideal one. Only in answers.",
-                              {.answer_only = true});
+        with_weights(d).field(
+            "b_equivalent", &SeriesPid::b_equivalent, number(),
+            "Ti'/Ti: the b of the ideal form that is equivalent to b = 1 in the series form. Only in answers.",
+            {.answer_only = true});
         return d;
     }();
     return description;
@@ -249,16 +250,16 @@ void fixed_weight(Description<Npid>& description, const char* name, double value
 const Description<Npid>& nonlinear() {
     static const auto description = [] {
         Description<Npid> d("NonlinearController",
-                            "u = Kp [e + (1/Ti) int exp(-e^2/(2 delta_r^2)) e dt - Td dy/dt], e = r - y: the integral "
-                            "sees little of a large error.");
+                            "u = Kp [e + (1/Ti) int exp(-e^2/(2 delta_r^2)) e dt - Td dy/dt], e = r - y: a large error "
+                            "has little effect on the integral.");
         d.tag("form", "npid")
-            .field("Kp", &Npid::Kp, number({.not_zero = true}), "Proportional gain, of the sign that the plant needs.",
-                   {.required = true, .unit = "u/y"})
+            .field("Kp", &Npid::Kp, number({.not_zero = true}),
+                   "Proportional gain, with the sign that the plant needs.", {.required = true, .unit = "u/y"})
             .field("Ti", &Npid::Ti, finite_integral_time(), "Integral time, > 0.", {.required = true, .unit = "time"})
             .field("Td", &Npid::Td, number({.minimum = 0}), "Derivative time, >= 0.", {.unit = "time"})
             .field("delta_r", &Npid::delta_r, maybe(number({.exclusive_minimum = 0})),
-                   "Error size at which the integral sees 61 % of the error; far larger ones it ignores. Default: "
-                   "the size of evaluate.setpoint_step, kept for load steps.",
+                   "Size of error at which 61 % of it enters the integral; much larger errors hardly enter. Default: "
+                   "the size of evaluate.setpoint_step, also for load steps.",
                    {.unit = "y"});
         fixed_weight(d, "b", 1, "Set-point weight of the proportional part: 1.");
         fixed_weight(d, "c", 0, "Set-point weight of the derivative part: 0.");
@@ -266,8 +267,8 @@ const Description<Npid>& nonlinear() {
             .check([](const Json&, Npid& pid, Reader& reader) {
                 if (pid.filter.type != FilterType::none && pid.filter.type != FilterType::derivative)
                     reader.fault_at("filter",
-                                    "filter is one of the measurement, and the nonlinear form takes none or "
-                                    "derivative: its integral sees the error itself. Choose one of these.");
+                                    "filter is a measurement filter, and the nonlinear form allows only none or "
+                                    "derivative, because its integral uses the error itself. Choose one of these.");
             })
             .example({{"form", "npid"}, {"Kp", 3.8}, {"Ti", 9.9}, {"Td", 1.4}, {"delta_r", 1}});
         return d;
@@ -289,7 +290,7 @@ const Union<Controller>& controller_contract() {
 const Description<Equivalents>& equivalents_contract() {
     static const auto description = [] {
         Description<Equivalents> d("Equivalents",
-                                   "The same loop in the other forms, exactly; of the form npid its linear part.");
+                                   "The same loop in the other forms, exactly; for the form npid its linear part.");
         d.field("parallel", &Equivalents::parallel, answer(parallel()), "Kp + Ki/s + Kd s.")
             .field(
                 "series", {},
@@ -299,7 +300,7 @@ const Description<Equivalents>& equivalents_contract() {
                 [](SchemaBook& book) {
                     return Json{{"oneOf", Json::array({series().schema(book), Json{{"type", "null"}}})}};
                 },
-                "The interacting form; null where it does not exist.")
+                "The interacting form; null if it does not exist.")
             .field(
                 "why_null", {},
                 [](const Equivalents& value, Writer& out) {
@@ -312,7 +313,8 @@ const Description<Equivalents>& equivalents_contract() {
                 [](SchemaBook&) {
                     return Json{{"type", "object"}, {"additionalProperties", {{"type", "string"}}}};
                 },
-                "Why there is no series form.", {}, [](const Equivalents& value) { return value.series.has_value(); });
+                "Reason why there is no series form.", {},
+                [](const Equivalents& value) { return value.series.has_value(); });
         return d;
     }();
     return description;

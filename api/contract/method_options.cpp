@@ -118,7 +118,9 @@ void read_numbers_by_name(const Json& value, const OptionDescription& option, co
     const std::string below = path + "/";
     for (const auto& [name, member] : value.items()) {
         if (!is_name(name)) {
-            reader.fault_at(name, shown(Json(name)) + " is no name; names have letters, digits and _, no digit first.");
+            reader.fault_at(
+                name, shown(Json(name)) +
+                          " is not a valid name; a name has letters, digits and _, and does not begin with a digit.");
             continue;
         }
         const Reader::At at(reader, name);

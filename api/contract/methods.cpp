@@ -105,11 +105,10 @@ Json methods_schema(SchemaBook& book) {
     // A choice among one is written as that one: generators of clients fail on it.
     for (auto& [name, option] : of_all.items())
         if (option["anyOf"].size() == 1) option = Json(option["anyOf"][0]);
-    add(kAll,
-        method_schema(kAll, "Every method",
-                      "Every method in all its variants, each with those options that it knows. One that does not "
-                      "apply is an entry with its reason.",
-                      of_all));
+    add(kAll, method_schema(kAll, "Every method",
+                            "Every method in all its variants, each with those of the options that it has. A method "
+                            "that does not apply is an entry with the reason.",
+                            of_all));
     book.components["Method"] = {
         {"title", "Method"}, {"description", "A tuning method with its options."}, {"oneOf", std::move(choices)}};
     return {{"$ref", "#/components/schemas/Method"}};

@@ -72,13 +72,13 @@ Codec<std::array<double, 2>> limits() {
 
 const Description<ColumnChoices>& columns_contract() {
     static const auto description = [] {
-        Description<ColumnChoices> d("Columns",
-                                     "Which columns of the csv hold what: headings, or numbers from 1. Found by itself "
-                                     "where headings are plain.");
+        Description<ColumnChoices> d(
+            "Columns",
+            "Roles of the columns of the csv, by heading or number from 1. Clear headings are found automatically.");
         d.field("t", &ColumnChoices::t, maybe(column_choice()), "Time.")
             .field("u", &ColumnChoices::u, maybe(column_choice()), "Controller output.")
             .field("y", &ColumnChoices::y, maybe(column_choice()), "Measurement.")
-            .field("r", &ColumnChoices::r, maybe(column_choice()), "Set point, where the record has one.")
+            .field("r", &ColumnChoices::r, maybe(column_choice()), "Set point, if the record has one.")
             .field("d", &ColumnChoices::d,
                    unless<std::vector<ColumnChoice>>(list_of(column_choice(), 1, kMaxFurtherInputs),
                                                      [](const auto& columns) { return columns.empty(); }),
@@ -112,7 +112,7 @@ namespace {
 
 void check_record(const Json&, GivenRecord& record, Reader& reader) {
     if (record.u_step && record.u0)
-        reader.fault_at("u0", "u0 and u_step are both given; u_step says where u comes from. Remove u0.");
+        reader.fault_at("u0", "u0 and u_step are both given; u_step already has the initial u. Remove u0.");
     if (record.from && record.to && *record.to <= *record.from)
         reader.fault_at("to", "to is " + tunewright::text(*record.to) + " and from " + tunewright::text(*record.from) +
                                   "; the part that is used must end after it starts.");
@@ -122,7 +122,7 @@ void check_record(const Json&, GivenRecord& record, Reader& reader) {
                                           {"y", record.y.has_value()},
                                           {"r", record.r.has_value()},
                                           {"d", record.d.has_value()}}) {
-            if (given) reader.fault_at(name, std::string(name) + " is given beside csv; give one of them.");
+            if (given) reader.fault_at(name, std::string(name) + " is given together with csv; give one of them.");
         }
         return;
     }
@@ -145,7 +145,7 @@ void check_record(const Json&, GivenRecord& record, Reader& reader) {
     const auto length = [&](const char* name, const std::vector<double>& column) {
         if (column.size() != record.y->size()) {
             reader.fault_at(name, std::string(name) + " has " + std::to_string(column.size()) + " numbers and y " +
-                                      std::to_string(record.y->size()) + "; they must be equally many.");
+                                      std::to_string(record.y->size()) + "; they must have the same number.");
         }
     };
     if (record.u) length("u", *record.u);
@@ -186,10 +186,9 @@ const Description<Units>& units_contract() {
 
 static const Description<FurtherInput>& further_input_contract() {
     static const auto description = [] {
-        Description<FurtherInput> d("MeasuredDisturbance", "A further measured input that moves y beside u.");
-        d.field("name", &FurtherInput::name, text(kMaxHeadingLength), "What it is called in the answer.",
-                {.required = true})
-            .field("values", &FurtherInput::values, numbers(2, kMaxSamples), "A number for each sample, held as u is.",
+        Description<FurtherInput> d("MeasuredDisturbance", "A further measured input that moves y in addition to u.");
+        d.field("name", &FurtherInput::name, text(kMaxHeadingLength), "Its name in the answer.", {.required = true})
+            .field("values", &FurtherInput::values, numbers(2, kMaxSamples), "A number for each sample, held like u.",
                    {.required = true});
         return d;
     }();
@@ -200,47 +199,46 @@ const Description<GivenRecord>& record_contract() {
     static const auto description = [] {
         Description<GivenRecord> d("Record",
                                    "A recorded test: t (or dt), u and y as arrays, or csv text. u holds from its "
-                                   "sample to the next. r, the set "
-                                   "point, may stand beside them.");
+                                   "sample to the next. r, the set point, is optional.");
         const auto column = [] {
             return maybe(
-                numbers(2, kMaxSamples, {.cure = "Thin the record out: a few thousand samples identify as well."}));
+                numbers(2, kMaxSamples, {.cure = "Thin the record out: a few thousand samples are sufficient."}));
         };
         d.field("t", &GivenRecord::t, column(), "Times, any start, any spacing.", {.unit = "time"})
             .field("dt", &GivenRecord::dt, maybe(number({.exclusive_minimum = 0})), "Spacing, instead of t.",
                    {.unit = "time"})
             .field("u", &GivenRecord::u, column(), "Controller output.", {.unit = "u"})
             .field("y", &GivenRecord::y, column(), "Measurement.", {.unit = "y"})
-            .field("r", &GivenRecord::r, column(), "Set point, where the record has one.", {.unit = "y"})
+            .field("r", &GivenRecord::r, column(), "Set point, if the record has one.", {.unit = "y"})
             .field("d", &GivenRecord::d, maybe(list_of(object(further_input_contract()), 1, kMaxFurtherInputs)),
                    "Measured disturbances: further inputs that move y, such as another heater. They are identified "
                    "together with u.")
             .field("csv", &GivenRecord::csv, maybe(text(kMaxCsvLength)),
                    "CSV text instead of the arrays: separated by , ; tab | or blanks, decimal point or comma, times as "
                    "numbers "
-                   "or stamps, with or without headings and units. A blank u is held, a line without y counts for u.")
+                   "or stamps, with or without headings and units. A blank u takes the previous value; a line without "
+                   "y still gives u.")
             .field("columns", &GivenRecord::columns, maybe(object(columns_contract())), "Columns of the csv.")
-            .field(
-                "time_unit", &GivenRecord::time_unit, maybe(file_time_unit()),
-                "Unit of the times in the csv, where the file does not say or says it wrongly: us, ms, s, min, h, d.")
+            .field("time_unit", &GivenRecord::time_unit, maybe(file_time_unit()),
+                   "Unit of the times in the csv, if the file states none or a wrong one: us, ms, s, min, h, d.")
             .field("kind", &GivenRecord::kind,
                    choice<RecordKind>({{"auto", RecordKind::automatic},
                                        {"step", RecordKind::step},
                                        {"several_steps", RecordKind::several_steps},
                                        {"relay", RecordKind::relay},
                                        {"general", RecordKind::general}}),
-                   "What the test was.")
+                   "Kind of test.")
             .field("u0", &GivenRecord::u0, maybe(number()), "Controller output before the first sample.", {.unit = "u"})
             .field("y0", &GivenRecord::y0, maybe(number()), "Measurement before the first sample.", {.unit = "y"})
             .field("u_limits", &GivenRecord::u_limits, maybe(limits()),
-                   "The ends of the actuator, [low, high]: u beyond them did not reach the plant.", {.unit = "u"})
+                   "Limits of the actuator, [low, high]: u beyond them did not reach the plant.", {.unit = "u"})
             .field("u_step", &GivenRecord::u_step, maybe(u_step()),
-                   "Of a record without u: u stepped at its first sample, [from, to], and stays; from leaves none out.",
+                   "For a record without u: the step of u at its first sample, [from, to]; the member from must then "
+                   "leave no sample out.",
                    {.unit = "u"})
-            .field(
-                "run", &GivenRecord::run, maybe(run_number()),
-                "Of a csv whose times begin again: which of its runs, from 1. Default: the longest in which y answers "
-                "a move of u.")
+            .field("run", &GivenRecord::run, maybe(run_number()),
+                   "For a csv whose times start again: the run, from 1. Default: the longest in which y responds to a "
+                   "move of u.")
             .field("from", &GivenRecord::from, maybe(number()), "Only samples from this time on are used.",
                    {.unit = "time"})
             .field("to", &GivenRecord::to, maybe(number()), "Only samples up to this time are used.", {.unit = "time"})
@@ -252,7 +250,7 @@ const Description<GivenRecord>& record_contract() {
 
 const Description<IdentifyQuestion>& identify_contract() {
     static const auto description = [] {
-        Description<IdentifyQuestion> d("Identify", "How the record becomes a model.");
+        Description<IdentifyQuestion> d("Identify", "Identification of the record.");
         d.field("model", &IdentifyOptions::model,
                 choice<ModelChoice>({{"auto", ModelChoice::automatic},
                                      {"fopdt", ModelChoice::fopdt},
@@ -260,17 +258,17 @@ const Description<IdentifyQuestion>& identify_contract() {
                                      {"sopdt_zero", ModelChoice::sopdt_zero},
                                      {"ipdt", ModelChoice::ipdt},
                                      {"ipdt_lag", ModelChoice::ipdt_lag}}),
-                "Structure of the model; auto picks one and says why.")
+                "Structure of the model; auto chooses one and gives the reason.")
             .field("method", &IdentifyOptions::method,
                    choice<IdentifyMethod>({{"auto", IdentifyMethod::automatic},
                                            {"output_error", IdentifyMethod::output_error},
                                            {"relay_fourier", IdentifyMethod::relay_fourier},
                                            {"two_point", IdentifyMethod::two_point}}),
-                   "How it is found.")
+                   "Method of identification.")
             .field("shift", &IdentifyOptions::shift, maybe(number({.exclusive_minimum = 0})),
                    "Shift of the relay test's Fourier integrals.", {.unit = "1/time"})
             .field("traces", &IdentifyQuestion::traces, boolean(),
-                   "Answer the model's fit and the candidates' y_model too: the record beside the free runs, at most "
+                   "Return the model's fit and the candidates' y_model too: the record with the free runs, at most "
                    "2,000 points, for a plot.");
         return d;
     }();
@@ -390,7 +388,7 @@ void choose_part(const GivenRecord& given, ReadRecord& read, Reader& reader) {
         const std::string extent = read.record.t.empty() ? ""
                                                          : " It runs from " + tunewright::text(*first) + " to " +
                                                                tunewright::text(*last) + ".";
-        reader.fault_at(given.from ? "from" : "to", "fewer than 2 samples of the record lie in the part that is used." +
+        reader.fault_at(given.from ? "from" : "to", "fewer than 2 samples of the record are in the part that is used." +
                                                         extent + " Choose a wider part.");
         return;
     }
@@ -405,8 +403,8 @@ void choose_part(const GivenRecord& given, ReadRecord& read, Reader& reader) {
     keep(rows, record.r);
     for (FurtherInput& input : record.d) keep(rows, input.values);
     keep(rows, record.line);
-    read.notes.push_back("Of " + std::to_string(all) + " samples, the " + std::to_string(rows.size()) + " from " +
-                         tunewright::text(record.t.front()) + " to " + tunewright::text(record.t.back()) +
+    read.notes.push_back("The record has " + std::to_string(all) + " samples; the " + std::to_string(rows.size()) +
+                         " from " + tunewright::text(record.t.front()) + " to " + tunewright::text(record.t.back()) +
                          " were used, as asked.");
 }
 
@@ -459,7 +457,7 @@ void check_disturbances(const Record& record, bool from_csv, Reader& reader) {
         if (twin.empty()) continue;
         reader.fault_below((from_csv ? "columns/d/" : "d/") + std::to_string(k), 0,
                            "\"" + record.d[k].name + "\" moves as " + twin +
-                               " does in every row: what each of them does to y cannot be separated. Leave it out.");
+                               " does in every row, so their effects on y cannot be separated. Leave it out.");
     }
 }
 
@@ -477,12 +475,12 @@ void ask_for_unit(IdentifiedModel& model) {
     model.warnings.insert(
         model.warnings.begin(),
         {"time-unit-doubtful",
-         (slow ? "The plant comes out slower than a day: its lags and dead time add up to " +
+         (slow ? "The identified plant is slower than a day: its lags and dead time add up to " +
                      tunewright::text(total / kDay, 3) + " days"
-               : "The plant comes out quicker than a millisecond: its lags and dead time add up to " +
+               : "The identified plant is faster than a millisecond: its lags and dead time add up to " +
                      tunewright::text(total, 3) + " s") +
-             ", because the times were taken as seconds; nothing in the file names their unit. If they are " +
-             (slow ? "milliseconds, choose ms" : "days, as spreadsheets count, choose d") +
+             ", because the times were assumed to be seconds; the file does not name their unit. If they are " +
+             (slow ? "milliseconds, choose ms" : "days, the unit of spreadsheets, choose d") +
              " as the unit of the times."});
 }
 

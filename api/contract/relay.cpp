@@ -11,13 +11,13 @@ namespace tunewright::api {
 const Description<UltimateTest>& ultimate_contract() {
     static const auto description = [] {
         using U = UltimateTest;
-        Description<U> d("UltimateTest", "What an experiment with a proportional controller shows, and nothing else.");
+        Description<U> d("UltimateTest", "The result of an experiment with a proportional controller alone.");
         d.field("Ku", &U::Ku, number({.not_zero = true}),
-                "Gain at which the loop oscillates; negative for a plant of negative gain.",
+                "Gain at which the loop oscillates; negative for a plant with negative gain.",
                 {.required = true, .unit = "u/y"})
             .field("Pu", &U::Pu, number({.exclusive_minimum = 0}), "Period of that oscillation.",
                    {.required = true, .unit = "time"})
-            .field("K", &U::K, maybe(number({.not_zero = true})), "Static gain, where it is known; of the sign of Ku.",
+            .field("K", &U::K, maybe(number({.not_zero = true})), "Static gain, if it is known; with the sign of Ku.",
                    {.unit = "y/u"})
             .check([](const Json&, U& test, Reader& reader) {
                 if (const auto fault = test.fault()) reader.fault_below(fault->where, 1, fault->message);
@@ -65,9 +65,9 @@ const Description<LimitCycle>& limit_cycle_contract() {
             .field("describing_function", &LimitCycle::describing_function, maybe(object(ultimate_point_contract())),
                    "Ultimate point by the describing function: an approximation; the model's is better.")
             .field("t_plus", &LimitCycle::t_plus, only_answered(maybe(number())),
-                   "How long u stays at its upper level in each period.", {.unit = "time"})
+                   "Time of u at its upper level in each period.", {.unit = "time"})
             .field("t_minus", &LimitCycle::t_minus, only_answered(maybe(number())),
-                   "How long u stays at its lower level in each period.", {.unit = "time"})
+                   "Time of u at its lower level in each period.", {.unit = "time"})
             .field("y_max", &LimitCycle::y_max, only_answered(maybe(number())), "Largest y of the oscillation.",
                    {.unit = "y"})
             .field("y_min", &LimitCycle::y_min, only_answered(maybe(number())), "Smallest y of the oscillation.",
@@ -96,27 +96,28 @@ const Description<RelaySettings>& relay_settings_contract() {
     static const auto description = [] {
         Description<RelaySettings> d("Relay",
                                      "u_plus from t = 0 at rest; to u_minus when y > hysteresis, to u_plus when y < "
-                                     "-hysteresis; the other way round where the plant's gain is negative.");
+                                     "-hysteresis; the other way round if the plant's gain is negative.");
         d.field("u_plus", &RelaySettings::u_plus, number(), "Upper level, from the operating point; > u_minus.",
                 {.unit = "u"})
             .field("u_minus", &RelaySettings::u_minus, number(), "Lower level, from the operating point.",
                    {.unit = "u"})
             .field("hysteresis", &RelaySettings::hysteresis, number({.minimum = 0}),
-                   "The relay switches when |y| leaves it.", {.unit = "y"})
+                   "The relay switches when |y| exceeds it.", {.unit = "y"})
             .field("noise_std", &RelaySettings::noise_std, number({.minimum = 0}),
                    "Standard deviation of white noise on each sample, seen by the relay; needs relay_sample_time > 0.",
                    {.unit = "y"})
             .field("relay_sample_time", &RelaySettings::relay_sample_time, number({.minimum = 0}),
-                   "Time between looks of the relay at y; 0: it switches at the very instant.", {.unit = "time"})
+                   "Sample time of the relay; 0: it switches at the instant of the crossing.", {.unit = "time"})
             .field(
                 "record_interval", &RelaySettings::record_interval, maybe(number({.exclusive_minimum = 0})),
                 "Spacing of the record's rows, a whole multiple of relay_sample_time; Pu/200 or relay_sample_time if "
                 "not given. Every switch is a row, too.",
                 {.unit = "time"})
             .field("cycles", &RelaySettings::cycles, integer(1, kMaxRelayCycles), "Cycles recorded from t = 0.")
-            .field("seed", &RelaySettings::seed, integer(0, 2147483647), "Of the noise: equal seeds, equal records.")
+            .field("seed", &RelaySettings::seed, integer(0, 2147483647),
+                   "Seed of the noise: equal seeds give equal records.")
             .field("shift", &RelaySettings::shift, maybe(number({.exclusive_minimum = 0})),
-                   "Shift of limit_cycle.shift; 1/Pu if not given.", {.unit = "1/time"});
+                   "Value of limit_cycle.shift; default: 1/Pu.", {.unit = "1/time"});
         return d;
     }();
     return description;
@@ -135,7 +136,7 @@ const Description<RelayRecord>& relay_record_contract() {
         const auto zero = [](const RelayRecord&, Writer& out) { out.integer(0); };
         const auto zero_schema = [](SchemaBook&) { return Json{{"type", "number"}, {"const", 0}}; };
         Description<RelayRecord> d("RelayRecord",
-                                   "The simulated test, ready to be sent to /v1/identify as its record. u holds from "
+                                   "The simulated test, in the form of a record for /v1/identify. u holds from "
                                    "its row to the next.");
         d.tag("kind", "relay")
             .field("t", &RelayRecord::t, column(), "Times.", {.unit = "time"})
@@ -154,18 +155,17 @@ const Description<RelayPlan>& relay_plan_contract() {
         d.field("u_plus", &RelayPlan::u_plus, only_answered(number()), "Upper level.", {.unit = "u"})
             .field("u_minus", &RelayPlan::u_minus, only_answered(number()), "Lower level.", {.unit = "u"})
             .field("hysteresis", &RelayPlan::hysteresis, only_answered(number()),
-                   "3 noise_std, or as given without noise.", {.unit = "y"})
-            .field("amplitude", &RelayPlan::amplitude, only_answered(number()), "Half of the swing of y to expect.",
+                   "3 noise_std, or without noise as given.", {.unit = "y"})
+            .field("amplitude", &RelayPlan::amplitude, only_answered(number()), "Expected amplitude of y.",
                    {.unit = "y"})
             .field("expected_period", &RelayPlan::expected_period, only_answered(number()), "Period to expect.",
                    {.unit = "time"})
             .field("cycles", &RelayPlan::cycles, only_answered(integer(1, kMaxRelayCycles)),
-                   "Cycles to run, those to settle included.")
-            .field("duration", &RelayPlan::duration, only_answered(number()), "How long that takes, about.",
-                   {.unit = "time"})
+                   "Number of cycles, including those for settling.")
+            .field("duration", &RelayPlan::duration, only_answered(number()), "Approximate duration.", {.unit = "time"})
             .field("record_interval", &RelayPlan::record_interval, only_answered(number()),
-                   "Spacing of the rows: 200 a period, or every sample of the relay.", {.unit = "time"})
-            .field("reason", &RelayPlan::reason, only_answered(text(1000)), "Why these.");
+                   "Spacing of the rows: 200 per period, or every sample of the relay.", {.unit = "time"})
+            .field("reason", &RelayPlan::reason, only_answered(text(1000)), "Reason for these values.");
         return d;
     }();
     return description;
@@ -190,12 +190,12 @@ const Description<RelayRequest>& relay_request_contract() {
 
 const Description<RelayExperiment>& relay_answer_contract() {
     static const auto description = [] {
-        Description<RelayExperiment> d("RelayAnswer", "What the relay test would show.");
+        Description<RelayExperiment> d("RelayAnswer", "The result of the relay test.");
         d.field("record", &RelayExperiment::record, answer(relay_record_contract()), "The test from rest.")
             .field("limit_cycle", &RelayExperiment::limit_cycle, answer(limit_cycle_contract()),
                    "The steady oscillation without noise, as a fixed point; Au, phi_u and shift are the plant's own.")
             .field("reversed", &RelayExperiment::reversed, only_answered(boolean()),
-                   "The relay acts on -y, because the plant's gain is negative.")
+                   "True if the relay acts on -y, because the plant's gain is negative.")
             .field("plan", &RelayExperiment::plan, answer(relay_plan_contract()), "The recommended test.")
             .field("warnings", &RelayExperiment::warnings, list_of(answer(warning_contract())), "Remarks.");
         return d;

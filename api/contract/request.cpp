@@ -34,7 +34,8 @@ void check_ultimate(const Json& value, JobRequest& request, Reader& reader) {
     if (!value.contains("ultimate")) return;
     for (const char* judged : {"baseline", "implement", "evaluate", "identify", "uncertainty"})
         if (value.contains(judged))
-            reader.fault_at(judged, std::string(judged) + " needs a plant or a record: leave it out next to ultimate.");
+            reader.fault_at(judged,
+                            std::string(judged) + " needs a plant or a record: leave it out together with ultimate.");
     if (!value.contains("tune")) request.tune = {MethodRequest{"all", {}}};
 }
 
@@ -55,8 +56,8 @@ void check_source(const Json& value, const std::vector<std::string>& sources, co
     for (const std::string& source : sources)
         if (value.contains(source)) given.push_back(source);
     if (given.size() > 1)
-        reader.fault_at(given[1],
-                        given[1] + " and " + given[0] + " are both given; a request is about one of them. Remove one.");
+        reader.fault_at(
+            given[1], given[1] + " and " + given[0] + " are both given; a request takes only one of them. Remove one.");
     if (given.empty())
         reader.fault(listed(sources) +
                      " is missing; give a plant such as {\"type\": \"fopdt\", \"K\": 2, \"T\": 10, "
@@ -114,14 +115,14 @@ void check_job(const Json& value, JobRequest& request, Reader& reader) {
     request.given_steps = given_steps(value);
     if (request.uncertainty == "identified" && !request.record && !request.model) {
         reader.fault_at("uncertainty",
-                        "uncertainty is \"identified\", which needs a record. For a plant give the plant its own "
-                        "uncertainty, such as {\"K\": [0.8, 1.2]}.");
+                        "uncertainty is \"identified\", which needs a record. For a plant give uncertainty in the "
+                        "plant, such as {\"K\": [0.8, 1.2]}.");
     }
     if (request.uncertainty == "identified" && request.model && request.model->covariance.names.empty()) {
         const Reader::At at(reader, "model");
         reader.fault_at("covariance",
-                        "covariance is missing, and uncertainty \"identified\" needs it. Send the model as the answer "
-                        "had it, or use uncertainty \"auto\" or \"none\".");
+                        "covariance is missing, and uncertainty \"identified\" needs it. Send the model as in the "
+                        "answer, or use uncertainty \"auto\" or \"none\".");
     }
     if (!request.plant) return;
     request.subject = subject_of(*request.plant, reader);
@@ -155,26 +156,28 @@ void add_judged(Description<Request>& d) {
     d.field(
          "baseline", [](const Json& value, Request& request, Reader& reader) { read_baseline(value, request, reader); },
          [](const Request& request, Writer& out) { write_baseline(request, out); }, baseline_schema,
-         "Today's settings, answered as the last entry: a controller, or a product with its settings as typed.", {},
+         "Today's settings, which become the last entry: a controller, or a product with its settings as typed.", {},
          [](const Request& request) { return !request.baseline && !request.baseline_settings; })
         .field("implement", &Request::implement, maybe(object(implement_contract())),
-               "The user's own controller, for which entries are settled and judged.")
-        .field("evaluate", &Request::evaluate, object(evaluate_options_contract()), "What is simulated and answered.");
+               "The user's own controller, for which entries are converted and evaluated.")
+        .field("evaluate", &Request::evaluate, object(evaluate_options_contract()),
+               "Options of the simulation and the answer.");
 }
 
 constexpr const char* kModelSentence =
-    "What an answer has as `model` for a record, sent back in the record's place: the record is not identified again.";
+    "The `model` of an answer for a record, sent back instead of the record: the record is not identified again.";
 
 // Checks that apply to the requests of a job and of a design.
 template <class Request>
 void add_question(Description<Request>& d) {
-    d.field("identify", &Request::identify, object(identify_contract()), "How the record becomes a model.")
-        .field("tune", &Request::tune, tune_list(), "The methods, one entry of the answer each; \"all\": every one.");
+    d.field("identify", &Request::identify, object(identify_contract()), "Identification of the record.")
+        .field("tune", &Request::tune, tune_list(),
+               "The methods, each with one entry of the answer; \"all\": every method.");
     add_judged(d);
     d.field("uncertainty", &Request::uncertainty,
             choice<std::string>({{"auto", "auto"}, {"none", "none"}, {"identified", "identified"}}),
-            "identified: robust holds its limits over the record's 95 % confidence region. auto: where the "
-            "design on the model alone breaks a limit there, both are answered, the one that holds it first.");
+            "identified: robust holds its limits over the record's 95 % confidence region. auto: if the design on the "
+            "model alone exceeds a limit there, both designs are returned, first the one over the region.");
 }
 
 template <class Request>
@@ -196,20 +199,19 @@ std::optional<AnalysedPlant> subject_of(const PlantModel& plant, Reader& reader)
 const Description<JobRequest>& job_contract() {
     static const auto description = [] {
         Description<JobRequest> d("TuningRequest",
-                                  "A plant or a recorded test, and how its controllers are to be found and judged.");
+                                  "A plant or a recorded test, and the methods and evaluation of its controllers.");
         add_labels(d);
         d.field("plant", &JobRequest::plant, maybe(plant_model_or_text()),
                 "The plant; exactly one of plant, record and ultimate.")
             .field("record", &JobRequest::record, maybe(object(record_contract())),
                    "The recorded test; exactly one of plant, record and ultimate.")
-            .field(
-                "ultimate", &JobRequest::ultimate, maybe(object(ultimate_contract())),
-                "In place of both: ultimate gain and period alone. The rules that need no more are answered, without "
-                "figures of a loop.");
+            .field("ultimate", &JobRequest::ultimate, maybe(object(ultimate_contract())),
+                   "Instead of both: only ultimate gain and period. The rules that need no more give settings, without "
+                   "figures of a loop.");
         add_question(d);
         add_terms(d);
         d.check_presence([](const Json& value, JobRequest& request, Reader& reader) {
-             check_source(value, kJobSources, "a recorded test, or an ultimate gain and period alone", reader);
+             check_source(value, kJobSources, "a recorded test, or only an ultimate gain and period", reader);
              check_ultimate(value, request, reader);
          })
             .example({{"name", "TIC-101"},
@@ -227,16 +229,16 @@ const Description<DesignRequest>& design_request_contract() {
     static const auto description = [] {
         using D = DesignRequest;
         Description<D> d("DesignRequest",
-                         "What a job asks, without the terms on which a job is run; in place of a record also the "
-                         "model that was found in it.");
+                         "The request of a job, without the terms on which a job is run; instead of a record also the "
+                         "model identified from it.");
         add_labels(d);
         d.field("plant", &D::plant, maybe(plant_model_or_text()), "The plant; exactly one of plant, record and model.")
             .field("record", &D::record, maybe(object(record_contract())), "The recorded test.")
             .field("model", &D::model, maybe(object(model_contract())), kModelSentence);
         add_question(d);
-        d.field(
-             "start", &D::start, maybe(one_of(controller_contract())),
-             "A design nearby, such as the last answer: a hint. The whole search is made, so no answer depends on it.")
+        d.field("start", &D::start, maybe(one_of(controller_contract())),
+                "A similar design, such as the last answer: a hint. The search is complete, so that the answer does "
+                "not depend on it.")
             .check_presence([](const Json& value, D&, Reader& reader) {
                 check_source(value, kDesignSources, "a recorded test, or the model of one", reader);
             })
@@ -259,9 +261,9 @@ const Description<EvaluateRequest>& evaluate_request_contract() {
             .field("controllers", &EvaluateRequest::controllers,
                    list_of(one_of(controller_contract()), 1, kMaxControllers), "The controllers.", {.required = true})
             .field("evaluate", &EvaluateRequest::evaluate, object(evaluate_options_contract()),
-                   "What is simulated and answered.")
+                   "Options of the simulation and the answer.")
             .field("implement", &EvaluateRequest::implement, maybe(object(implement_contract())),
-                   "The user's own controller, on which they are judged too.")
+                   "The user's own controller, on which they are evaluated too.")
             .check_presence([](const Json& value, EvaluateRequest&, Reader& reader) {
                 check_source(value, kEvaluateSources, "or the model of a record", reader);
             })
@@ -280,8 +282,7 @@ const Description<IdentifyRequest>& identify_request_contract() {
         add_labels(d);
         d.field("record", &IdentifyRequest::record, maybe(object(record_contract())), "The recorded test.",
                 {.required = true})
-            .field("identify", &IdentifyRequest::identify, object(identify_contract()),
-                   "How the record becomes a model.")
+            .field("identify", &IdentifyRequest::identify, object(identify_contract()), "Identification of the record.")
             .check(resolve_record<IdentifyRequest>);
         return d;
     }();
@@ -387,10 +388,10 @@ const Description<ActuatorLimits>& actuator_contract() {
 const Description<NoiseOptions>& noise_contract() {
     static const auto description = [] {
         Description<NoiseOptions> d("Noise",
-                                    "White measurement noise; it is reported apart and never enters IAE or TV.");
+                                    "White measurement noise; it is reported separately and never affects IAE or TV.");
         d.field("std", &NoiseOptions::std, number({.minimum = 0}), "Standard deviation, >= 0.", {.unit = "y"})
             .field("sample_time", &NoiseOptions::sample_time, number({.minimum = 0}),
-                   "Time between samples; 0: 1/100 of the shorter of the loop's own times.", {.unit = "time"});
+                   "Time between samples; 0: 1/100 of the shorter of the loop's time constants.", {.unit = "time"});
         return d;
     }();
     return description;
@@ -400,20 +401,20 @@ const Description<NoiseOptions>& noise_contract() {
 
 const Description<EvaluateOptions>& evaluate_options_contract() {
     static const auto description = [] {
-        Description<EvaluateOptions> d("Evaluate", "What is simulated and how much of it is answered.");
+        Description<EvaluateOptions> d("Evaluate", "Options of the simulation and extent of the answer.");
         d.field("setpoint_step", &EvaluateOptions::setpoint_step, number({.not_zero = true}),
                 "Size of the set-point step.", {.unit = "y"})
             .field("load_step", &EvaluateOptions::load_step, number({.not_zero = true}),
                    "Size of the load step at the plant's input.", {.unit = "u"})
             .field(
                 "horizon", &EvaluateOptions::horizon, horizon(),
-                "Length of the responses; a number also ends the indices, which are integrals to infinity with auto.",
+                "Length of the responses; a number also ends the indices, which with auto are integrals to infinity.",
                 {.unit = "time"})
             .field("points", &EvaluateOptions::points, points(), "Points of each trace: 0 (no traces) or 2 to 20000.")
             .field("actuator", &EvaluateOptions::actuator, maybe(object(actuator_contract())), "Limits of u.")
             .field("noise", &EvaluateOptions::noise, maybe(object(noise_contract())), "Measurement noise.")
             .field("tradeoff", &EvaluateOptions::tradeoff, boolean(),
-                   "Also tell each controller's trade-off between set points and loads.")
+                   "Also return each controller's trade-off between set points and loads.")
             .field(
                 "rank_limits",
                 [](const Json& value, EvaluateOptions& options, Reader& reader) {
@@ -422,7 +423,7 @@ const Description<EvaluateOptions>& evaluate_options_contract() {
                     for (const auto& [name, member] : value.items()) {
                         const Reader::At at(reader, name);
                         if (name != "Ms") {
-                            reader.fault(name + " is not a field here; known is Ms.");
+                            reader.fault(name + " is not a field here; the only one is Ms.");
                         } else if (const auto read = read_number(member, {.exclusive_minimum = 1}, reader)) {
                             options.rank_Ms = *read;
                         }
@@ -439,10 +440,10 @@ const Description<EvaluateOptions>& evaluate_options_contract() {
                                 {"properties", {{"Ms", {{"type", "number"}, {"exclusiveMinimum", 1}, {"default", 2}}}}},
                                 {"additionalProperties", false}};
                 },
-                "Entries above these limits rank last.")
+                "Entries that exceed these limits rank last.")
             .field("optimum_at_Ms", &EvaluateOptions::optimum_at_Ms, maybe(boolean()),
-                   "Whether each entry is compared with the robust PID of the least load IAE at the same Ms. Default: "
-                   "true where a job compares several methods, else false.");
+                   "True: compare each entry with the robust PID of the least load IAE at the same Ms. Default: true "
+                   "if a job compares several methods, else false.");
         return d;
     }();
     return description;

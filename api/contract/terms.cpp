@@ -20,14 +20,14 @@ constexpr int kMaxDaysAhead = 30;         // for which a job may wait for its ti
 
 const Description<Notify>& notify_contract() {
     static const auto description = [] {
-        Description<Notify> d("Notify",
-                              "Whom to tell when it has ended: a POST to that address, signed as Standard Webhooks has "
-                              "it, tried again for a day until it is answered with a status from 200 to 299.");
-        d.field("url", &Notify::url, text(kMaxUrl), "The address; the operator of the service has to have allowed it.",
+        Description<Notify> d(
+            "Notify",
+            "Webhook for the end of the job or batch: a POST to that address, signed according to Standard Webhooks, "
+            "and repeated for a day until the answer has a status from 200 to 299.");
+        d.field("url", &Notify::url, text(kMaxUrl), "The address, which the operator of the service must have allowed.",
                 {.required = true})
             .field("secret_id", &Notify::secret_id, text(kMaxSecretName),
-                   "The name of the operator's secret that signs it. Without a name it is the first.",
-                   {.no_default = true})
+                   "The name of the operator's secret that signs it. Default: the first.", {.no_default = true})
             .example({{"url", "https://hooks.example.com/tunewright"}, {"secret_id", "line-1"}});
         return d;
     }();
@@ -66,18 +66,18 @@ template <class Request>
 void add_terms(Description<Request>& description) {
     description
         .field("timeout_s", &JobTerms::timeout_s, number({.exclusive_minimum = 0, .maximum = kLongestTimeout}),
-               "Time allowed for the job; it fails with type timeout after it.", {.unit = "s"})
+               "Time limit of the job, after which it fails with type timeout.", {.unit = "s"})
         .field("priority", &JobTerms::low_priority, choice<bool>({{"normal", false}, {"low", true}}),
-               "low: it takes its turn among the entries of batches, after single jobs of normal priority.")
+               "low: its turn is among the entries of batches, after single jobs of normal priority.")
         .field("not_before", &JobTerms::not_before, maybe(moment()),
                "The job starts at this time or later; a time in the past means at once. ISO 8601 with a zone, such as "
                "2026-05-04T06:00:00Z; at most " +
                    std::to_string(kMaxDaysAhead) + " days ahead.")
         .field("unique", &JobTerms::unique, boolean(),
-               "true: if a job of this very request waits, runs or has succeeded and is kept, the answer is that job "
-               "and no second one is made. Name, timeout_s and every other member count; notify, priority, not_before "
+               "true: if a stored job with the same request waits, runs or has succeeded, the answer is that job and "
+               "no second one is created. Name, timeout_s and every other member count; notify, priority, not_before "
                "and unique do not.")
-        .field("notify", &JobTerms::notify, maybe(object(notify_contract())), "Whom to tell when the job has ended.");
+        .field("notify", &JobTerms::notify, maybe(object(notify_contract())), "Webhook for the end of the job.");
 }
 
 template void add_terms(Description<JobRequest>& description);
@@ -89,7 +89,7 @@ std::optional<Problem> refuse_far(const std::optional<std::int64_t>& not_before)
     if (!not_before || milliseconds(*not_before) <= latest.time_since_epoch()) return std::nullopt;
     Reader reader;
     reader.fault_at("not_before", "not_before is more than " + std::to_string(kMaxDaysAhead) +
-                                      " days ahead, the longest that a job may wait for its time. Give an earlier "
+                                      " days ahead, the longest time for which a job may be scheduled. Give an earlier "
                                       "time, or post the job later.");
     return reader.problem();
 }
@@ -119,16 +119,17 @@ std::optional<Problem> refuse_terms_of_entry(const Json& request) {
     Reader reader;
     if (request.contains("notify"))
         reader.fault_at("notify",
-                        "notify stands in an entry, but a batch is told as a whole: put notify beside jobs, or into "
-                        "the parameter notify_url.");
+                        "notify is in an entry, but a batch has one notification as a whole: put notify next to jobs, "
+                        "or into the parameter notify_url.");
     if (const auto at = request.find("priority"); at != request.end() && *at == "normal")
-        reader.fault_at("priority",
-                        "priority is \"normal\", which no entry of a batch has: leave it out, or post the job alone.");
+        reader.fault_at(
+            "priority",
+            "priority is \"normal\", which is not possible in a batch: leave it out, or post the job alone.");
     for (const char* name : {"not_before", "unique"})
         if (request.contains(name))
             reader.fault_at(name, std::string(name) +
-                                      " stands in an entry, but only a job that is posted alone can "
-                                      "have it: leave it out, or post the job with POST /v1/jobs.");
+                                      " is in an entry, but only a job that is posted alone can have it: leave it out, "
+                                      "or post the job with POST /v1/jobs.");
     return reader.problem();
 }
 

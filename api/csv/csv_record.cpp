@@ -95,7 +95,7 @@ private:
             if (faults_.size() >= kMaxFaults) return;
             if (record_.t.size() > options_.max_samples) {
                 return fault("csv", "csv has more than " + std::to_string(options_.max_samples) +
-                                        " samples; thin it out: a few thousand identify as well.");
+                                        " samples; thin it out: a few thousand are sufficient.");
             }
         }
         if (unread_ > 0 && (record_.t.size() < kMinReadRows || (unread_ - 1) * kMinRowsPerUnread >= record_.t.size()))
@@ -104,7 +104,7 @@ private:
         record_.time_unit_known = options_.dt || (columns_.spacing ? unit_is_known(*columns_.spacing, options_)
                                                                    : !times || times->unit_known());
         if (columns_.at[kReferenceRole] && !hold_reference(record_.r))
-            columns_.notes.emplace_back("The column of the set point holds no number; there is none in the record.");
+            columns_.notes.emplace_back("The column of the set point contains no number; the record has no set point.");
         if (layout_.pivoted) hold_input(record_);
         write_notes(times);
     }
@@ -299,11 +299,11 @@ private:
     void report_cell(const CsvLine& line, ColumnRole role, std::string_view text, bool stamps) {
         const bool other_separator = line.cells.size() == 1 && layout_.width > 1;
         const std::string reason = "column " + column_name(role) + ": " + in_quotes(text) + " is not " +
-                                   (stamps           ? "a time stamp like the first."
+                                   (stamps           ? "a time stamp like the first one."
                                     : of_words(role) ? "one of the column's two words."
                                                      : "a number.");
         const char* cure = other_separator ? " The line is not separated like the others."
-                                           : " Mend the line, or leave the cell blank to drop it.";
+                                           : " Correct the line, or leave the cell blank to drop it.";
         // ON and OFF among numbers have a meaning that is not known.
         if (role == kInputRole && switch_word(text))
             return fault("csv", "Line " + std::to_string(line.number) + ", " + reason + cure);
@@ -313,7 +313,8 @@ private:
     void report_size(const CsvLine& line, ColumnRole role) {
         fault("csv", "Line " + std::to_string(line.number) + ", column " + column_name(role) + ": " +
                          in_quotes(cell(line, *columns_.at[role])) +
-                         " is beyond 1e30, no measurement. Mend the line, or leave the cell blank to drop it.");
+                         " is beyond 1e30, which cannot be a measurement. Correct the line, or leave the cell blank to "
+                         "drop it.");
     }
 
     void note_unit(ColumnRole role, const std::string& given) {
@@ -342,17 +343,18 @@ private:
             notes.push_back(std::to_string(layout_.skipped) +
                             (layout_.skipped == 1 ? " line above the headings was" : " lines above the headings were") +
                             " skipped.");
-        if (layout_.pairs) notes.emplace_back("Each line names its values; lines without them were passed over.");
+        if (layout_.pairs) notes.emplace_back("Each line names its values; other lines were skipped.");
         if (layout_.commented)
-            notes.emplace_back("The headings are those of the comment in line " + std::to_string(layout_.heading_line) +
-                               ".");
-        if (layout_.numbered) notes.emplace_back("The first column, which has no heading, numbers the rows.");
+            notes.emplace_back("The headings were read from the comment in line " +
+                               std::to_string(layout_.heading_line) + ".");
+        if (layout_.numbered) notes.emplace_back("The first column, which has no heading, contains row numbers.");
         if (auto note = switch_note(low_word_, high_word_); !note.empty()) notes.push_back(std::move(note));
         if (auto note = sign_note(layout_); !note.empty()) notes.push_back(std::move(note));
         if (unread_ > 0)
             record_.unread = std::to_string(unread_) + (unread_ == 1 ? " line" : " lines") + " could not be read and " +
                              (unread_ == 1 ? "was" : "were") + " left out: " + first_unread_;
-        if (!missing_word_.empty()) notes.push_back(in_quotes(missing_word_) + " and the like are read as no value.");
+        if (!missing_word_.empty())
+            notes.push_back(in_quotes(missing_word_) + " and similar texts are read as missing values.");
         record_.u_stepped = options_.u_step.has_value();
         if (const auto u = columns_.at[kInputRole];
             u && (is_percent(layout_, profiles_[*u], *u) || options_.unit_u == "%"))

@@ -15,8 +15,9 @@ std::string no_data_sentence(const CsvLayout& layout, std::string_view first_lin
             if (named && named->level == 1) return "csv has headings but no line of numbers.";
         }
     }
-    return "csv has no line of numbers in columns, nor lines that name two values or more each; it begins with " +
-           in_quotes(first_line) + ". Export a heading line such as t,u,y and one line a sample, with all its values.";
+    return "csv has neither lines of numbers in columns nor lines that each name two or more values; it begins with " +
+           in_quotes(first_line) +
+           ". Export a heading line such as t,u,y and one line per sample, with all its values.";
 }
 
 std::string sign_note(const CsvLayout& layout) {
@@ -29,7 +30,7 @@ std::string sign_note(const CsvLayout& layout) {
                (comma ? "comma." : "point.");
     if (!open.empty() && of_thousands)
         return "Numbers such as " + in_quotes(open) +
-               " are read as thousands: whole numbers stand beside them in the column.";
+               " are read as thousands, because the column also contains whole numbers.";
     return layout.sign == DecimalSign::comma ? "Numbers have a decimal comma." : "";
 }
 

@@ -45,12 +45,12 @@ double RunningClock::seconds(const TimeStamp& stamp, int line) {
         } else if (!stamp.has_zone && back <= kHour && back > kHour - kMaxRepeated) {
             move(kHour);
             notes_.push_back("The clock goes back by an hour at line " + std::to_string(line) +
-                             ", as at the end of summer time; the times go on.");
+                             ", as at the end of summer time; the times continue without the jump.");
         }
     } else if (last_ && leaves_out_an_hour(stamp, seconds - *last_)) {
         move(-kHour);
         notes_.push_back("The clock goes forward by an hour at line " + std::to_string(line) +
-                         ", as at the start of summer time; the times go on without that hour.");
+                         ", as at the start of summer time; the times continue without that hour.");
     }
     if (last_) step_ = seconds - *last_;
     last_ = seconds;

@@ -105,7 +105,7 @@ void TimeColumn::find_order(std::string_view text, const CsvLayout& layout, cons
     order_ = way[1] < way[0] ? DateOrder::month_first : DateOrder::day_first;
     if (matters && way[0] != way[1]) {
         notes_.push_back(std::string("Dates are read with the ") + (order_ == DateOrder::day_first ? "day" : "month") +
-                         " first: so the times run on, the other way they would jump.");
+                         " first, because the times would otherwise jump.");
     }
 }
 
@@ -209,13 +209,13 @@ void TimeColumn::find_unit(std::string_view text, const CsvLayout& layout, const
     unit_known_ = given.has_value() || options.time_unit_given;
     if (!unit_known_) note_unknown_unit(profile, options);
     if (!given && options.time_unit_given && options.time_unit != "s")
-        notes_.push_back("The file names no unit of time: the times are taken to be in " + options.time_unit +
+        notes_.push_back("The file names no unit of time: the times are assumed to be in " + options.time_unit +
                          ", the unit of the answer.");
     if (!given || !answer) return;
     if (by_size)
-        notes_.push_back("Times count " + std::string(unit == "d" ? "days, as spreadsheets do" : unit + " since 1970") +
-                         ", by their size; they are taken from the first one on.");
-    if (by_clock) notes_.push_back("Times count " + unit + ", by the clock beside them.");
+        notes_.push_back("Times count " + std::string(unit == "d" ? "days, as in spreadsheets" : unit + " since 1970") +
+                         ", by their size; they count from the first one.");
+    if (by_clock) notes_.push_back("Times count " + unit + ", by comparison with the clock in the file.");
     if (*given == *answer) return;
     factor_ = *given / *answer;
     notes_.push_back("Times are converted from " + unit + " to " + options.time_unit + ".");

@@ -21,7 +21,7 @@ std::string cure_for(const Json& value) {
     if (lower.find("nan") != lower.npos || lower.find("inf") != lower.npos) {
         return " NaN and Infinity are not accepted: give a finite number or leave the field out.";
     }
-    if (content.find(',') != content.npos) return " JSON's decimal sign is the point.";
+    if (content.find(',') != content.npos) return " The decimal sign in JSON is the point.";
     return {};
 }
 

@@ -156,7 +156,7 @@ Json Members::properties_schema(SchemaBook& book, bool reads, Json& required) co
     }
     if (!otherwise_.empty()) {
         properties["why_null"] = {{"type", "object"},
-                                  {"description", "Field -> why it is null."},
+                                  {"description", "Reason for each field that is null, by name."},
                                   {"additionalProperties", {{"type", "string"}}}};
     }
     return properties;

@@ -54,7 +54,7 @@ Answer example_request(std::string_view which) {
     Problem problem{404, "not-found", "There is no such example", "", {}, {}};
     const std::string meant = nearest(which, ids);
     problem.detail = "There is no example \"" + std::string(which) + "\". " +
-                     (meant.empty() ? "They are numbered from 1 to " + std::to_string(ids.size()) + "."
+                     (meant.empty() ? "Examples are numbered from 1 to " + std::to_string(ids.size()) + "."
                                     : "Did you mean " + meant + "?");
     return refusal(problem);
 }

@@ -203,12 +203,12 @@ public:
         Json& object = *stack_.back();
         if (object.contains(name)) {
             problem_ = refused(pointer() + "/" + pointer_segment(name),
-                               name + " is given twice in the same object; only one value can hold. Remove one.");
+                               name + " is given twice in the same object. Remove one.");
             return false;
         }
         if (object.size() >= kMaxMembers) {
             problem_ = refused(pointer(), "The object has more than " + std::to_string(kMaxMembers) +
-                                              " members; none of the contract needs so many.");
+                                              " members, more than any object of the contract needs.");
             return false;
         }
         names_.back() = name;
@@ -255,7 +255,7 @@ private:
             if (around.find(word) != around.npos)
                 return " (JSON has no NaN or Infinity: leave the field out or write a number)";
         }
-        if (around.find('\'') != around.npos) return " (texts stand in double quotes)";
+        if (around.find('\'') != around.npos) return " (a text must be in double quotes)";
         if (position >= text_.size()) return " (it ends too early: a bracket or quote is not closed)";
         if (around.find(",}") != around.npos || around.find(",]") != around.npos)
             return " (no comma after the last element)";
@@ -360,14 +360,13 @@ std::variant<Json, Problem> parse(std::string_view text) {
     constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
     if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
     if (tree_size(text) > kMaxTree)
-        return Problem{
-            413,
-            "too-large",
-            "The request is too large",
-            "The JSON holds more values than are accepted in one request (some two million numbers, "
-            "or three hundred thousand small objects). Send a record as CSV, or leave out rows that say nothing new.",
-            {},
-            {}};
+        return Problem{413,
+                       "too-large",
+                       "The request is too large",
+                       "The JSON has more values than one request may have (about two million numbers, or three "
+                       "hundred thousand small objects). Send a record as CSV, or thin it out.",
+                       {},
+                       {}};
     TreeBuilder builder(text);
     // The reader's own check reads beyond the end of a text that ends within a character.
     if (const std::size_t valid = valid_utf8(text); valid < text.size()) {

@@ -18,14 +18,14 @@ struct KindRow {
 
 constexpr KindRow kTable[] = {
     {ErrorKind::invalid_argument, 422, "The request is not valid"},
-    {ErrorKind::unsupported, 422, "This cannot be done for this plant or method"},
+    {ErrorKind::unsupported, 422, "This is not possible for this plant or method"},
     {ErrorKind::not_identifiable, 422, "The record does not determine a model"},
     {ErrorKind::unstable_plant, 422, "No controller of this kind stabilises the plant"},
     {ErrorKind::no_feasible_controller, 422, "No controller keeps the limits"},
-    {ErrorKind::unbounded_optimum, 422, "The optimum runs away"},
-    {ErrorKind::not_representable, 422, "The product cannot be this controller"},
+    {ErrorKind::unbounded_optimum, 422, "The optimum is unbounded"},
+    {ErrorKind::not_representable, 422, "The product cannot represent this controller"},
     {ErrorKind::cancelled, 409, "The job was cancelled"},
-    {ErrorKind::timeout, 504, "The time allowed is over"},
+    {ErrorKind::timeout, 504, "The time limit is over"},
     {ErrorKind::numerical_failure, 422, "The computation did not reach its accuracy"},
 };
 

@@ -139,8 +139,8 @@ Html figures_section(const ReportInput& s) {
     const JsonLocation region = s.entry.at("region");
     if (region.at("worst_Ms").exists())
         more += element("p", Html("Over the whole uncertainty, Ms is at worst ") + figure(region.at("worst_Ms")) +
-                                 "; the share of them on which the loop is stable is " +
-                                 figure(region.at("stable_fraction")) + ".");
+                                 "; the share of plants with a stable loop is " + figure(region.at("stable_fraction")) +
+                                 ".");
     return section("Figures", element("div", tables, {{"class", "tables"}}) + more);
 }
 

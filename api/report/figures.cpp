@@ -44,7 +44,7 @@ std::string uncertain_text(double value, double standard_error) {
 
 std::string grade_words(std::string_view grade, std::string_view reason) {
     if (grade == "good") return "A good model.";
-    if (grade == "usable") return "A model to use with care: see its warnings.";
+    if (grade == "usable") return "Use the model with care: see its warnings.";
     if (grade != "doubtful") return "";
     if (reason == "fit") return "A doubtful model: it explains too little of its record.";
     return reason == "warning" ? "A doubtful model: see its warnings." : "A doubtful model.";

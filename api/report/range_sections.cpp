@@ -23,7 +23,7 @@ Html verdict_of(const ReportInput& s) {
     const std::string verdict = text_at(s.entry.at("verdict").at("text"));
     if (!verdict.empty()) out += element("p", element("strong", verdict));
     if (s.result.at("partial").value() == true)
-        out += element("p", "The search was stopped before its end; this is the best that it had found.");
+        out += element("p", "The search was stopped before its end; this is the best result until then.");
     std::vector<Html> remarks;
     for (const Json& warning : s.entry.at("warnings").value()) remarks.emplace_back(warning.value("detail", ""));
     for (const Json& reason : s.entry.at("why_null").value())
@@ -42,12 +42,11 @@ Row settings_row(const Html& head, const JsonLocation& controller, const JsonLoc
 std::string interpolation_of(const JsonLocation& schedule) {
     const std::string word = text_at(schedule.at("interpolation"));
     if (word == "steps")
-        return "A row's settings hold from its place on; a row is left half the hysteresis beyond its border. "
-               "Hysteresis: ";
-    return word == "linear_in_times" ? "Between rows Kp, Ti, Td, Tf and b are linear; beyond the first and the last "
-                                       "row their settings hold."
-                                     : "Between rows Kp, 1/Ti, Td, Tf and b are linear; beyond the first and the last "
-                                       "row their settings hold.";
+        return "A row's settings are used from its place on; the controller leaves a row at half the hysteresis beyond "
+               "its border. Hysteresis: ";
+    return word == "linear_in_times"
+               ? "Between rows Kp, Ti, Td, Tf and b are linear; beyond the first and the last row they are constant."
+               : "Between rows Kp, 1/Ti, Td, Tf and b are linear; beyond the first and the last row they are constant.";
 }
 
 Html settings_of(const ReportInput& s) {
@@ -80,7 +79,7 @@ Html worst_of(const ReportInput& s) {
         for (std::size_t k = 0; k < worst.value().size(); ++k) {
             const std::string quantity = text_at(worst.at(k).at("quantity"));
             rows.push_back(
-                {std::string(name) + ": " + (quantity == "relative_IAE" ? "IAE over its own least" : quantity),
+                {std::string(name) + ": " + (quantity == "relative_IAE" ? "IAE relative to its own optimum" : quantity),
                  figure(worst.at(k).at("value")), figure(worst.at(k).at("limit")), figure(worst.at(k).at("at"))});
         }
     }
@@ -102,7 +101,7 @@ Html curves_of(const ReportInput& s) {
     Html out;
     for (const auto& [member, title, label] :
          {std::tuple{"Ms", "Ms over the range", "Ms"}, std::tuple{"Mt", "Mt over the range", "Mt"},
-          std::tuple{"relative_IAE", "IAE over the place's own least", "IAE ratio"}}) {
+          std::tuple{"relative_IAE", "IAE relative to the place's own optimum", "IAE ratio"}}) {
         Plot plot = over_range(s, title, label);
         add_curve(plot, curves, curves.at("schedule").at(member), "Schedule", Line::proposal);
         add_curve(plot, curves, curves.at("one").at(member), "One setting", Line::today);
@@ -139,10 +138,11 @@ Html points_of(const ReportInput& s) {
         rows.push_back(row);
     }
     if (rows.empty()) return {};
-    return section("One setting at the points", table("Each point's own optimum, and what one setting gives there",
-                                                      {scheduling_label(s), "own Kp", with_unit("own Ti", s.time),
-                                                       with_unit("own Td", s.time), "IAE ratio", "Ms", "Mt"},
-                                                      rows));
+    return section("One setting at the points",
+                   table("Each point's own optimum, and the figures of the one setting there",
+                         {scheduling_label(s), "own Kp", with_unit("own Ti", s.time), with_unit("own Td", s.time),
+                          "IAE ratio", "Ms", "Mt"},
+                         rows));
 }
 
 Html run_of(const JsonLocation& run, const ReportInput& s) {

@@ -47,13 +47,12 @@ Html request_section(const Json& request, const std::string& origin) {
     const std::string call = "curl -sS " + quoted((origin.empty() ? "http://127.0.0.1:8080" : origin) + "/v1/jobs") +
                              " -H 'Content-Type: application/json' -H 'Prefer: wait=60' -d ";
     Html out =
-        element("p", "Whoever sends this again gets the same settings.") +
+        element("p", "Sending this request again gives the same settings.") +
         element("p",
-                element("a", "Take out the request as a file",
+                element("a", "Save the request as a file",
                         {{"download", "request.json"}, {"href", "data:application/json;base64," + base64(whole)}}),
                 {{"class", "screen"}});
-    if (!printed)
-        out += element("p", "It is long: lists and texts are cut here, and whole in the file, which this page holds.");
+    if (!printed) out += element("p", "Long lists and texts are shortened here; the file in this page is complete.");
     out += element("pre", (printed ? request : shortened(request)).dump(2), {{"id", "request"}});
     out += element("h3", "As one command") +
            element("pre", call + (printed ? quoted(whole) : "@request.json"), {{"id", "command"}});

@@ -186,22 +186,22 @@ Html assumptions_section(const ReportInput& s) {
     const bool nonlinear = s.result.at("operating_point").exists();
     std::vector<Html> out = {
         nonlinear
-            ? "Methods and margins rest on the linear model at the operating point; responses are of the equations."
+            ? "Methods and margins use the linear model at the operating point; responses are those of the equations."
             : "The plant is linear about its operating point, with the dead time at its input; all values are "
               "deviations from that point.",
         "Responses: a set-point step of " + step("setpoint_step", s.y) + " and a load step of " +
             step("load_step", s.u) + " at the plant's input, both at t = 0. Indices are integrals " +
             (evaluate.at("horizon").value().is_number()
                  ? "to " + number_text(evaluate.at("horizon").value().get<double>(), 6) + " " + s.time + "."
-                 : "until the response has settled for good."),
+                 : "until the response has settled."),
         "u = Kp [b r − y + (1/Ti) ∫(r − y) dt + Td d/dt (c r − y)], y filtered as the table says. L = P C, S = 1/(1 + "
         "L), "
-        "T = L/(1 + L); Ms and Mt are their largest sizes.",
-        "A model is never the process: enter the settings with the loop watched, and keep today's at hand."};
+        "T = L/(1 + L); Ms and Mt are their largest absolute values.",
+        "A model is never the process: watch the loop when you enter the settings, and keep today's settings ready."};
     const JsonLocation check = s.entry.at("verification");
     if (check.at("iae_step_halving").exists())
-        out.push_back(Html("Checked: halving every step moves the load IAE by ") +
-                      figure(check.at("iae_step_halving"), 2) + " of itself; stability by two methods that " +
+        out.push_back(Html("Check: halving every time step changes the load IAE by ") +
+                      figure(check.at("iae_step_halving"), 2) + " relative; stability by two methods that " +
                       (check.at("stability_methods_agree").value() == true ? "agree." : "do not agree."));
     const JsonLocation longest = s.entry.at("longest_sample_time");
     if (longest.value().is_number())

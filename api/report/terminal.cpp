@@ -124,7 +124,7 @@ std::string text_of_result(const Json& result, const std::string& time) {
     out += table_of(result, time, refused);
     if (refused > 0)
         out += std::to_string(refused) + (refused == 1 ? " method has" : " methods have") +
-               " no answer on this plant; the JSON (--pretty) says why.\n";
+               " no result on this plant; the JSON (--pretty) has the reasons.\n";
     const std::vector<std::size_t> order = order_of(result);
     if (order.empty()) return out;
     const Json& best = result.at("controllers").at(order[0]);

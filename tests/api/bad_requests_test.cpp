@@ -71,7 +71,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadRequest{"NaNAsText", with_plant(R"({"type": "fopdt", "K": "NaN", "T": 1, "L": 1})"), 422, "/plant/K",
                    "NaN and Infinity are not accepted"},
         BadRequest{"DecimalComma", with_plant(R"({"type": "fopdt", "K": "2,5", "T": 1, "L": 1})"), 422, "/plant/K",
-                   "decimal sign is the point"},
+                   "decimal sign in JSON is the point"},
         BadRequest{"NullForNumber", with_plant(R"({"type": "fopdt", "K": null, "T": 1, "L": 1})"), 422, "/plant/K",
                    "K is null; it must be a number"},
         BadRequest{"NegativeDeadTime", with_plant(R"({"type": "fopdt", "K": 1, "T": 1, "L": -1})"), 422, "/plant/L",
@@ -256,7 +256,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadRequest{"PartBesideTheRecord", with_record(R"({"dt": 1, "u": [0, 1, 1], "y": [0, 0, 1], "from": 7})"), 422,
                    "/record/from", "It runs from 0 to 2. Choose a wider part."},
         BadRequest{"CsvAndArrays", with_record(R"({"csv": "t,u,y\n0,0,0", "y": [1, 2]})"), 422, "/record/y",
-                   "beside csv"},
+                   "together with csv"},
         BadRequest{"CsvWithoutLines", with_record(R"({"csv": "t,u,y\n"})"), 422, "/record/csv", "no line of numbers"},
         BadRequest{"CsvHeadingUnknown", with_record(R"({"csv": "t,u,y\n0,0,0\n", "columns": {"y": "PV"}})"), 422,
                    "/record/columns/y", "the headings are \"t\", \"u\" and \"y\""},
@@ -357,7 +357,7 @@ TEST(BadRequests, LimitsOfUAreTwoAscendingNumbers) {
 TEST(BadRequests, ASetPointIsAsLongAsTheRecord) {
     const Answer answer = identify_call(R"({"record": {"dt": 1, "u": [0, 1, 1], "y": [0, 1, 1], "r": [1, 1]}})", {});
     EXPECT_EQ(answer.status, 422);
-    EXPECT_THAT(answer.body, HasSubstr("r has 2 numbers and y 3; they must be equally many."));
+    EXPECT_THAT(answer.body, HasSubstr("r has 2 numbers and y 3; they must have the same number."));
 }
 
 // Damaged requests of every kind: the answer is always a valid problem or a job, never an exception. Seeded.

@@ -137,7 +137,7 @@ TEST(BatchReader, TellsFormsApartByTheFirstBytes) {
         EXPECT_EQ(read(open, mark + "name,K,T,L\na,1,2,3\nb,1,2,3\n").entries.size(), 2u);
     }
     EXPECT_THAT(refusal(open, "[" + request + "]"), HasSubstr("422 The body is an array"));
-    EXPECT_THAT(refusal(open, "{\"jobs\": 5}"), HasSubstr("jobs is no array"));
+    EXPECT_THAT(refusal(open, "{\"jobs\": 5}"), HasSubstr("jobs must be an array"));
     EXPECT_EQ(read(open, std::string(70000, ' ') + "{\"jobs\": [" + request + "]}").entries.size(), 1u);
 }
 
@@ -302,7 +302,7 @@ TEST(BatchReader, TheUsersControllerIsSaidOnceForAllLoops) {
     EXPECT_EQ(request["baseline"]["product"], "emerson_deltav_standard");
     const auto wrong = read(loops({{"implement/product", "emerson_deltav"}}), "K,T,L\n2,100,30\n").problem;
     ASSERT_TRUE(wrong);
-    EXPECT_EQ(wrong->title, "What is asked for all loops is not valid");
+    EXPECT_EQ(wrong->title, "The parameters for all loops are not valid");
 }
 
 TEST(BatchReader, AFaultInTodaysSettingsSpeaksOfTheColumn) {
@@ -351,7 +351,7 @@ TEST(BatchReader, SaysWhichColumnsAreMissing) {
     EXPECT_THAT(refusal(loops(), "name,K,L\na,1,3\n"),
                 HasSubstr("422 Line 1 must name the columns, such as name,K,T,L: T is missing."));
     EXPECT_THAT(refusal(loops(), "K\n1\n"), HasSubstr("T and L are missing"));
-    EXPECT_THAT(refusal(loops(), "1,2,3\n"), HasSubstr("Line 1 has no heading of a loop's columns. Put name,K,T,L"));
+    EXPECT_THAT(refusal(loops(), "1,2,3\n"), HasSubstr("Line 1 has no heading of a column of loops. Put name,K,T,L"));
     EXPECT_THAT(refusal(loops(), "K,T,L,Ms\n1,2,3,4\n"), HasSubstr("\"Ms\" is no column of loops"));
     EXPECT_THAT(refusal(loops(), "K,T,tau,L\n1,2,3,4\n"), HasSubstr("two columns say T"));
     EXPECT_THAT(refusal(loops(), "K,T [min],L [s]\n1,2,3\n"), HasSubstr("must be in the same unit"));

@@ -194,7 +194,7 @@ TEST(Controllers, TimesAreInTheRequestsUnit) {
     EXPECT_THAT(
         refused(controller_settings_call("simple_pid", with({{"units", {{"time", "moon"}}}}).dump()), "/units/time")
             .detail,
-        HasSubstr("no unit of time that is known"));
+        HasSubstr("not a known unit of time"));
 }
 
 TEST(Controllers, OtherFormsAreTaken) {

@@ -38,7 +38,7 @@ TEST(Implement, FaultsNameThePlaceAndTheCure) {
     EXPECT_THAT(refusal(implement(R"("integral": "forward")"), "/implement"),
                 HasSubstr("names neither a product nor a sample_time"));
     EXPECT_THAT(refusal(product("klipper", R"(, "integral": "forward")"), "/implement/integral"),
-                HasSubstr("the product's own"));
+                HasSubstr("is fixed by the product"));
     EXPECT_THAT(refusal(implement(R"("sample_time": 0)"), "/implement/sample_time"), HasSubstr("> 0"));
     EXPECT_THAT(refusal(implement(R"("sample_time": 1, "derivative": "fir")"), "/implement/derivative"),
                 HasSubstr("backward or filtered"));

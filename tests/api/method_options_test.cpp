@@ -120,7 +120,7 @@ TEST(MethodOptions, FaultsStandAtTheirPlaceWithTheRule) {
     EXPECT_THAT(read(R"({"scenarios": [{"initial": {"T": 1}}]})").faults,
                 testing::ElementsAre("/scenarios/0/setpoint_step: setpoint_step is missing."));
     EXPECT_THAT(read(R"({"scenarios": [{"setpoint_step": 1, "initial": {"a/b": 1}}]})").faults,
-                testing::ElementsAre(testing::HasSubstr("is no name; names have letters, digits and _")));
+                testing::ElementsAre(testing::HasSubstr("is not a valid name; a name has letters, digits and _")));
     EXPECT_THAT(read(R"({"scenarios": [{"setpoint_step": 1, "load": 2}]})").faults,
                 testing::ElementsAre(testing::HasSubstr("load is not an option of scenarios[0]")));
     EXPECT_THAT(read(R"({"methods": [1]})").faults,

@@ -113,9 +113,10 @@ TEST(JobTerms, AreNotForCallsThatAreAnsweredAtOnce) {
 
 TEST(JobTerms, OfABatchAreNotThoseOfItsEntries) {
     const auto entry = [](const std::string& members) { return prepare_entry(request_with(members)); };
-    EXPECT_THAT(detail_at(std::get<Problem>(entry(kNotify)).errors, "/notify"), HasSubstr("told as a whole"));
+    EXPECT_THAT(detail_at(std::get<Problem>(entry(kNotify)).errors, "/notify"),
+                HasSubstr("has one notification as a whole"));
     EXPECT_THAT(detail_at(std::get<Problem>(entry(R"("priority": "normal")")).errors, "/priority"),
-                HasSubstr("no entry of a batch has"));
+                HasSubstr("is not possible in a batch"));
     EXPECT_TRUE(std::holds_alternative<PreparedJob>(entry(R"("priority": "low")")));
     for (const std::string name : {"not_before", "unique"})
         EXPECT_THAT(detail_at(std::get<Problem>(entry("\"" + name + "\": true")).errors, "/" + name),

@@ -35,19 +35,19 @@ class CommandTest(unittest.TestCase):
     def test_what_a_controller_cannot_be_is_told(self):
         fast = ("--language", "st", "--derivative", "filtered_forward", "--sample-time", "2")
         self.assertIn("stable only for Tf above half", self.refused(result_of(ideal("derivative")), *fast)["detail"])
-        self.assertIn("no time of its own", self.refused(result_of(ideal(Ti=None, Td=0)), "--language", "st")["detail"])
+        self.assertIn("no time from which one can be proposed", self.refused(result_of(ideal(Ti=None, Td=0)), "--language", "st")["detail"])
         self.assertIn("nothing would bring u back", self.refused(
             result_of(ideal(Ti=None)), "--language", "st", "--form", "velocity")["detail"])
         problem = self.refused(result_of(ideal(), units={"time": "weeks"}), "--language", "st")
         self.assertEqual(problem["errors"][0]["pointer"], "/units/time")
-        self.assertIn("knows s, ms, min, h and d", problem["detail"])
+        self.assertIn("can convert s, ms, min, h and d", problem["detail"])
 
     def test_what_has_no_controller_is_told(self):
         self.assertEqual(self.refused({"anything": 1}, "--language", "c")["status"], 404)
         for index in ("1", "-1", "one", "99999999999999999999"):
             problem = self.refused(result_of(ideal()), "--language", "c", "--controller=" + index)
             self.assertEqual(problem["status"], 404)
-            self.assertIn("the result has one, number 0", problem["detail"])
+            self.assertIn("the result has only number 0", problem["detail"])
         failed = {"controllers": [{"method": "simc", "error": {"detail": "The plant has no dead time."}}]}
         problem = self.refused(failed, "--language", "c")
         self.assertIn("Number 0 (simc) has no controller: The plant has no dead time.", problem["detail"])

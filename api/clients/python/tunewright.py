@@ -305,7 +305,7 @@ class Client:
         pause = 0.05
         while job["status"] in ("queued", "running"):
             if time.monotonic() > end:
-                raise TimeoutError("Job %s is still %s after %g s and goes on; wait(%r) waits for it again."
+                raise TimeoutError("Job %s is still %s after %g s and continues; call wait(%r) to wait for it again."
                                    % (job["id"], job["status"], self.timeout, job["id"]))
             time.sleep(min(pause, max(end - time.monotonic(), 0)))
             pause = min(1.5 * pause, 2.0)

@@ -21,7 +21,7 @@ void check_rules(const Json& value, GivenDevice& given, Reader& reader) {
     if (!given.product) return;
     for (const char* name : {"integral", "derivative", "algorithm"})
         if (value.contains(name))
-            reader.fault_at(name, std::string(name) + " is the product's own; leave it out, or leave out product.");
+            reader.fault_at(name, std::string(name) + " is fixed by the product; leave it out, or leave out product.");
 }
 
 }  // namespace
@@ -29,40 +29,41 @@ void check_rules(const Json& value, GivenDevice& given, Reader& reader) {
 const Description<GivenDevice>& implement_contract() {
     static const auto description = [] {
         using G = GivenDevice;
-        Description<G> d("Implement",
-                         "The controller as it is built: a product with the spans of its signals, or a sampled program "
-                         "of the ideal form. Entries are converted to it and judged on it; the method robust designs "
-                         "for it.");
-        d.field("product", &G::product, maybe(text(kLongestId)), "Id of a product, as GET /v1/controllers lists them.")
+        Description<G> d(
+            "Implement",
+            "The implemented controller: a product with the spans of its signals, or a sampled program of the ideal "
+            "form. Entries are converted to it and evaluated on it; the method robust designs for it.");
+        d.field("product", &G::product, maybe(text(kLongestId)), "Id of a product of GET /v1/controllers.")
             .field("y_span", &G::y_span, maybe(numbers(2, 2)), "Low and high end of the measurement's range.",
                    {.unit = "y"})
             .field("u_span", &G::u_span, maybe(numbers(2, 2)), "Low and high end of the output's range.", {.unit = "u"})
             .field("sample_time", &G::sample_time, maybe(number({.exclusive_minimum = 0})),
-                   "Period of the controller. Without it a product runs at its own default period where that is known, "
-                   "else it counts as continuous.",
+                   "Period of the controller. Default: that of the product if it is known; otherwise the controller "
+                   "counts as continuous.",
                    {.unit = "time"})
             .field("integral", &G::integral,
                    maybe(choice<IntegralRule>({{"backward", IntegralRule::backward},
                                                {"forward", IntegralRule::forward},
                                                {"trapezoidal", IntegralRule::trapezoidal}})),
-                   "How the program integrates; without a product. Default: backward.")
+                   "Rule of the integral; without a product. Default: backward.")
             .field("derivative", &G::derivative,
                    maybe(choice<G::Derivative>(
                        {{"backward", G::Derivative::difference}, {"filtered", G::Derivative::filtered}})),
                    "backward: the difference of two samples, without a filter of the derivative; filtered: with the "
-                   "controller's derivative filter, by backward Euler. Default: filtered where the controller has such "
-                   "a filter. Without a product.")
+                   "controller's derivative filter, by backward Euler. Default: filtered if the controller has such a "
+                   "filter. Without a product.")
             .field("algorithm", &G::velocity, maybe(choice<bool>({{"position", false}, {"velocity", true}})),
                    "velocity: the program adds increments; the same output as position within limits. Default: "
                    "position. Without a product.")
             .field("computation_delay", &G::computation_delay, number({.minimum = 0}),
-                   "Time from a sample to the output that it gives.", {.unit = "time"})
+                   "Time from a sample to its output.", {.unit = "time"})
             .field("u_resolution", &G::u_resolution, number({.minimum = 0}),
-                   "The output is rounded to multiples of it in the responses; 0: it is not.", {.unit = "u"})
+                   "The output is rounded to multiples of this value in the responses; 0: no rounding.", {.unit = "u"})
             .field("y_resolution", &G::y_resolution, number({.minimum = 0}),
-                   "The measurement is read in multiples of it in the responses; 0: it is not.", {.unit = "y"})
+                   "The measurement is rounded to multiples of this value in the responses; 0: no rounding.",
+                   {.unit = "y"})
             .field("dead_band", &G::dead_band, number({.minimum = 0}),
-                   "A smaller error counts as none in the responses; 0: there is none.", {.unit = "y"})
+                   "Dead band: a smaller error counts as 0 in the responses; 0: no dead band.", {.unit = "y"})
             .check(check_rules)
             .example({{"product", "emerson_deltav_series"},
                       {"y_span", {0, 200}},
@@ -139,7 +140,7 @@ GivenDevice GivenBaseline::device(const std::optional<GivenDevice>& others) cons
 const Description<GivenBaseline>& baseline_settings_contract() {
     static const auto description = [] {
         using G = GivenBaseline;
-        Description<G> d("BaselineSettings", "Today's settings as they stand in a product.");
+        Description<G> d("BaselineSettings", "Today's settings as typed into a product.");
         d.field("product", &G::product, text(kLongestId), "Id of the product.", {.required = true})
             .field("settings", &G::settings, settings_codec(), "Its parameters by name, as typed.", {.required = true})
             .field("y_span", &G::y_span, maybe(numbers(2, 2)),
@@ -161,17 +162,18 @@ namespace {
 
 const Description<DeviceEntry>& difference_contract() {
     static const auto description = [] {
-        Description<DeviceEntry> d("Difference", "How far the loop as built lies above the entry's ideal one.");
-        d.field("Ms_percent", &DeviceEntry::Ms_percent, figure(), "Of Ms.", {.unit = "%"})
-            .field("load_IAE_percent", &DeviceEntry::load_IAE_percent, figure(), "Of the load IAE.", {.unit = "%"})
+        Description<DeviceEntry> d("Difference", "Difference of the implemented loop from the entry's ideal one.");
+        d.field("Ms_percent", &DeviceEntry::Ms_percent, figure(), "Difference of Ms.", {.unit = "%"})
+            .field("load_IAE_percent", &DeviceEntry::load_IAE_percent, figure(), "Difference of the load IAE.",
+                   {.unit = "%"})
             .field("overshoot_points", &DeviceEntry::overshoot_points, figure(),
-                   "Of the overshoot of a set-point step, in percent of the step.", {.unit = "%"})
+                   "Difference of the overshoot of a set-point step, in percent of the step.", {.unit = "%"})
             .field("differs", &DeviceEntry::differs,
                    only_answered(list_of(choice<DifferingFigure>({{"Ms", DifferingFigure::Ms},
                                                                   {"load_IAE", DifferingFigure::load_IAE},
                                                                   {"overshoot", DifferingFigure::overshoot}}))),
-                   "The figures that lie more than 2 % off: for them it is another loop. Empty for an unstable loop.")
-            .why_null("Not known for this loop.");
+                   "Figures that differ by more than 2 %. Empty for an unstable loop.")
+            .why_null("Unknown for this loop.");
         return d;
     }();
     return description;
@@ -196,8 +198,8 @@ const Description<DeviceEntry>& implemented_contract() {
     static const auto description = [] {
         Description<DeviceEntry> d(
             "Implemented",
-            "The loop with the settings as typed, computed as the controller computes: Ms, Mt and "
-            "the margins of its samples, indices and traces of the continuous y.");
+            "The loop with the settings as typed, with the controller's own algorithm: Ms, Mt and the margins are "
+            "those of the sampled loop, indices and traces those of the continuous y.");
         d.field(
             "sample_time", {},
             [](const DeviceEntry& on_device, Writer& out) {
@@ -215,7 +217,8 @@ const Description<DeviceEntry>& implemented_contract() {
         d.field(
             "difference", {},
             [](const DeviceEntry& on_device, Writer& out) { difference_contract().write(on_device, out); },
-            [](SchemaBook& book) { return difference_contract().schema(book); }, "From the ideal loop of this entry.");
+            [](SchemaBook& book) { return difference_contract().schema(book); },
+            "Difference from the ideal loop of this entry.");
         return d;
     }();
     return description;

@@ -52,13 +52,13 @@ const Description<Uncertainty>& uncertainty_contract(const std::string& type) {
         Description<Uncertainty> d(type + "Uncertainty",
                                    "Factors [low, high] of nominal values, low <= 1 <= high: limits hold on the "
                                    "corners, the centre and the worst point found inside.");
-        d.field("K", &Uncertainty::K, factors(), "Of the plant's gain.");
-        if constexpr (requires(T plant) { plant.T; }) d.field("T", &Uncertainty::T, factors(), "Of T.");
+        d.field("K", &Uncertainty::K, factors(), "Factors of the plant's gain.");
+        if constexpr (requires(T plant) { plant.T; }) d.field("T", &Uncertainty::T, factors(), "Factors of T.");
         if constexpr (requires(T plant) { plant.T1; }) {
-            d.field("T1", &Uncertainty::T1, factors(), "Of T1.");
-            d.field("T2", &Uncertainty::T2, factors(), "Of T2.");
+            d.field("T1", &Uncertainty::T1, factors(), "Factors of T1.");
+            d.field("T2", &Uncertainty::T2, factors(), "Factors of T2.");
         }
-        d.field("L", &Uncertainty::L, factors(), "Of the dead time.");
+        d.field("L", &Uncertainty::L, factors(), "Factors of the dead time.");
         d.example({{"K", {0.8, 1.2}}, {"L", {0.9, 1.2}}});
         return d;
     }();
@@ -91,7 +91,7 @@ Description<T>& with_dead_time(Description<T>& description, bool required) {
         .field("L", &T::L, dead_time(), "Dead time at the plant's input, >= 0; exact everywhere.",
                {.required = required, .unit = "time"})
         .field("uncertainty", &T::uncertainty, uncertainty<T>(description.name()),
-               "How far parameters may lie from their nominal values; robust then holds its limits everywhere.")
+               "Ranges of the parameters around their nominal values; robust then holds its limits over all of them.")
         .check_presence(report_faults<T>);
 }
 
@@ -219,7 +219,7 @@ const Description<Zpk>& zpk() {
     static const auto description = [] {
         Description<Zpk> d("Zpk", "K prod(s - z)/prod(s - p) e^(-Ls), proper.");
         d.tag("type", "zpk")
-            .field("K", &Zpk::K, gain(), "Factor in front; not the static gain.", {.required = true})
+            .field("K", &Zpk::K, gain(), "Leading factor; not the static gain.", {.required = true})
             .field("zeros", &Zpk::zeros, roots(), "Zeros: numbers, or [re, im] in conjugate pairs.", {.unit = "1/time"})
             .field("poles", &Zpk::poles, roots(), "Poles: numbers, or [re, im] in conjugate pairs.",
                    {.required = true, .unit = "1/time"});
@@ -421,8 +421,8 @@ const Description<NonlinearPlant>& nonlinear_plant_contract() {
     static const auto description = [] {
         using P = NonlinearPlant;
         Description<P> d("NonlinearPlant",
-                         "Differential equations in text. Methods work on the linearisation about the steady state; "
-                         "responses and their figures are the nonlinear plant's own. In expressions: + - * / ^, "
+                         "Differential equations in text. Methods use the linearisation around the steady state; "
+                         "responses and their figures are those of the nonlinear plant. In expressions: + - * / ^, "
                          "comparisons, condition ? a : b, exp log sqrt sin cos tan tanh abs min max.");
         d.tag("type", "nonlinear")
             .field("states", &P::states, states(),
@@ -456,7 +456,7 @@ const Description<PlantSet>& plant_set() {
         Description<PlantSet> d("PlantSet", "Plants that one controller must serve: limits hold on all of them.");
         d.tag("type", "set")
             .field("plants", &PlantSet::plants, list_of(plant_or_text(), 1, kMaxPlants),
-                   "Linear plants; the first is nominal: the objective and all figures are its own.",
+                   "Linear plants; the first is nominal: the objective and all figures refer to it.",
                    {.required = true})
             .example({{"type", "set"},
                       {"plants", Json::array({Json{{"type", "fopdt"}, {"K", 2}, {"T", 10}, {"L", 3}},
@@ -482,13 +482,13 @@ const Description<FrequencyResponse>& frequency_response() {
             .field("omega", &F::omega, numbers(kMinPoints, kMaxPoints),
                    "Angular frequencies, ascending; they must reach beyond the phase crossover.",
                    {.required = true, .unit = "rad/time"})
-            .field("re", &F::re, numbers(kMinPoints, kMaxPoints), "Real parts, one a frequency.",
+            .field("re", &F::re, numbers(kMinPoints, kMaxPoints), "Real parts, one per frequency.",
                    {.required = true, .unit = "y/u"})
-            .field("im", &F::im, numbers(kMinPoints, kMaxPoints), "Imaginary parts, one a frequency.",
+            .field("im", &F::im, numbers(kMinPoints, kMaxPoints), "Imaginary parts, one per frequency.",
                    {.required = true, .unit = "y/u"})
             .field("unstable_poles", &F::unstable_poles, integer(0, kMaxPoles),
-                   "Poles of the plant in the open right half-plane, which the points cannot tell.")
-            .field("integrators", &F::integrators, integer(0, kMaxPoles), "Poles of the plant at s = 0.")
+                   "Number of poles in the open right half-plane, which cannot be found from the points.")
+            .field("integrators", &F::integrators, integer(0, kMaxPoles), "Number of poles at s = 0.")
             .check(check_points)
             .example(
                 {{"type", "frequency_response"},

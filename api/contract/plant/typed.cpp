@@ -18,7 +18,7 @@ std::string as_sentence(std::string message) {
 Json text_schema(SchemaBook& book) {
     Json schema{{"type", "string"}, {"title", "TypedPlant"}, {"maxLength", typed::kMaxLength}};
     schema["description"] =
-        "A linear plant as it is typed: a formula in s, parameters by name, zeros and poles, or the call of a matrix "
+        "A linear plant as typed: a formula in s, parameters by name, zeros and poles, or the call of a matrix "
         "program. Numbers without a unit are in units.time.";
     schema["examples"] = {"2 e^(-3s)/((10s+1)(2s+1))", "K=2 T=10 L=3", "zeros -1, poles -2 -3±4i, gain 5",
                           "tf([2],[10 1],'InputDelay',3)", "K=2 T=10 min L=30 s"};
@@ -55,7 +55,7 @@ Codec<PlantModel> plant_model_or_text() { return or_text(one_of(plant_model_cont
 
 const Description<PlantQuestion>& plant_question_contract() {
     static const auto description = [] {
-        Description<PlantQuestion> d("PlantQuestion", "A plant as it is typed, or one to be written as a formula.");
+        Description<PlantQuestion> d("PlantQuestion", "A plant as typed, or one to be written as a formula.");
         d.field("units", &PlantQuestion::units, maybe(object(units_contract())),
                 "Labels of the units; the plant's times are in units.time.")
             .field(
@@ -72,7 +72,7 @@ const Description<PlantQuestion>& plant_question_contract() {
             .field("plant", &PlantQuestion::plant, maybe(plant_or_text()),
                    "A linear plant; exactly one of text and plant.")
             .field("unfinished", &PlantQuestion::unfinished, boolean(),
-                   "It is still being typed: what is wrong with it is answered as fault, with status 200.")
+                   "True while the text is being typed: a fault is then answered as `fault`, with status 200.")
             .check_presence([](const Json& value, PlantQuestion&, Reader& reader) {
                 if (value.contains("text") == value.contains("plant"))
                     reader.fault("exactly one of text and plant is needed, such as {\"text\": \"2 e^(-3s)/(10s+1)\"}.");
@@ -87,7 +87,7 @@ const Description<PlantQuestion>& plant_answer_contract() {
     static const auto description = [] {
         const auto text_schema = [](SchemaBook&) { return Json{{"type", "string"}}; };
         const auto no_plant = [](const PlantQuestion& question) { return !question.plant; };
-        Description<PlantQuestion> d("PlantAnswer", "A plant, its formula and its text; or what is wrong with it.");
+        Description<PlantQuestion> d("PlantAnswer", "A plant, its formula and its text; or its fault.");
         d.field("plant", &PlantQuestion::plant, maybe(only_answered(one_of(plant_contract()))), "The plant.")
             .field(
                 "formula", {},
@@ -100,9 +100,9 @@ const Description<PlantQuestion>& plant_answer_contract() {
                 {}, no_plant)
             .field(
                 "text", {}, [](const PlantQuestion& question, Writer& out) { out.text(plant_text(*question.plant)); },
-                text_schema, "The plant as it would be typed, in full digits; empty for a state space.", {}, no_plant)
+                text_schema, "The plant as typed, with all digits; empty for a state space.", {}, no_plant)
             .field("fault", &PlantQuestion::fault, maybe(words()),
-                   "What is wrong, of an unfinished text; nothing else then.");
+                   "Fault of an unfinished text; there are no other members then.");
         return d;
     }();
     return description;

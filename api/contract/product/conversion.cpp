@@ -22,7 +22,7 @@ void add_context(Description<Request>& d) {
             {.unit = "y"})
         .field("u_span", &Request::u_span, span(), "Range of the output, low and high end.", {.unit = "u"})
         .field("sample_time", &Request::sample_time, maybe(number({.exclusive_minimum = 0})),
-               "Period with which the block runs; for parameters and filters that count it.", {.unit = "time"})
+               "Period of the block; for parameters and filters that depend on it.", {.unit = "time"})
         .field("units", &Request::units, maybe(object(units_contract())),
                "Labels; time is also the unit of the controller's times, s if not given.")
         .check([](const Json& json, Request& request, Reader& reader) { set_context(json, request, reader); });
@@ -33,7 +33,7 @@ Json notes_schema(SchemaBook&) {
             {"items",
              {{"type", "object"},
               {"properties",
-               {{"code", {{"type", "string"}, {"description", "For programs, kebab-case."}}},
+               {{"code", {{"type", "string"}, {"description", "Code for programs, kebab-case."}}},
                 {"detail", {{"type", "string"}, {"description", "A sentence with the figures."}}}}},
               {"required", {"code", "detail"}},
               {"additionalProperties", false}}}};
@@ -64,7 +64,7 @@ const Description<SettingsRequest>& settings_request_contract() {
         d.field("controller", &SettingsRequest::controller, maybe(one_of(controller_contract())), "The controller.",
                 {.required = true})
             .field("nearest", &SettingsRequest::nearest, boolean(),
-                   "Answer the nearest settings where the product cannot be this controller, instead of 422.");
+                   "Return the nearest settings instead of 422 if the product cannot represent this controller.");
         add_context(d);
         d.example({{"controller",
                     {{"form", "ideal"},
@@ -84,7 +84,7 @@ const Description<SettingsRequest>& settings_request_contract() {
 const Description<SettingsAnswer>& settings_answer_contract() {
     static const auto contract = [] {
         using Answer = SettingsAnswer;
-        Description<Answer> d("SettingsAnswer", "What is to be typed, and what the product then does.");
+        Description<Answer> d("SettingsAnswer", "The settings to type, and the behaviour of the product with them.");
         d.field("settings", &Answer::settings, only_answered(settings_codec()), "In full precision.")
             .field(
                 "units", {},
@@ -98,7 +98,7 @@ const Description<SettingsAnswer>& settings_answer_contract() {
                     }
                     out.end_object();
                 },
-                texts_by_name, "Of the settings that have one.")
+                texts_by_name, "Units of the settings that have one.")
             .field(
                 "as_typed", {},
                 [](const Answer& a, Writer& out) {
@@ -109,15 +109,15 @@ const Description<SettingsAnswer>& settings_answer_contract() {
                     }
                     out.end_object();
                 },
-                texts_by_name, "As a person types them, in the product's resolution.")
+                texts_by_name, "As typed, in the product's resolution.")
             .field(
                 "realised", {},
                 [](const Answer& a, Writer& out) { controller_contract().write(Controller(a.realised), out); },
                 controller_schema,
-                "What the product then does, weights and filter included; whole numbers as they are rounded.")
+                "The controller that the product then represents, with weights and filter; after rounding.")
             .field(
                 "notes", {}, [](const Answer& a, Writer& out) { write_notes(a.notes, out); }, notes_schema,
-                "What it does differently, and what of it is not verified.");
+                "Deviations from the controller, and facts that are not verified.");
         return d;
     }();
     return contract;
@@ -126,12 +126,12 @@ const Description<SettingsAnswer>& settings_answer_contract() {
 const Description<ScheduleSettingsRequest>& schedule_settings_request_contract() {
     static const auto contract = [] {
         using R = ScheduleSettingsRequest;
-        Description<R> d("ScheduleSettingsRequest", "The rows of a schedule that are to be typed into a product.");
+        Description<R> d("ScheduleSettingsRequest", "The rows of a schedule to type into a product.");
         d.field("rows", &R::rows, list_of(object(given_row_contract()), 1, range::kMaxRows),
-                "As range.schedule.rows of a result has them.", {.required = true})
-            .field("interpolation", &R::interpolation, interpolation_word(), "Between rows, as the schedule has it.")
+                "In the form of range.schedule.rows of a result.", {.required = true})
+            .field("interpolation", &R::interpolation, interpolation_word(), "Interpolation between the rows.")
             .field("nearest", &R::nearest, boolean(),
-                   "Answer the nearest settings where the product cannot be a row, instead of 422.")
+                   "Return the nearest settings instead of 422 if the product cannot represent a row.")
             .check([](const Json&, R& request, Reader& reader) {
                 const Reader::At list(reader, "rows");
                 check_given_rows(request.rows, reader);
@@ -158,13 +158,13 @@ struct AnsweredRow {
 
 const Description<AnsweredRow>& answered_row_contract() {
     static const auto contract = [] {
-        Description<AnsweredRow> d("SettingsRow", "What is to be typed at one place, as for one controller.");
+        Description<AnsweredRow> d("SettingsRow", "The settings to type at one place, as for one controller.");
         d.field("at", &AnsweredRow::at, only_answered(number()), "Its place.")
             .field(
                 "typing", {},
                 [](const AnsweredRow& row, Writer& out) { settings_answer_contract().write(row.answer, out); },
                 [](SchemaBook& book) { return settings_answer_contract().schema(book); },
-                "Its settings; notes are those of this row alone.");
+                "Its settings; the notes are only those of this row.");
         return d;
     }();
     return contract;
@@ -175,7 +175,7 @@ const Description<AnsweredRow>& answered_row_contract() {
 const Description<ScheduleSettingsAnswer>& schedule_settings_answer_contract() {
     static const auto contract = [] {
         using Answer = ScheduleSettingsAnswer;
-        Description<Answer> d("ScheduleSettingsAnswer", "What is to be typed for each row of a schedule.");
+        Description<Answer> d("ScheduleSettingsAnswer", "The settings to type for each row of a schedule.");
         d.field(
              "rows", {},
              [](const Answer& a, Writer& out) {
@@ -193,7 +193,7 @@ const Description<ScheduleSettingsAnswer>& schedule_settings_answer_contract() {
              "Ascending in `at`.")
             .field(
                 "notes", {}, [](const Answer& a, Writer& out) { write_notes(a.schedule.notes, out); }, notes_schema,
-                "How the product goes between its rows, and what is the same at all of them.");
+                "The product's interpolation between the rows, and notes that apply to all of them.");
         return d;
     }();
     return contract;
@@ -203,7 +203,7 @@ const Description<TwinRequest>& twin_request_contract() {
     static const auto contract = [] {
         Description<TwinRequest> d("ProductSettings", "Settings of a product.");
         d.field("settings", &TwinRequest::settings, settings_codec(),
-                "Values by the names of the parameters. What is missing has the maker's default, or is not there.",
+                "Values by the names of the parameters. A missing one has the maker's default, or is unused.",
                 {.required = true});
         add_context(d);
         d.example({{"settings", {{"GAIN", 2.32793}, {"RESET", 93.1174}, {"RATE", 30.723}, {"ALPHA", 0.125}}},
@@ -216,16 +216,16 @@ const Description<TwinRequest>& twin_request_contract() {
 
 const Description<TwinAnswer>& twin_answer_contract() {
     static const auto contract = [] {
-        Description<TwinAnswer> d("ProductController", "The controller that settings of a product are.");
+        Description<TwinAnswer> d("ProductController", "The controller that settings of a product represent.");
         d.field(
              "controller", {},
              [](const TwinAnswer& answer, Writer& out) {
                  controller_contract().write(Controller(answer.controller), out);
              },
-             controller_schema, "Its exact twin in the ideal form.")
+             controller_schema, "The equivalent controller in the ideal form.")
             .field(
                 "notes", {}, [](const TwinAnswer& answer, Writer& out) { write_notes(answer.notes, out); },
-                notes_schema, "What was assumed.");
+                notes_schema, "Assumptions.");
         return d;
     }();
     return contract;

@@ -119,7 +119,7 @@ struct Row {
 
 const Description<Row>& parameter_contract() {
     static const auto contract = [] {
-        AnswerDescription<Row> a("ControllerParameter", "A parameter of a controller as its maker builds it.");
+        AnswerDescription<Row> a("ControllerParameter", "A parameter of a product.");
         a.text(
              "name", [](const Row& row) { return row.parameter->name; }, "The name in settings.")
             .text(
@@ -132,10 +132,11 @@ const Description<Row>& parameter_contract() {
                 "limit.")
             .text(
                 "formula", [](const Row& row) { return product::formula_text(*row.product, *row.parameter); },
-                "From the law: Kp, Ti, Td, Tf in seconds; Kc, ti, td of the series form; Sy, Su the spans, Ts the "
+                "Formula in the quantities of the law: Kp, Ti, Td, Tf in seconds; Kc, ti, td of the series form; Sy, "
+                "Su the spans, Ts the "
                 "sample time, dt the firmware's clock.")
             .number(
-                "low", [](const Row& row) { return finite(row.parameter->range.low); }, "Least value; null: none.")
+                "low", [](const Row& row) { return finite(row.parameter->range.low); }, "Smallest value; null: none.")
             .number(
                 "high", [](const Row& row) { return finite(row.parameter->range.high); }, "Largest value; null: none.")
             .number(
@@ -144,26 +145,26 @@ const Description<Row>& parameter_contract() {
                     const double step = row.parameter->resolution;
                     return step > 0 ? std::optional(step) : std::nullopt;
                 },
-                "Step of what can be typed; null: a floating-point number.")
+                "Step of the values that can be typed; null: a floating-point number.")
             .number(
-                "off", [](const Row& row) { return row.parameter->off; }, "The value that means: no such part.")
+                "off", [](const Row& row) { return row.parameter->off; }, "The value that switches this part off.")
             .flag(
                 "written",
                 [](const Row& row) {
                     return (!row.parameter->elsewhere || !row.parameter->options.empty()) &&
                            !product::depends_on_choice(*row.product, *row.parameter);
                 },
-                "false: settings hold it only with the choice with which it has an effect, or it is decided elsewhere.")
+                "false: it is in the settings only with the choice that uses it, or it is determined elsewhere.")
             .maybe_text(
-                "remark", [](const Row& row) { return row.parameter->remark; }, "What else there is to it.");
+                "remark", [](const Row& row) { return row.parameter->remark; }, "Further remarks.");
         a.description
             .field(
                 "default", {}, [](const Row& row, Writer& out) { write_value(*row.parameter->standard, out); },
-                [](SchemaBook&) { return value_schema(); }, "The maker's, where it is known.", {},
+                [](SchemaBook&) { return value_schema(); }, "The maker's default, if it is known.", {},
                 [](const Row& row) { return !row.parameter->standard; })
             .field(
                 "choices", {}, [](const Row& row, Writer& out) { write_choices(*row.parameter, out); }, choices_schema,
-                "What it takes, the default first, with the set-point weights that follow.", {},
+                "Allowed values, the default first, with the set-point weights that each implies.", {},
                 [](const Row& row) { return row.parameter->options.empty(); });
         return std::move(a.description);
     }();
@@ -202,11 +203,11 @@ const char* rule_word(DerivativeRule rule) {
 
 const Description<product::Weights>& weights_contract() {
     static const auto contract = [] {
-        AnswerDescription<product::Weights> a("ControllerWeights", "Set-point weights where no parameter sets them.");
+        AnswerDescription<product::Weights> a("ControllerWeights", "Set-point weights that no parameter sets.");
         a.number(
-             "b", [](const product::Weights& w) { return std::optional(w.b); }, "Of the proportional part.")
+             "b", [](const product::Weights& w) { return std::optional(w.b); }, "Weight of the proportional part.")
             .number(
-                "c", [](const product::Weights& w) { return std::optional(w.c); }, "Of the derivative part.")
+                "c", [](const product::Weights& w) { return std::optional(w.c); }, "Weight of the derivative part.")
             .maybe_text(
                 "text", [](const product::Weights& w) { return w.text; }, "In words.");
         return std::move(a.description);
@@ -216,8 +217,8 @@ const Description<product::Weights>& weights_contract() {
 
 const Description<Product>& action_contract() {
     static const auto contract = [] {
-        AnswerDescription<Product> a("ControllerAction", "How the sign of Kp is typed.");
-        a.text("by", sign_word, "gain: its sign; switch: a parameter; reverse only: there is no direct action.")
+        AnswerDescription<Product> a("ControllerAction", "Notation of the sign of Kp.");
+        a.text("by", sign_word, "gain: the sign of the gain; switch: a parameter; reverse only: no direct action.")
             .maybe_text(
                 "name", [](const Product& p) { return p.action.name; }, "The switch's name in settings.")
             .maybe_text(
@@ -234,7 +235,7 @@ const Description<Product>& action_contract() {
 const Description<product::Algorithm>& algorithm_contract() {
     static const auto contract = [] {
         using product::Algorithm;
-        AnswerDescription<Algorithm> a("ControllerAlgorithm", "How the law is computed.");
+        AnswerDescription<Algorithm> a("ControllerAlgorithm", "Algorithm of the law.");
         a.text(
              "integral", [](const Algorithm& x) { return rule_word(x.integral); }, "Rule of the integral.")
             .text(
@@ -249,12 +250,11 @@ const Description<product::Algorithm>& algorithm_contract() {
                 "sample_time", [](const Algorithm& x) { return x.sample_time_s; }, "Default; null: none.", "s")
             .flag(
                 "clock_fixed", [](const Algorithm& x) { return x.firmware_clock; },
-                "The firmware fixes that sample time, and formulas use it.")
+                "The firmware fixes this sample time, and formulas use it.")
             .maybe_text(
-                "sample_time_text", [](const Algorithm& x) { return x.sample_time_text; },
-                "Where the sample time comes from.")
+                "sample_time_text", [](const Algorithm& x) { return x.sample_time_text; }, "Source of the sample time.")
             .maybe_text(
-                "anti_windup", [](const Algorithm& x) { return x.anti_windup; }, "What happens at limits.")
+                "anti_windup", [](const Algorithm& x) { return x.anti_windup; }, "Behaviour at limits.")
             .maybe_text(
                 "text", [](const Algorithm& x) { return x.text; }, "In words.");
         return std::move(a.description);
@@ -265,17 +265,18 @@ const Description<product::Algorithm>& algorithm_contract() {
 const Description<product::Evidence>& evidence_contract() {
     static const auto contract = [] {
         using product::Evidence;
-        AnswerDescription<Evidence> a("ControllerEvidence", "What of this was read, and where.");
+        AnswerDescription<Evidence> a("ControllerEvidence", "Facts that were read, and their sources.");
         a.text(
              "level", [](const Evidence& e) { return product::to_string(e.level); },
-             "read: what fixes form, parameters and units was read in code or the maker's text; partly: of third "
-             "parties, or not all of it; unverified.")
+             "read: form, parameters and units were read in code or the maker's text; partly: in texts of third "
+             "parties, or not completely; unverified.")
             .texts(
-                "read", [](const Evidence& e) -> const Texts& { return e.read; }, "What was read.")
+                "read", [](const Evidence& e) -> const Texts& { return e.read; }, "Facts that were read.")
             .texts(
-                "unverified", [](const Evidence& e) -> const Texts& { return e.unverified; }, "What was not.")
+                "unverified", [](const Evidence& e) -> const Texts& { return e.unverified; },
+                "Facts that were not read.")
             .texts(
-                "sources", [](const Evidence& e) -> const Texts& { return e.sources; }, "Where.");
+                "sources", [](const Evidence& e) -> const Texts& { return e.sources; }, "Sources.");
         return std::move(a.description);
     }();
     return contract;
@@ -284,7 +285,7 @@ const Description<product::Evidence>& evidence_contract() {
 const Description<product::Example>& example_contract() {
     static const auto contract = [] {
         using product::Example;
-        AnswerDescription<Example> a("ControllerExample", "A design and what is typed for it, to six digits.");
+        AnswerDescription<Example> a("ControllerExample", "A design and its settings as typed, to six digits.");
         a.number(
             "sample_time", [](const Example& e) { return std::optional(e.sample_time_s); }, "Sample time.", "s");
         const auto span = [](double Example::*member) {
@@ -300,7 +301,7 @@ const Description<product::Example>& example_contract() {
             .field("u_span", {}, span(&Example::u_span), span_schema, "Range of the output.")
             .field(
                 "settings", {}, [](const Example& e, Writer& out) { settings_codec().write(e.settings, out); },
-                settings_codec().schema, "What is typed.");
+                settings_codec().schema, "The settings as typed.");
         return std::move(a.description);
     }();
     return contract;
@@ -310,14 +311,14 @@ void add_head(AnswerDescription<Product>& a) {
     a.text(
          "id", [](const Product& p) { return p.id; }, "The name in requests.")
         .text(
-            "maker", [](const Product& p) { return p.maker; }, "Who makes it.")
+            "maker", [](const Product& p) { return p.maker; }, "The maker.")
         .text(
             "name", [](const Product& p) { return p.name; }, "The block, library or firmware.")
         .text(
             "form", [](const Product& p) { return product::to_string(p.form); }, "ideal, parallel, series or p_only.")
         .texts(
             "needs", [](const Product& p) { return product::needs_of(p); },
-            "Which of y_span, u_span and sample_time its conversions need.");
+            "Those of y_span, u_span and sample_time that its conversions need.");
 }
 
 void write_parameters(const Product& p, Writer& out) {
@@ -330,7 +331,7 @@ void write_parameters(const Product& p, Writer& out) {
 
 const Description<Product>& product_summary_contract() {
     static const auto contract = [] {
-        AnswerDescription<Product> a("ControllerSummary", "A controller as its maker builds it, in short.");
+        AnswerDescription<Product> a("ControllerSummary", "A product, in short.");
         add_head(a);
         a.text(
              "evidence", [](const Product& p) { return product::to_string(p.evidence.level); },
@@ -350,12 +351,12 @@ const Description<Product>& product_summary_contract() {
 
 const Description<Product>& product_contract() {
     static const auto contract = [] {
-        AnswerDescription<Product> a("ControllerProduct", "A controller as its maker builds it.");
+        AnswerDescription<Product> a("ControllerProduct", "A product.");
         add_head(a);
         a.text(
-             "law", [](const Product& p) { return p.law; }, "Its law over the parameters' names.")
+             "law", [](const Product& p) { return p.law; }, "Its law in the parameters' names.")
             .text(
-                "gain_basis", [](const Product& p) { return p.gain_basis; }, "What its gain counts.");
+                "gain_basis", [](const Product& p) { return p.gain_basis; }, "Units of its gain.");
         a.description.field(
             "parameters", {}, write_parameters,
             [](SchemaBook& book) {
@@ -363,7 +364,7 @@ const Description<Product>& product_contract() {
             },
             "Its parameters.");
         a.maybe_text(
-             "filter", [](const Product& p) { return p.filter.text; }, "How it filters.")
+             "filter", [](const Product& p) { return p.filter.text; }, "The filter.")
             .part(
                 "setpoint_weights", weights_contract(),
                 [](const Product& p) -> const product::Weights& { return p.weights; }, "Set-point weights.")
@@ -376,10 +377,9 @@ const Description<Product>& product_contract() {
             "gain_scheduling", {},
             [](const Product& p, Writer& out) { gain_scheduling_contract().write(*p.scheduling, out); },
             [](SchemaBook& book) { return gain_scheduling_contract().schema(book); },
-            "What comes with it for a schedule; left out where none is known.", {},
-            [](const Product& p) { return !p.scheduling; });
+            "Its support of schedules; left out if none is known.", {}, [](const Product& p) { return !p.scheduling; });
         a.texts(
-             "traps", [](const Product& p) -> const Texts& { return p.traps; }, "What goes wrong easily.")
+             "traps", [](const Product& p) -> const Texts& { return p.traps; }, "Common mistakes.")
             .part(
                 "evidence", evidence_contract(),
                 [](const Product& p) -> const product::Evidence& { return p.evidence; }, "Evidence.")
@@ -424,7 +424,7 @@ Codec<product::Settings> settings_codec() {
     codec.read = [](const Json& value, product::Settings& settings, Reader& reader) {
         if (!value.is_object()) return reader.fault(wrong_kind(value, "an object such as {\"Gain\": 1.5}", reader));
         if (value.size() > kMaxSettings)
-            return reader.fault("settings has " + std::to_string(value.size()) + " members; no product has so many.");
+            return reader.fault("settings has " + std::to_string(value.size()) + " members, more than any product.");
         settings.clear();
         for (const auto& [name, member] : value.items()) read_setting(name, member, settings, reader);
     };
@@ -467,8 +467,8 @@ std::optional<double> seconds_per_time(const std::string& label, Reader& reader)
     if (seconds) return seconds;
     const Reader::At at(reader, "units");
     reader.fault_at("time", "units.time is " + shown(label) +
-                                ", which is no unit of time that is known; the product's times are in its own. Use s, "
-                                "min, h or another.");
+                                ", which is not a known unit of time; the product's times have units of their own. Use "
+                                "s, min, h or another.");
     return std::nullopt;
 }
 
@@ -481,24 +481,25 @@ Json text_of_scheduling(SchemaBook&) { return {{"type", "string"}}; }
 const Description<product::GainScheduling>& gain_scheduling_contract() {
     static const auto contract = [] {
         using Own = product::GainScheduling;
-        Description<Own> d("GainScheduling", "How a product takes a table of settings over a scheduling variable.");
+        Description<Own> d("GainScheduling",
+                           "Support of a product for a table of settings over a scheduling variable.");
         d.field(
              "sets", {},
              [](const Own& own, Writer& out) { own.sets > 0 ? out.number(static_cast<double>(own.sets)) : out.null(); },
              [](SchemaBook&) {
                  return Json{{"type", {"integer", "null"}}};
              },
-             "Most rows that it holds; null: as many as wished.")
+             "Maximum number of rows; null: no limit.")
             .field(
                 "interpolation", {}, [](const Own& own, Writer& out) { interpolation_word().write(*own.between, out); },
-                interpolation_word().schema, "The word of a schedule for it; left out where none fits.", {},
+                interpolation_word().schema, "The corresponding word of a schedule; left out if there is none.", {},
                 [](const Own& own) { return !own.between; })
             .field(
                 "detail", {}, [](const Own& own, Writer& out) { out.text(own.text); }, text_of_scheduling,
-                "Its name, what it is led by, and how it goes from one set to the next.")
+                "Its name, its scheduling variable, and its transition from one set to the next.")
             .field(
                 "source", {}, [](const Own& own, Writer& out) { out.text(own.source); }, text_of_scheduling,
-                "What was read.");
+                "The source.");
         return d;
     }();
     return contract;

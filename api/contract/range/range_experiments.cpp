@@ -10,17 +10,18 @@ const Description<range::ExperimentOptions>& range_experiment_contract() {
     static const auto description = [] {
         using O = range::ExperimentOptions;
         using enum range::ExperimentKind;
-        Description<O> d("RangeExperiment", "The same test at each place, from rest there.");
-        d.field("kind", &O::kind, choice<range::ExperimentKind>({{"step", step}, {"relay", relay}}), "Of which kind.")
+        Description<O> d("RangeExperiment", "The same test at each place, from its steady state.");
+        d.field("kind", &O::kind, choice<range::ExperimentKind>({{"step", step}, {"relay", relay}}), "Kind of test.")
             .field("at", &O::at, numbers(1, range::kMaxPoints), "The places, ascending, inside the range.",
                    {.required = true})
             .field("size", &O::size, maybe(number({.not_zero = true})),
-                   "Of the step of u, or half of the relay's swing; if not given, by y_part at each place.",
+                   "Size of the step of u, or half of the relay's amplitude; default: from y_part at each place.",
                    {.unit = "u"})
             .field("y_part", &O::y_part, number({.exclusive_minimum = 0, .maximum = 1}),
-                   "Without size: y moves by about this part of what it moves over the range.")
-            .field("hysteresis_part", &O::hysteresis_part, number({.minimum = 0, .maximum = 1}),
-                   "Of the relay, as a part of that motion of y; a plant without dead time needs one.");
+                   "Without size: y moves by about this fraction of its change over the range.")
+            .field(
+                "hysteresis_part", &O::hysteresis_part, number({.minimum = 0, .maximum = 1}),
+                "Hysteresis of the relay, as a fraction of that motion of y; required for a plant without dead time.");
         return d;
     }();
     return description;
@@ -85,15 +86,15 @@ const Description<range::PlaceTest>& place_test_contract() {
                    "The steady input there, absolute.", {.unit = "u"})
             .field("y", {}, [](const P& p, Writer& out) { out.number(p.rest.y); }, number_word,
                    "The steady output there, absolute.", {.unit = "y"})
-            .field("size", &P::size, only_answered(number()), "Of u, as used.", {.unit = "u"})
+            .field("size", &P::size, only_answered(number()), "Size of the move of u, as used.", {.unit = "u"})
             .field("record", {}, write_test_record, test_record_schema,
-                   "The test in deviations from rest, ready to be sent as a point's record.")
+                   "The test in deviations from the steady state, in the form of a point's record.")
             .field(
                 "Pu", {}, [](const P& p, Writer& out) { out.number(relay_of(p)->Pu); }, number_word,
-                "Of a relay test: the period.", {.unit = "time"}, no_relay)
+                "For a relay test: the period.", {.unit = "time"}, no_relay)
             .field(
                 "Ku", {}, [](const P& p, Writer& out) { out.number(relay_of(p)->Ku); }, number_word,
-                "Of a relay test: the ultimate gain by the describing function.", {.unit = "u/y"}, no_relay);
+                "For a relay test: the ultimate gain by the describing function.", {.unit = "u/y"}, no_relay);
         return d;
     }();
     return description;
@@ -107,7 +108,7 @@ const Description<RangeExperimentsRequest>& range_experiments_contract() {
         Description<R> d("RangeExperimentsRequest", "Equations, their range, and the tests to simulate in it.");
         add_labels(d);
         d.field("plant", &R::plant, maybe(plant_model_or_text()), "The equations.", {.required = true})
-            .field("range", &R::way, maybe(object(way_contract())), "The way through their steady states.",
+            .field("range", &R::way, maybe(object(way_contract())), "Path through their steady states.",
                    {.required = true})
             .field("experiment", &R::experiment, object(range_experiment_contract()), "The tests.", {.required = true})
             .check([](const Json&, R& request, Reader& reader) { follow_way(request, reader); });
@@ -138,7 +139,7 @@ const Description<RangeExperiments>& range_experiments_answer_contract() {
                              {"properties", {{"name", {{"type", "string"}}}, {"from", number}, {"to", number}}},
                              {"required", {"name", "from", "to"}}};
              },
-             "What the equations were followed along.")
+             "Quantity along which the equations were followed.")
             .field("tests", &A::tests, list_of(answer(place_test_contract())), "In the order of `at`.");
         return d;
     }();

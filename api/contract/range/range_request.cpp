@@ -14,10 +14,10 @@ constexpr double kTfOverTd = 0.1;  // of a row without a Tf
 const Description<RobustFilterOptions>& range_filter_contract() {
     static const auto description = [] {
         using F = RobustFilterOptions;
-        Description<F> d("RangeFilter", "The measurement filter of every row, one of the two.");
+        Description<F> d("RangeFilter", "The measurement filter of every row; one of the two members.");
         d.field("Tf", &F::Tf, maybe(number({.exclusive_minimum = 0})), "Its time constant, fixed.", {.unit = "time"})
             .field("Tf_over_Td", &F::Tf_over_Td, maybe(number({.exclusive_minimum = 0, .maximum = 10})),
-                   "Its time constant as a part of Td.")
+                   "Its time constant as a fraction of Td.")
             .check([](const Json&, F& filter, Reader& reader) {
                 if (filter.Tf && filter.Tf_over_Td)
                     reader.fault_at("Tf_over_Td", "Tf and Tf_over_Td are both given; remove one.");
@@ -62,8 +62,10 @@ void check_given_rows(const std::vector<GivenRow>& rows, Reader& reader) {
             reader.fault_at("at", "at is " + shown(rows[k].at) + " after " + shown(rows[k - 1].at) +
                                       "; the rows must ascend, each place once. Sort them.");
         if (rows[k].Kp * rows[0].Kp < 0)
-            reader.fault_at("Kp", "Kp is " + shown(rows[k].Kp) + " and that of the first row " + shown(rows[0].Kp) +
-                                      "; all rows must have one sign, for between them Kp would pass 0.");
+            reader.fault_at(
+                "Kp",
+                "Kp is " + shown(rows[k].Kp) + " and that of the first row " + shown(rows[0].Kp) +
+                    "; all rows must have the same sign, because Kp would otherwise pass through 0 between them.");
     }
 }
 
@@ -79,31 +81,31 @@ const Description<ScheduleWish>& schedule_wish_contract() {
     static const auto description = [] {
         using W = ScheduleWish;
         const NumberRule limit{.exclusive_minimum = 1, .maximum = limits::kMaxMs};
-        Description<W> d("ScheduleWish", "Limits, and how the user's controller moves between its rows.");
+        Description<W> d("ScheduleWish", "Limits, and the interpolation of the user's controller.");
         d.field("controller", &W::controller,
                 choice<ControllerKind>({{"PID", ControllerKind::PID}, {"PI", ControllerKind::PI}}), "Its kind.")
             .field("Ms", &W::Ms, number(limit), "Limit on Ms everywhere in the range.")
             .field("Mt", &W::Mt, number(limit), "Limit on Mt everywhere in the range.")
             .field("filter", &W::filter, object(range_filter_contract()),
-                   "The measurement filter; without one as the method robust has it, by one rule for all rows.",
+                   "The measurement filter; default: that of the method robust, by one rule for all rows.",
                    {.no_default = true})
             .field("aim", &W::aim, choice<range::Aim>({{"worst", range::Aim::worst}, {"mean", range::Aim::mean}}),
-                   "Of one setting: the least worst or mean IAE over each point's own optimum.")
+                   "For one setting: minimises the worst or the mean IAE relative to each point's own optimum.")
             .field("allowance", &W::allowance, number({.exclusive_minimum = 0, .maximum = 1}),
-                   "By which part the schedule's IAE may lie above that of each place's own optimum.")
-            .field("rows", &W::rows, maybe(integer(1, range::kMaxRows)), "Number of rows; the fewest if not given.")
+                   "Fraction by which the schedule's IAE may exceed that of each place's own optimum.")
+            .field("rows", &W::rows, maybe(integer(1, range::kMaxRows)), "Number of rows; default: as few as possible.")
             .field("interpolation", &W::interpolation, interpolation_word(),
-                   "Between rows: steps with hysteresis; Kp, 1/Ti, Td linear; Kp, Ti, Td linear.")
+                   "Interpolation between rows: steps with hysteresis; linear in Kp, 1/Ti, Td; linear in Kp, Ti, Td.")
             .field("hysteresis", &W::hysteresis, number({.minimum = 0, .maximum = 0.2}),
-                   "Of steps, as a part of the range.")
+                   "Hysteresis of steps, as a fraction of the range.")
             .field("between", &W::between,
                    choice<range::Between>({{"parameters", range::Between::parameters},
                                            {"frequency_response", range::Between::frequency_response}}),
-                   "The plants between points: logarithms of the parameters, or frequency responses for plants of "
-                   "unlike structure.")
+                   "Interpolation of the plants between points: logarithms of the parameters, or frequency responses "
+                   "for plants of different structure.")
             .field("b", &W::b, number({.minimum = 0, .maximum = 1}), "Set-point weight of every row.")
             .field("given", &W::given, maybe(list_of(object(given_row_contract()), 1, range::kMaxRows)),
-                   "A schedule to judge: nothing is designed then.")
+                   "A schedule to evaluate: nothing is designed then.")
             .check(check_rows);
         return d;
     }();
@@ -171,7 +173,7 @@ void check_point_source(const Json& value, GivenRangePoint&, Reader& reader) {
 const Description<GivenRangePoint>& range_point_contract() {
     static const auto description = [] {
         using P = GivenRangePoint;
-        Description<P> d("GivenRangePoint", "What is known at one place of the range.");
+        Description<P> d("GivenRangePoint", "The plant or the record at one place of the range.");
         d.field("at", &P::at, number(), "The place: the scheduling variable's value there.", {.required = true})
             .field("plant", &P::plant, maybe(plant_model_or_text()),
                    "A linear plant, perhaps uncertain, or several of them.")
@@ -185,19 +187,17 @@ const Description<GivenRangePoint>& range_point_contract() {
 void check_range_source(const Json& value, RangeRequest&, Reader& reader) {
     const bool points = value.contains("points"), plant = value.contains("plant");
     if (points && plant)
-        reader.fault_at("plant",
-                        "plant and points are both given: equations know every place by themselves. Remove "
-                        "one of them.");
+        reader.fault_at("plant", "plant and points are both given; equations need no points. Remove one of them.");
     if (!points && !plant)
         reader.fault(
             "points is missing; give two or more, such as [{\"at\": 30, \"plant\": \"4 e^(-4s)/(20s+1)\"}, "
             "{\"at\": 100, \"plant\": \"e^(-2s)/(8s+1)\"}], or equations as plant with a range.");
     if (plant && !value.contains("range"))
         reader.fault_at("range",
-                        "range is missing; equations need the way through their steady states, such as "
+                        "range is missing; equations need the path through their steady states, such as "
                         "{\"along\": \"output\", \"from\": 10, \"to\": 40}.");
     if (points && value.contains("range"))
-        reader.fault_at("range", "range belongs to equations; points say themselves where they lie. Remove it.");
+        reader.fault_at("range", "range belongs to equations; points have their own places. Remove it.");
 }
 
 /// The plant of a point as a family; empty after a fault.
@@ -208,10 +208,10 @@ std::optional<PlantFamily> family_at(const PlantModel& plant, Reader& reader) {
     if (subject->family() != nullptr) return *subject->family();
     if (subject->equations() != nullptr || subject->measured() != nullptr) {
         reader.fault_at("plant", subject->measured() != nullptr
-                                     ? "Measured points of a frequency response are no plant of a range: nothing is "
-                                       "known over time. Give a model."
-                                     : "Equations are no plant of a point: they know every place. Give them as the "
-                                       "request's plant, with a range.");
+                                     ? "Measured points of a frequency response cannot be a plant of a range, because "
+                                       "they have no response over time. Give a model."
+                                     : "Equations cannot be the plant of a point, because they apply to every place. "
+                                       "Give them as the request's plant, with a range.");
         return std::nullopt;
     }
     return family_of(*subject->nominal());
@@ -279,8 +279,8 @@ void check_range(const Json&, RangeRequest& request, Reader& reader) {
                          });
     if (request.over_region.value_or(false) && !records)
         reader.fault_at("uncertainty",
-                        "uncertainty is \"identified\", which needs records. For plants give each its own "
-                        "uncertainty, such as {\"K\": [0.8, 1.2]}.");
+                        "uncertainty is \"identified\", which needs records. For plants give the uncertainty of each, "
+                        "such as {\"K\": [0.8, 1.2]}.");
 }
 
 }  // namespace
@@ -288,19 +288,21 @@ void check_range(const Json&, RangeRequest& request, Reader& reader) {
 const Description<GivenWay>& way_contract() {
     static const auto description = [] {
         using enum range::Along;
-        Description<GivenWay> d("RangeOfEquations", "The way of equations through their steady states.");
+        Description<GivenWay> d("RangeOfEquations", "Path of equations through their steady states.");
         d.field("along", &GivenWay::along,
                 choice<range::Along>({{"output", output}, {"input", input}, {"parameter", parameter}}),
-                "What is moved: the output's steady value, the input's, or a parameter.")
+                "The quantity that moves: the output's steady value, the input's, or a parameter.")
             .field("parameter", &GivenWay::parameter, maybe(text(kMaxPointNameLength)),
-                   "Its name, along a parameter: one that is a number and in no other parameter's expression.")
+                   "Along a parameter, its name: one that is a number and occurs in no other parameter's expression.")
             .field("from", &GivenWay::from, number(), "The range's lower end, absolute.", {.required = true})
             .field("to", &GivenWay::to, number(), "Its upper end, > from.", {.required = true})
             .field("hold_output", &GivenWay::hold_output, boolean(),
-                   "Along a parameter: the input keeps the output at the operating point; false: the input stays.")
+                   "Along a parameter, true: the input keeps the output at the operating point; false: the input is "
+                   "constant.")
             .check([](const Json&, GivenWay& way, Reader& reader) {
                 if (way.along == parameter && !way.parameter)
-                    reader.fault_at("parameter", "parameter is missing; along a parameter of the equations name it.");
+                    reader.fault_at("parameter",
+                                    "parameter is missing; name the parameter of the equations that moves.");
                 if (way.along != parameter && way.parameter)
                     reader.fault_at("parameter",
                                     "parameter belongs to along \"parameter\"; remove it, or choose that.");
@@ -340,25 +342,24 @@ const Description<RangeRequest>& range_request_contract() {
                          "robust setting and a schedule.");
         add_labels(d);
         d.field("scheduling", &R::scheduling, maybe(object(scheduling_contract())),
-                "What `at` is; of equations what they are followed along, if not given.")
+                "The quantity `at`; default for equations: the quantity along which they are followed.")
             .field("points", &R::points,
                    maybe(list_of(object(range_point_contract()), range::kFewestPoints, range::kMaxPoints)),
                    "Plants or records, ascending in `at`; exactly one of points and plant.")
             .field("plant", &R::plant, maybe(plant_model_or_text()),
                    "Equations, with `range`; exactly one of points and plant.")
             .field("range", &R::way, maybe(object(way_contract())),
-                   "Of equations: the way through their steady states.")
-            .field("identify", &R::identify, object(identify_contract()), "How records become models.")
-            .field(
-                "uncertainty", &R::over_region, maybe(choice<bool>({{"none", false}, {"identified", true}})),
-                "identified: limits hold over each record's 95 % confidence region, as they do for records where it is "
-                "not given; none: on the models alone.")
+                   "For equations: the path through their steady states.")
+            .field("identify", &R::identify, object(identify_contract()), "Identification of the records.")
+            .field("uncertainty", &R::over_region, maybe(choice<bool>({{"none", false}, {"identified", true}})),
+                   "identified (default for records): limits hold over each record's 95 % confidence region; none: on "
+                   "the models only.")
             .field("schedule", &R::schedule, object(schedule_wish_contract()),
-                   "Limits, and how the controller moves between its rows.", {.no_default = true})
+                   "Limits, and the interpolation of the controller.", {.no_default = true})
             .field("runs", &R::runs, boolean(), "With equations: simulate passages across the range.");
         add_terms(d);
         d.refuse("record", "A range takes a record for each point: points [{\"at\": 30, \"record\": {...}}, ...].")
-            .refuse("tune", "A range is designed by its own search; limits and kind of controller stand in schedule.")
+            .refuse("tune", "A range is designed by its own search; give limits and kind of controller in schedule.")
             .check_presence(check_range_source)
             .check(check_range)
             .example({{"scheduling", {{"name", "load"}, {"unit", "%"}}},

@@ -26,13 +26,13 @@ void pid_field(Description<Owner>& d, const char* name, IdealPid Owner::*member,
 const Description<range::PointCost>& point_cost_contract() {
     static const auto description = [] {
         using P = range::PointCost;
-        Description<P> d("PlacePrice", "What one setting costs at a point.");
+        Description<P> d("PlacePrice", "The cost of one setting at a point.");
         d.field("at", &P::at, only_answered(number()), "The point.");
         pid_field(d, "own", &P::own, "The point's own optimum under the same limits.");
         d.field("own_IAE", &P::own_IAE, only_answered(number()), "IAE of a unit load step with it.",
                 {.unit = "y time/u"})
-            .field("IAE", &P::IAE, figure(), "The same with the one setting.", {.unit = "y time/u"})
-            .field("relative_IAE", &P::relative_IAE, figure(), "IAE over own_IAE.")
+            .field("IAE", &P::IAE, figure(), "IAE of a unit load step with the one setting.", {.unit = "y time/u"})
+            .field("relative_IAE", &P::relative_IAE, figure(), "IAE divided by own_IAE.")
             .field("Ms", &P::Ms, figure(), "The largest over the plants of the point.")
             .field("Mt", &P::Mt, figure(), "The largest over the plants of the point.")
             .why_null("The loop is not stable here, or does not settle.");
@@ -44,12 +44,12 @@ const Description<range::PointCost>& point_cost_contract() {
 const Description<range::OneSetting>& one_setting_contract() {
     static const auto description = [] {
         using O = range::OneSetting;
-        Description<O> d("OneSetting", "The setting that keeps the limits over the range, and what it costs.");
+        Description<O> d("OneSetting", "The setting that keeps the limits over the range, and its cost.");
         pid_field(d, "controller", &O::controller, "The controller.");
         d.field("worst_relative_IAE", &O::worst_relative_IAE, only_answered(number()), "The largest at a point.")
             .field("mean_relative_IAE", &O::mean_relative_IAE, only_answered(number()), "The mean over the points.")
             .field("worst_at", &O::worst_at, only_answered(number()), "The point of the largest.")
-            .field("points", &O::points, list_of(answer(point_cost_contract())), "Its price at each point.");
+            .field("points", &O::points, list_of(answer(point_cost_contract())), "Its cost at each point.");
         return d;
     }();
     return description;
@@ -76,25 +76,27 @@ const Description<range::ScheduleDesign>& schedule_contract() {
     static const auto description = [] {
         using S = range::ScheduleDesign;
         Description<S> d("Schedule",
-                         "Rows of settings. Below the first and above the last their settings hold; between, the "
-                         "controller interpolates.");
+                         "Rows of settings. The controller interpolates between them; below the first and above the "
+                         "last row the settings are constant.");
         d.field(
              "interpolation", {},
              [](const S& s, Writer& out) { interpolation_word().write(s.schedule.interpolation, out); },
-             interpolation_word().schema, "How.")
+             interpolation_word().schema, "Interpolation between the rows.")
             .field(
                 "hysteresis", {}, [](const S& s, Writer& out) { out.number(s.schedule.hysteresis); }, number().schema,
-                "Of steps, in the unit of `at`: a row is left half of it beyond its border.")
+                "Hysteresis of steps, in the unit of `at`: the controller leaves a row at half of it beyond the "
+                "border.")
             .field(
                 "rows", {},
                 [](const S& s, Writer& out) { list_of(answer(schedule_row_contract())).write(s.schedule.rows, out); },
                 list_of(answer(schedule_row_contract())).schema, "Ascending in `at`.")
-            .field("holds_limits", &S::holds_limits, only_answered(boolean()), "At every place that was looked at.")
+            .field("holds_limits", &S::holds_limits, only_answered(boolean()),
+                   "True if the limits hold at every place that was checked.")
             .field("within_allowance", &S::within_allowance, only_answered(boolean()),
-                   "The IAE lies everywhere within the allowance of the place's own optimum.")
+                   "True if the IAE is within the allowance of each place's own optimum everywhere.")
             .field(
                 "worst_relative_IAE", {}, [](const S& s, Writer& out) { out.number(s.worst_relative_IAE); },
-                number_or_null, "The largest that was met; null where some loop is not stable.")
+                number_or_null, "The largest value found; null if a loop is not stable.")
             .field(
                 "longest_sample_time", {},
                 [](const S& s, Writer& out) {
@@ -113,14 +115,16 @@ const Description<range::WorstPoint>& worst_point_contract() {
     static const auto description = [] {
         using W = range::WorstPoint;
         using enum range::Quantity;
-        Description<W> d("WorstPlace", "Where a quantity is largest over the range, computed again by itself.");
+        Description<W> d("WorstPlace",
+                         "The place where a quantity is largest over the range, recomputed independently.");
         d.field("quantity", &W::quantity,
                 only_answered(
                     choice<range::Quantity>({{"Ms", Ms}, {"Mt", Mt}, {"relative_IAE", range::Quantity::relative_IAE}})),
-                "Which.")
+                "The quantity.")
             .field("at", &W::at, only_answered(number()), "The place.")
             .field("value", &W::value, figure(), "There.")
-            .field("limit", &W::limit, only_answered(number()), "Of Ms or Mt; 1 and the allowance of the relative IAE.")
+            .field("limit", &W::limit, only_answered(number()),
+                   "Limit of Ms or Mt; for the relative IAE 1 plus the allowance.")
             .why_null("The loop is not stable there, or does not settle.");
         return d;
     }();
@@ -142,14 +146,14 @@ const Description<RangeWorst>& worst_contract() {
 const Description<RangePointPlant>& range_plant_contract() {
     static const auto description = [] {
         using P = RangePointPlant;
-        Description<P> d("RangePoint", "The plant at a point, and how it is known.");
+        Description<P> d("RangePoint", "The plant at a point, and its source.");
         d.field("at", &P::at, only_answered(number()), "The point.")
             .field("plant", &P::plant, only_answered(one_of(plant_contract())),
-                   "As given, found in the record, or the equations' linearisation.")
-            .field("model", &P::model, maybe(answer(model_contract())), "Of a record.")
-            .field("u", &P::u, only_answered(maybe(number())), "Of equations: the steady input, absolute.",
+                   "As given, identified from the record, or the equations' linearisation.")
+            .field("model", &P::model, maybe(answer(model_contract())), "The model of a record.")
+            .field("u", &P::u, only_answered(maybe(number())), "For equations: the steady input, absolute.",
                    {.unit = "u"})
-            .field("y", &P::y, only_answered(maybe(number())), "Of equations: the steady output, absolute.",
+            .field("y", &P::y, only_answered(maybe(number())), "For equations: the steady output, absolute.",
                    {.unit = "y"});
         return d;
     }();
@@ -196,11 +200,11 @@ RangeContent::RangeContent(RangeResult of) : result(std::move(of)) {
 const Description<RangeContent>& range_content_contract() {
     static const auto description = [] {
         using C = RangeContent;
-        Description<C> d("Range", "One setting and a schedule for an operating range, and what each costs.");
+        Description<C> d("Range", "One setting and a schedule for an operating range, with their costs.");
         d.field("scheduling", {}, write_scheduling, scheduling_schema, "The scheduling variable and its range.")
             .field(
                 "stated", {}, [](const C& c, Writer& out) { out.text(c.result.design.stated); }, words().schema,
-                "How the plants between the points are known.")
+                "Source of the plants between the points.")
             .field(
                 "points", {},
                 [](const C& c, Writer& out) { list_of(answer(range_plant_contract())).write(c.result.points, out); },
@@ -208,16 +212,16 @@ const Description<RangeContent>& range_content_contract() {
             .field("one", &C::one, or_reason(answer(one_setting_contract())), "One setting for the range.")
             .field("schedule", &C::schedule, or_reason(answer(schedule_contract())), "The schedule.")
             .field("curves", &C::curves, answer(range_curves_contract()), "Figures over the range.")
-            .field("worst", &C::worst, answer(worst_contract()), "Where each is worst.")
+            .field("worst", &C::worst, answer(worst_contract()), "The worst places of each.")
             .field(
                 "verdict", {}, [](const C& c, Writer& out) { finding_contract().write(*c.result.verdict, out); },
                 [](SchemaBook& book) { return finding_contract().schema(book); },
-                "Whether a schedule is worth it; left out where one was given.", {},
+                "Whether a schedule is worthwhile, as a finding; left out if a schedule was given.", {},
                 [](const C& c) { return !c.result.verdict; })
             .field(
                 "runs", {},
                 [](const C& c, Writer& out) { list_of(answer(range_passage_contract())).write(c.result.runs, out); },
-                list_of(answer(range_passage_contract())).schema, "Of equations: passages across the range.", {},
+                list_of(answer(range_passage_contract())).schema, "For equations: passages across the range.", {},
                 [](const C& c) { return c.result.runs.empty(); })
             .field(
                 "warnings", {},
@@ -239,7 +243,7 @@ Description<RangeAnswer>& add_range(Description<RangeAnswer>& d) {
          [](SchemaBook& book) { return range_content_contract().schema(book); }, "The answer.")
         .field(
             "compute_ms", {}, [](const RangeAnswer& a, Writer& out) { out.number(a.range.result.compute_ms); },
-            number().schema, "Time that it took, ms.");
+            number().schema, "Computing time, ms.");
     return d;
 }
 
@@ -256,7 +260,7 @@ const Description<RangeAnswer>& range_result_contract() {
                 boolean().schema, "True: cancelled after a setting was found; this is the best so far.")
             .field(
                 "version", {}, [](const A&, Writer& out) { out.text(TUNEWRIGHT_VERSION); }, words().schema,
-                "Of the service.")
+                "Version of the service.")
             .field("request_hash", &A::request_hash, words(), "SHA-256 of the request in its canonical spelling.");
         return d;
     }();
@@ -296,13 +300,14 @@ const Description<RangeTraces>& range_traces_contract() {
     static const auto description = [] {
         using T = RangeTraces;
         Description<T> d("RangeTraces", "Figures at each place of the curves; null where the loop is not stable.");
-        d.field("Ms", &T::Ms, trace(), "The largest over the place's plants, and over the rows that may be in use.")
-            .field("Mt", &T::Mt, trace(), "The same of Mt.")
+        d.field("Ms", &T::Ms, trace(), "The largest Ms over the place's plants, and over the rows that may be in use.")
+            .field("Mt", &T::Mt, trace(),
+                   "The largest Mt over the place's plants, and over the rows that may be in use.")
             .field("relative_IAE", &T::relative_IAE, trace(),
-                   "IAE of a load step over that of the place's own optimum under the same limits.")
-            .field("Kp", &T::Kp, trace_if_any(), "Of a schedule: the gain in use.", {.unit = "u/y"})
-            .field("Ti", &T::Ti, trace_if_any(), "Of a schedule: the integral time in use.", {.unit = "time"})
-            .field("Td", &T::Td, trace_if_any(), "Of a schedule: the derivative time in use.", {.unit = "time"});
+                   "IAE of a load step divided by that of the place's own optimum under the same limits.")
+            .field("Kp", &T::Kp, trace_if_any(), "For a schedule: the gain in use.", {.unit = "u/y"})
+            .field("Ti", &T::Ti, trace_if_any(), "For a schedule: the integral time in use.", {.unit = "time"})
+            .field("Td", &T::Td, trace_if_any(), "For a schedule: the derivative time in use.", {.unit = "time"});
         return d;
     }();
     return description;
@@ -313,19 +318,21 @@ const Description<range::ScheduledRun>& scheduled_run_contract() {
         using R = range::ScheduledRun;
         Description<R> d("RangeRun", "The equations with these settings; values are absolute.");
         d.field("y", &R::y, trace(), "The output.", {.unit = "y"})
-            .field("u", &R::u, trace(), "The input, limits included.", {.unit = "u"})
+            .field("u", &R::u, trace(), "The input, after its limits.", {.unit = "u"})
             .field("at", &R::at, trace(), "The scheduling variable.")
             .field("Kp", &R::Kp, trace(), "The gain in use.", {.unit = "u/y"})
-            .field("IAE", &R::IAE, only_answered(number()), "Of the set point less y.", {.unit = "y time"})
-            .field("largest_error", &R::largest_error, only_answered(number()), "Of the set point less y.",
-                   {.unit = "y"})
-            .field("largest_bump", &R::largest_bump, only_answered(number()), "Of u, where rows switch.", {.unit = "u"})
-            .field("switches", &R::switches, only_answered(integer(0, 1 << 30)), "Of rows, with steps.")
-            .field("limited", &R::limited, only_answered(boolean()), "The input met a limit.")
+            .field("IAE", &R::IAE, only_answered(number()), "IAE of the set point minus y.", {.unit = "y time"})
+            .field("largest_error", &R::largest_error, only_answered(number()),
+                   "Largest absolute value of the set point minus y.", {.unit = "y"})
+            .field("largest_bump", &R::largest_bump, only_answered(number()), "Largest jump of u when rows switch.",
+                   {.unit = "u"})
+            .field("switches", &R::switches, only_answered(integer(0, 1 << 30)),
+                   "Number of changes of row, with steps.")
+            .field("limited", &R::limited, only_answered(boolean()), "True if the input reached a limit.")
             .field("settled", &R::settled, only_answered(boolean()),
                    "At the end y is within 1 % of the passage's size of the set point.")
             .field("ended", &R::ended, unless<std::string>(words(), [](const auto& text) { return text.empty(); }),
-                   "Why it ended early.")
+                   "Reason why it ended early.")
             .field("warnings", &R::warnings, list_of(answer(warning_contract())), "Remarks.");
         return d;
     }();
@@ -336,22 +343,23 @@ const Description<range::LinearisingPassage>& linearising_passage_contract() {
     static const auto description = [] {
         using P = range::LinearisingPassage;
         Description<P> d("RangeNonlinearRun",
-                         "The equations under the input/output linearising controller that knows their states, made as "
-                         "fast as the schedule where that is slowest: (tau s/r + 1)^r of the relative degree r.");
+                         "The equations with the input/output linearising controller that knows their states, as fast "
+                         "as the schedule at its slowest place: (tau s/r + 1)^r of the relative degree r.");
         const auto of_run = [](auto member, const auto& codec) {
             return [member, write = codec.write](const P& p, Writer& out) { write(p.run.*member, out); };
         };
         using R = range::ScheduledRun;
         d.field("y", {}, of_run(&R::y, trace()), trace().schema, "The output.", {.unit = "y"})
-            .field("u", {}, of_run(&R::u, trace()), trace().schema, "The input, limits included.", {.unit = "u"})
+            .field("u", {}, of_run(&R::u, trace()), trace().schema, "The input, after its limits.", {.unit = "u"})
             .field("tau", {}, [](const P& p, Writer& out) { out.number(p.tau); }, number().schema,
                    "Sum of the loop's time constants.", {.unit = "time"})
             .field("IAE", {}, [](const P& p, Writer& out) { out.number(p.run.IAE); }, number().schema,
-                   "Of the set point less y.", {.unit = "y time"})
-            .field("limited", {}, of_run(&R::limited, boolean()), boolean().schema, "The input met a limit.")
+                   "IAE of the set point minus y.", {.unit = "y time"})
+            .field("limited", {}, of_run(&R::limited, boolean()), boolean().schema,
+                   "True if the input reached a limit.")
             .field("settled", {}, of_run(&R::settled, boolean()), boolean().schema,
                    "At the end y is within 1 % of the step of the set point.")
-            .field("ended", {}, of_run(&R::ended, words()), words().schema, "Why it ended early.", {},
+            .field("ended", {}, of_run(&R::ended, words()), words().schema, "Reason why it ended early.", {},
                    [](const P& p) { return p.run.ended.empty(); });
         return d;
     }();
@@ -394,14 +402,14 @@ RangeCurves curves_of(const RangeResult& result) {
 const Description<RangeCurves>& range_curves_contract() {
     static const auto description = [] {
         using C = RangeCurves;
-        Description<C> d("RangeCurves", "Arrays over the same places, ascending; null where a figure is not known.");
-        d.field("at", &C::at, times_trace(), "The places: evenly over the range, points and rows.")
-            .field("K", &C::K, trace(), "Static gain of the nominal plant; of an integrating one the slope.",
+        Description<C> d("RangeCurves", "Arrays over the same places, ascending; null for an unknown figure.");
+        d.field("at", &C::at, times_trace(), "The places: evenly spaced over the range, and at points and rows.")
+            .field("K", &C::K, trace(), "Static gain of the nominal plant; for an integrating one the slope.",
                    {.unit = "y/u"})
-            .field("T", &C::T, trace(), "Sum of its lags less its leads.", {.unit = "time"})
+            .field("T", &C::T, trace(), "Sum of its lags minus sum of its leads.", {.unit = "time"})
             .field("L", &C::L, trace(), "Its dead time.", {.unit = "time"})
-            .field("u", &C::u, trace_if_any(), "Of equations: the steady input, absolute.", {.unit = "u"})
-            .field("y", &C::y, trace_if_any(), "Of equations: the steady output, absolute.", {.unit = "y"})
+            .field("u", &C::u, trace_if_any(), "For equations: the steady input, absolute.", {.unit = "u"})
+            .field("y", &C::y, trace_if_any(), "For equations: the steady output, absolute.", {.unit = "y"})
             .field("one", &C::one, maybe(answer(range_traces_contract())), "With one setting.")
             .field("schedule", &C::schedule, maybe(answer(range_traces_contract())), "With the schedule.");
         return d;
@@ -417,7 +425,7 @@ const Description<RangePassage>& range_passage_contract() {
              "name", {}, [](const P& p, Writer& out) { out.text(p.passage.name); }, words().schema,
              "step up, step down, stairs or ramp.")
             .field("horizon", {}, [](const P& p, Writer& out) { out.number(p.passage.horizon); }, number().schema,
-                   "How long it lasts.", {.unit = "time"})
+                   "Duration.", {.unit = "time"})
             .field("t", {}, [](const P& p, Writer& out) { times_trace().write(longer(p).t, out); },
                    times_trace().schema, "Times of both runs; one that ended early has fewer.", {.unit = "time"})
             .field(
@@ -426,7 +434,7 @@ const Description<RangePassage>& range_passage_contract() {
             .field("one", &P::one, maybe(answer(scheduled_run_contract())), "With one setting.")
             .field("schedule", &P::schedule, maybe(answer(scheduled_run_contract())), "With the schedule.")
             .field("nonlinear", &P::nonlinear, or_reason(answer(linearising_passage_contract())),
-                   "By a nonlinear controller that knows the equations: how well any could pass.")
+                   "With a nonlinear controller that knows the equations: the best possible passage.")
             .why_null("There is no such controller.");
         return d;
     }();

@@ -70,14 +70,14 @@ Codec<std::vector<std::complex<double>>> complex_numbers() {
 
 const Description<ActiveBound>& active_bound_contract() {
     static const auto description = [] {
-        Description<ActiveBound> d("ActiveBound", "A bound that the optimum lies on.");
+        Description<ActiveBound> d("ActiveBound", "A bound on which the optimum lies.");
         d.field("parameter", &ActiveBound::parameter, words(), "Kp, Ti, Td or Tf.")
             .field(
                 "bound", {}, [](const ActiveBound& at, Writer& out) { out.text(at.high ? "high" : "low"); },
                 [](SchemaBook&) {
                     return Json{{"type", "string"}, {"enum", {"low", "high"}}};
                 },
-                "Which end.")
+                "The end of the bound.")
             .field("value", &ActiveBound::value, only_answered(number()), "Its value.");
         return d;
     }();
@@ -87,13 +87,14 @@ const Description<ActiveBound>& active_bound_contract() {
 const Description<EmulationFit>& fit_contract() {
     static const auto description = [] {
         using F = EmulationFit;
-        Description<F> d("EmulationFit", "How much of the nonlinear controller's action the PID's leaves (Remark 7).");
+        Description<F> d("EmulationFit",
+                         "Part of the nonlinear controller's action that the PID does not reproduce (Remark 7).");
         d.field("u_left", &F::u_left, only_answered(number()),
                 "int (u_nl - u)^2 dt over int (u_nl - u_rest)^2 dt, mean over the scenarios.")
             .field("y_left", &F::y_left, only_answered(number()),
                    "int (y_nl - y)^2 dt over int (y_nl - y_rest)^2 dt, mean over the scenarios.")
-            .field("adequate", &F::adequate, only_answered(boolean()), "Whether a PID is enough.")
-            .field("sentence", &F::sentence, words(), "The judgement with its figure.");
+            .field("adequate", &F::adequate, only_answered(boolean()), "True if a PID is sufficient.")
+            .field("sentence", &F::sentence, words(), "The conclusion with its figure.");
         return d;
     }();
     return description;
@@ -103,20 +104,20 @@ const Description<LevelOneRow>& level_one_contract() {
     static const auto description = [] {
         using R = LevelOneRow;
         Description<R> d("LevelOneRow",
-                         "Classical settings beside the emulating ones, on the same plant and scenario.");
+                         "Classical settings for comparison with the emulating ones, on the same plant and scenario.");
         d.field("method", &R::method, words(), "Id of the method.")
             .field(
                 "test", {}, [](const R& row, Writer& out) { out.text(row.test); },
                 [](SchemaBook&) {
                     return Json{{"type", "string"}, {"enum", {"step", "relay", "linear"}}};
                 },
-                "What its model comes from: a simulated step test, a simulated relay test, the linearisation.")
+                "Source of its model: a simulated step test, a simulated relay test, the linearisation.")
             .field("title", &R::title, words(), "Its name.")
-            .field("model", &R::model, maybe(only_answered(one_of(plant_contract()))), "What the rule worked on.")
+            .field("model", &R::model, maybe(only_answered(one_of(plant_contract()))), "Model for the rule.")
             .field("controller", &R::controller, maybe(only_answered(one_of(controller_contract()))), "The settings.")
-            .field("error", &R::error, words_if_any(), "Why there are none.")
-            .field("J", &R::J, nullable_number(), "As of the answer.")
-            .field("ended", &R::ended, words_if_any(), "Why its run ended before the horizon.")
+            .field("error", &R::error, words_if_any(), "Reason why there are none.")
+            .field("J", &R::J, nullable_number(), "J with these settings.")
+            .field("ended", &R::ended, words_if_any(), "Reason why its run ended before the horizon.")
             .field("t", &R::t, abscissa_if_any(), "Time, first scenario.", {.unit = "time"})
             .field("y", &R::y, trace_if_any(), "Output, absolute.", {.unit = "y"})
             .field("u", &R::u, trace_if_any(), "Input, absolute.", {.unit = "u"})
@@ -129,14 +130,15 @@ const Description<LevelOneRow>& level_one_contract() {
 const Description<EmulatedScenario>& scenario_contract() {
     static const auto description = [] {
         using S = EmulatedScenario;
-        Description<S> d("EmulatedScenario", "A run that the optimum is averaged over; y and u absolute.");
-        d.field("setpoint_step", &S::setpoint_step, only_answered(number()), "From its steady state.", {.unit = "y"})
+        Description<S> d("EmulatedScenario", "One of the runs over which the optimum is averaged; y and u absolute.");
+        d.field("setpoint_step", &S::setpoint_step, only_answered(number()), "Set-point step from the steady state.",
+                {.unit = "y"})
             .field("initial", &S::initial, values_if_any("State."), "States at t = 0; the others are steady.")
             .field("parameters", &S::parameters, values_if_any("Parameter."), "Other values of the plant's parameters.")
             .field("y_rest", &S::y_rest, only_answered(number()), "Output at its steady state.", {.unit = "y"})
             .field("u_rest", &S::u_rest, only_answered(number()), "Input there.", {.unit = "u"})
-            .field("limited", &S::limited, only_answered(boolean()), "Whether limits clip the nonlinear controller.")
-            .field("ended", &S::ended, words_if_any(), "Why the PID's run ended before the horizon.")
+            .field("limited", &S::limited, only_answered(boolean()), "True if limits clip the nonlinear controller.")
+            .field("ended", &S::ended, words_if_any(), "Reason why the PID's run ended before the horizon.")
             .field("t", &S::t, abscissa_if_any(), "Time.", {.unit = "time"})
             .field("y_nl", &S::y_nl, trace_if_any(), "Output under the nonlinear controller.", {.unit = "y"})
             .field("u_nl", &S::u_nl, trace_if_any(), "Input under it.", {.unit = "u"})
@@ -179,26 +181,26 @@ void add_criterion(Description<EmulationReport>& d) {
                 return Json{{"type", "object"},
                             {"properties", {{"wy", {{"type", "number"}}}, {"wu", {{"type", "number"}}}}}};
             },
-            "Of the two parts.")
-        .field("horizon", &R::horizon, only_answered(number()), "Where the integrals end.", {.unit = "time"});
+            "Weights of the two parts.")
+        .field("horizon", &R::horizon, only_answered(number()), "End of the integrals.", {.unit = "time"});
 }
 
 const Description<EmulationReport>& emulation_contract() {
     static const auto description = [] {
         using R = EmulationReport;
-        Description<R> d("Emulation", "How the PID emulates the nonlinear controller, and what it was chosen from.");
+        Description<R> d("Emulation", "Comparison of the PID with the nonlinear controller, and the search for it.");
         add_criterion(d);
-        d.field("active_bounds", &R::active_bounds, list_of(answer(active_bound_contract())), "Bounds that hold it.")
-            .field("bounds", &R::bounds, ranges(), "Where the optimum was searched.")
+        d.field("active_bounds", &R::active_bounds, list_of(answer(active_bound_contract())), "Active bounds.")
+            .field("bounds", &R::bounds, ranges(), "Bounds of the search.")
             .field("flatness", &R::flatness, values("Symbol of the parameter."),
-                   "Change of one parameter for which J rises by 5 %, the others re-optimised.")
+                   "Change of one parameter that increases J by 5 %, with the others re-optimised.")
             .field("flatness_alone", &R::flatness_alone, values("Symbol of the parameter."),
-                   "The same with the others fixed.")
+                   "Change of one parameter that increases J by 5 %, with the others fixed.")
             .field("relative_degree", &R::relative_degree, only_answered(integer(1, 100)),
-                   "Order of the first derivative of y that u enters.")
+                   "Relative degree: order of the first derivative of y that depends on u.")
             .field("zero_dynamics_stable", &R::zero_dynamics_stable, only_answered(boolean()),
-                   "Whether all zeros of the linearisation lie in the open left half-plane.")
-            .field("zeros", &R::zeros, complex_numbers(), "Of the linearisation.", {.unit = "1/time"})
+                   "True if all zeros of the linearisation are in the open left half-plane.")
+            .field("zeros", &R::zeros, complex_numbers(), "Zeros of the linearisation.", {.unit = "1/time"})
             .field(
                 "target", {},
                 [](const R& report, Writer& out) {
@@ -230,7 +232,7 @@ const Description<EmulationReport>& emulation_contract() {
 
 ReportContract emulation_report() {
     return report_contract("emulation", emulation_contract(),
-                           "Of the method emulation: both levels, and the nonlinear controller's own run.", true);
+                           "For the method emulation: both levels, and the nonlinear controller's own run.", true);
 }
 
 }  // namespace tunewright::api

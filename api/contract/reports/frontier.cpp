@@ -11,7 +11,7 @@ namespace {
 const Description<FrontierPoint>& point_contract() {
     static const auto description = [] {
         using P = FrontierPoint;
-        Description<P> d("FrontierPoint", "The robust optimum under one limit, and what it does with unit steps.");
+        Description<P> d("FrontierPoint", "The robust optimum under one limit, and its figures for unit steps.");
         d.field("Ms", &P::Ms, only_answered(number()), "The limit on Ms.")
             .field(
                 "controller", {},
@@ -19,8 +19,9 @@ const Description<FrontierPoint>& point_contract() {
                 one_of(controller_contract()).schema, "The controller.")
             .field("load_IAE", &P::load_IAE, figure(), "IAE of a unit load step.", {.unit = "y time/u"})
             .field("setpoint_IAE", &P::setpoint_IAE, figure(), "IAE of a unit set-point step.", {.unit = "time"})
-            .field("overshoot_percent", &P::overshoot_percent, figure(), "Of the set-point step.", {.unit = "%"})
-            .field("Mks", &P::Mks, figure(), "Largest |C S|: how strongly u reacts to noise.", {.unit = "u/y"})
+            .field("overshoot_percent", &P::overshoot_percent, figure(), "Overshoot of the set-point step.",
+                   {.unit = "%"})
+            .field("Mks", &P::Mks, figure(), "Largest |C S|: the amplification of noise in u.", {.unit = "u/y"})
             .field("TV", &P::TV, figure(), "Total variation of u after a unit set-point step.", {.unit = "u/y"})
             .field(
                 "achieved", {},
@@ -51,8 +52,8 @@ const Description<Frontier>& frontier_contract() {
         d.field("points", &Frontier::points, list_of(answer(point_contract())),
                 "Ascending in Ms; limits that no controller meets are left out.")
             .field("infeasible_below", &Frontier::infeasible_below, nullable_number(),
-                   "The lowest limit that is met, where lower ones were asked for; else null.")
-            .field("compute_ms", &Frontier::compute_ms, only_answered(number()), "Time that the curve took, ms.");
+                   "The lowest feasible limit, if lower ones were requested; otherwise null.")
+            .field("compute_ms", &Frontier::compute_ms, only_answered(number()), "Computing time of the curve, ms.");
         return d;
     }();
     return description;
@@ -61,7 +62,7 @@ const Description<Frontier>& frontier_contract() {
 const Description<FrontierRequest>& frontier_request_contract() {
     static const auto description = [] {
         using R = FrontierRequest;
-        Description<R> d("FrontierRequest", "A plant, and the limits between which its robust optima are wanted.");
+        Description<R> d("FrontierRequest", "A plant, and the range of limits for its robust optima.");
         add_labels(d);
         d.field("plant", &R::plant, maybe(plant_model_or_text()), "The plant.", {.required = true});
         const Json options = options_schema(frontier_options().descriptions())["properties"];
@@ -82,7 +83,7 @@ const Description<FrontierRequest>& frontier_request_contract() {
 }
 
 ReportContract frontier_report() {
-    return report_contract("frontier", frontier_contract(), "The front of robust optima.");
+    return report_contract("frontier", frontier_contract(), "The frontier of robust optima.");
 }
 
 }  // namespace tunewright::api

@@ -25,7 +25,7 @@ const Description<CostSurface>& surface_contract() {
                     return Json{{"type", "array"},
                                 {"items", {{"type", "array"}, {"items", {{"type", {"number", "null"}}}}}}};
                 },
-                "cost[i][j] belongs to Ti[i] and Td[j]; null where no gain keeps the limits.");
+                "cost[i][j] belongs to Ti[i] and Td[j]; null if no gain keeps the limits.");
         return d;
     }();
     return description;
@@ -34,7 +34,7 @@ const Description<CostSurface>& surface_contract() {
 }  // namespace
 
 ReportContract cost_surface_report() {
-    return report_contract("surface", surface_contract(), "Cost over the (Ti, Td) plane, where asked for.");
+    return report_contract("surface", surface_contract(), "Cost over the (Ti, Td) plane, if requested.");
 }
 
 const std::vector<ReportContract>& report_contracts() {

@@ -48,9 +48,9 @@ Json tolerates_schema(SchemaBook&) {
               {"items", figure},
               {"minItems", 2},
               {"maxItems", 2},
-              {"description", "Factors of the plant's gain, lowest and highest."}};
+              {"description", "Lowest and highest factor of the plant's gain."}};
     Json dead_time = figure;
-    dead_time["description"] = "Dead time that may come on top.";
+    dead_time["description"] = "Additional dead time.";
     dead_time["x-unit"] = "time";
     return {{"type", "object"},
             {"properties",
@@ -64,16 +64,16 @@ Json tolerates_schema(SchemaBook&) {
 const Description<SetpointPerformance>& setpoint_contract() {
     static const auto description = [] {
         using P = SetpointPerformance;
-        Description<P> d("SetpointPerformance", "Of the response to the set-point step.");
+        Description<P> d("SetpointPerformance", "Figures of the response to the set-point step.");
         d.field("IAE", &P::IAE, figure(), "Integral of |r - y|.", {.unit = "y time"})
             .field("ISE", &P::ISE, figure(), "Integral of (r - y)^2.", {.unit = "y^2 time"})
             .field("ITAE", &P::ITAE, figure(), "Integral of t |r - y|.", {.unit = "y time^2"})
-            .field("overshoot_percent", &P::overshoot_percent, figure(), "Beyond r, in percent of the step.",
-                   {.unit = "%"})
-            .field("rise_time", &P::rise_time, figure(), "From 10 to 90 % of the step.", {.unit = "time"})
-            .field("rise_time_5_95", &P::rise_time_5_95, figure(), "From 5 to 95 % of the step.", {.unit = "time"})
+            .field("overshoot_percent", &P::overshoot_percent, figure(),
+                   "Overshoot of y over r, in percent of the step.", {.unit = "%"})
+            .field("rise_time", &P::rise_time, figure(), "Time from 10 to 90 % of the step.", {.unit = "time"})
+            .field("rise_time_5_95", &P::rise_time_5_95, figure(), "Time from 5 to 95 % of the step.", {.unit = "time"})
             .field("settling_time", &P::settling_time, figure(), "Last time outside 2 % of the step.", {.unit = "time"})
-            .field("TV", &P::TV, figure(), "Total variation of u, the jump at 0 included.", {.unit = "u"})
+            .field("TV", &P::TV, figure(), "Total variation of u, including the jump at 0.", {.unit = "u"})
             .field("first_move", &P::first_move, figure(), "u(0+).", {.unit = "u"})
             .why_null(kNoFigure);
         return d;
@@ -84,7 +84,7 @@ const Description<SetpointPerformance>& setpoint_contract() {
 const Description<NoisePerformance>& noise_contract() {
     static const auto description = [] {
         using P = NoisePerformance;
-        Description<P> d("NoisePerformance", "What measurement noise does to u.");
+        Description<P> d("NoisePerformance", "Effect of measurement noise on u.");
         d.field("u_std", &P::u_std, figure(), "Standard deviation of u.", {.unit = "u"})
             .field("gain", &P::gain, figure(), "Ratio of the standard deviations of u and the noise.", {.unit = "u/y"})
             .why_null(kNoFigure);
@@ -129,31 +129,32 @@ const Description<Robustness>& robustness_contract() {
     static const auto description = [] {
         using R = Robustness;
         Description<R> d("Robustness", "Suprema over 0 <= omega <= infinity, and margins over all crossings.");
-        d.field("stable", &R::stable, boolean(), "Whether the closed loop is stable.")
+        d.field("stable", &R::stable, boolean(), "True if the closed loop is stable.")
             .field("Ms", &R::Ms, figure(), "Largest |S|, S = 1/(1 + P C).")
             .field("omega_Ms", &R::omega_Ms, figure(), "Frequency at which |S| is largest.", {.unit = "rad/time"})
             .field("Mt", &R::Mt, figure(), "Largest |T|, T = P C/(1 + P C).")
             .field("omega_Mt", &R::omega_Mt, figure(), "Frequency at which |T| is largest.", {.unit = "rad/time"})
             .field("Mks", &R::Mks, figure(), "Largest |C S|.", {.unit = "u/y"})
-            .field("gain_margin", &R::gain_margin, figure(), "Smallest factor > 1 of the gain that loses stability.")
+            .field("gain_margin", &R::gain_margin, figure(),
+                   "Smallest factor > 1 of the gain at which the loop is unstable.")
             .field("gain_margin_low", &R::gain_margin_low, figure(),
-                   "Largest factor < 1 of the gain that loses stability.")
+                   "Largest factor < 1 of the gain at which the loop is unstable.")
             .field("phase_margin_deg", &R::phase_margin_deg, figure(),
                    "Smallest phase margin over all gain crossovers.", {.unit = "deg"})
             .field("delay_margin", &R::delay_margin, figure(), "Smallest delay margin over all gain crossovers.",
                    {.unit = "time"})
             .field("gain_crossover", &R::gain_crossover, figure(), "Frequency at which |P C| = 1.",
                    {.unit = "rad/time"})
-            .field("phase_crossover", &R::phase_crossover, figure(), "Where P C crosses -180 degrees.",
-                   {.unit = "rad/time"})
+            .field("phase_crossover", &R::phase_crossover, figure(),
+                   "Frequency at which the phase of P C is -180 degrees.", {.unit = "rad/time"})
             .field(
                 "binding", {}, [](const R& value, Writer& out) { out.text(value.binding); },
                 [](SchemaBook&) {
                     return Json{{"type", "string"}};
                 },
-                "Which limit holds the design.", {}, [](const R& value) { return value.binding.empty(); })
+                "The limit that is active.", {}, [](const R& value) { return value.binding.empty(); })
             .field("tolerates", {}, write_tolerates, tolerates_schema,
-                   "Model errors that leave the loop stable, one at a time.")
+                   "Model errors for which the loop remains stable, one at a time.")
             .why_null(kNoFigure);
         return d;
     }();
@@ -163,7 +164,7 @@ const Description<Robustness>& robustness_contract() {
 const Description<LoadPerformance>& load_contract() {
     static const auto description = [] {
         using P = LoadPerformance;
-        Description<P> d("LoadPerformance", "Of the response to the load step at the plant's input.");
+        Description<P> d("LoadPerformance", "Figures of the response to the load step at the plant's input.");
         d.field("IAE", &P::IAE, figure(), "Integral of |y|.", {.unit = "y time"})
             .field("ISE", &P::ISE, figure(), "Integral of y^2.", {.unit = "y^2 time"})
             .field("ITAE", &P::ITAE, figure(), "Integral of t |y|.", {.unit = "y time^2"})
@@ -179,10 +180,10 @@ const Description<LoadPerformance>& load_contract() {
 const Description<Performance>& performance_contract() {
     static const auto description = [] {
         Description<Performance> d("Performance",
-                                   "Figures of the two step responses and, where noise was asked for, of the noise.");
-        d.field("setpoint", &Performance::setpoint, answer(setpoint_contract()), "Of the set-point step.")
-            .field("load", &Performance::load, answer(load_contract()), "Of the load step.")
-            .field("noise", &Performance::noise, maybe(answer(noise_contract())), "Of the measurement noise.");
+                                   "Figures of the two step responses and, if noise was requested, of the noise.");
+        d.field("setpoint", &Performance::setpoint, answer(setpoint_contract()), "Figures of the set-point step.")
+            .field("load", &Performance::load, answer(load_contract()), "Figures of the load step.")
+            .field("noise", &Performance::noise, maybe(answer(noise_contract())), "Figures of the measurement noise.");
         return d;
     }();
     return description;
@@ -191,8 +192,8 @@ const Description<Performance>& performance_contract() {
 const Description<Responses>& responses_contract() {
     static const auto description = [] {
         Description<Responses> d("Responses", "Both step responses, from t = 0 at the step.");
-        d.field("setpoint", &Responses::setpoint, answer(trace_contract()), "To the set-point step.")
-            .field("load", &Responses::load, answer(trace_contract()), "To the load step.")
+        d.field("setpoint", &Responses::setpoint, answer(trace_contract()), "Response to the set-point step.")
+            .field("load", &Responses::load, answer(trace_contract()), "Response to the load step.")
             .field("settles", &Responses::settles, Codec<bool>{{}, boolean().write, boolean().schema},
                    "False: the horizon ends before the responses do.");
         return d;
@@ -203,9 +204,8 @@ const Description<Responses>& responses_contract() {
 const Description<LinearisedResponse>& linear_contract() {
     static const auto description = [] {
         using R = LinearisedResponse;
-        Description<R> d(
-            "StepResponse",
-            "What the linearisation of a nonlinear plant does with the same controller, steps and limits.");
+        Description<R> d("StepResponse",
+                         "The linearisation of a nonlinear plant with the same controller, steps and limits.");
         d.field("performance", &R::performance, answer(performance_contract()), "Figures of its responses.")
             .field("responses", &R::responses, maybe(answer(responses_contract())),
                    "Its traces; left out with points 0 and for unstable loops.");
@@ -236,9 +236,9 @@ const Description<NonlinearFigures>& nonlinear_contract() {
             return codec;
         };
         Description<N> d("Nonlinear",
-                         "Of the form npid, whose linear part is stable: the integral sees k e with k between 0 (large "
-                         "errors) and 1 (small ones). Do errors of every size die out?");
-        d.field("delta_r", &N::delta_r, only_answered(number()), "The error's measure, as used.", {.unit = "y"})
+                         "For the form npid with a stable linear part, whose integral has the input k e with k between "
+                         "0 (large errors) and 1 (small ones): whether errors of every size die out.");
+        d.field("delta_r", &N::delta_r, only_answered(number()), "delta_r as used.", {.unit = "y"})
             .field(
                 "sector", {},
                 [](const N&, Writer& out) {
@@ -250,28 +250,28 @@ const Description<NonlinearFigures>& nonlinear_contract() {
                 [](SchemaBook&) {
                     return Json{{"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 2}, {"maxItems", 2}};
                 },
-                "Between which gains the integral's input lies.")
+                "Range of the gain k of the integral's input.")
             .field("stable_without_integral", &N::stable_without_integral, given(boolean()),
-                   "Whether proportional and derivative action alone keep the loop stable.")
-            .field(
-                "circle_criterion", &N::circle_criterion, given(boolean()),
-                "Holds: Re G > -1 at all frequencies, G = (Ki/s) P/(1 + P C) with C without integral. Then every error "
-                "dies out.")
+                   "True if the loop is stable with proportional and derivative action alone.")
+            .field("circle_criterion", &N::circle_criterion, given(boolean()),
+                   "True if Re G > -1 at all frequencies, G = (Ki/s) P/(1 + P C) with C without integral. Then every "
+                   "error "
+                   "dies out.")
             .field("popov_criterion", &N::popov_criterion, given(boolean()),
-                   "Holds: Re (1 + j omega q) G > -1 for some q >= 0. The same conclusion, less conservative.")
+                   "True if Re (1 + j omega q) G > -1 for some q >= 0. The same conclusion, less conservative.")
             .field("popov_q", &N::popov_q, figure(), "Such a q.", {.unit = "time"})
             .field("limit_cycle_predicted", &N::limit_cycle_predicted, given(boolean()),
-                   "The describing function's prediction, an approximation: some integral gain below 1 makes the "
-                   "loop oscillate.")
-            .field("limit_cycle_amplitude", &N::limit_cycle_amplitude, figure(), "Of y; larger errors may grow.",
-                   {.unit = "y"})
+                   "Prediction of the describing function, an approximation: with an integral gain below 1 the loop "
+                   "oscillates.")
+            .field("limit_cycle_amplitude", &N::limit_cycle_amplitude, figure(),
+                   "Amplitude of y; larger errors may grow.", {.unit = "y"})
             .field("limit_cycle_omega", &N::limit_cycle_omega, figure(), "Its frequency.", {.unit = "rad/time"})
             .field(
                 "statement", {}, [](const N& value, Writer& out) { out.text(value.statement); },
                 [](SchemaBook&) {
                     return Json{{"type", "string"}};
                 },
-                "What follows, in a sentence.")
+                "The conclusion, in a sentence.")
             .why_null(kNoFigure);
         return d;
     }();
@@ -282,13 +282,13 @@ const Description<IndexErrors>& index_errors_contract() {
     static const auto description = [] {
         using E = IndexErrors;
         Description<E> d("IndexErrors",
-                         "Relative change of each index when every time step, and its quadrature with it, was last "
-                         "halved: the error that is left is below it or 1e-6, whichever is larger.");
+                         "Relative change of each index at the last halving of all time steps and their quadrature: "
+                         "the remaining error is below it or 1e-6, whichever is larger.");
         d.field("IAE", &E::IAE, nullable_number(), "Promised: 1e-5 or less.")
             .field("ISE", &E::ISE, nullable_number(), "Promised: 1e-5 or less.")
             .field("ITAE", &E::ITAE, nullable_number(), "Promised: 2e-5 or less.")
             .field("TV", &E::TV, nullable_number(), "Promised: 5e-5 or less.")
-            .why_null("The index has no value, or was checked step by step instead (on a nonlinear plant).");
+            .why_null("The index has no value, or was checked in every step instead (on a nonlinear plant).");
         return d;
     }();
     return description;
@@ -297,22 +297,22 @@ const Description<IndexErrors>& index_errors_contract() {
 const Description<Verification>& verification_contract() {
     static const auto description = [] {
         using V = Verification;
-        Description<V> d("Verification", "How the figures were checked.");
+        Description<V> d("Verification", "Checks of the figures.");
         d.field("setpoint_errors", &V::setpoint_errors, answer(index_errors_contract()),
-                "How exact the indices of the set-point response are.")
+                "Errors of the indices of the set-point response.")
             .field("load_errors", &V::load_errors, answer(index_errors_contract()),
-                   "How exact the indices of the load response are.")
+                   "Errors of the indices of the load response.")
             .field("iae_step_halving", &V::iae_step_halving, nullable_number(),
                    "Relative change of the load IAE when every time step is halved.")
             .field("load_error_keeps_sign", &V::load_error_keeps_sign, nullable_bool(),
-                   "Whether the error after the load step keeps its sign: then its IAE is exactly d Ti/Kp (in "
-                   "magnitude), however slow the tail.")
+                   "True if the error after the load step keeps its sign: its IAE is then exactly d Ti/Kp (in "
+                   "magnitude), however slow the response is.")
             .field("ie_identity", &V::ie_identity, nullable_number(),
                    "Relative difference of the integral of y and d Ti/Kp.")
             .field("ms_grid_difference", &V::ms_grid_difference, nullable_number(),
                    "Relative difference of Ms on an independent grid.")
             .field("stability_methods_agree", &V::stability_methods_agree, nullable_bool(),
-                   "Whether two independent stability tests agree.")
+                   "True if two independent stability tests agree.")
             .why_null("This check does not apply to this loop.");
         return d;
     }();
@@ -323,13 +323,12 @@ const Description<RegionFigures>& region_contract() {
     static const auto description = [] {
         using R = RegionFigures;
         Description<R> d("Region",
-                         "The controller on all plants that it must serve: of a set, of uncertainty ranges, or of the "
-                         "95 % confidence region of a record.");
-        d.field(
-             "stable_fraction", &R::stable_fraction, only_answered(number()),
-             "Fraction of the plants (of the region's volume, by samples) whose loop is stable, 0 to 1; 1 only where "
-             "no unstable one was found.")
-            .field("worst_Ms", &R::worst_Ms, figure(), "Largest Ms of all plants looked at.")
+                         "The controller on all plants for which it is designed: a set, uncertainty ranges, or the 95 "
+                         "% confidence region of a record.");
+        d.field("stable_fraction", &R::stable_fraction, only_answered(number()),
+                "Fraction of the plants (of the region's volume, by samples) whose loop is stable, 0 to 1; 1 only if "
+                "no unstable one was found.")
+            .field("worst_Ms", &R::worst_Ms, figure(), "Largest Ms of all evaluated plants.")
             .field("worst_plant", &R::worst_plant, only_answered(one_of(plant_contract())),
                    "The plant of that Ms, or one whose loop is unstable.")
             .why_null(kNoFigure);
@@ -342,11 +341,12 @@ const Description<Warning>& warning_contract() {
     static const auto description = [] {
         Description<Warning> d("Warning", "A remark: a code for programs, a sentence for people.");
         constexpr std::size_t kMaxCode = 100, kMaxDetail = 10'000;
-        d.field("code", &Warning::code, text(kMaxCode), "Stable, in kebab-case.", {.required = true})
+        d.field("code", &Warning::code, text(kMaxCode), "The code, which does not change between versions; kebab-case.",
+                {.required = true})
             .field("detail", &Warning::detail, text(kMaxDetail), "One sentence with the figures.", {.required = true})
             .field("level", &Warning::level,
                    choice<WarningLevel>({{"warning", WarningLevel::warning}, {"bad", WarningLevel::bad}}),
-                   "bad: what it belongs to is not to be used as it stands.");
+                   "bad: the entry or result must not be used in this form.");
         return d;
     }();
     return description;

@@ -34,10 +34,10 @@ Codec<bool> truth() { return only_answered(boolean()); }
 const Description<PreTest>& pretest_contract() {
     static const auto description = [] {
         Description<PreTest> d("PreTest", "The samples before the first change of u.");
-        d.field("samples", &PreTest::samples, count(), "How many.")
-            .field("duration", &PreTest::duration, size(), "From the first to the last of them.", {.unit = "time"})
+        d.field("samples", &PreTest::samples, count(), "Number of them.")
+            .field("duration", &PreTest::duration, size(), "Time from the first to the last of them.", {.unit = "time"})
             .field("drift", &PreTest::drift, size(), "Slope of y there.", {.unit = "y/time"})
-            .field("at_rest", &PreTest::at_rest, truth(), "Whether y moves no more than its noise explains.");
+            .field("at_rest", &PreTest::at_rest, truth(), "True if y moves no more than its noise explains.");
         return d;
     }();
     return description;
@@ -45,8 +45,8 @@ const Description<PreTest>& pretest_contract() {
 
 const Description<MissingPart>& missing_contract() {
     static const auto description = [] {
-        Description<MissingPart> d("MissingPart", "Where the record holds nothing.");
-        d.field("count", &MissingPart::count, count(), "How many.")
+        Description<MissingPart> d("MissingPart", "Gaps in the record.");
+        d.field("count", &MissingPart::count, count(), "Number of them.")
             .field("longest", &MissingPart::longest, size(), "The longest time from one sample to the next.",
                    {.unit = "time"})
             .field("at", &MissingPart::at, size(), "When it begins.", {.unit = "time"});
@@ -57,7 +57,7 @@ const Description<MissingPart>& missing_contract() {
 
 const Description<Saturation>& saturation_contract() {
     static const auto description = [] {
-        Description<Saturation> d("Saturation", "A level at which y is cut off flat.");
+        Description<Saturation> d("Saturation", "A level at which y is cut off.");
         d.field("level", &Saturation::level, size(), "The level at which y is cut off.", {.unit = "y"})
             .field("fraction", &Saturation::fraction, size(), "Fraction of the samples at this level, 0 to 1.");
         return d;
@@ -67,8 +67,8 @@ const Description<Saturation>& saturation_contract() {
 
 const Description<FalseReadings>& outliers_contract() {
     static const auto description = [] {
-        Description<FalseReadings> d("Outliers", "Readings of y that no process makes; they were left out.");
-        d.field("count", &FalseReadings::count, count(), "How many.")
+        Description<FalseReadings> d("Outliers", "Readings of y that are sensor errors; they were left out.");
+        d.field("count", &FalseReadings::count, count(), "Number of them.")
             .field("rows", &FalseReadings::rows, list_of(count()),
                    "The first 20: lines of the csv, or indices from 0 into the arrays.");
         return d;
@@ -78,18 +78,18 @@ const Description<FalseReadings>& outliers_contract() {
 
 const Description<ClosedLoop>& closed_loop_contract() {
     static const auto description = [] {
-        Description<ClosedLoop> d("ClosedLoop", "A controller moved u in answer to y; there only where it did.");
-        d.field("evidence", &ClosedLoop::evidence, sentence(), "What shows it, with its figures.")
+        Description<ClosedLoop> d("ClosedLoop", "Feedback from y to u; left out if there is none.");
+        d.field("evidence", &ClosedLoop::evidence, sentence(), "Evidence, with its figures.")
             .field("used", &ClosedLoop::used,
                    only_answered(choice<LoopExcitation>({{"set_point", LoopExcitation::set_point},
                                                          {"switched_on", LoopExcitation::switched_on},
                                                          {"outside_moves", LoopExcitation::outside_moves},
                                                          {"none", LoopExcitation::none}})),
-                   "What the model rests on: moves of the set point (r), switching the controller on (or the set "
+                   "Excitation of the model: moves of the set point (r), switching the controller on (or the set "
                    "point's move before the first row), moves of u that y does not explain, or none of these.")
-            .field("share", &ClosedLoop::share, size(), "Of u's variance that these moves explain, 0 to 1.")
+            .field("share", &ClosedLoop::share, size(), "Share of u's variance that these moves explain, 0 to 1.")
             .field("set_point_moves", &ClosedLoop::set_point_moves, maybe(count()),
-                   "Moves of the recorded set point, a ramp counted once.");
+                   "Number of moves of the recorded set point; a ramp counts once.");
         return d;
     }();
     return description;
@@ -112,45 +112,47 @@ std::string test_words(const DataQuality& quality) {
 const Description<DataQuality>& quality_contract() {
     static const auto description = [] {
         using Q = DataQuality;
-        Description<Q> d("DataQuality", "What was found in the record and what was done about it.");
+        Description<Q> d("DataQuality", "Findings about the record, and their treatment.");
         d.field("kind", &Q::kind,
                 only_answered(choice<RecordKind>({{"step", RecordKind::step},
                                                   {"several_steps", RecordKind::several_steps},
                                                   {"relay", RecordKind::relay},
                                                   {"general", RecordKind::general}})),
-                "What the test was, as given or found.")
+                "Kind of test, as given or found.")
             .field(
                 "test", {}, [](const Q& quality, Writer& out) { out.text(test_words(quality)); }, words().schema,
-                "The same in words, with what was moved: one step of the set point, in automatic.")
+                "Kind of test in words, with the signal that moved: one step of the set point, in automatic.")
             .field("samples", &Q::samples, count(), "Samples used.")
             .field("samples_dropped", &Q::samples_dropped, count(),
-                   "Rows of which no y is used: blank cells, backward times, false readings.")
+                   "Rows whose y is not used: blank cells, times that go back, false readings.")
             .field("sample_time", &Q::sample_time, size(), "Median spacing.", {.unit = "time"})
-            .field("irregular", &Q::irregular, truth(), "Whether the spacing varies.")
-            .field("noise_std", &Q::noise_std, size(), "High-frequency part of y, standard deviation.", {.unit = "y"})
-            .field("quantisation", &Q::quantisation, size(), "Step of y's grid; 0: none found.", {.unit = "y"})
-            .field("steps", &Q::steps, count(), "Moves of u; jitter below 2 % of its range is none.")
-            .field("cycles", &Q::cycles, maybe(count()), "Complete periods of a relay test.")
-            .field("settled", &Q::settled, truth(), "Whether y came to rest.")
+            .field("irregular", &Q::irregular, truth(), "True if the spacing varies.")
+            .field("noise_std", &Q::noise_std, size(), "Standard deviation of the high-frequency part of y.",
+                   {.unit = "y"})
+            .field("quantisation", &Q::quantisation, size(), "Resolution of y; 0: none found.", {.unit = "y"})
+            .field("steps", &Q::steps, count(), "Number of moves of u; jitter below 2 % of its range does not count.")
+            .field("cycles", &Q::cycles, maybe(count()), "Number of complete periods of a relay test.")
+            .field("settled", &Q::settled, truth(), "True if y settled.")
             .field("u0", &Q::u0, size(), "u before its first change.", {.unit = "u"})
             .field("y0", &Q::y0, size(), "y before the first change of u: its mean there.", {.unit = "y"})
-            .field("u_limits", &Q::u_limits, maybe(limits()),
-                   "The ends to which u was cut: as given, or as the record shows them.", {.unit = "u"})
+            .field("u_limits", &Q::u_limits, maybe(limits()), "Limits of u: as given, or as found in the record.",
+                   {.unit = "u"})
             .field("pretest", &Q::pretest, maybe(answer(pretest_contract())), "The part before the first change of u.")
             .field("gaps", &Q::gaps, maybe(answer(missing_contract())),
-                   "Spacings of more than five times the usual one.")
-            .field("missing", &Q::missing, maybe(answer(missing_contract())), "Rows without a number for y.")
-            .field("repeated_times", &Q::repeated_times, count(), "Rows with the time of the row above.")
-            .field("backward_times", &Q::backward_times, count(), "Rows out of order in time; left out.")
+                   "Number of spacings of more than five times the usual one.")
+            .field("missing", &Q::missing, maybe(answer(missing_contract())), "Number of rows without a number for y.")
+            .field("repeated_times", &Q::repeated_times, count(), "Number of rows with the time of the row above.")
+            .field("backward_times", &Q::backward_times, count(),
+                   "Number of rows out of order in time, which were left out.")
             .field("time_unit_assumed", &Q::time_unit_assumed, unless<bool>(truth(), [](bool it) { return !it; }),
-                   "true: nothing names the unit of the times, which were taken as seconds. Left out where one does.")
+                   "true: the unit of the times is not stated; seconds are assumed. Left out if it is stated.")
             .field("saturation", &Q::saturation,
                    unless<std::vector<Saturation>>(list_of(answer(saturation_contract())),
                                                    [](const auto& levels) { return levels.empty(); }),
-                   "Levels at which y is cut off flat.")
+                   "Levels at which y is cut off.")
             .field("outliers", &Q::outliers, maybe(answer(outliers_contract())), "Readings that were left out.")
             .field("closed_loop", &Q::closed_loop, maybe(answer(closed_loop_contract())),
-                   "Whether a controller moved u in answer to y, and what was done about it.")
+                   "Feedback from y to u, and its treatment.")
             .field("notes", &Q::notes, list_of(sentence()), "Sentences.");
         return d;
     }();
@@ -183,7 +185,7 @@ const Description<Candidate>& candidate_contract() {
             .field("standard_errors", &Candidate::standard_errors, standard_errors(), "By parameter.")
             .field("y_model", &Candidate::y_model,
                    unless<std::vector<double>>(trace(), [](const auto& y_model) { return y_model.empty(); }),
-                   "Simulated, at the times of the model's fit; with identify.traces.", {.unit = "y"});
+                   "Simulated output at the times of the model's fit; with identify.traces.", {.unit = "y"});
         return d;
     }();
     return description;
@@ -205,12 +207,12 @@ void check_matrix(ParameterCovariance& covariance, Reader& reader) {
         }
     if (!symmetric)
         reader.fault_at("matrix", "matrix must be symmetric, with a row and a column for each of the " +
-                                      std::to_string(size) + " names. Send it as the answer had it.");
+                                      std::to_string(size) + " names. Send it as in the answer.");
 }
 
 const Description<ParameterCovariance>& covariance_contract() {
     static const auto description = [] {
-        Description<ParameterCovariance> d("Covariance", "How the errors of the model's parameters belong together.");
+        Description<ParameterCovariance> d("Covariance", "Covariance of the model's parameters.");
         constexpr std::size_t kMaxName = 10, kMaxParameters = 8, kMaxEnds = 1000;
         d.field("names", &ParameterCovariance::names, list_of(text(kMaxName), 1, kMaxParameters),
                 "Order of rows and columns.", {.required = true})
@@ -218,8 +220,8 @@ const Description<ParameterCovariance>& covariance_contract() {
                    "Symmetric.", {.required = true})
             .field("reach", &ParameterCovariance::reach,
                    unless<std::vector<double>>(numbers(1, kMaxEnds), [](const auto& reach) { return reach.empty(); }),
-                   "How far the 95 % ellipsoid reaches in each direction before the record excludes its plants, 0 to 1 "
-                   "of it; left out where all of it is possible.")
+                   "Fraction of the 95 % ellipsoid in each direction, 0 to 1, up to which the record does not exclude "
+                   "its plants; left out if nothing is excluded.")
             .check(
                 [](const Json&, ParameterCovariance& covariance, Reader& reader) { check_matrix(covariance, reader); });
         return d;
@@ -230,8 +232,8 @@ const Description<ParameterCovariance>& covariance_contract() {
 const Description<ExcitedBand>& band_contract() {
     static const auto description = [] {
         Description<ExcitedBand> d("ExcitedBand",
-                                   "Where the answer to u stands out of the noise: the record's own estimate of "
-                                   "P(j omega) has a relative standard error below 100 %.");
+                                   "Frequencies at which the response to u exceeds the noise: the record's own "
+                                   "estimate of P(j omega) has a relative standard error below 100 %.");
         d.field("omega_low", &ExcitedBand::omega_low, number({.minimum = 0}), "2 pi over the record's length.",
                 {.required = true, .unit = "rad/time"})
             .field("omega_high", &ExcitedBand::omega_high, number({.minimum = 0}), "Upper end.",
@@ -240,8 +242,8 @@ const Description<ExcitedBand>& band_contract() {
                 if (band.omega_low > band.omega_high)
                     reader.fault_at("omega_low", "omega_low is " + tunewright::text(band.omega_low) +
                                                      " and omega_high " + tunewright::text(band.omega_high) +
-                                                     "; omega_low must not be above omega_high. Send the band as the "
-                                                     "answer had it, or leave it out.");
+                                                     "; omega_low must not be above omega_high. Send the band as in "
+                                                     "the answer, or leave it out.");
             });
         return d;
     }();
@@ -251,7 +253,8 @@ const Description<ExcitedBand>& band_contract() {
 const Description<FitTrace>& fit_contract() {
     static const auto description = [] {
         Description<FitTrace> d(
-            "Fit", "The model beside the record, six significant digits; times that need more to differ have more.");
+            "Fit",
+            "The model with the record, six significant digits; times have more if they would otherwise be equal.");
         d.field("t", &FitTrace::t, times_trace(), "Time.", {.unit = "time"})
             .field("u", &FitTrace::u, trace(), "The input as recorded, held between samples.", {.unit = "u"})
             .field("y", &FitTrace::y, trace(), "Measured.", {.unit = "y"})
@@ -269,27 +272,27 @@ void check_region(const IdentifiedModel& model, Reader& reader) {
     if (names.empty()) return;
     const auto region = PlantRegion::of_covariance(model.plant, names, matrix);
     if (!region)
-        return reader.fault_at("covariance",
-                               region.error().kind == ErrorKind::invalid_argument
-                                   ? region.error().message
-                                   : "covariance is not a covariance of the plant's parameters. Send it as the answer "
-                                     "had it, or leave it out.");
+        return reader.fault_at("covariance", region.error().kind == ErrorKind::invalid_argument
+                                                 ? region.error().message
+                                                 : "covariance is not a covariance of the plant's parameters. Send it "
+                                                   "as in the answer, or leave it out.");
     const bool shares = std::ranges::all_of(reach, [](double share) { return share >= 0 && share <= 1; });
     if (!reach.empty() && (reach.size() != region->ends().size() || !shares))
-        reader.fault_at("covariance", "covariance has a reach that does not fit it: it takes " +
+        reader.fault_at("covariance", "covariance has a reach of the wrong size: it must have " +
                                           std::to_string(region->ends().size()) +
-                                          " numbers from 0 to 1. Send it as the answer had it, or leave it out.");
+                                          " numbers from 0 to 1. Send it as in the answer, or leave it out.");
 }
 
 const Description<DisturbanceModel>& disturbance_contract() {
     static const auto description = [] {
-        Description<DisturbanceModel> d("Disturbance", "What a measured disturbance does to y.");
+        Description<DisturbanceModel> d("Disturbance", "Effect of a measured disturbance on y.");
         d.field("name", &DisturbanceModel::name, words(), "Its heading, or the name that was given.")
             .field("plant", &DisturbanceModel::plant, only_answered(one_of(plant_contract())),
-                   "A gain, a lag and a dead time of its own; with an integrator where the plant of u has one.")
-            .field("standard_errors", &DisturbanceModel::standard_errors, standard_errors(), "Of K, T and L.")
+                   "A gain, a lag and a dead time of its own; with an integrator if the plant of u has one.")
+            .field("standard_errors", &DisturbanceModel::standard_errors, standard_errors(),
+                   "Standard errors of K, T and L.")
             .field("share", &DisturbanceModel::share, size(),
-                   "Of the variances of what u and the disturbances do to y, 0 to 1.");
+                   "Its share of the variances that u and the disturbances cause in y, 0 to 1.");
         return d;
     }();
     return description;
@@ -300,9 +303,9 @@ const Description<DisturbanceModel>& disturbance_contract() {
 const Description<IdentifiedModel>& model_contract() {
     static const auto description = [] {
         using M = IdentifiedModel;
-        Description<M> d("Model",
-                         "The plant that was found in the record. POST /v1/design and /v1/evaluate take it back, in "
-                         "the place of the record.");
+        Description<M> d(
+            "Model",
+            "The plant identified from the record. POST /v1/design and /v1/evaluate accept it instead of the record.");
         d.field("plant", &M::plant, one_of(plant_contract()), "The model.", {.required = true})
             .field("fit_percent", &M::fit_percent, number(),
                    "100 (1 - |y - yhat|/|y - mean(y)|), free run, offset estimated.", {.required = true})
@@ -311,47 +314,49 @@ const Description<IdentifiedModel>& model_contract() {
                 [](SchemaBook&) {
                     return Json{{"type", "string"}, {"enum", {"good", "usable", "doubtful"}}};
                 },
-                "How far it may be relied on. good; usable: with care, there are warnings; doubtful: it explains less "
-                "than 70 % of the record's movement, less than 90 % where what it misses is no noise, or a warning "
-                "says that it may be another plant.")
+                "Reliability. good; usable: with care, because there are warnings; doubtful: it explains less than 70 "
+                "% of the record's movement, or less than 90 % and the rest is not noise, or a warning says that the "
+                "plant may be a different one.")
             .field(
                 "grade_reason", {}, [](const M& model, Writer& out) { out.text(name_of(*reason_of_doubt(model))); },
                 [](SchemaBook&) {
                     return Json{{"type", "string"}, {"enum", {"fit", "warning"}}};
                 },
-                "Why a model is doubtful: fit, it explains too little of its record; warning, it explains its record "
-                "and a warning of level bad speaks against it. Left out for the other grades.",
+                "Reason of the grade doubtful: fit, the model explains too little of its record; warning, it explains "
+                "its record but has a warning of level bad. Left out for the other grades.",
                 {}, [](const M& model) { return !reason_of_doubt(model); })
             .field("standard_errors", &M::standard_errors, given_errors(), "By parameter.", {.required = true})
             .field("covariance", &M::covariance,
                    unless<ParameterCovariance>(object(covariance_contract()),
                                                [](const auto& covariance) { return covariance.names.empty(); }),
-                   "Of the parameters.")
+                   "Covariance of the parameters.")
             .field("alternatives", &M::alternatives, list_of(one_of(plant_contract())),
                    "Best fits of other structures that the record does not distinguish from the model: the 95 % "
-                   "confidence region has them too.",
+                   "confidence region includes them.",
                    {.required = true})
             .field("disturbances", &M::disturbances,
                    unless<std::vector<DisturbanceModel>>(list_of(answer(disturbance_contract())),
                                                          [](const auto& models) { return models.empty(); }),
                    "Models of the measured disturbances that matter (record.d), identified together with the plant.")
-            .field("limit_cycle", &M::limit_cycle, maybe(object(limit_cycle_contract())), "Of a relay test.")
+            .field("limit_cycle", &M::limit_cycle, maybe(object(limit_cycle_contract())),
+                   "Limit cycle of a relay test.")
             .field("frequency_points", &M::frequency_points,
                    unless<std::vector<FrequencyPoint>>(list_of(answer(frequency_point_contract())),
                                                        [](const auto& points) { return points.empty(); }),
-                   "Of the plant, from the record alone.")
+                   "Ultimate point of the plant, from the record alone.")
             .field("ultimate_point", &M::ultimate_point, maybe(answer(ultimate_point_contract())),
-                   "Of the model; left out where no gain makes it oscillate.")
+                   "Ultimate point of the model; left out if no gain makes it oscillate.")
             .field("excited_band", &M::excited_band, maybe(object(band_contract())),
                    "The frequencies at which the record determines the plant's response.")
             .field("region", &M::region, maybe(answer(region_contract())),
                    "The best-ranked controller on the 95 % confidence region; each entry has its own.")
-            .field("choice_reason", &M::choice_reason, words(), "Why this structure.")
-            .field("candidates", &M::candidates, list_of(answer(candidate_contract())), "Structures that were tried.")
+            .field("choice_reason", &M::choice_reason, words(), "Reason for this structure.")
+            .field("candidates", &M::candidates, list_of(answer(candidate_contract())),
+                   "The structures that were tried.")
             .field("fit", &M::fit,
                    unless<FitTrace>(answer(fit_contract()), [](const auto& fit) { return fit.t.empty(); }),
-                   "The model beside the record; with identify.traces.")
-            .field("data_quality", &M::data_quality, answer(quality_contract()), "What was found in the record.")
+                   "The model with the record; with identify.traces.")
+            .field("data_quality", &M::data_quality, answer(quality_contract()), "Quality of the record.")
             .field("warnings", &M::warnings, list_of(object(warning_contract())), "Remarks.", {.required = true})
             .check([](const Json&, M& model, Reader& reader) { check_region(model, reader); });
         return d;
@@ -361,7 +366,7 @@ const Description<IdentifiedModel>& model_contract() {
 
 const Description<IdentifyAnswer>& identify_answer_contract() {
     static const auto description = [] {
-        Description<IdentifyAnswer> d("IdentifyAnswer", "The model that was found in the record.");
+        Description<IdentifyAnswer> d("IdentifyAnswer", "The model identified from the record.");
         d.field("model", &IdentifyAnswer::model, answer(model_contract()), "The model.");
         return d;
     }();

@@ -17,18 +17,18 @@ const Description<verdict::Finding>& finding_contract() {
         using F = verdict::Finding;
         using enum verdict::Level;
         Description<F> d("Finding",
-                         "A conclusion from the figures of this answer, as an engineer would say it: a code for "
-                         "programs, a sentence for people. docs/verdicts.md lists them.");
-        d.field("code", &F::code, words(), "Stable, in kebab-case.")
+                         "A conclusion from the figures of this answer: a code for programs, a sentence for people. "
+                         "docs/verdicts.md lists them.");
+        d.field("code", &F::code, words(), "The code, which does not change between versions; kebab-case.")
             .field("level", &F::level,
                    only_answered(
                        choice<verdict::Level>({{"good", good}, {"note", note}, {"warning", warning}, {"bad", bad}})),
-                   "bad: what it belongs to is not to be used as it stands.")
+                   "bad: the entry or result must not be used in this form.")
             .field("text", &F::text, words(),
                    "One or two sentences in the request's units; numbers with three significant digits.")
             .field("figures", &F::figures,
                    numbers_by_name("Every number of the text under its name, in full precision."),
-                   "The numbers that the sentence is about.");
+                   "The numbers in the sentence.");
         return d;
     }();
     return description;
@@ -76,9 +76,9 @@ const Description<OptimumAtMs>& optimum_contract() {
         d.field("IAE", &O::IAE, figure(), "Load IAE of the method robust with both Ms and Mt limited to this Ms.",
                 {.unit = "y time"})
             .field("excess_percent", &O::excess_percent, figure(),
-                   "How far this entry's load IAE lies above it; below 0 where its filter or its Mt lets it.",
+                   "Excess of this entry's load IAE over it; below 0 is possible with another filter or a larger Mt.",
                    {.unit = "%"})
-            .why_null("Not known for this entry.");
+            .why_null("Unknown for this entry.");
         return d;
     }();
     return description;
@@ -87,37 +87,36 @@ const Description<OptimumAtMs>& optimum_contract() {
 const Description<Standing>& standing_contract() {
     static const auto description = [] {
         using S = Standing;
-        Description<S> d("Standing", "How an entry stands among the others: what ranking goes by.");
+        Description<S> d("Standing", "Data of an entry for the ranking.");
         using enum StandingGroup;
         d.field("group", &S::group,
                 only_answered(choice<StandingGroup>({{"holds", holds},
                                                      {"above_limit", above_limit},
                                                      {"not_settled", not_settled},
                                                      {"unstable", unstable}})),
-                "Groups rank in this order. above_limit: it settles, with a larger Ms than was asked of it or of all; "
-                "not_settled: it is stable, but a response does not come to rest where it should.")
+                "Groups rank in this order. above_limit: it settles, but its Ms exceeds the limit of the entry or of "
+                "the comparison; not_settled: it is stable, but a response does not settle at its target.")
             .field("settles", &S::settles, boolean(),
-                   "Stable, and both responses come to rest where they should; on a nonlinear plant its own responses.")
+                   "True if it is stable and both responses settle at their targets; for a nonlinear plant the plant's "
+                   "own responses.")
             .field("Ms", &S::Ms, figure(),
-                   "Of the loop as it will run: on the worst plant that it must serve, in the user's own controller.")
-            .field("within", &S::within, boolean(),
-                   "The limit on Ms that was asked of this entry holds; true where none was.")
-            .field(
-                "excess_percent", &S::excess_percent, figure(),
-                "How far the load IAE lies above the least that a PID reaches on the linear plant at the same Ms, or "
-                "at the nearest Ms where there is an optimum; of a nonlinear plant its own load IAE.",
-                {.unit = "%"})
+                   "Ms of the implemented loop: on the worst plant, with the user's own controller.")
+            .field("within", &S::within, boolean(), "True if the entry's own limit on Ms holds, or there is none.")
+            .field("excess_percent", &S::excess_percent, figure(),
+                   "Excess of the load IAE over the least that a PID reaches on the linear plant at the same Ms, or at "
+                   "the nearest Ms with an optimum; for a nonlinear plant with its own load IAE.",
+                   {.unit = "%"})
             .field(
                 "order", {}, [](const S& standing, Writer& out) { out.integer(standing.order); }, whole_number,
-                "Place, from 1, where no limit on the Ms of all is set: by this order and least_limit a client ranks "
-                "under another limit.")
+                "Rank, from 1, without a limit on Ms for the comparison: with this order and least_limit a client can "
+                "rank under another limit.")
             .field("least_limit", &S::min_limit, figure(),
-                   "The least limit on the Ms of all with which the group is holds.")
+                   "The smallest limit on Ms for the comparison with which the group is holds.")
             .field(
                 "why", {}, [](const S& standing, Writer& out) { out.text(standing.why); }, words().schema,
-                "Why it stands behind those that hold; left out where it holds.", {},
+                "Reason for a group other than holds; left out for holds.", {},
                 [](const S& standing) { return standing.holds(); })
-            .why_null("The loop is unstable, here or on some plant that it must serve.");
+            .why_null("The loop is unstable, on this plant or on another one for which it is designed.");
         return d;
     }();
     return description;
@@ -126,7 +125,7 @@ const Description<Standing>& standing_contract() {
 const Description<OperatingPoint>& operating_point_contract() {
     static const auto description = [] {
         Description<OperatingPoint> d("OperatingPoint",
-                                      "The true steady state nearest to the values given; absolute values.");
+                                      "The exact steady state nearest to the given values; absolute values.");
         d.field(
              "states", {},
              [](const OperatingPoint& point, Writer& out) {
@@ -156,16 +155,16 @@ void add_operating_point(Description<Answer>& d, Callable<const OperatingPoint*(
          "operating_point", {},
          [of](const Answer& answer, Writer& out) { operating_point_contract().write(*of(answer), out); },
          [](SchemaBook& book) { return operating_point_contract().schema(book); },
-         "Of a nonlinear plant: the steady state that everything is a deviation from.", {}, none)
+         "For a nonlinear plant: the steady state to which all deviations refer.", {}, none)
         .field(
             "linear_model", {},
             [of](const Answer& answer, Writer& out) { plant_contract().write(of(answer)->linear_model, out); },
             [](SchemaBook& book) { return plant_contract().schema(book); },
-            "Of a nonlinear plant: the linearisation there, on which methods and robustness rest.", {}, none);
+            "For a nonlinear plant: the linearisation there, which methods and robustness use.", {}, none);
 }
 
 constexpr const char* kWhichToTake =
-    "Over all entries: which to take, against today's settings; the most important first.";
+    "Findings on all entries: the proposed one, and the comparison with today's settings; the most important first.";
 
 Json problem_reference(SchemaBook&) { return {{"$ref", "#/components/schemas/Problem"}}; }
 
@@ -183,14 +182,14 @@ void add_method_fields(Description<TuningEntry>& d) {
             no_method)
         .field(
             "source", {}, [](const TuningEntry& entry, Writer& out) { out.text(entry.source); }, word,
-            "Where it was published.", {}, [](const TuningEntry& entry) { return entry.source.empty(); })
+            "Its publication.", {}, [](const TuningEntry& entry) { return entry.source.empty(); })
         .field(
             "options", {},
             [](const TuningEntry& entry, Writer& out) { write_options(entry.method, entry.options, out); },
             [](SchemaBook&) {
                 return Json{{"type", "object"}, {"additionalProperties", true}};
             },
-            "Options given, over the defaults.", {},
+            "Options, with defaults for those that were not given.", {},
             [](const TuningEntry& entry) { return entry.method.empty() || entry.method == "baseline"; });
 }
 
@@ -205,7 +204,7 @@ void add_device_entry(Description<TuningEntry>& d) {
              return Json{{"type", {"number", "null"}}};
          },
          "The longest sample time of a program with backward rules that keeps Ms within 5 % of the continuous loop's; "
-         "null: none was found. Only of designs.",
+         "null: none was found. Only for designs.",
          {.unit = "time"}, [](const TuningEntry& entry) { return !entry.longest_sample_time; })
         .field(
             "as_entered", {},
@@ -214,37 +213,37 @@ void add_device_entry(Description<TuningEntry>& d) {
                 settings_answer_contract().write({f.product, f.settings, f.typed, f.controller, f.notes}, out);
             },
             [](SchemaBook& book) { return settings_answer_contract().schema(book); },
-            "With implement.product: what to type into the product.", {},
+            "With implement.product: the settings to type into the product.", {},
             [](const TuningEntry& entry) { return !entry.on_device || entry.on_device->fitted.typed.empty(); })
         .field(
             "implemented", {},
             [](const TuningEntry& entry, Writer& out) { implemented_contract().write(*entry.on_device, out); },
             [](SchemaBook& book) { return implemented_contract().schema(book); },
-            "With implement: the loop as the user's controller computes it.", {}, none);
+            "With implement: the loop with the user's own controller.", {}, none);
 }
 
 Codec<std::vector<verdict::Finding>> findings() { return list_of(answer(finding_contract())); }
 
 const Description<TuningEntry>& entry_contract() {
     static const auto description = [] {
-        Description<TuningEntry> d("Entry", "One controller with everything known about it, or why there is none.");
+        Description<TuningEntry> d("Entry", "One controller with its evaluation, or the reason why there is none.");
         add_method_fields(d);
         d.field(
             "over_region", {}, [](const TuningEntry&, Writer& out) { out.boolean(true); },
             [](SchemaBook&) {
                 return Json{{"type", "boolean"}};
             },
-            "Limits hold over the record's 95 % confidence region; left out where they hold on the model alone.", {},
+            "Limits hold over the record's 95 % confidence region; left out if they hold on the model alone.", {},
             [](const TuningEntry& entry) { return !entry.over_region; });
         d.field(
             "region_cost", {}, [](const TuningEntry& entry, Writer& out) { out.number(*entry.region_cost); },
             [](SchemaBook&) {
                 return Json{{"type", "number"}};
             },
-            "Beside over_region: the load IAE over that of the design on the model alone.", {},
+            "With over_region: the load IAE divided by that of the design on the model alone.", {},
             [](const TuningEntry& entry) { return !entry.region_cost; });
         d.field("verdict", &TuningEntry::verdict, findings(),
-                "What the figures mean, the most important first. The first finding says what the loop is; its level "
+                "The meaning of the figures, the most important first. The first finding describes the loop; its level "
                 "is the entry's.");
         evaluation_field(d, "warnings", &Evaluation::warnings, list_of(answer(warning_contract())), "Remarks.");
         d.field("reduced_model", &TuningEntry::reduced_model, maybe(only_answered(one_of(plant_contract()))),
@@ -255,36 +254,37 @@ const Description<TuningEntry>& entry_contract() {
                 controller_contract().write(entry.unjudged ? *entry.unjudged : entry.evaluation->controller, out);
             },
             one_of(controller_contract()).schema,
-            "The controller. Of a request with ultimate it stands without the figures of a loop.", {},
+            "The controller. For a request with ultimate it has no figures of a loop.", {},
             [](const TuningEntry& entry) { return !entry.unjudged && !entry.evaluation; });
         evaluation_field(d, "equivalents", &Evaluation::equivalents, object(equivalents_contract()),
                          "The same loop in other forms.");
         evaluation_field(d, "robustness", &Evaluation::robustness, object(robustness_contract()), "Peaks and margins.");
         evaluation_field(d, "nonlinear", &Evaluation::nonlinear, maybe(answer(nonlinear_contract())),
-                         "Of the form npid: whether errors of every size die out.");
+                         "For the form npid: whether errors of every size die out.");
         evaluation_field(d, "performance", &Evaluation::performance, object(performance_contract()),
                          "Figures of the responses.");
         evaluation_field(d, "responses", &Evaluation::responses, maybe(answer(responses_contract())),
                          "Traces over time; left out with points 0 and for unstable loops.");
-        evaluation_field(d, "linear", &Evaluation::linear, maybe(answer(linear_contract())),
-                         "Of a nonlinear plant, whose own performance and responses are above: its linearisation's.");
+        evaluation_field(
+            d, "linear", &Evaluation::linear, maybe(answer(linear_contract())),
+            "For a nonlinear plant, whose own performance and responses are above: those of its linearisation.");
         evaluation_field(d, "frequency", &Evaluation::frequency, maybe(answer(frequency_contract())),
                          "Traces over frequency; left out with points 0.");
         evaluation_field(d, "verification", &Evaluation::verification, object(verification_contract()),
-                         "How the figures were checked.");
-        evaluation_field(d, "region", &Evaluation::region, maybe(answer(region_contract())),
-                         "On every plant that the controller must serve; left out where that is one.");
+                         "Checks of the figures.");
+        evaluation_field(
+            d, "region", &Evaluation::region, maybe(answer(region_contract())),
+            "Figures over all plants for which the controller is designed; left out if there is only one.");
         add_device_entry(d);
         add_reports(d, false);
         d.field("optimum_at_Ms", &TuningEntry::optimum_at_Ms, maybe(answer(optimum_contract())),
-                "Beside the least load IAE that a PID reaches at the same Ms, where asked for.")
-            .field("standing", &TuningEntry::standing, maybe(answer(standing_contract())),
-                   "How it stands among the others.");
+                "Comparison with the least load IAE that a PID reaches at the same Ms, if requested.")
+            .field("standing", &TuningEntry::standing, maybe(answer(standing_contract())), "Data for the ranking.");
         add_reports(d, true);
-        evaluation_field(d, "compute_ms", &Evaluation::compute_ms, number(), "Time that this entry took, ms.");
+        evaluation_field(d, "compute_ms", &Evaluation::compute_ms, number(), "Computing time of this entry, ms.");
         d.field(
             "error", {}, [](const TuningEntry& entry, Writer& out) { out.raw(to_json(to_problem(*entry.error))); },
-            problem_reference, "Why the method has no controller.", {},
+            problem_reference, "Reason why the method has no controller.", {},
             [](const TuningEntry& entry) { return !entry.error; });
         return d;
     }();
@@ -307,7 +307,7 @@ void add_ranking(Description<Answer>& d, Callable<const TuningResult&(const Answ
          "Indices into controllers, best first; entries without a controller are left out.")
         .field(
             "ranking_by", {}, [of](const Answer& answer, Writer& out) { out.text(of(answer).ranking_by); },
-            words().schema, "What they are ranked by.")
+            words().schema, "Criterion of the ranking.")
         .field(
             "rank_limits", {},
             [of](const Answer& answer, Writer& out) {
@@ -319,14 +319,14 @@ void add_ranking(Description<Answer>& d, Callable<const TuningResult&(const Answ
             [](SchemaBook&) {
                 return Json{{"type", "object"}, {"properties", {{"Ms", {{"type", "number"}}}}}, {"required", {"Ms"}}};
             },
-            "The limits that the ranking goes by: those of the request, or their defaults. Left out where nothing "
-            "ranks the entries.",
+            "The limits of the ranking: those of the request, or their defaults. Left out if the entries are not "
+            "ranked.",
             {}, [of](const Answer& answer) { return !of(answer).rank_Ms; })
         .field(
             "proposed", {}, [of](const Answer& answer, Writer& out) { out.integer(*of(answer).proposed); },
             whole_number,
-            "Index of the entry to show first: the one that the verdict says to take, or that comes nearest to today's "
-            "settings; else the first that has a controller.",
+            "Index of the entry to show first: the one that the verdict proposes, or the nearest to today's settings; "
+            "else the first with a controller.",
             {}, [of](const Answer& answer) { return !of(answer).proposed; });
 }
 
@@ -339,15 +339,16 @@ const Description<ResultAnswer>& result_contract() {
         d.field("units", &ResultAnswer::units, only_answered(maybe(object(units_contract()))), "As sent.")
             .field(
                 "model", {}, [](const ResultAnswer& a, Writer& out) { model_contract().write(*a.result.model, out); },
-                [](SchemaBook& book) { return model_contract().schema(book); }, "Of a record.", none,
-                [](const ResultAnswer& a) { return !a.result.model; });
+                [](SchemaBook& book) { return model_contract().schema(book); }, "The model identified from the record.",
+                none, [](const ResultAnswer& a) { return !a.result.model; });
         add_operating_point<ResultAnswer>(d, [](const ResultAnswer& a) { return pointer(a.result.operating_point); });
         d.field(
              "controllers", {},
              [](const ResultAnswer& a, Writer& out) {
                  list_of(answer(entry_contract())).write(a.result.controllers, out);
              },
-             list_of(answer(entry_contract())).schema, "One entry a method, in the order asked for; the baseline last.")
+             list_of(answer(entry_contract())).schema,
+             "One entry per method, in the order of the request; the baseline last.")
             .field(
                 "verdict", {}, [](const ResultAnswer& a, Writer& out) { findings().write(a.result.verdict, out); },
                 findings().schema, kWhichToTake);
@@ -357,12 +358,12 @@ const Description<ResultAnswer>& result_contract() {
              "True: cancelled after a feasible design was found; this is the best so far.")
             .field(
                 "version", {}, [](const ResultAnswer&, Writer& out) { out.text(TUNEWRIGHT_VERSION); }, words().schema,
-                "Of the service.")
+                "Version of the service.")
             .field("request_hash", &ResultAnswer::request_hash, words(),
                    "SHA-256 of the request in its canonical spelling.")
             .field(
                 "seed", {}, [](const ResultAnswer&, Writer& out) { out.integer(0); }, whole_number,
-                "Of random numbers; no method of this version uses any.");
+                "Seed of random numbers; no method of this version uses any.");
         return d;
     }();
     return description;
@@ -371,11 +372,12 @@ const Description<ResultAnswer>& result_contract() {
 const Description<TuningResult>& design_answer_contract() {
     static const auto description = [] {
         using R = TuningResult;
-        Description<R> d("DesignAnswer", "What a job's result has, without what names and dates it.");
-        d.field("model", &R::model, maybe(answer(model_contract())), "Of a record; left out where it was sent.");
+        Description<R> d("DesignAnswer", "The result of a job, without name and date.");
+        d.field("model", &R::model, maybe(answer(model_contract())),
+                "Model of a record; left out if the request contains it.");
         add_operating_point<R>(d, [](const R& a) { return pointer(a.operating_point); });
         d.field("controllers", &R::controllers, list_of(answer(entry_contract())),
-                "One entry a method, in the order asked for; the baseline last.")
+                "One entry per method, in the order of the request; the baseline last.")
             .field("verdict", &R::verdict, findings(), kWhichToTake);
         add_ranking<R>(d, [](const R& a) -> const TuningResult& { return a; });
         return d;

@@ -87,14 +87,15 @@ std::variant<std::monostate, NamedPair, std::string> input_beside_output(const C
     if (!input || !output || stem(facts.heading(*input)) != stem(facts.heading(*output))) return {};
     if (has_plain_output(facts, *input, *output)) return {};
     if (reference) {
-        const std::string why = " (as the controller calls it: the file has a set point)";
+        const std::string why = " (in the controller's words, because the file has a set point)";
         return NamedPair{*output, *input, why, why};
     }
     const std::string levels = " (it stays on its levels)", moves = " (it moves)";
     if (facts.held(*output, *input)) return NamedPair{*output, *input, levels, moves};
     if (facts.held(*input, *output)) return NamedPair{*input, *output, levels, moves};
     return facts.shown(*input) + " and " + facts.shown(*output) +
-           " may be the plant's or the controller's, and the numbers do not show which. Choose the column of u, the "
+           " may be those of the plant or of the controller, and the numbers do not show which. Choose the column of "
+           "u, the "
            "controller output, and that of y, the measurement.";
 }
 

@@ -27,10 +27,11 @@ std::optional<CsvFault> two_clocks(const ColumnFacts& facts, std::size_t time, s
     if (value == 0 || value - 1 == time) return std::nullopt;
     const std::size_t left = value - 1;
     if (!facts.is_clock(left) || !run_apart(facts.text(), facts.layout(), time, left)) return std::nullopt;
-    return CsvFault{"csv", "csv has two clocks: " + facts.shown(value) + " has its own times in " + facts.shown(left) +
-                               ", which are not those of " + facts.shown(time) +
-                               ". Export all tags at common times (sampled or interpolated data), so that u and y "
-                               "stand in one line."};
+    return CsvFault{
+        "csv",
+        "csv has two columns of times: " + facts.shown(value) + " has its own times in " + facts.shown(left) +
+            ", which differ from those of " + facts.shown(time) +
+            ". Export all tags at common times (sampled or interpolated data), so that u and y are in one line."};
 }
 
 CsvFault column_fault(ColumnRole role, std::string message) {
@@ -44,7 +45,7 @@ CsvFault several_columns(const ColumnFacts& facts, ColumnRole role, const std::v
 
 CsvFault names_apart(const ColumnFacts& facts, std::size_t u, std::size_t y) {
     return column_fault(kOutputRole, facts.shown(u) + " and " + facts.shown(y) +
-                                         " do not belong together by their names. Choose the column of u, the "
+                                         " have names that do not belong together. Choose the column of u, the "
                                          "controller output, and that of y, the measurement.");
 }
 
@@ -55,7 +56,7 @@ CsvFault missing_column(const ColumnFacts& facts, ColumnRole role) {
         return column_fault(role, "No time column found. Choose one or enter the sampling time. " + said);
     const bool without_input = role == kInputRole && facts.size() <= 2;
     return column_fault(role,
-                        "No column is plainly " + role_name(role) + ", " + role_meaning(role) +
+                        "No column is clearly " + role_name(role) + ", " + role_meaning(role) +
                             (without_input ? ". If the file has none and u stepped at the first row, give u_step, "
                                              "[from, to]. "
                                            : ". Choose its heading, or its number from 1. ") +
@@ -73,7 +74,7 @@ CsvFault step_beside_column(const ColumnFacts& facts, const std::vector<std::siz
 
 std::string columns_unread(const ColumnFacts& facts, const std::vector<std::size_t>& columns) {
     return facts.shown(columns) + " may be u and " + (columns.size() == 1 ? "was" : "were") +
-           " not read, because u_step says what u was. If the file has u, remove u_step and choose its column.";
+           " not read, because u_step gives u. If the file has u, remove u_step and choose its column.";
 }
 
 std::string surplus_note(const CsvLayout& layout) {
@@ -85,7 +86,7 @@ std::string surplus_note(const CsvLayout& layout) {
 CsvFault surplus_fault(const CsvLayout& layout) {
     std::vector<std::string> headings = layout.headings;
     headings.insert(headings.end(), layout.surplus.begin(), layout.surplus.end());
-    return {"csv", surplus_counted(layout) + ", so which belongs to which is open: headings " +
+    return {"csv", surplus_counted(layout) + ", so it is not known which heading belongs to which column: headings " +
                        listed(quoted_all(headings), "and") + "; values " + listed(quoted_all(layout.first), "and") +
                        ". Give each column one heading."};
 }

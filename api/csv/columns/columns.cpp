@@ -213,7 +213,7 @@ private:
         }
         if (terms_.empty()) return;
         found_.notes.push_back("The controller's own terms are in the file, " + facts_.shown(terms_) +
-                               "; they are passed over.");
+                               "; they are skipped.");
     }
 
     void find_spacing() {
@@ -247,7 +247,7 @@ private:
         if (r.best.size() == 1) return take(kReferenceRole, r.best.front());
         if (r.best.empty()) return;
         found_.notes.push_back("Several columns may be the set point: " + facts_.shown(r.best) +
-                               "; none is read. Choose one if it matters.");
+                               "; none is read. Choose one if it is needed.");
     }
 
     // A given step that replaces a u of the file would be at another time than the real one.
@@ -295,7 +295,7 @@ private:
             if (q.stamps == 0 || q.numbers > 0 || (dates ? q.clocks : q.dates) != q.stamps) continue;
             found_.at[kTimeRole] = dates ? now : other;
             found_.clock = dates ? other : now;
-            found_.notes.emplace_back("Date and time of day are joined from two columns.");
+            found_.notes.emplace_back("Date and time of day are combined from two columns.");
             return;
         }
     }

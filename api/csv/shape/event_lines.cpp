@@ -69,7 +69,7 @@ std::optional<ShapedText> event_lines(std::string_view text) {
     }
     ShapedText out = pivot.table("time");
     out.notes.emplace_back(
-        "Lines that begin with a name hold a time and a value of it, the others a time and the measurement.");
+        "Lines that begin with a name contain a time and its value; the others contain a time and the measurement.");
     return out;
 }
 

@@ -211,7 +211,7 @@ std::optional<ShapedText> long_table(std::string_view text, const CsvLayout& lay
     if (pivot.tags().size() < 2) return std::nullopt;
     ShapedText out = pivot.table(at->time_heading.empty() ? "time" : at->time_heading);
     out.notes.push_back("The file has one line for each tag and time; " + std::to_string(pivot.tags().size()) +
-                        " tags were put beside each other. u holds until its next value, y counts at its own times.");
+                        " tags became columns. u is constant until its next value; y is used at its own times.");
     return out;
 }
 

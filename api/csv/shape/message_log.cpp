@@ -65,7 +65,7 @@ private:
             const auto* name = std::get_if<std::string>(&choice);
             if (name == nullptr) {
                 out.fault = role + " is column " + std::to_string(std::get<int>(choice)) +
-                            "; in a log of messages each kind has columns of its own. Name the column with its kind, "
+                            "; in a log of messages each kind has its own columns. Name the column with its kind, "
                             "such as " +
                             example() + ". " + listed_kinds();
                 return;

@@ -81,7 +81,7 @@ void turn_countdown(CsvRecord& record, const RowRun& run) {
     for (std::size_t i = run.first; i < last; ++i) record.t[i] = 2 * end - record.t[i];
     record.notes.push_back("The times count down in the lines " + std::to_string(record.lines[run.first]) + " to " +
                            std::to_string(record.lines[last]) +
-                           ", before they count up: those lines were put in front, from t = " +
+                           ", before they count up: those lines were placed before the others, from t = " +
                            tunewright::text(record.t[run.first]) + " on.");
 }
 
@@ -158,7 +158,7 @@ std::string in_words(const CsvRun& run, std::size_t number) {
     return "run " + std::to_string(number) + ", lines " + std::to_string(run.first_line) + " to " +
            std::to_string(run.last_line) + " (" + std::to_string(run.rows) +
            " rows, t = " + tunewright::text(run.from) + " to " + tunewright::text(run.to) +
-           (run.tests ? ")" : "; u does not move or y does not answer)");
+           (run.tests ? ")" : "; u does not move or y does not respond)");
 }
 
 void note_runs(CsvRecord& record, int taken, bool chosen) {
@@ -171,9 +171,10 @@ void note_runs(CsvRecord& record, int taken, bool chosen) {
     }
     if (shown > kMaxListed) others += "; and " + std::to_string(shown - kMaxListed) + " more";
     const std::string sentence =
-        "The times begin again: the file holds " + std::to_string(record.runs.size()) + " runs. Read is " +
+        "The times start again: the file contains " + std::to_string(record.runs.size()) + " runs. Read is " +
         in_words(record.runs[static_cast<std::size_t>(taken) - 1], static_cast<std::size_t>(taken)) +
-        (chosen ? ", as chosen" : ", the longest in which y answers a move of u") + ". The others are " + others + ".";
+        (chosen ? ", as chosen" : ", the longest in which y responds to a move of u") + ". The others are " + others +
+        ".";
     // A run that was not chosen is a warning: another one may be meant.
     if (chosen)
         record.notes.push_back(sentence);
@@ -188,13 +189,13 @@ std::optional<CsvFault> take_run(CsvRecord& record, std::optional<int> chosen) {
     const std::vector<RowRun> runs =
         newest_first(record.t) ? std::vector<RowRun>{{0, record.t.size(), 0}} : parted(record.t, runs_of(record.t));
     if (runs.size() > kMaxFileRuns)
-        return CsvFault{"csv", "The times begin again " + std::to_string(runs.size() - 1) + " times; at most " +
+        return CsvFault{"csv", "The times start again " + std::to_string(runs.size() - 1) + " times; at most " +
                                    std::to_string(kMaxFileRuns) +
                                    " runs in one file are read. Sort the rows by time, choose another column of "
                                    "times, or export one test alone."};
     if (chosen && (*chosen < 1 || static_cast<std::size_t>(*chosen) > runs.size()))
         return CsvFault{"run", "run is " + std::to_string(*chosen) + "; the file holds " +
-                                   (runs.size() == 1 ? "one run, its times never begin again. Leave run out."
+                                   (runs.size() == 1 ? "one run, whose times never start again. Leave run out."
                                                      : std::to_string(runs.size()) + " runs, counted from 1.")};
     if (runs.size() == 1) {
         turn_countdown(record, runs.front());

@@ -70,7 +70,7 @@ TEST(CsvClocks, MoreThanTwentyFourOfTheFirstAreMinutes) {
 TEST(CsvClocks, PartsOfADayAreTold) {
     const CsvRecord record = logged([](int i) { return fmt::format("{:.8f}", 0.3 + kStep * i / 86400.0); });
     expect_even(record);
-    EXPECT_THAT(record.notes, Contains(HasSubstr("Times count days, as spreadsheets do")));
+    EXPECT_THAT(record.notes, Contains(HasSubstr("Times count days, as in spreadsheets")));
 }
 
 TEST(CsvClocks, AFastRecordInSecondsStaysOne) {

@@ -278,7 +278,7 @@ TEST(Csv, SeveralTagsAreNotGuessedAmong) {
 
 TEST(Csv, TwoMovingColumnsAreNotGuessedBetween) {
     EXPECT_THAT(first_fault("Time,A,B\n0,1,2\n1,2,3\n2,3.5,3.1\n3,3.6,3.4\n"),
-                HasSubstr("No column is plainly u, the controller output. Choose its heading, or its number from 1. "
+                HasSubstr("No column is clearly u, the controller output. Choose its heading, or its number from 1. "
                           "The headings are"));
 }
 

@@ -21,21 +21,22 @@ std::string faults_of(const std::string& text, const CsvOptions& options = {}) {
 TEST(Csv, HeadingsThatNothingTellsApartAreShownBesideTheValues) {
     EXPECT_THAT(
         faults_of("a,b,c,d,e\n" + written("{t},{y},{u}")),
-        HasSubstr("csv: Line 1 has 5 headings and the rows have 3 values, so which belongs to which is open: "
-                  "headings \"a\", \"b\", \"c\", \"d\" and \"e\"; values \"0\", \"20.00\" and \"20\". Give each "
-                  "column one heading."));
+        HasSubstr(
+            "csv: Line 1 has 5 headings and the rows have 3 values, so it is not known which heading belongs to which "
+            "column: headings \"a\", \"b\", \"c\", \"d\" and \"e\"; values \"0\", \"20.00\" and \"20\". Give each "
+            "column one heading."));
 }
 
 TEST(Csv, AHeadingOfTimeOverNumbersThatDoNotRunMakesSurplusHeadingsOpen) {
     EXPECT_THAT(faults_of("temp,time,u,x,z\n" + written("{t},{y},{u}")),
-                HasSubstr("so which belongs to which is open"));
+                HasSubstr("so it is not known which heading belongs to which column"));
 }
 
 TEST(Csv, TwoClocksAreRefusedWithTheCure) {
-    EXPECT_THAT(
-        faults_of("PV Time,PV,OP Time,OP\n" + written("{clock},{y},{late},{u}")),
-        HasSubstr("csv has two clocks: \"OP\" has its own times in \"OP Time\", which are not those of \"PV Time\". "
-                  "Export all tags at common times"));
+    EXPECT_THAT(faults_of("PV Time,PV,OP Time,OP\n" + written("{clock},{y},{late},{u}")),
+                HasSubstr("csv has two columns of times: \"OP\" has its own times in \"OP Time\", which differ from "
+                          "those of \"PV Time\". "
+                          "Export all tags at common times"));
 }
 
 TEST(Csv, SeveralHeatersThatAreDrivenAreNotGuessedAmong) {
@@ -70,8 +71,9 @@ TEST(Csv, ALogOfSentencesIsRefusedByItsFirstLine) {
     EXPECT_THAT(
         faults_of(written("[{clock}][D][sensor:094]: 'Boiler': Sending state {y} \xC2\xB0"
                           "C with 1 decimals")),
-        HasSubstr("csv has no line of numbers in columns, nor lines that name two values or more each; it begins with "
-                  "\"[14:05:00][D][sensor:094]"));
+        HasSubstr(
+            "csv has neither lines of numbers in columns nor lines that each name two or more values; it begins with "
+            "\"[14:05:00][D][sensor:094]"));
 }
 
 TEST(Csv, ALogWithoutTimesAsksForTheirSpacing) {
@@ -85,9 +87,9 @@ TEST(Csv, ASetPointIsNeitherUNorY) {
           "TIC101.SP", "targetTemp", "T_set", "temp target", "rpm_ref", "SV", "desired speed", "pv_sp"}) {
         SCOPED_TRACE(name);
         EXPECT_THAT(faults_of("time," + std::string(name) + ",temp\n" + written("{t},{u},{y}")),
-                    HasSubstr("columns/u: No column is plainly u"));
+                    HasSubstr("columns/u: No column is clearly u"));
         EXPECT_THAT(faults_of("time," + std::string(name) + ",valve\n" + written("{t},{y},{u}")),
-                    HasSubstr("columns/y: No column is plainly y"));
+                    HasSubstr("columns/y: No column is clearly y"));
         const auto read = read_csv_record("time," + std::string(name) + ",pv,op\n" + written("{t},7,{y},{u}"), {});
         ASSERT_TRUE(std::holds_alternative<CsvRecord>(read));
         EXPECT_EQ(std::get<CsvRecord>(read).r, std::vector<double>(kSamples, 7));
@@ -112,10 +114,9 @@ TEST(Csv, ASetPointIsChosenLikeAnyColumn) {
 }
 
 TEST(Csv, InputAndOutputWithoutASetPointAreToldByWhatTheyDo) {
-    EXPECT_THAT(
-        faults_of("time,input,output\n0,1,2\n1,2,3\n2,3,3.5\n3,3.5,4\n4,5,7\n"),
-        HasSubstr(
-            "\"input\" and \"output\" may be the plant's or the controller's, and the numbers do not show which."));
+    EXPECT_THAT(faults_of("time,input,output\n0,1,2\n1,2,3\n2,3,3.5\n3,3.5,4\n4,5,7\n"),
+                HasSubstr("\"input\" and \"output\" may be those of the plant or of the controller, and the numbers do "
+                          "not show which."));
 }
 
 TEST(Csv, WordsBesideNumbersAreNoLevels) {
@@ -166,7 +167,8 @@ TEST(Csv, ACounterWithoutUnitIsReadByTheClockBesideIt) {
             ASSERT_NE(record, nullptr);
             EXPECT_EQ(record->t.back() - record->t.front(), 78) << unit;
             EXPECT_TRUE(record->time_unit_known);
-            EXPECT_THAT(record->notes, Contains("Times count " + std::string(unit) + ", by the clock beside them."));
+            EXPECT_THAT(record->notes,
+                        Contains("Times count " + std::string(unit) + ", by comparison with the clock in the file."));
         }
     }
 }

@@ -200,7 +200,7 @@ TEST(CsvRuns, MoreThanAThousandAreNoOrderOfTimes) {
     for (int k = 0; k < 1001; ++k)
         for (int i = 0; i < 4; ++i) text += std::to_string(i) + ",1,2\n";
     EXPECT_EQ(refused_shape(text).where, "csv");
-    EXPECT_THAT(refused_shape(text).message, HasSubstr("The times begin again 1000 times; at most 1000 runs"));
+    EXPECT_THAT(refused_shape(text).message, HasSubstr("The times start again 1000 times; at most 1000 runs"));
 }
 
 // Each of these took minutes, or gigabytes, for a few megabytes of input.
@@ -252,7 +252,7 @@ TEST(CsvShapes, AMessageLogGivesColumnsOfEveryRoleByName) {
     options.columns.u = 2;
     EXPECT_EQ(refused_shape(message_file(), options).where, "columns/u");
     EXPECT_THAT(refused_shape(message_file(), options).message,
-                HasSubstr("u is column 2; in a log of messages each kind has columns of its own"));
+                HasSubstr("u is column 2; in a log of messages each kind has its own columns"));
     options = chosen_by_name("RATE.ROut", "RATE.R");
     options.columns.d = {"BAT.Amps"};
     EXPECT_EQ(refused_shape(message_file(), options).where, "columns/d/0");

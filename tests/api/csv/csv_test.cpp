@@ -166,7 +166,7 @@ TEST(Csv, AnEmptyCellKeepsTheOther) {
     EXPECT_TRUE(std::isnan(record.y[2]) && std::isnan(record.y[3]));
     EXPECT_EQ(record.u[2], 4);
     EXPECT_EQ(record.dropped, 0);
-    EXPECT_THAT(record.notes, testing::Contains(HasSubstr("\"Bad\" and the like are read as no value")));
+    EXPECT_THAT(record.notes, testing::Contains(HasSubstr("\"Bad\" and similar texts are read as missing values")));
 }
 
 TEST(Csv, ColumnsMayBeNumbersWhereThereAreNoHeadings) {

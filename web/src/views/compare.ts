@@ -18,7 +18,7 @@ import { progressCard } from "./cards/progress_card.ts";
 import { titleCard } from "./cards/title_card.ts";
 import { tradeoffCard } from "./cards/tradeoff_card.ts";
 import { showFailure } from "./cards/verdict_card.ts";
-import { showEntryPlots } from "./drawn_entries.ts";
+import { showEntryPlots } from "./entry_plots.ts";
 import { jobActions } from "./job_actions.ts";
 import type { JobEvents } from "./job_actions.ts";
 import { comparisonControls } from "./comparison_controls.ts";

@@ -1,17 +1,10 @@
 // The legend above the plots: the drawn controllers, and the one whose settings and verdict are shown.
-import type { Entry, TuningRequest } from "../api/types.ts";
-import { bodeFrame } from "../charts/bode.ts";
+import type { Entry } from "../api/types.ts";
 import { MAX_DRAWN } from "../charts/drawn.ts";
 import type { Drawn } from "../charts/drawn.ts";
-import { nyquistFrame } from "../charts/nyquist.ts";
-import { responseFrame } from "../charts/responses.ts";
-import { sensitivityFrame } from "../charts/sensitivities.ts";
 import { h } from "../dom.ts";
-import type { Frame } from "../plot/frame.ts";
-import type { PlotGrid } from "../plot/grid.ts";
 import { swatch } from "../plot/marks.ts";
 import type { Store } from "../store.ts";
-import { commonLimits } from "../words/limits.ts";
 
 export interface Legend {
   element: HTMLElement;
@@ -85,22 +78,4 @@ export function createLegend(store: Store): Legend {
       if (focused >= 0) controls()[focused]?.focus();
     },
   };
-}
-
-/** The plots of the drawn entries, one trace each. `selected`: the entry whose linearised response is also drawn if
-    there are many. */
-export function showEntryPlots(
-  plots: PlotGrid,
-  drawn: Drawn[],
-  request: TuningRequest | undefined,
-  selected?: number,
-): void {
-  const responses = drawn.some((item) => item.entry.responses);
-  const frequency = drawn.some((item) => item.entry.frequency);
-  const limits = commonLimits(drawn.map((item) => item.entry));
-  plots.show("setpoint", responses ? responseFrame("setpoint", drawn, request, selected) : null);
-  plots.show("load", responses ? responseFrame("load", drawn, request, selected) : null);
-  plots.show("nyquist", frequency ? nyquistFrame(drawn, limits, request) : null);
-  const curves = (): Frame => ({ ...sensitivityFrame(drawn, limits, request), alternative: bodeFrame(drawn, request) });
-  plots.show("sensitivities", frequency ? curves() : null);
 }

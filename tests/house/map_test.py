@@ -30,7 +30,7 @@ FAMILIES = {
 ALONE = {"server/main.cpp": "the program"}
 
 DEFINED = re.compile(r"^[A-Za-z_][\w:<>,&* ]*?[ &*](\w+)\([^;{}]*\)[^;{}]*\{", re.MULTILINE)
-NAME = re.compile(r"[\w*][\w./*-]*\.(?:h|cpp|ts|css|py|mjs|cmake)\b|[\w.][\w./-]*/(?=$|[\s,;])")
+NAME = re.compile(r"[\w*][\w./*-]*\.(?:h|cpp|ts|css|py|mjs|cmake|md)\b|[\w.][\w./-]*/(?=$|[\s,;])")
 # Headings of the first column in the tables of a README.
 HEADS = re.compile(r"\| *(?:file|room|folder|file or room|file or folder|here|part)s? *\|", re.IGNORECASE)
 

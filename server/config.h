@@ -10,6 +10,7 @@ namespace tunewright::server {
 /// and answers only probes and metrics.
 enum class ProcessRole { all, api, worker };
 
+/// Defaults are shown by `serve --help`; OptionsTest of tests/server/deploy/deploy_test.py lists what repeats one.
 struct Config {
     std::string listen = "127.0.0.1:8080";  ///< HOST:PORT; [::1]:8080 for IPv6; port 0: the system chooses
     std::string store = "sqlite:tunewright.db";

@@ -39,6 +39,7 @@ class OptionsTest(unittest.TestCase):
         cls.help = subprocess.run([BINARY, "serve", "--help"], capture_output=True, text=True, check=True).stdout
         cls.flags = set(re.findall(r"^  (?:-\w,)?(--[a-z-]+)", cls.help, re.M))
         cls.variables = set(re.findall(r"Env:(TUNEWRIGHT_[A-Z_]+)", cls.help))
+        cls.defaults = dict(re.findall(r"^  (--[a-z-]+) .*?=(.*) \(Env:", cls.help, re.M))
 
     def test_every_variable_that_is_named_anywhere_exists(self):
         named = {}
@@ -58,6 +59,31 @@ class OptionsTest(unittest.TestCase):
     def test_every_option_is_in_the_operators_document(self):
         text = (ROOT / "docs" / "operations.md").read_text()
         self.assertEqual([flag for flag in sorted(self.flags - {"--help"}) if "`" + flag not in text], [])
+
+    def test_the_operators_document_has_the_defaults_of_the_help(self):
+        stated = {}
+        for row in re.findall(r"^\| `--.*", (ROOT / "docs" / "operations.md").read_text(), re.M):
+            _, options, default, *_ = re.split(r"(?<!\\)\|", row)
+            flags, default = re.findall(r"`(--[a-z-]+)", options), default.strip().replace("`", "")
+            parts = default.split(", ")
+            stated.update(zip(flags, parts if len(parts) == len(flags) else [default] * len(flags)))
+        self.assertGreater(len(self.defaults), 15)
+        self.assertEqual({flag: stated.get(flag) for flag in self.defaults}, self.defaults)
+
+    def test_what_repeats_a_default_has_that_of_the_help(self):
+        body, batch = (int(self.defaults[flag].removesuffix("MiB")) for flag in ("--max-body", "--max-batch-body"))
+        days, half = self.defaults["--retention"].removesuffix("d"), int(self.defaults["--queue-limit"]) // 2
+        repeated = {
+            "docs/records.md": ["--max-body SIZE` (%d MiB by default)" % body],
+            "docs/jobs.md": ["after `--retention` (%s days;" % days],
+            "docs/operations.md": ["more than {:,} jobs (half the default `--queue-limit`)".format(half)],
+            "deploy/prometheus/rules.yaml": ["max(tunewright_jobs_queued) > %d " % half],
+            # One more, so that the service's own answer says what is wrong.
+            "deploy/nginx/nginx.conf": ["the service's own %d and %d MiB" % (body, batch),
+                                        "client_max_body_size %dm;" % (body + 1), "client_max_body_size %dm;" % (batch + 1)]}
+        for name, sentences in repeated.items():
+            text = " ".join((ROOT / name).read_text().split())
+            self.assertEqual([one for one in sentences if one not in text], [], name)
 
     @staticmethod
     def containers(deployment):

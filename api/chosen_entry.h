@@ -11,7 +11,7 @@
 
 namespace tunewright::api {
 
-/// Where the controller comes from, as JSON text.
+/// The JSON text that contains the controller.
 struct ResultSource {
     std::string_view result;        ///< a result, or a whole job with its request as the service returns it
     std::string_view request = {};  ///< its request if it is known; "": facts that only the request has are left out

@@ -54,7 +54,7 @@ private:
     std::jthread serving_;
 };
 
-/// A store that another process must migrate is waited for.
+/// Opens the store; waits for one that another process must migrate.
 std::unique_ptr<JobStore> open_patiently(const Config& config, const std::stop_token& stop) {
     const SchemaSteps steps = config.migrate == "manual" ? SchemaSteps::leave : SchemaSteps::take;
     for (bool logged = false; !stop.stop_requested();) {

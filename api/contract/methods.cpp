@@ -102,7 +102,8 @@ Json methods_schema(SchemaBook& book) {
         }
         add(method.id, method_schema(method.id, method.title, method.formula + " Source: " + method.source, options));
     }
-    // A choice among one is written as that one: generators of clients fail on it.
+    // A choice with one alternative is written as this alternative, because generators of clients fail on such a
+    // choice.
     for (auto& [name, option] : of_all.items())
         if (option["anyOf"].size() == 1) option = Json(option["anyOf"][0]);
     add(kAll, method_schema(kAll, "Every method",

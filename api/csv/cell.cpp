@@ -119,7 +119,7 @@ void DecimalSignFinder::look_at(std::string_view cell, std::size_t column) {
 DecimalSign DecimalSignFinder::found() const {
     if (point_ != comma_) return point_ ? DecimalSign::point : DecimalSign::comma;
     if (point_) return DecimalSign::either;
-    // A writer of 950 without decimals would write 1 so: 1.050 is a thousand.
+    // A writer that writes 950 without decimals would also write 1 without them, so 1.050 is a thousand.
     const auto groups = [](bool points) {
         return [points](const Column& column) { return column.of_groups() && column.points == points; };
     };

@@ -57,7 +57,7 @@ std::optional<double> take_fraction(std::string_view& text) {
 
 char lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
 
-// The hours to add for AM, PM, a.m., p.m.; empty for none.
+// Reads AM, PM, a.m. or p.m.: true for PM; empty for none of them.
 std::optional<bool> take_half_of_day(std::string_view& text) {
     std::string_view rest = text;
     take_blanks(rest);

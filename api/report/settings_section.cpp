@@ -39,7 +39,7 @@ Row setting_row(const std::string& name, const std::string& unit, const std::vec
     return row;
 }
 
-/// A form of the controller in a column with its head.
+/// A column of the table: one form of the controller under its heading.
 struct Column {
     std::string head;
     JsonLocation controller;

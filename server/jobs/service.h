@@ -141,7 +141,7 @@ public:
     /// Jobs accepted and not yet running, including those being accepted.
     std::size_t queued() const { return depth_.now().single + depth_.now().entries; }
     QueueDepth depth() const { return depth_.now(); }
-    /// Held by this process.
+    /// Number of jobs that this process holds.
     std::size_t running() const { return held_.size(); }
     std::size_t workers() const { return settings_.workers; }
     /// Number of followers of jobs in this process.

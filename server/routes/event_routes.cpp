@@ -109,7 +109,7 @@ private:
     std::chrono::steady_clock::time_point asked_ = std::chrono::steady_clock::now();
 };
 
-/// The refusal of following the job; 204 if the client has seen its end, which stops its reconnecting.
+/// The refusal if the job cannot be followed; 204 if the client has seen its end, so that it stops reconnecting.
 std::optional<Response> refuse_events(JobService& jobs, const Call& call) {
     if (!http::accepts(call.request, "text/event-stream"))
         return http::problem_response(406, "The answer is text/event-stream, which the Accept field does not allow.");

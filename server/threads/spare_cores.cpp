@@ -29,7 +29,7 @@ struct SpareCores::SharedCall {
     }
 };
 
-// Not at a lower priority than the computation that waits for the helpers.
+// The helpers do not have a lower priority than the computation that waits for them.
 SpareCores::SpareCores(std::size_t cores)
     : cores_(static_cast<int>(std::max<std::size_t>(1, cores))), helpers_(static_cast<std::size_t>(cores_) - 1) {}
 

@@ -12,7 +12,7 @@ namespace tunewright::server {
 
 class SpareCores {
 public:
-    /// For up to `cores` computations at once, including helpers.
+    /// Allows `cores` computations at once, including helpers.
     explicit SpareCores(std::size_t cores);
 
     /// A computation in progress: it has a core during its lifetime.

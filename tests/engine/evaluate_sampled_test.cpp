@@ -55,8 +55,8 @@ double sampled_Ms(const ContinuousLoop& loop, double Ts) {
     return sampled.count_unstable_poles().stable() ? sampled.peaks(sampled.grid()).S.value : INFINITY;
 }
 
-// Accurate to 1e-3 of the whole loop's Ms, at that sample time and at shorter ones down to a thousandth of the peak's
-// radian; also by the samples after a pulse.
+// At the longest sample time the sampled loop's Ms is the allowed one, to 1e-3, and at shorter sample times it is
+// not higher. The samples after a pulse confirm it.
 TEST(LongestSampleTime, LeavesTheWholeLoopJustItsShareOfMs) {
     int looked_at = 0, by_pulse = 0;
     for (const ContinuousLoop& loop : continuous_loops(100)) {

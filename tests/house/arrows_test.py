@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Checks the dependencies of the sources: which part and which folder may include which, without cycles, and that
-headers outside the engine do not include a matrix library, from the includes."""
+"""Checks the includes of the sources: each part and each folder includes only those it may, without cycles, and headers
+outside the engine do not include a matrix library."""
 import pathlib
 import re
 import sys

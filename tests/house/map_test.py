@@ -74,7 +74,7 @@ def unnamed(paths: list[str], readmes: dict[str, str]) -> list[str]:
 
 
 def names_in(text: str) -> set[str]:
-    """Files and folders that a README names: in code marks, and in the first column of tables of files or rooms."""
+    """Files and folders that a README names: in code marks, and in the first column of tables of files or folders."""
     text = re.sub(r"^(?: {4}|\t).*$|```.*?```", "", text, flags=re.MULTILINE | re.DOTALL)
     names = {name for marked in re.findall(r"`([^`\n]+)`", text) if not re.search(r"[{}<>=]|://|^/|^-", marked)
              for name in NAME.findall(marked)}

@@ -132,7 +132,7 @@ TEST(MadeRecords, OfEveryFormNoneIsWrongInSilence) {
         EXPECT_GE(records, long_or_quick(39, 15));
         EXPECT_GE(answered, 0.6 * records) << name_of(form);
         EXPECT_LE(silent, 1) << name_of(form);
-        // The target is none.
+        // The aim is 0.
         EXPECT_LE(unstable, 1) << name_of(form);
     }
 }

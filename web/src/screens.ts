@@ -47,7 +47,7 @@ export function screens(
   /** The loop on Start whose plant the relay test uses; null: it has one of its own. */
   let relayOf: { units: Units | undefined; loop: number } | null = null;
   const ofStart = (): boolean => relayOf !== null && relayOf.loop === startScreen().loops();
-  /** How often the form of Start was filled from elsewhere. */
+  /** The number of times that the form of Start was filled from elsewhere. */
   let fills = 0;
   /** The choice on Identify, for the record at that address. */
   let remembered: { address: string; choice: CandidateChoice } | null = null;

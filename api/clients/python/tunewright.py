@@ -342,7 +342,7 @@ def _encoded(value: Any) -> bytes:
 
 
 def _text(data: bytes) -> str:
-    """The text of a file: UTF-16 if it begins with that mark, else UTF-8, else Windows-1252."""
+    """The text of a file: UTF-16 if it begins with a byte order mark of UTF-16, else UTF-8, else Windows-1252."""
     if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
         return data.decode("utf-16")
     try:

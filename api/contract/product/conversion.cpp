@@ -164,7 +164,7 @@ const Description<AnsweredRow>& answered_row_contract() {
                 "typing", {},
                 [](const AnsweredRow& row, Writer& out) { settings_answer_contract().write(row.answer, out); },
                 [](SchemaBook& book) { return settings_answer_contract().schema(book); },
-                "Its settings; the notes are only those of this row.");
+                "The settings of the row; the notes are only those of this row.");
         return d;
     }();
     return contract;

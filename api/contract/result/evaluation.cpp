@@ -169,7 +169,8 @@ const Description<LoadPerformance>& load_contract() {
             .field("ISE", &P::ISE, figure(), "Integral of y^2.", {.unit = "y^2 time"})
             .field("ITAE", &P::ITAE, figure(), "Integral of t |y|.", {.unit = "y time^2"})
             .field("peak", &P::peak, figure(), "Largest deviation, signed.", {.unit = "y"})
-            .field("recovery_time", &P::recovery_time, figure(), "Last time outside 2 % of the peak.", {.unit = "time"})
+            .field("recovery_time", &P::recovery_time, figure(), "Last time at which |y| exceeds 2 % of the peak.",
+                   {.unit = "time"})
             .field("TV", &P::TV, figure(), "Total variation of u.", {.unit = "u"})
             .why_null(kNoFigure);
         return d;

@@ -119,7 +119,7 @@ private:
         NameFits y = wanted(kOutputRole) ? output_fits() : NameFits{};
         keep_partners(u, y);
         if (wanted(kInputRole) && wanted(kOutputRole) && u.best.empty() && y.best.empty() && take_data_set()) return;
-        // A column that stands still was not moved by a controller: the contents of the others show whether it is u.
+        // No controller moved a column that stands still: the contents of the other columns show whether this one is u.
         const bool still = u.best.size() == 1 && u.others.empty() && stands_still(u.best.front()) &&
                            (!wanted(kOutputRole) || y.best.size() == 1);
         if (wanted(kInputRole) && !still) take_fitting(kInputRole, u);

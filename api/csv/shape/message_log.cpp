@@ -144,7 +144,7 @@ private:
         return bare ? kind.columns[i] : kind.name + "." + kind.columns[i];
     }
 
-    /// The time is the kinds' common clock.
+    /// The rows of all kinds that are taken, by the clock that these kinds share.
     ShapedText rows_of_taken() {
         const bool alone = std::ranges::count(kinds_, true, &MessageKind::taken) == 1;
         std::vector<std::string> headings = {kinds_.front().columns.front()};

@@ -81,7 +81,7 @@ void turn_countdown(CsvRecord& record, const RowRun& run) {
     for (std::size_t i = run.first; i < last; ++i) record.t[i] = 2 * end - record.t[i];
     record.notes.push_back("The times count down in the lines " + std::to_string(record.lines[run.first]) + " to " +
                            std::to_string(record.lines[last]) +
-                           ", before they count up: those lines were placed before the others, from t = " +
+                           " and up afterwards: those lines were placed first, from t = " +
                            tunewright::text(record.t[run.first]) + " on.");
 }
 

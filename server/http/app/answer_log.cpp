@@ -33,7 +33,7 @@ std::string shown_target(std::string_view target) {
         const std::string_view parameter = target.substr(at + 1, end - at - 1);
         const std::string_view name = parameter.substr(0, std::min(parameter.find('='), parameter.size()));
         shown += at == mark ? '?' : '&';
-        // A parameter without a value may itself be one.
+        // A parameter without a value may itself be a secret.
         if (name.size() < parameter.size() && is_word(name)) shown.append(name).append("=");
         if (!parameter.empty()) shown += "...";
         at = end;

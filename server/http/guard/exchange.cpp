@@ -104,7 +104,7 @@ HandlerResponse Exchange::begin(httplib::Response& out) {
     return HandlerResponse::Handled;
 }
 
-/// The refusals that need none of the body.
+/// The refusals that do not depend on the body.
 std::optional<Response> Exchange::refuse_early() {
     if (head_.state == Head::State::refused) return refused(head_.status, head_.detail);
     streamed_ = application_.streams && application_.streams(request_);

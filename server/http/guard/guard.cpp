@@ -189,7 +189,8 @@ bool Server::Guard::enter(Connection& connection) {
     const bool allowed = !limited || all.size() < limits_.of_one_network || make_room(all);
     all.insert(&connection);
     served_++;
-    // More connections may have arrived than could give way: they wait for a thread, and this one has just had one.
+    // More connections may have arrived than could give way. They wait for a thread; now that this connection has one,
+    // another one may have to give way.
     thin_out();
     return allowed && !over_;
 }

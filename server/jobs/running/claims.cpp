@@ -96,7 +96,7 @@ std::size_t Claims::wanted() const {
 
 bool Claims::suspects_turn(std::size_t held) const { return suspects_ > 0 && held == 0 && idle_ > 0; }
 
-/// True to make room for a job that runs alone, or that has waited long enough to.
+/// True if no job is to be claimed: one runs alone, or one that must run alone has waited long enough.
 bool Claims::keeps_clear(std::size_t held) const {
     return held > 0 && (alone_ || (suspects_ > 0 && HeldJob::Clock::now() > suspects_since_ + kMaxPoliteWait));
 }

@@ -190,7 +190,7 @@ public:
     }
 
 private:
-    /// Idle: bulky, and without waiting for the disk: after a power failure it is done again.
+    /// kIdle is a kBulky change that does not wait for the disk: after a power failure it is made again.
     enum Manner { kDurable, kQuick, kBulky, kIdle };
     using Kind = SqliteWriter::Change::Kind;
 

@@ -332,7 +332,7 @@ TEST(Csv, WhatMayBeThousandsIsTold) {
     EXPECT_THAT(notes("t,u,y\n0,35,\"14,250\"\n1,47,\"14,252\"\n"),
                 Contains(HasSubstr("\"14,250\" are read with three decimals")));
     EXPECT_THAT(notes("t;u;y\n0;950;5\n1;1.050;6\n"), Contains(HasSubstr("\"1.050\" are read as thousands")));
-    // The evidence may come late.
+    // The cell that decides may come late in the file.
     std::string late = "t,u,y\n";
     for (int i = 0; i < 300; ++i) late += std::to_string(i) + ",35,\"1,234\"\n";
     const auto read = std::get<CsvRecord>(read_csv_record(late + "300,47,0.5\n", {}));

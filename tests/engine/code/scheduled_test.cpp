@@ -32,7 +32,8 @@ Program scheduled_program(const Schedule& schedule, const CodeOptions& options =
     return program ? *program : Program{};
 }
 
-/// The row in use of `steps` as documented: from a row's place on; it is left at half the hysteresis beyond the place.
+/// The rows in use as documented. With `steps` the next row is used half the hysteresis above its place, and the
+/// previous one half the hysteresis below.
 class Rows {
 public:
     explicit Rows(const Schedule& schedule) : schedule_(schedule) {}

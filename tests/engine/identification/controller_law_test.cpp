@@ -115,7 +115,7 @@ TEST(ControllerLaw, SoftStartsByHandAreNoLoop) {
     EXPECT_EQ(tests, 24);
 }
 
-/// Column r is the command sent to the actuator: u itself, an affine function of it, a row early.
+/// Column r is the command sent to the actuator: u itself, u one row earlier, or an affine function of u.
 TEST(ControllerLaw, AColumnRThatIsUIsNoSetPoint) {
     for (const auto& [slope, offset, early] : {std::tuple{1.0, 0.0, 0}, {1.0, 0.0, 1}, {0.1, 5.0, 0}}) {
         Record record = testing::simulate(testing::even_times(160, 1), 0, 0, {{10, 3}, {60, 1}, {110, 2}},

@@ -150,7 +150,7 @@ TEST(FalseReadings, WhatSensorsReportInAFaultIsFoundOnceAndInRuns) {
 
 /// Runs are judged one by one, compared with the readings that do not jump: their order does not matter.
 TEST(FalseReadings, DoNotDependOnTheOrderOfTheFaults) {
-    std::vector<double> levels = {26, 27, 29, 40};  // for a y from 20 to 24: the first two are within its range of it
+    std::vector<double> levels = {26, 27, 29, 40};  // y is 20 to 24: the first two are within one such range of it
     std::vector<std::size_t> faults_by_order;
     do {
         Record record = good_step();

@@ -183,7 +183,7 @@ double gain_of(const Plant& plant) {
     return std::nan("");
 }
 
-/// For answers about self-regulating plants: the gain within a tenth, or three of its standard errors.
+/// The gain of a self-regulating plant is right within a tenth, or within three of its standard errors.
 TEST(Feedback, GainsFromSetPointMovesAreRightWithinTheirErrors) {
     const int seeds = long_or_quick(60, 24);
     int right = 0, answers = 0;

@@ -92,7 +92,7 @@ TEST(Identify, LaggedIntegratorIsRecovered) {
 }
 
 TEST(Identify, IntegratorThatDriftsBeforeTheStepKeepsItsGain) {
-    // y rests at u = 2., the record begins with u = 2.
+    // With the gain 0.3 a drift of 0.06 equals 0.2 of u: y rests at u = 2.2, and the record begins with u = 2.
     Record record = simulate(even_times(200, 1), 2, 40, {{60, 3}}, ramp(0.3, 4));
     for (std::size_t i = 0; i < record.t.size(); ++i) record.y[i] -= 0.06 * record.t[i];
     add_noise(record, 0.05, 9);

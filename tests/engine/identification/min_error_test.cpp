@@ -97,7 +97,8 @@ TEST(MinError, CostsNoMoreThanTheReferenceOptimumOnEveryRow) {
     }
 }
 
-// The longest horizons of the reference are settled; the gain, free there, is 1 to 5e-7 and reduces the cost by 2e-4.
+// The longest horizons of the reference are settled; the gain, which is free there, is within 5e-7 of 1 and reduces the
+// cost by 2e-4.
 TEST(MinError, WithoutAHorizonTheIntegralRunsToInfinity) {
     struct Settled {
         const char* process;

@@ -56,7 +56,7 @@ TEST(MoveTimes, StatedErrorsAreAsLargeAsTheErrors) {
         K += std::pow((plant.K - kK) / model.standard_errors.at("K"), 2) / kSeeds;
         T1 += std::pow((plant.T1 - kT1) / model.standard_errors.at("T1"), 2) / kSeeds;
     }
-    // The others cannot distinguish their noise from a load that is a random walk.
+    // The other records do not distinguish their noise from a load that is a random walk.
     EXPECT_GE(sharp, 0.9 * kSeeds);
     // Mean squares of 40 normal values: 1 with a standard deviation of 0.22. Errors stated too large by a factor of two
     // give 0.25.

@@ -166,7 +166,7 @@ TEST(TwoPoint123c, ReproducesThePublishedFourthOrderModel) {
 
 TEST(TwoPoint123c, DeadTimeGainAndTimeScaleCarryOver) {
     const Zpk plant{.K = -3 * 64, .zeros = {}, .poles = {-0.1, -0.2, -0.4, -0.8}, .L = 7};
-    // Ten times slower, so that K of the zpk is 1e-4 of it.
+    // Ten times slower, so that K of the Zpk is 1e-4 times its previous value.
     Zpk slow = plant;
     slow.K *= 1e-4;
     expect_model(reduced(slow, ReductionMethod::two_point_123c), 0, -3, 12.47109, 0, 7 + 6.908683, 2e-6);

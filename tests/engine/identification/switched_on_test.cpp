@@ -31,7 +31,7 @@ double miss(const Plant& plant, const LoopPlant& truth) {
     return std::abs(found - right) / std::abs(right);
 }
 
-/// K and L within three standard errors, and a tenth of the response in addition.
+/// Expects a response within a tenth of the true one, and K and L within three standard errors.
 void expect_right(const Record& record, const LoopPlant& truth, const char* which, bool in_loop = true) {
     const auto model = identify(record, {}, {});
     ASSERT_TRUE(model) << which << ": " << model.error().message;

@@ -27,7 +27,7 @@ std::vector<SampledCase> cases(int rounds) {
     for (int round = 0; round < rounds; ++round)
         for (const KnownPlant& plant : known_plants()) {
             ++i;
-            // If nothing stabilises the plant with so long a dead time or sample time, a shorter one.
+            // If nothing stabilises the plant with so long a dead time or sample time, a shorter one is tried.
             std::optional<SampledCase> found;
             double Ts = kSampleTimes[std::size_t(i) % kSampleTimes.size()];
             double dead = kDeadTimes[std::size_t(i / 5 + round) % kDeadTimes.size()];

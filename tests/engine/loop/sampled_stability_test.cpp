@@ -87,7 +87,7 @@ TEST(SampledStability, CountsTheEigenvaluesOutsideTheCircle) {
     EXPECT_GT(compared, kLoops - 20);
 }
 
-// Between two points of a grid the dead time may turn L by more than once, which must not count as no turn.
+// Between two points of a grid the dead time may turn L more than once, which must not count as no turn.
 TEST(SampledStability, CountsThemBehindAHundredSamplesToo) {
     int many = 0;
     for (int i = 0; i < 150; ++i) {
@@ -131,7 +131,7 @@ TEST(SampledStability, GainMarginsAreWhereAnEigenvalueReachesTheCircle) {
         check_gain_margins(loop);
     }
     EXPECT_GT(looked_at, 100);
-    // Loops that a smaller gain makes unstable, and those in between.
+    // The loops of the known plants, which include some that a smaller gain makes unstable.
     Random random(5);
     int found = 0;
     for (const KnownPlant& known : known_plants())

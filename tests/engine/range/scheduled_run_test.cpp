@@ -49,7 +49,8 @@ TEST(ScheduledRun, DoesNotMoveUWhereRowsSwitch) {
     ASSERT_TRUE(run) << run.error().message;
     EXPECT_GE(run->switches, 8);
     EXPECT_LT(run->largest_bump, 1e-9);
-    // Nor between two samples, by more than the corners of the ramp do: a new Kp acting on the error of the ramp would.
+    // Between two samples u does not move more than at the corners of the ramp; it would if a new Kp acted on the error
+    // of the ramp.
     for (std::size_t i = 1; i < run->u.size(); ++i) EXPECT_LT(std::abs(run->u[i] - run->u[i - 1]), 1.1) << run->t[i];
     EXPECT_TRUE(run->settled);
 }

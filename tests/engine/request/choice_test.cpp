@@ -56,7 +56,7 @@ void expect_not_dominated(const TuningResult& result) {
     for (const TuningEntry& other : result.controllers) {
         if (!other.evaluation || !keeps_limits(other) || !valid(other)) continue;
         EXPECT_GE(*other.evaluation->performance.load.IAE, IAE / 3) << best->title << " before " << other.title;
-        // Nor by a tenth by one with an equally good level and no less robustness.
+        // An entry with an equally good level and no less robustness costs at least nine tenths.
         const bool as_good = other.verdict.front().level <= best->verdict.front().level &&
                              *other.evaluation->robustness.Ms <= *best->evaluation->robustness.Ms;
         if (as_good) {

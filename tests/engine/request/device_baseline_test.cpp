@@ -12,7 +12,7 @@ using product::Settings;
 
 const Case kPlant{"two lags", Sopdt{.K = 2, .T1 = 10, .T2 = 4, .L = 3}, 3, {0, 400, 4, 20}};
 
-// About Kp = 0.7, Ti = 9 s, Td = 2.5 s; other settings have the maker's default.
+// Settings near Kp = 0.7, Ti = 9 s, Td = 2.5 s; the other settings have the maker's defaults.
 Settings settings_of(const std::string& product, double Ts) {
     if (product == "siemens_pid_compact") return {{"Gain", 0.7}, {"Ti", 9.0}, {"Td", 2.5}, {"TdFiltRatio", 0.2}};
     if (product == "rockwell_pide_independent") return {{"PGain", 17.5}, {"IGain", 116.7}, {"DGain", 0.729}};

@@ -100,7 +100,7 @@ inline device::DeviceModel device_of(const std::string& product, const Case& c, 
     return device;
 }
 
-/// Without `device`; no traces.
+/// The request of a case, without `device` and traces.
 inline TuningRequest request_of(const Case& c, const std::string& method) {
     TuningRequest request;
     request.subject = subject_of(c.plant);

@@ -1,4 +1,4 @@
-// The defaults and tolerances of one table: every method without its own has these.
+// The defaults and tolerances of one table, which apply to every method without values of its own.
 #include "engine/tuning/limits.h"
 
 #include <gtest/gtest.h>

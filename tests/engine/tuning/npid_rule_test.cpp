@@ -113,7 +113,7 @@ TEST(NpidOptimise, IsNeverWorseThanTheRuleOnItsOwnCriterion) {
                 EXPECT_LE(best, *by_rule->performance.setpoint.IAE * 1.0001);
             }
         }
-        // Nor than the neighbours of the reduced model.
+        // The cost is not higher than that of neighbouring settings either.
         for (const double factor : {0.97, 1.03}) {
             for (double IdealPid::*parameter : {&IdealPid::Kp, &IdealPid::Ti, &IdealPid::Td}) {
                 TunedController neighbour = *optimum;

@@ -224,7 +224,7 @@ TEST(Rimc, LinearFractionalIsTheSamePidWithTheFilterThatMatchesTheFourthTerm) {
 }
 
 TEST(Rimc, AnEasyTargetLeavesTheLinearFractionAFilter) {
-    // Its filter time ends at 0, where noise passes without limit: the paper's smallest ratio, 0.01, is the end.
+    // A filter time of 0 would pass noise without limit: the filter is at least the paper's smallest ratio, 0.01.
     for (const double L : {0.5, 1.0, 3.0, 8.0}) {
         const Fopdt model{.K = 1, .T = 10, .L = L};
         const auto tuned =

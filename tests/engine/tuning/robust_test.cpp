@@ -148,8 +148,9 @@ TEST(Robust, UnstablePlantsHaveASmallestPeakThatWorks) {
 }
 
 TEST(Robust, BehindTwoIntegratorsTheSmallestPeakIsThatOfTheIntegratorsAlone) {
-    // Far below its lags and its dead time each of these is K/s^2. There a PD with its filter, which no integral action
-    // improves, has peaks of at least 1.3169 (from an independent sweep over the gain on a grid).
+    // Each plant approaches K/s^2 at frequencies far below those of its lags and its dead time. For K/s^2 a PD with its
+    // filter, which no integral action improves, has peaks of at least 1.3169 (from an independent sweep over the gain
+    // on a grid).
     constexpr double kLeast = 1.3169;
     for (const Plant& plant : {Plant(Zpk{.K = 1, .zeros = {}, .poles = {0.0, 0.0}, .L = 0.02}),
                                Plant(Zpk{.K = 9.33, .zeros = {}, .poles = {0.0, 0.0, -6.166}, .L = 0.01936}),

@@ -84,7 +84,7 @@ TEST(Setpoint, AnyOvershootIsKeptOnPlantsOfManyKinds) {
             const double overshoot = *judged(plant, pid).performance.setpoint.overshoot_percent;
             EXPECT_LE(overshoot, std::max(limit, 5e-3)) << "plant " << i << " limit " << limit;
             if (pid.setpoint_lag > 0 || pid.b == 1) continue;
-            // Not lower than necessary, or than the optimum.
+            // A slightly larger weight would exceed the limit or have no lower IAE.
             IdealPid more = pid;
             more.b = std::min(1.0, pid.b + 2e-3);
             const SetpointPerformance with_more = judged(plant, more).performance.setpoint;

@@ -90,7 +90,7 @@ TEST(UltimatePointOptions, RelayTakesTheRecordedTests) {
     EXPECT_THAT(without.error().message, HasSubstr("there is no recorded relay test"));
     problem.relay_point = UltimatePoint{.Ku = 2, .Pu = 4};
     expect_settings(tune(problem, relay, {}), 1.2, 2, 0.5);
-    // The default is still the model's.
+    // By default Ku and Pu are still those of the model.
     EXPECT_NE(tune(problem, {}, {})->controller.Kp, 1.2);
 }
 

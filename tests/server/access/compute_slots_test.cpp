@@ -27,7 +27,7 @@ protected:
             }
             turns_.give_back(client);
         });
-        // Until it is in the queue: one more is then refused, or it would have been granted.
+        // Waits until the request is in the queue.
         std::this_thread::sleep_for(20ms * (already + 1));
     }
 

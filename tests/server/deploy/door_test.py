@@ -57,7 +57,7 @@ class BodiesTest(unittest.TestCase):
             self.assertEqual(connection.recv(65536).split()[1], status)
 
     def test_small_values_in_large_numbers_are_refused_and_leave_nothing(self):
-        """Their tree takes thirty times the memory of their text."""
+        """The tree of such values takes thirty times the memory of their text."""
         body = b"[" + b",".join([b'{"":0}'] * (8 * MEGABYTE // 7 - 1)) + b"]"
         with concurrent.futures.ThreadPoolExecutor(6) as pool:
             calls = [pool.submit(self.service.post, path, body) for path in ("/v1/jobs", "/v1/design", "/v1/evaluate") * 4]

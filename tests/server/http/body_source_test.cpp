@@ -195,7 +195,7 @@ TEST(BodySource, ATrickleIsCutOffAndASlowReaderIsNot) {
     Client trickle(server);
     trickle.send(post("Content-Length: 100\r\n") + "x");
     EXPECT_THAT(trickle.read_all(), StartsWith("HTTP/1.1 408"));
-    // By now the other client has waited longer than that, but because of the service.
+    // By now the other client has taken longer than this limit, but only because it waited for the service.
     patient.send("hello");
     EXPECT_THAT(patient.read_to(" end"), EndsWith("hello end"));
 }

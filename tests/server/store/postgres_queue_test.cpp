@@ -98,7 +98,7 @@ TEST_F(PostgresStore, UniqueJobsInOppositeOrdersNeverWaitForEachOther) {
             "single, status, attempts, cancel_requested, finished_at) SELECT seq, true, 'failed', 0, false, 1 FROM "
             "gone");
     }
-    // Its counts are up to a second old.
+    // The store's counts are up to a second old.
     std::this_thread::sleep_for(std::chrono::milliseconds(1500));
     EXPECT_EQ(database_->run("SELECT deadlocks FROM pg_stat_database WHERE datname = current_database()"), "0");
 }

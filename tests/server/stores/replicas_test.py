@@ -94,7 +94,7 @@ class ReplicasTest(unittest.TestCase):
             job = self.api.wait_for(job_id)
         finally:
             self.worker.start()
-        # It ran again, and this time until its time limit.
+        # The job ran again, this time until its time limit.
         self.assertEqual((job["attempts"], job["error"]["type"]), (2, "timeout"))
 
     def test_waits_are_answered_when_their_process_is_stopped(self):

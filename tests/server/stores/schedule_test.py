@@ -175,7 +175,7 @@ class PostgresTest(Cases, unittest.TestCase):
 
 class LimitTest(unittest.TestCase):
     def under_way(self, first, second):
-        """The limit is 3 jobs of a client on both."""
+        """The limit is 3 jobs of a client on both services."""
         soon = dict(QUICK, not_before=moment(3600))
         ids = [first.post_job(LONG)["id"], second.post_job(LONG)["id"], first.post_job(soon)["id"]]
         answers = [service.post("/v1/jobs", QUICK) for service in (first, second)]

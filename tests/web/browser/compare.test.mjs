@@ -344,7 +344,7 @@ test("a nonlinear PID is taken as today's settings, and shown in its own form wi
     assert.match(verdict, /belong to the controller.s linear part/);
     const today = result.controllers.find((entry) => entry.method === "baseline");
     if (today.nonlinear) assert.ok(verdict.includes(today.nonlinear.statement));
-    // It returns to the form as entered.
+    // The link returns to the form as entered.
     await page.getByRole("link", { name: "Change the request" }).click();
     await page.getByRole("button", { name: "Tune this model" }).waitFor();
     await page.waitForFunction(() => [...document.querySelectorAll("input")].some((input) => input.value === "0.5"));

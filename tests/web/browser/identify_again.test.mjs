@@ -33,7 +33,7 @@ test("a longer record in place of the first is used whole, also with another mod
     await page.getByLabel("Model", { exact: true }).selectOption("fopdt");
     const again = (await second).request().postDataJSON();
     assert.deepEqual([again.record.from, again.record.to, again.identify.model], [undefined, undefined, "fopdt"]);
-    // A chosen part of it stays with it.
+    // A chosen part of the record remains chosen.
     const third = identified(page);
     await to.fill("249");
     await to.press("Enter");

@@ -137,7 +137,7 @@ test("a further measured input is identified together with u, and named with wha
     "",
     {},
     async (page) => {
-      // Without it no model follows y.
+      // Without this input no model follows y.
       const alone = page.waitForResponse((response) => response.url().endsWith("/v1/identify"));
       await dropFile(page, ".drop", "room.csv", twoInputs());
       assert.equal((await alone).status(), 422);

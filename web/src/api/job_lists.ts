@@ -24,7 +24,7 @@ export async function listBatches(): Promise<Batch[]> {
 
 export const getBatch = async (id: string): Promise<Batch> => (await call("GET", batchPath(id))).data as Batch;
 
-/** Its jobs in their order, at most `max`. */
+/** The jobs of a batch in their order, at most `max`. */
 export async function jobsOfBatch(id: string, max: number): Promise<ListedJob[]> {
   const found: ListedJob[] = [];
   let address: string | null = `v1/jobs?batch=${encodeURIComponent(id)}&limit=${PAGE}`;

@@ -47,7 +47,7 @@ export type Language = "st" | "c" | "python";
 
 export interface CodeQuestion {
   job: string;
-  /** Of the entry in the result; "schedule": the schedule of a range. */
+  /** Index of the entry in the result; "schedule": the schedule of a range. */
   index: number | "schedule";
   language: Language;
   sample_time?: number | undefined;

@@ -102,10 +102,10 @@ function singleFields(errors: FormErrors, own: Own): Record<SingleField, Field<C
   return {
     input: field("input", "Name of the input", "as in the equations", "u"),
     nominal: field("nominal", "Its value", "at the operating point"),
-    min: field("min", "Lower limit", "absolute; empty is none", "none"),
-    max: field("max", "Upper limit", "absolute; empty is none", "none"),
-    output: field("output", "Output", "what is measured: a state or an expression"),
-    L: field("L", "Dead time", "of the input; empty is 0", "0"),
+    min: field("min", "Lower limit", "absolute; empty: none", "none"),
+    max: field("max", "Upper limit", "absolute; empty: none", "none"),
+    output: field("output", "Output", "the measurement: a state or an expression"),
+    L: field("L", "Dead time", "of the input; empty: 0", "0"),
   };
 }
 

@@ -18,7 +18,7 @@ export interface FieldSpec {
   choices: string[];
   /** Words that a number field also accepts, e.g. "free". */
   words: string[];
-  /** Of cases: the member that comes first without its name. */
+  /** For cases: the member that comes first without its name. */
   lead: string;
   /** The value of an empty field, as text; "" if there is none. */
   defaultText: string;

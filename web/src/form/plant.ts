@@ -76,7 +76,7 @@ const matrixField = (name: string, hint: string, example: string): PlantField =>
 
 const gain = numberField("K", "steady-state change in y per unit of u", "gain", "1.25");
 const deadTime = numberField("L", "dead time: time before y responds", "time", "8");
-const optionalDeadTime = numberField("L", "dead time; empty is 0", "time", "", true);
+const optionalDeadTime = numberField("L", "dead time; empty: 0", "time", "", true);
 
 /** Factors of the parameters that bound the plant. */
 const uncertainty: PlantField = {
@@ -132,7 +132,7 @@ export const PLANT_FORMS: PlantForm[] = [
     fields: [
       numberField("K", "slope of y per unit of u", "slope", "0.02"),
       deadTime,
-      numberField("T", "additional lag; empty is none", "time", "", true),
+      numberField("T", "additional lag; empty: none", "time", "", true),
       uncertainty,
     ],
   },
@@ -165,7 +165,7 @@ export const PLANT_FORMS: PlantForm[] = [
       matrixField("A", "rows with semicolons between them", "-1 0; 1 -2"),
       listField("B", "input column", "1 0"),
       listField("C", "output row", "0 1"),
-      numberField("D", "direct part; empty is 0", "", "", true),
+      numberField("D", "direct part; empty: 0", "", "", true),
       optionalDeadTime,
     ],
   },

@@ -10,7 +10,7 @@ export interface PointTexts {
   text: string;
   given?: { text: string; plant: Plant | string };
   record?: RecordedTest;
-  /** Of a record: the file's name. */
+  /** For a record: the file's name. */
   file?: string;
 }
 

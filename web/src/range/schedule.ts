@@ -91,7 +91,7 @@ export function givenRequest(
 /** The design's result for one setting stays; the schedule and its curves are those of the current rows. */
 export interface ShownRange {
   designed: RangeContent;
-  /** Of the moved rows; null: none was moved. */
+  /** The content for the moved rows; null: none was moved. */
   moved: RangeContent | null;
 }
 

@@ -39,7 +39,7 @@ const SETTINGS: {
   value: string;
 }[] = [
   { name: "u_plus", label: "Upper level", hint: "of u, from the operating point", unit: "u", value: "1" },
-  { name: "u_minus", label: "Lower level", hint: "another size than the upper level: a biased test", unit: "u", value: "-1" },
+  { name: "u_minus", label: "Lower level", hint: "if its size differs from that of the upper level, the test is biased", unit: "u", value: "-1" },
   {
     name: "hysteresis",
     label: "Hysteresis",

@@ -5,7 +5,7 @@ import { formatNumber, formatPercent, product, quotient, withUnit } from "./numb
 import type { UnitNames } from "./numbers.ts";
 
 export interface ComparisonRow {
-  /** Of the entry in the result. */
+  /** Position of the entry in the result. */
   index: number;
   name: string;
   entry: Entry;

@@ -58,7 +58,7 @@ export function gain(job: ListedJob): number | null {
   return typeof today === "number" && typeof now === "number" && today > 0 ? 100 * (1 - now / today) : null;
 }
 
-/** The largest Ms on any plant that the loop may meet; a tuned loop without one has the greatest risk. */
+/** The largest Ms on any plant that the loop may meet; a tuned loop without a known Ms counts as the riskiest. */
 export function risk(job: ListedJob): number | null {
   const outline = job.outline;
   if (job.status !== "succeeded" || !outline?.method) return null;

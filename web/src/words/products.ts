@@ -150,7 +150,7 @@ export function differenceSentence(built: Implemented): string {
 export const builtTroubles = (entry: Pick<Entry, "warnings">): Notice[] =>
   (entry.warnings ?? []).filter(({ code }) => code === "unstable-as-built" || code === "not-as-built");
 
-/** How the loop was computed, and its longest sample time. */
+/** Sentences on how the loop was computed, and on its longest sample time. */
 export function samplingSentences(
   built: Implemented | undefined,
   longest: number | null | undefined,

@@ -25,7 +25,7 @@ export interface PartCard {
   set(part: Part): void;
   /** The record's steps, each with the part that shows it alone. */
   setSteps(steps: Step[]): void;
-  /** Null: all of it. */
+  /** The chosen part; null: the whole record. */
   read(): Part | null;
   /** Faults of fields that cannot be read: their sliders have other values. */
   faults(): FieldError[];

@@ -1,5 +1,5 @@
-// Revised IMC on Design: a slider for its one parameter, the effect of it, and its figures next to those of the full
-// controller.
+// Revised IMC on Design: a slider for its one parameter, the effect of this parameter, and the figures next to those of
+// the full controller.
 import { ApiError, sentenceOf } from "../../api/client.ts";
 import type { Entry, Plant } from "../../api/types.ts";
 import { fullControllerFrame, interpolate, rimcFrame, rimcRows } from "../../charts/rimc.ts";

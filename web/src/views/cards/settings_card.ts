@@ -14,7 +14,7 @@ export interface Setting {
   value: number | null;
 }
 
-/** Of any form. */
+/** A controller of any form. */
 type EquivalentSettings = { b?: number; why_null?: WhyNull } & Partial<Record<"Kp" | "Ki" | "Kd" | "Ti" | "Td", number | null>>;
 
 /** The settings of one form, or a sentence why that form does not exist. */

@@ -59,13 +59,13 @@ export function todayCard(errors: FormErrors, onUnits: () => void): TodayCard {
     textField({ label: "", pointer: () => `/baseline/${names()[index]}` }, errors),
   );
   const filter = textField(
-    { label: "Tf", hint: "filter of the derivative; empty is none", pointer: () => "/baseline/filter/Tf" },
+    { label: "Tf", hint: "filter of the derivative; empty: none", pointer: () => "/baseline/filter/Tf" },
     errors,
   );
   const delta = textField(
     {
       label: "delta_r",
-      hint: "much larger errors hardly enter the integral; empty is the set-point step",
+      hint: "much larger errors hardly enter the integral; empty: the set-point step",
       pointer: () => "/baseline/delta_r",
     },
     errors,

@@ -1,4 +1,4 @@
-// The lists that the service answers: methods, and products with the conversions of their settings.
+// The lists that the service returns: methods, and products with the conversions of their settings.
 #pragma once
 
 #include <string>

@@ -158,7 +158,7 @@ std::variant<SampleTime, Problem> sample_time_of(const AskedCode& asked, const J
     const Json::json_pointer place("/implement/sample_time");
     if (request.is_object() && request.contains(place) && request.at(place).is_number() &&
         request.at(place).get<double>() > 0)
-        return chosen(request.at(place).get<double>() * asked.unit, "as the request says");
+        return chosen(request.at(place).get<double>() * asked.unit, "from the request");
     constexpr double kNoLimit = std::numeric_limits<double>::infinity();
     if (const auto proposed = code::proposed_sample_time(gains, longest.value_or(kNoLimit)))
         return SampleTime{*proposed, proposed == code::proposed_sample_time(gains)

@@ -53,8 +53,8 @@ void collect_references(const Json& part, const Json& schemas, std::set<std::str
     for (const auto& inner : part) collect_references(inner, schemas, names);
 }
 
-/// A type of answers only requires all members that are always written, and has no defaults; a type that requests may
-/// have too keeps the mark.
+/// A type that only answers have requires all members that are always written, and has no defaults; a type that
+/// requests may have too keeps the mark.
 void require_what_is_written(Json& document) {
     Json& schemas = document["components"]["schemas"];
     std::set<std::string> asked;

@@ -114,7 +114,7 @@ TEST(LiuGaoRelay, LeftRectanglesOnASampledRelayGiveThePrintedRows) {
         Plant plant;
         RelaySettings settings;
         double Pu, Au, phi_u;
-        double tolerance;  ///< the biased relay of example 1 never repeats exactly: it depends on the cycles taken
+        double tolerance;  ///< larger for example 1's biased relay, which never repeats exactly
     };
     for (Printed row : {Printed{kFirst, unbiased(), 14.40, 0.2233915, -2.22035, 3e-5},
                         Printed{kFirst, biased(), 15.581, 0.2406925, -2.136288, 2e-4},

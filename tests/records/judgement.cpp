@@ -66,7 +66,7 @@ void judge_told(const MadeRecord& made, const IdentifiedModel& model, Judgement&
     if (const auto at = told->standard_errors.find("K"); at != told->standard_errors.end()) j.K_std_told = at->second;
 }
 
-/// For the default design for the true plant.
+/// The load IAE of the default design for the true plant.
 std::optional<double> min_load_IAE(const TruePlant& plant) {
     TuningRequest request;
     request.subject = test::subject_of(PlantModel(Plant(plant.zpk())));

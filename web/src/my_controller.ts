@@ -80,7 +80,7 @@ export function inUnits(mine: MyController | null, units: UnitNames): MyControll
   };
 }
 
-/** With name and needs from the list. */
+/** The same controller with its name and its needs from the list. */
 export function named(mine: MyController | null, products: readonly ProductSummary[]): MyController | null {
   const product = products.find((item) => item.id === mine?.product);
   if (!mine || !product) return mine;

@@ -90,7 +90,7 @@ bool take_key_back(Session& session, std::int64_t seq) {
                .affected_rows() > 0;
 }
 
-/// The job that prevented this one: the job with its key, or itself, accepted before.
+/// The job that prevented this one: the job with its key, or the same job if it was accepted before.
 Accepted find_earlier(Session& session, const NewJob& job) {
     static const std::string sql = "SELECT " + kSummaryColumns + kJobTables + " WHERE j.id = $1 UNION ALL SELECT " +
                                    kSummaryColumns + kJobTables +

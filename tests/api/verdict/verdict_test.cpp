@@ -1,5 +1,5 @@
-// No figure of an answer contradicts its verdict: over random plants, sets, products, baselines, limits that hold and
-// limits that do not.
+// No figure of an answer contradicts its verdict. Checked on random plants, sets, products and baselines, with limits
+// that hold and limits that do not.
 #include <gtest/gtest.h>
 
 #include <random>

@@ -212,7 +212,7 @@ class DiskTest(unittest.TestCase):
                 self.assertLessEqual(set(poster.refusals), {503, 507})
                 self.assertEqual(service.get("/healthz").status, 200)
                 disk.empty()
-                # It ends itself if it cannot write its log; its supervisor would restart it.
+                # PostgreSQL ends if it cannot write its log; its supervisor would restart it.
                 place.cluster.start()
                 jobs = all_end(service, poster.ids)
                 self.assertEqual({jobs[job_id]["status"] for job_id in poster.ids}, {"succeeded"})

@@ -24,7 +24,7 @@ export interface RangeView extends View {
 export interface RangeEvents {
   /** The example by its id, for the address. */
   onExample(id: string): void;
-  /** Posts the request as a job and shows that. */
+  /** Posts the request as a job and shows this job. */
   onJob(request: RangeRequest): Promise<void>;
 }
 

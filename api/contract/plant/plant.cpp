@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kMaxOrder = 50;
 
-// The range of the number (plant_rules.h), as the schema shows it.
+// The range of the number (plant_faults of engine/plant/linear/factor.h), as the schema shows it.
 Codec<double> gain() { return engine_ruled({.not_zero = true}); }
 Codec<double> dead_time() { return engine_ruled({.minimum = 0}); }
 

@@ -157,6 +157,7 @@ Formula formula(const OscillatorySopdt& p) { return quotient_of(p.K, {}, {{p.T *
 Formula formula(const Ipdt& p) { return quotient_of(p.K, {}, {{1, 0}, {p.T, 1}}, p.L); }
 Formula formula(const TransferFunction& p) { return quotient_of(1, {p.num}, {p.den}, p.L); }
 Formula formula(const Zpk& p) { return quotient_of(p.K, root_factors(p.zeros), root_factors(p.poles), p.L); }
+Error formula(const StateSpace&) { return refusal("a state space has no formula in s of its own."); }
 
 }  // namespace
 
@@ -239,14 +240,7 @@ Expected<Plant> plant_of(const Formula& f) {
 }
 
 Expected<Formula> formula_of(const Plant& plant) {
-    return std::visit(
-        [](const auto& p) -> Expected<Formula> {
-            if constexpr (requires { formula(p); })
-                return formula(p);
-            else
-                return refusal("a state space has no formula in s of its own.");
-        },
-        plant);
+    return std::visit([](const auto& p) -> Expected<Formula> { return formula(p); }, plant);
 }
 
 }  // namespace tunewright::typed

@@ -127,6 +127,8 @@ std::string text_of(const Zpk& p) {
            (p.L == 0 ? "" : ", delay " + as_typed(p.L));
 }
 
+std::string text_of(const StateSpace&) { return ""; }
+
 }  // namespace
 
 Expected<TypedPlant> read_plant(std::string_view text, double seconds_per_time) {
@@ -142,14 +144,7 @@ Expected<TypedPlant> read_plant(std::string_view text, double seconds_per_time) 
 }
 
 std::string plant_text(const Plant& plant) {
-    return std::visit(
-        [](const auto& p) -> std::string {
-            if constexpr (requires { text_of(p); })
-                return text_of(p);
-            else
-                return "";
-        },
-        plant);
+    return std::visit([](const auto& p) { return text_of(p); }, plant);
 }
 
 }  // namespace tunewright

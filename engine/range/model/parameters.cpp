@@ -22,6 +22,8 @@ void for_each_number(PlantType& plant, F f) {
         for (auto& coefficient : plant.num) f(coefficient);
         for (auto& coefficient : plant.den) f(coefficient);
         f(plant.L);
+    } else {
+        static_assert(std::is_same_v<Type, Zpk> || std::is_same_v<Type, StateSpace>, "Name the numbers of this type.");
     }
 }
 

@@ -3,7 +3,7 @@
 
 #include "api/contract/plant/plant.h"
 #include "api/contract/request.h"
-#include "support.h"
+#include "tests/api/support.h"
 
 namespace tunewright::api {
 namespace {

@@ -13,6 +13,7 @@
 
 #include "bench/batch.h"
 #include "engine/loop/peaks.h"
+#include "engine/tuning/limits.h"
 #include "engine/tuning/method/method.h"
 #include "engine/tuning/registry.h"
 
@@ -41,7 +42,7 @@ bool holds_limits(const LinearPlant& plant, const IdealPid& pid) {
     const auto loop = Loop::make(plant, to_parallel(pid));
     if (!loop) return false;
     const Peaks peaks = find_peaks(*loop, make_peak_grid(*loop));
-    return std::max(peaks.S.value, peaks.T.value) <= 1.4 * (1 + 2e-5);
+    return std::max(peaks.S.value, peaks.T.value) <= limits::kDefaultMs * (1 + limits::kMaxRelativeExcessVerified);
 }
 
 Times measure(const Row& row, int runs) {

@@ -9,7 +9,6 @@
 namespace tunewright {
 namespace {
 
-constexpr double kSettlingBand = 0.02;
 constexpr double kMaxRelativeRestError = 1e-9;  // of the largest y: an error at rest below it is none
 
 /// The indices of one kind of performance, or the reason why there are none. `cut`: the run ended before its horizon.

@@ -10,6 +10,10 @@
 
 namespace tunewright {
 
+/// Of the step, and of the load response's peak: a response that stays within it counts as settled. Sentences state it
+/// in percent; tests/house/defaults_test.py names them.
+inline constexpr double kSettlingBand = 0.02;
+
 /// What is integrated over a response.
 struct Indices {
     std::optional<ErrorIntegrals> error;

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Checks that defaults and tolerances are only in their table, engine/tuning/limits.h: defaults_test.py BINARY.
+"""Checks that defaults and tolerances are only in their table, engine/tuning/limits.h, and that all texts state the settling
+band of its one constant: defaults_test.py BINARY.
 
 No other source defines one; the binary's description of its methods, its help and the documents state the values of
 the table. The defaults of every method's options in the documents are compared with the description as well."""
@@ -71,11 +72,12 @@ def wrong_defaults(document: str, methods: dict) -> list[str]:
     return wrong
 
 
-def stated(limits: dict[str, float]) -> dict[str, list[str]]:
-    """Sentences and rows with a default or a tolerance of the table, by document."""
+def stated(limits: dict[str, float], band: str) -> dict[str, list[str]]:
+    """Sentences and rows with a default or a tolerance of the table, or with the settling band in percent, by document."""
     Ms, Mt, greatest = (f"{limits[name]:g}" for name in ("kDefaultMs", "kDefaultMt", "kMaxMs"))
     shown, of_worst = (f"{100 * limits[name]:g} %" for name in ("kMaxRelativeExcessShown", "kMaxRelativeExcessShownOfWorst"))
     return {
+        "../README.md": [f"The first design keeps Ms below {Ms} on every plant"],
         "methods.md": [f"| `Ms`, `Mt` | {Ms}, {Mt} | limits, in (1, {greatest}] |",
                        f"| `{{\"overshoot\": {limits['kDefaultMaxOvershootPercent']:g}}}` |",
                        f"Tf is {limits['kDefaultTf_over_Td']:g} Td if the plant",
@@ -83,9 +85,21 @@ def stated(limits: dict[str, float]) -> dict[str, list[str]]:
         "range.md": [f"| `Ms`, `Mt` | {Ms} | limits, in (1, {greatest}], everywhere in the range |"],
         "tutorial.md": [f"| {Ms} | calm (the default) |"],
         "uncertain.md": [f"`robust` keeps Ms at {Ms} on"],
-        "verdicts.md": [f"is above its limit by {shown}, on the worst plant by {of_worst}",
+        "verdicts.md": [f"overshoots by at most {band} percentage points more than the limit",
+                        f"is above its limit by {shown}, on the worst plant by {of_worst}",
                         f"(reached to {shown})"],
     }
+
+
+# What states the band within which a response counts as settled.
+BAND = "engine/evaluation/performance_figures.h"
+STATE_BAND = ("engine/evaluation/performance_figures.cpp", "api/contract/result/evaluation.cpp", "web/src/words/figures.ts",
+              "web/src/words/comparison.ts", "docs/verdicts.md", "docs/tutorial.md")
+
+
+def wrong_band(name: str, text: str, percent: str) -> list[str]:
+    stated_bands = re.findall(r"(?:within|outside)\s([\d.]+)\s%\sof\b", text)
+    return [] if set(stated_bands) == {percent} else [f"{name} states the settling band {percent} % as {stated_bands} %."]
 
 
 def run(binary: str, *words: str) -> str:
@@ -101,6 +115,9 @@ def faults(binary: str) -> list[str]:
     for name in names:
         if name.endswith((".h", ".cpp", ".ts")) and (ROOT / name).is_file():
             found += second_definitions(name, (ROOT / name).read_text(encoding="utf-8"), Ms)
+    band = f"{100 * constants((ROOT / BAND).read_text(encoding='utf-8'))['kSettlingBand']:g}"
+    for name in STATE_BAND:
+        found += wrong_band(name, (ROOT / name).read_text(encoding="utf-8"), band)
     methods = {method["id"]: method for method in json.loads(run(binary, "methods"))["methods"]}
     for option, value in (("Ms", limits["kDefaultMs"]), ("Mt", limits["kDefaultMt"])):
         described = methods["robust"]["options"]["properties"][option]["default"]
@@ -108,7 +125,7 @@ def faults(binary: str) -> list[str]:
             found.append(f"GET /v1/methods has {option} {described}, {TABLE} has {value}.")
     if f"default {Ms}" not in run(binary, "tune", "--help"):
         found.append(f"tunewright tune --help does not say that the default Ms is {Ms}.")
-    for name, sentences in stated(limits).items():
+    for name, sentences in stated(limits, band).items():
         document = " ".join((ROOT / "docs" / name).read_text(encoding="utf-8").split())
         found += [f"docs/{name} does not say \"{sentence}\"." for sentence in sentences if sentence not in document]
     return found + wrong_defaults((ROOT / "docs/methods.md").read_text(encoding="utf-8"), methods)
@@ -127,6 +144,8 @@ def self_test() -> list[str]:
     if len(wrong_defaults("## robust\n| option | default | is |\n| --- | --- | --- |\n| `Ms`, `Mt` | 1.4, 1.4 | limits |\n",
                           changed)) != 1:
         found.append("The check does not see that a document has an old default.")
+    if len(wrong_band("a.md", "outside 2 % of the step, within 5 % of it", "2") + wrong_band("b.md", "", "2")) != 2:
+        found.append("The check does not see another settling band.")
     if constants("kDefaultMs = 1.5, kDefaultMt = kDefaultMs;\nkX = 2e-5;") != {"kDefaultMs": 1.5, "kDefaultMt": 1.5, "kX": 2e-5}:
         found.append("The check does not read the table.")
     return found

@@ -3,6 +3,8 @@
 // them for users.
 #pragma once
 
+#include "engine/evaluation/performance_figures.h"
+
 namespace tunewright::verdict {
 
 // Margins
@@ -28,7 +30,7 @@ inline constexpr double kWorsePercent_Ms = 5, kWorsePercent_IAE = 20;
 inline constexpr double kOvershootPercent = 15, kLargeOvershootPercent = 25;
 /// Percentage points of overshoot above the limit of a design: worth a word from what prints as another figure. Where
 /// the request set the limit, not good from the band on within which a response counts as settled.
-inline constexpr double kOvershootAbove = 0.05, kOvershootFarAbove = 2;
+inline constexpr double kOvershootAbove = 0.05, kOvershootFarAbove = 100 * kSettlingBand;
 
 // Against today's settings
 

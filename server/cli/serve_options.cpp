@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <charconv>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -44,14 +45,20 @@ CLI::Validator number_within(double min, double max) {
     return {judge, fmt::format("{:g} to {:g}", min, max)};
 }
 
-void duration(CLI::App& app, const std::string& name, double& seconds, const std::string& shown,
-              std::pair<double, double> range, const std::string& help) {
-    quantity(app, name, seconds, parse_duration, shown, range, help);
+/// `unset`: what is shown for a default that is not a time.
+void duration(CLI::App& app, const std::string& name, double& seconds, std::pair<double, double> range,
+              const std::string& help, const std::string& unset = "") {
+    constexpr double day = 86400;
+    const bool days = seconds >= day && std::fmod(seconds, day) == 0;
+    const std::string typed = days ? fmt::format("{:g}d", seconds / day) : fmt::format("{:g}s", seconds);
+    quantity(app, name, seconds, parse_duration, unset.empty() ? typed : unset, range, help);
 }
 
-void size(CLI::App& app, const std::string& name, std::size_t& bytes, const std::string& shown,
-          const std::string& help) {
-    quantity(app, name, bytes, parse_size, shown, {0, 1e18}, help);
+/// `unset`: what is shown for a default that is not a size.
+void size(CLI::App& app, const std::string& name, std::size_t& bytes, const std::string& help,
+          const std::string& unset = "") {
+    const std::string typed = fmt::format("{}MiB", bytes >> 20);
+    quantity(app, name, bytes, parse_size, unset.empty() ? typed : unset, {0, 1e18}, help);
 }
 
 void add_process_options(CLI::App& app, Config& config) {
@@ -69,10 +76,10 @@ void add_process_options(CLI::App& app, Config& config) {
         ->capture_default_str();
     option(app, "workers", config.workers, "Jobs computed at the same time (default: one per core)")
         ->check(CLI::Range(1, 1024));
-    size(app, "memory", config.memory, "512MiB, or the limit of the control group",
-         "Memory that the process may use; it bounds what is buffered for clients");
+    size(app, "memory", config.memory, "Memory that the process may use; it bounds what is buffered for clients",
+         "512MiB, or the limit of the control group");
     option(app, "web", config.web, "Folder of the built page (default: web next to the binary's folder)");
-    duration(app, "drain-timeout", config.drain_timeout_s, "5s", {0, 3600},
+    duration(app, "drain-timeout", config.drain_timeout_s, {0, 3600},
              "Time for running jobs when the service is stopped");
     option(app, "log-format", config.log_format, "text or json, on standard error")->capture_default_str();
     option(app, "log-level", config.log_level, "debug, info, warn, error or off")->capture_default_str();
@@ -92,16 +99,15 @@ void add_job_options(CLI::App& app, Config& config) {
     option(app, "max-attempts", config.max_attempts, "Interruptions after which a job fails")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
-    duration(app, "lease", config.lease_s, "10s", {0.5, 3600},
+    duration(app, "lease", config.lease_s, {0.5, 3600},
              "Time without a renewal after which another worker takes a job");
-    duration(app, "retention", config.retention_s, "7d", {0, 1e9},
-             "Time for which ended jobs are kept; 0: without limit");
-    duration(app, "retention-failed", config.retention_failed_s, "as --retention", {0, 1e9},
-             "Time for which failed jobs are kept");
-    duration(app, "retention-cancelled", config.retention_cancelled_s, "as --retention", {0, 1e9},
-             "Time for which cancelled jobs are kept");
-    duration(app, "job-timeout", config.job_timeout_s, "60s", {0.1, 3600}, "Time limit of a job without timeout_s");
-    duration(app, "max-timeout", config.max_timeout_s, "3600s", {0.1, 3600}, "Largest timeout_s of a request");
+    duration(app, "retention", config.retention_s, {0, 1e9}, "Time for which ended jobs are kept; 0: without limit");
+    duration(app, "retention-failed", config.retention_failed_s, {0, 1e9}, "Time for which failed jobs are kept",
+             "as --retention");
+    duration(app, "retention-cancelled", config.retention_cancelled_s, {0, 1e9},
+             "Time for which cancelled jobs are kept", "as --retention");
+    duration(app, "job-timeout", config.job_timeout_s, {0.1, 3600}, "Time limit of a job without timeout_s");
+    duration(app, "max-timeout", config.max_timeout_s, {0.1, 3600}, "Largest timeout_s of a request");
 }
 
 void add_notify_options(CLI::App& app, Config& config) {
@@ -114,8 +120,8 @@ void add_notify_options(CLI::App& app, Config& config) {
 }
 
 void add_port_options(CLI::App& app, Config& config) {
-    size(app, "max-body", config.max_body, "8MiB", "Largest body of one request; larger ones are answered 413");
-    size(app, "max-batch-body", config.max_batch_body, "256MiB", "Largest body of one batch");
+    size(app, "max-body", config.max_body, "Largest body of one request; larger ones are answered 413");
+    size(app, "max-batch-body", config.max_batch_body, "Largest body of one batch");
     option(app, "auth", config.auth, "none or keys: whether a call below /v1 needs a key")->capture_default_str();
     option(app, "keys", config.keys, "File of keys, made by `tunewright key`");
     flag(app, "allow-anonymous", config.allow_anonymous, "Listen beyond loopback without keys");

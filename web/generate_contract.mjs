@@ -11,9 +11,9 @@ const SENT = ["IdentifyRequest", "PlantQuestion", "RangeRequest", "RelayRequest"
 
 /** Types of answers; the types to which both refer are included. */
 const ANSWERED = [
-  "Batch", "ControllerProduct", "ControllerSummary", "DesignAnswer", "EvaluateAnswer", "Example", "Frontier", "IdentifyAnswer",
-  "Job", "JobList", "MethodDescription", "PlantAnswer", "PreviewAnswer", "Problem", "RangeExample", "RangeResult", "RelayAnswer",
-  "ScheduleSettingsAnswer", "SettingsAnswer", "TuningResult",
+  "Batch", "ControllerProduct", "ControllerSummary", "DesignAnswer", "EvaluateAnswer", "Example", "Frontier", "Health",
+  "IdentifyAnswer", "Job", "JobList", "MethodDescription", "PlantAnswer", "PreviewAnswer", "Problem", "RangeExample", "RangeResult",
+  "RelayAnswer", "ScheduleSettingsAnswer", "SettingsAnswer", "TuningResult",
 ];
 
 /** Types that the page fills from a description and reads by name, each with the member that holds its kind. */

@@ -23,14 +23,18 @@ Response ready(const JobService& jobs, const JobStore& store, Gate& gate, const 
 
 }  // namespace
 
-void add_liveness_route(http::Router& router) {
-    const std::string alive = std::move(JsonObject().text("status", "ok").text("version", TUNEWRIGHT_VERSION)).str();
+void add_liveness_route(http::Router& router, std::size_t max_body) {
+    const std::string alive = std::move(JsonObject()
+                                            .text("status", "ok")
+                                            .text("version", TUNEWRIGHT_VERSION)
+                                            .number("max_body_bytes", static_cast<std::int64_t>(max_body)))
+                                  .str();
     router.quick("GET", "/healthz", [alive](const Call&) { return http::json_response(alive); });
 }
 
-void add_health_routes(http::Router& router, const JobService& jobs, const JobStore& store, Gate& gate,
-                       const Memory& memory, std::function<std::string()> metrics) {
-    add_liveness_route(router);
+void add_health_routes(http::Router& router, std::size_t max_body, const JobService& jobs, const JobStore& store,
+                       Gate& gate, const Memory& memory, std::function<std::string()> metrics) {
+    add_liveness_route(router, max_body);
     router.quick("GET", "/readyz", [&](const Call&) { return ready(jobs, store, gate, memory); });
     router.add("GET", "/metrics", [metrics = std::move(metrics)](const Call&) {
         Response response;

@@ -81,10 +81,14 @@ class HttpTest(unittest.TestCase):
         for accept in ("application/*", "text/html, */*;q=0.1", "application/json"):
             self.assertEqual(self.service.get("/v1/methods", {"Accept": accept}).status, 200)
 
-    def test_a_body_over_8_mib_is_413_and_one_below_is_read(self):
-        self.assertProblem(self.service.post("/v1/jobs", b" " * (8 * 1024 * 1024 + 1)), 413)
-        body = json.dumps(QUICK).encode() + b" " * (8 * 1024 * 1024 - 1000)
-        self.assertEqual(self.service.post("/v1/jobs", body).status, 202)
+    def test_the_largest_body_that_healthz_states_is_read_and_one_byte_more_is_413(self):
+        self.assertEqual(self.service.get("/healthz").json["max_body_bytes"], 8 * 1024 * 1024)
+        with Service("--max-body", "300KiB") as small:
+            self.assertEqual(small.get("/healthz").json["max_body_bytes"], 300 * 1024)
+            for service in (self.service, small):
+                largest = service.get("/healthz").json["max_body_bytes"]
+                self.assertProblem(service.post("/v1/jobs", b" " * (largest + 1)), 413)
+                self.assertEqual(service.post("/v1/jobs", json.dumps(QUICK).encode().ljust(largest)).status, 202)
 
     def test_pages_of_other_sites_cannot_post(self):
         refused = self.service.post("/v1/jobs", QUICK, {"Sec-Fetch-Site": "cross-site"})

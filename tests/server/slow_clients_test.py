@@ -229,6 +229,7 @@ class LargeRecordTest(unittest.TestCase):
         memory = 256 * MEGABYTE
         with Service("--workers", "1", "--memory", "256MiB", "--max-body", "64MiB") as service:
             self.assertIn("--max-body is lowered from 65536KiB to 8192KiB", service.read_log())
+            self.assertEqual(service.get("/healthz").json["max_body_bytes"], 8 * MEGABYTE)
             self.assertEqual(service.post("/v1/jobs", b"x" * (9 * MEGABYTE)).status, 413)
             rows = "t,u,y\n" + "".join("%d,%d,%d\n" % (i, i // 100 % 2, i % 10) for i in range(600_000))
             body = json.dumps({"record": {"csv": rows[:7_500_000]}})

@@ -13,7 +13,7 @@
 namespace tunewright::server::http {
 
 struct ServerLimits {
-    std::size_t max_body = 8 * 1024 * 1024;          ///< bytes of one body
+    std::size_t max_body = 8 * 1024 * 1024;          ///< bytes of one body; --max-body for the service's port
     std::size_t max_batch_body = 256 * 1024 * 1024;  ///< bytes of one body that is read as it arrives
     std::size_t bodies = 128 * 1024 * 1024;          ///< bytes for all requests that are not answered yet; see Budget
     std::size_t arriving = 6 * 1024 * 1024;          ///< bytes that count for a body that is read as it arrives, at

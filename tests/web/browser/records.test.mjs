@@ -5,7 +5,8 @@ import path from "node:path";
 import test from "node:test";
 import { accessibilityViolations, browserTests, dropFile, root } from "../harness.mjs";
 
-const tests = browserTests();
+/** Above the default, so that a limit of the page's own would be seen. */
+const tests = browserTests(["--max-body", "9MiB"]);
 const { withPage } = tests;
 
 const y = (i) => 20 + (i > 25 ? 10 * (1 - Math.exp(-(i - 25) / 30)) : 0) + 0.01 * Math.sin(37 * i);
@@ -238,5 +239,28 @@ test("a record of 100,000 rows is used whole, though only its beginning is shown
     await page.getByRole("button", { name: "Remove it" }).click();
     assert.equal(await text.inputValue(), "");
     assert.ok(await text.isEditable());
+  });
+});
+
+/** A step test of 300 rows, each so many characters long. */
+const padded = (length) => ["t,u,y", ...rows(plain)].map((line) => line.padEnd(length)).join("\n");
+
+test("a file of 8.3 MiB is read by a service that takes 9 MiB", async () => {
+  await withPage("", {}, async (page) => {
+    await dropFile(page, ".drop", "long.csv", padded(29_000));
+    await page.getByRole("heading", { name: "Model candidates" }).waitFor();
+  });
+});
+
+test("a file above the largest body of the service is refused with both sizes, on Start and on Range", async () => {
+  const refusal = "long.csv has 9.1 MiB; at most 9.0 MiB can be sent. Cut the record to the test itself.";
+  await withPage("", {}, async (page) => {
+    await dropFile(page, ".drop", "long.csv", padded(31_800));
+    await page.getByText(refusal).waitFor();
+  });
+  await withPage("#/range", {}, async (page) => {
+    const file = { name: "long.csv", mimeType: "text/csv", buffer: Buffer.from(padded(31_800)) };
+    await page.locator(".add-records input[type=file]").setInputFiles(file);
+    await page.getByText(refusal).waitFor();
   });
 });

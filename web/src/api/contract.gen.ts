@@ -157,6 +157,11 @@ export type components = {
       description: string;
       request: components["schemas"]["RangeRequest"];
     };
+    Health: {
+      status: string;
+      version?: string;
+      max_body_bytes?: number;
+    };
     TuningRequest: {
       name?: string;
       units?: components["schemas"]["Units"];
@@ -1378,6 +1383,7 @@ export type Batch = components['schemas']['Batch'];
 export type MethodDescription = components['schemas']['MethodDescription'];
 export type Example = components['schemas']['Example'];
 export type RangeExample = components['schemas']['RangeExample'];
+export type Health = components['schemas']['Health'];
 export type TuningRequest = components['schemas']['TuningRequest'];
 export type Units = components['schemas']['Units'];
 export type PlantModel = components['schemas']['PlantModel'];

@@ -1,6 +1,6 @@
 // Preview of a file of a recorded test: the service reads it before anything is computed.
 import { call } from "./client.ts";
-import type { Preview, RecordedTest } from "./types.ts";
+import type { Health, Preview, RecordedTest } from "./types.ts";
 
 /** The problems' pointers are those of a request with a record. */
 const previewed = (data: unknown): Preview => {
@@ -10,6 +10,12 @@ const previewed = (data: unknown): Preview => {
     problems: preview.problems.map(({ pointer, detail }) => ({ pointer: `/record/${pointer}`, detail })),
   };
 };
+
+/** Bytes of the largest body that the service takes; infinite if it does not say: then its refusal tells. */
+export async function maxBodyBytes(): Promise<number> {
+  const health = await call("GET", "healthz").catch(() => null);
+  return (health?.data as Health | undefined)?.max_body_bytes ?? Infinity;
+}
 
 export interface FileRead {
   /** Decoded with the encoding that the service found. */

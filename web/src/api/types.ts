@@ -19,6 +19,7 @@ export type {
   Frequency as FrequencyTraces,
   FrequencyPoint,
   Frontier,
+  Health,
   Implemented,
   JobList,
   JobOutline as Outline,

@@ -15,12 +15,12 @@ const ROLES: Record<PreviewColumn["guess"], string> = {
 
 const SEPARATORS: Record<string, string> = { tab: "tabs", blanks: "blanks", ",": "commas", ";": "semicolons", "|": "bars" };
 
-const LARGEST_BYTES = 8 * 1024 * 1024;
+const mebibytes = (bytes: number): string => (bytes / 1024 / 1024).toFixed(1);
 
-/** The reason why a file cannot be sent; "" if it can. */
-export const tooLarge = ({ name, size }: File): string =>
-  size > LARGEST_BYTES
-    ? `${name} has ${(size / 1024 / 1024).toFixed(1)} MiB; at most 8 MiB can be sent. Cut the record to the test itself.`
+/** The reason why a file cannot be sent to a service that accepts bodies of at most `maxBytes`; "" if it can. */
+export const tooLarge = ({ name, size }: { name: string; size: number }, maxBytes: number): string =>
+  size > maxBytes
+    ? `${name} has ${mebibytes(size)} MiB; at most ${mebibytes(maxBytes)} MiB can be sent. Cut the record to the test itself.`
     : "";
 
 /** One sentence: rows, form, encoding, times. */

@@ -1,5 +1,5 @@
 // The points of a range: a row for each, with its place and a plant in one line, or the file of a test recorded there.
-import { previewFile } from "../api/records.ts";
+import { maxBodyBytes, previewFile } from "../api/records.ts";
 import type { Preview } from "../api/types.ts";
 import { h } from "../dom.ts";
 import { textField } from "../form/controls.ts";
@@ -66,7 +66,7 @@ export function pointFields(errors: FormErrors, active: () => boolean, events: P
   );
 
   async function takeOne(chosen: File): Promise<void> {
-    const large = tooLarge(chosen);
+    const large = tooLarge(chosen, await maxBodyBytes());
     if (large) return void (status.textContent = large);
     status.textContent = `Reading ${chosen.name}...`;
     const read = await previewFile(chosen).catch((error: unknown) => {

@@ -1,6 +1,6 @@
 // "A recorded test": a CSV file dropped, chosen or pasted. The service finds and reads the columns; nothing is parsed here.
 import { newest } from "../../api/latest.ts";
-import { previewFile, previewRecord } from "../../api/records.ts";
+import { maxBodyBytes, previewFile, previewRecord } from "../../api/records.ts";
 import type { FieldError, Preview, RecordedTest } from "../../api/types.ts";
 import { h } from "../../dom.ts";
 import type { FormErrors } from "../../form/errors.ts";
@@ -92,7 +92,8 @@ export function recordCard(errors: FormErrors, events: RecordCardEvents): Record
   async function take(chosen: File | undefined): Promise<void> {
     if (!chosen) return;
     const isNewest = beginReading();
-    const large = tooLarge(chosen);
+    const large = tooLarge(chosen, await maxBodyBytes());
+    if (!isNewest()) return;
     if (large) {
       status.textContent = large;
       return;

@@ -278,7 +278,7 @@ TEST(BatchReader, TodaysSettingsMayBeAProductsOwn) {
     ASSERT_FALSE(named.problem) << named.problem->detail;
     EXPECT_EQ(request_of(named.entries[0])["baseline"]["settings"], Json::parse(R"({"fKp": 1.2, "tTn_ms": 90000})"));
     EXPECT_THAT(refusal(loops(), "K,T,L,product,fKp\n2,100,30,beckhoff_fb_ctrl_pid,1.2\n"),
-                HasSubstr("\"fKp\" is no column of loops"));
+                HasSubstr("\"fKp\" is not a column of loops"));
 }
 
 TEST(BatchReader, AHeadingMayHoldHalfAUnit) {
@@ -352,7 +352,7 @@ TEST(BatchReader, SaysWhichColumnsAreMissing) {
                 HasSubstr("422 Line 1 must name the columns, such as name,K,T,L: T is missing."));
     EXPECT_THAT(refusal(loops(), "K\n1\n"), HasSubstr("T and L are missing"));
     EXPECT_THAT(refusal(loops(), "1,2,3\n"), HasSubstr("Line 1 has no heading of a column of loops. Put name,K,T,L"));
-    EXPECT_THAT(refusal(loops(), "K,T,L,Ms\n1,2,3,4\n"), HasSubstr("\"Ms\" is no column of loops"));
+    EXPECT_THAT(refusal(loops(), "K,T,L,Ms\n1,2,3,4\n"), HasSubstr("\"Ms\" is not a column of loops"));
     EXPECT_THAT(refusal(loops(), "K,T,tau,L\n1,2,3,4\n"), HasSubstr("two columns say T"));
     EXPECT_THAT(refusal(loops(), "K,T [min],L [s]\n1,2,3\n"), HasSubstr("must be in the same unit"));
     EXPECT_THAT(refusal(loops(), "K,T,L\n" + std::string(70000, '1')), HasSubstr("Line 2 has more than 65536 bytes"));

@@ -76,12 +76,12 @@ TEST(Shorthand, AnObjectIsARequestByItsMembersAndARecordByItsRows) {
 TEST(Shorthand, WhatSaysHowACsvFileIsReadIsRefusedWithoutOne) {
     TuneWords words;
     words.record.dt = "0.5";
-    EXPECT_NE(refusal_of(words, R"x({"plant": "1/(s+1)"})x").find("--dt says how a CSV file is read"),
+    EXPECT_NE(refusal_of(words, R"x({"plant": "1/(s+1)"})x").find("--dt is an option for reading a CSV file"),
               std::string::npos);
     words.record.dt = "";
     words.record.u_limits = {"0", "100"};
     words.plant = "1/(s+1)";
-    EXPECT_NE(refusal_of(words).find("--u-limits says how a CSV file is read"), std::string::npos);
+    EXPECT_NE(refusal_of(words).find("--u-limits is an option for reading a CSV file"), std::string::npos);
 }
 
 TEST(Shorthand, TheModelIsThatOfTheRecord) {

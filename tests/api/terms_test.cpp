@@ -171,8 +171,8 @@ TEST(JobTerms, OfABatchAreRefusedAsAWhole) {
                                  out.problem->detail
                            : "nothing";
     };
-    EXPECT_THAT(refusal("\"https://a\""), HasSubstr("422 /notify notify is no object"));
-    EXPECT_THAT(refusal("null"), HasSubstr("422 /notify notify is no object"));
+    EXPECT_THAT(refusal("\"https://a\""), HasSubstr("422 /notify notify must be an object"));
+    EXPECT_THAT(refusal("null"), HasSubstr("422 /notify notify must be an object"));
     EXPECT_THAT(refusal("{}"), HasSubstr("422 /notify/url url is missing"));
     EXPECT_THAT(refusal("{\"url\": \"a\", \"b\": [{}]}"), HasSubstr("422 /notify/b b is not a field"));
     EXPECT_THAT(refusal("{\"url\": \"a\"}, \"notify\": {\"url\": \"a\"}"), HasSubstr("notify is given twice"));

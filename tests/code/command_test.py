@@ -69,7 +69,7 @@ class CommandTest(unittest.TestCase):
         for result, arguments, words, Ts in (
                 (result, ("--sample-time", "0.25"), "0.25 s, as asked for", 0.25),
                 ({"result": result, "request": {"implement": {"sample_time": 0.4}}}, (), "0.4 s, from the request", 0.4),
-                (result, (), "0.1 s, proposed, as none was asked for", 0.1)):
+                (result, (), "0.1 s, proposed, because none was given", 0.1)):
             text = command(result, "--language", "st", *arguments).stdout
             self.assertIn(words, text)
             self.assertEqual(FunctionBlock(text)["Ts"], Ts)

@@ -343,7 +343,7 @@ TEST(Csv, WhatMayBeThousandsIsTold) {
 TEST(Csv, TimesWithoutAUnitAreTakenInTheAnswersAndThatIsTold) {
     const auto read = std::get<CsvRecord>(read_csv_record("Time,u,y\n0,1,2\n1,1,3\n", minutes()));
     EXPECT_EQ(read.t.back(), 1);
-    EXPECT_THAT(read.notes, Contains(HasSubstr("taken to be in min")));
+    EXPECT_THAT(read.notes, Contains(HasSubstr("assumed to be in min")));
 }
 
 TEST(TimeStamps, AreReadInManySpellings) {

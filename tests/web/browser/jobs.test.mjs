@@ -111,7 +111,7 @@ test("a column that is none of loops is refused in the words of the file", async
         .setInputFiles({ name: "log.csv", mimeType: "text/csv", buffer: Buffer.from("name,K,T,L,Ms\na,1,2,3,1.4\n") });
       const refusal = page.getByRole("alert").filter({ hasText: "Ms" });
       await refusal.waitFor();
-      assert.match(await refusal.innerText(), /"Ms" is no column of loops/);
+      assert.match(await refusal.innerText(), /"Ms" is not a column of loops/);
       assert.doesNotMatch(await refusal.innerText(), /parameters of the call/);
     },
     ["422"],

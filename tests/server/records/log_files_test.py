@@ -78,7 +78,7 @@ class SeveralKindsOfLines(LogFileTest):
         text = made.restarts([idle, short, step()])
         model = self.model(text)
         self.holds(model, KILN)
-        self.assertIn("holds 3 runs", " ".join(warning["detail"] for warning in model["warnings"]))
+        self.assertIn("contains 3 runs", " ".join(warning["detail"] for warning in model["warnings"]))
         self.holds(self.model(text, "--run", "2"), Plant(K=1.1, T1=60, L=12))
         problem = identify(text, "--run", "7")
         self.assertEqual(problem["errors"][0]["pointer"], "/record/run")

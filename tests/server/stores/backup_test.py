@@ -73,7 +73,7 @@ class BackupTest(unittest.TestCase):
             made = subprocess.run([BINARY, command, "--store", "sqlite:" + self.file], capture_output=True, text=True,
                                   timeout=30)
             self.assertEqual(4, made.returncode, made)
-            self.assertIn("%s-wal belongs to the file that was there before; remove it" % self.file, made.stderr)
+            self.assertIn("%s-wal belongs to the original; remove it" % self.file, made.stderr)
         self.put_back([removes])
         self.service.start()
         self.assertEqual(["before"], self.names())

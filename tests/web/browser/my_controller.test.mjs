@@ -187,7 +187,7 @@ test("a list is searched by maker, name and parameter, with the keyboard alone",
     await page.keyboard.type("PBAND");
     await found(page).filter({ hasText: /^Foxboro/ }).waitFor();
     await search(page).fill("no such maker");
-    await page.getByText('Nothing is called "no such maker" here.').first().waitFor();
+    await page.getByText('There is no entry "no such maker".').first().waitFor();
     await page.keyboard.press("Tab");
     assert.equal(await search(page).inputValue(), "");
     assert.equal(await typed(page).count(), 0);

@@ -153,7 +153,9 @@ class ClientTest(unittest.TestCase):
         program = ("import sys, json, tunewright\n"
                    "tunewright.Client(sys.argv[1]).run(json.loads(sys.argv[2]))\n")
         process = subprocess.Popen([sys.executable, "-c", program, self.url, json.dumps({**LONG, "name": "unwanted"})],
-                                   cwd=str(ROOT / "api" / "clients" / "python"), stderr=subprocess.PIPE)
+                                   cwd=str(ROOT / "api" / "clients" / "python"), stderr=subprocess.PIPE,
+                                   # What runs in the background of a shell ignores interrupts, and its children do.
+                                   preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
         job = self.service.wait_for_any("running")
         process.send_signal(signal.SIGINT)
         self.assertIn(b"KeyboardInterrupt", process.communicate(timeout=60)[1])

@@ -50,7 +50,7 @@ const Description<PreviewColumn>& preview_column_contract() {
 
 const Description<CsvRun>& preview_run_contract() {
     static const auto description = [] {
-        Description<CsvRun> d("PreviewRun", "One of several runs in a file, each of which restarts the times.");
+        Description<CsvRun> d("PreviewRun", "A run of a file that contains several; each begins a new time axis.");
         d.field("first_line", &CsvRun::first_line, count(), "Its first line in the file, from 1.")
             .field("last_line", &CsvRun::last_line, count(), "Its last line.")
             .field("rows", &CsvRun::rows, count(), "Its rows.")
@@ -90,7 +90,7 @@ const Description<PreviewRequest>& preview_request_contract() {
         Description<R> d("PreviewRequest", "A file of a recorded test, and the choices for reading it.");
         d.field("csv", &R::csv, maybe(text(kMaxCsvLength)), "The text of the file.", {.required = true})
             .field("columns", &R::columns, maybe(object(columns_contract())), "Columns, if they are chosen.")
-            .field("dt", &R::dt, maybe(number({.exclusive_minimum = 0})), "Sampling time, if there are no times.")
+            .field("dt", &R::dt, maybe(number({.exclusive_minimum = 0})), "Sampling time of a file without times.")
             .field("time_unit", &R::time_unit, maybe(file_time_unit()),
                    "Unit of the file's times, if it states none or a wrong one.")
             .field("u_step", &R::u_step, maybe(u_step()), "For a file without u: the step of u at the first row.")

@@ -184,7 +184,7 @@ void drop_labview_head(std::vector<Head>& heads) {
     }
 }
 
-// The headings in the comments right above the data, if there are no others.
+// A file without other headings may have them in the comments directly above its data.
 void find_commented_headings(const std::vector<Head>& heads, std::vector<Head>::const_iterator data,
                              CsvLayout& layout) {
     constexpr int kMaxComments = 3;

@@ -42,7 +42,7 @@ struct Frame {
 };
 std::optional<Frame> frame_of(const Plot& plot);
 
-/// A <figure> with the drawing and its legend. Empty if there is no frame.
+/// A <figure> element with the drawing and its legend; empty if the plot has no frame.
 Html drawn(const Plot& plot);
 
 /// The drawings one below the other as a separate file, each with its title and the names of its lines.

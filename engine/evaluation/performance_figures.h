@@ -10,8 +10,8 @@
 
 namespace tunewright {
 
-/// Of the step, and of the load response's peak: a response that stays within it counts as settled. Sentences state it
-/// in percent; tests/house/defaults_test.py names them.
+/// A response counts as settled while it stays within this fraction of the set-point step, or of the peak of the load
+/// response. Some sentences state it in percent: tests/house/defaults_test.py lists them.
 inline constexpr double kSettlingBand = 0.02;
 
 /// What is integrated over a response.

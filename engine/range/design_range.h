@@ -65,8 +65,8 @@ std::vector<Error> option_faults(const RangeOptions& options);
 /// was found.
 Expected<RangeDesign> design_range(const RangeProblem& problem, const RunControl& control);
 
-/// What a schedule does over the range, without a design: quick, so that it can follow a hand. Its cost is measured
-/// against optima that are searched at a few places and interpolated between; the worst places against their own.
+/// Evaluates a given schedule over the range without a design: fast enough to follow a slider. Its cost is relative to
+/// optima that are searched at a few places and interpolated between them; at the worst places, to their own optima.
 /// `one` is empty and the verdict says nothing; a schedule beyond a limit has the warning "schedule-above-limit". Rows
 /// ascend; hysteresis is in the unit of `at`.
 ///

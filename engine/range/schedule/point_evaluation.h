@@ -1,4 +1,4 @@
-// What settings do at one place, and a schedule over the whole range: how near to the limits, at which cost.
+// Evaluates settings at one place, and a schedule over the whole range: their distance from the limits and their cost.
 #pragma once
 
 #include <vector>

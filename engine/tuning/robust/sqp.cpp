@@ -236,7 +236,7 @@ public:
         optimise::update_curvature(H_, moved_by, y);
         // From a tiny step gradients' rounding tells more than their change.
         if (!(longest(moved_by) > k.telling_step)) return;
-        // Of a parameter that this search leaves alone it knows nothing; whoever takes the curvature needs it positive.
+        // A parameter that this search does not vary gets the first curvature: a later search needs a positive one.
         Curvature& seen = result_.curvature.emplace();
         for (std::size_t i = 0; i < seen.size(); ++i) seen[i][i] = optimise::kSqp.first_curvature;
         for (int i = 0; i < n_; ++i)

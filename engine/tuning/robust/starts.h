@@ -45,8 +45,8 @@ struct ScanBox {
 std::vector<ScanPoint> scan(const Sweep& sweep, const ScanBox& box = {}, Stability wanted = Stability::inferred,
                             double below = std::numeric_limits<double>::infinity());
 
-/// The first of these points, with any gap of a place, whose loop is stable. `inferred`: of those alone of which the
-/// sweep's grid tells so; `verified`: also of those of which it tells nothing, slivers between its points left out.
+/// The first point of the box with a stable loop; every gap of gains at a point is tried. `inferred`: only gaps that
+/// the sweep's grid shows as stable; `verified`: also gaps that it leaves open, except narrow ones.
 std::optional<DesignPoint> first_stable(const Sweep& sweep, const ScanBox& box, Stability wanted);
 
 struct Candidate {

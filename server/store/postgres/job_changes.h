@@ -9,7 +9,12 @@
 
 namespace tunewright::server::postgres {
 
-// ---- jobs: the answers stand in the order of what was asked
+/// One process at a time accepts jobs of a client whose jobs are counted and unique jobs of one key, and queues a job
+/// again, with its key and its batch: what others are about to commit counts. A group takes all its turns here, in one
+/// order for all, before any other lock: taken one by one, two groups would wait for each other. `requeued`: ids.
+void take_turns(Session& session, const std::vector<const NewJob*>& accepted, const std::vector<std::string>& requeued);
+
+// ---- jobs, whose turns are taken: the answers stand in the order of what was asked
 std::vector<Accepted> accept_jobs(Session& session, const std::vector<const NewJob*>& jobs);
 std::vector<bool> finish_jobs(Session& session, const std::vector<const JobEnd*>& ends);
 CancelEffect cancel_job(Session& session, const std::string& id, UnixMs now);

@@ -291,7 +291,32 @@ const Description<TuningEntry>& entry_contract() {
     return description;
 }
 
-// The fields ranking and ranking_by of an answer.
+// The fields rank_limits and proposed of an answer.
+template <class Answer, class Of>
+void add_choice(Description<Answer>& d, Of of) {
+    d.field(
+         "rank_limits", {},
+         [of](const Answer& answer, Writer& out) {
+             out.begin_object();
+             out.key("Ms");
+             out.number(*of(answer).rank_Ms);
+             out.end_object();
+         },
+         [](SchemaBook&) {
+             return Json{{"type", "object"}, {"properties", {{"Ms", {{"type", "number"}}}}}, {"required", {"Ms"}}};
+         },
+         "The limits that `standing` and the ranking go by: those of the request, or their defaults. Left out where "
+         "nothing ranks the entries.",
+         {}, [of](const Answer& answer) { return !of(answer).rank_Ms; })
+        .field(
+            "proposed", {}, [of](const Answer& answer, Writer& out) { out.integer(*of(answer).proposed); },
+            whole_number,
+            "Index of the entry to show first: the one that the verdict says to take, or that comes nearest to today's "
+            "settings; else the first that has a controller.",
+            {}, [of](const Answer& answer) { return !of(answer).proposed; });
+}
+
+// The fields of an answer that say how its entries are ranked.
 template <class Answer>
 void add_ranking(Description<Answer>& d, Callable<const TuningResult&(const Answer&)> of) {
     d.field(
@@ -307,27 +332,8 @@ void add_ranking(Description<Answer>& d, Callable<const TuningResult&(const Answ
          "Indices into controllers, best first; entries without a controller are left out.")
         .field(
             "ranking_by", {}, [of](const Answer& answer, Writer& out) { out.text(of(answer).ranking_by); },
-            words().schema, "What they are ranked by.")
-        .field(
-            "rank_limits", {},
-            [of](const Answer& answer, Writer& out) {
-                out.begin_object();
-                out.key("Ms");
-                out.number(*of(answer).rank_Ms);
-                out.end_object();
-            },
-            [](SchemaBook&) {
-                return Json{{"type", "object"}, {"properties", {{"Ms", {{"type", "number"}}}}}, {"required", {"Ms"}}};
-            },
-            "The limits that the ranking goes by: those of the request, or their defaults. Left out where nothing "
-            "ranks the entries.",
-            {}, [of](const Answer& answer) { return !of(answer).rank_Ms; })
-        .field(
-            "proposed", {}, [of](const Answer& answer, Writer& out) { out.integer(*of(answer).proposed); },
-            whole_number,
-            "Index of the entry to show first: the one that the verdict says to take, or that comes nearest to today's "
-            "settings; else the first that has a controller.",
-            {}, [of](const Answer& answer) { return !of(answer).proposed; });
+            words().schema, "What they are ranked by.");
+    add_choice<Answer>(d, of);
 }
 
 }  // namespace
@@ -390,6 +396,7 @@ const Description<EvaluationResult>& evaluate_answer_contract() {
         d.field("controllers", &EvaluationResult::controllers, list_of(answer(entry_contract())),
                 "One entry a controller.")
             .field("verdict", &EvaluationResult::verdict, findings(), kWhichToTake);
+        add_choice(d, [](const EvaluationResult& a) -> const EvaluationResult& { return a; });
         return d;
     }();
     return description;

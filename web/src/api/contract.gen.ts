@@ -20,6 +20,7 @@ export type components = {
         u: number[];
         y: number[];
         r?: number[];
+        move_times: number[];
       };
     };
     Fault: {
@@ -448,6 +449,8 @@ export type components = {
       standard_errors: {
         [key: string]: number | null;
       };
+      undetermined?: string[];
+      much_worse?: boolean;
       y_model?: (number | null)[];
     };
     Fit: {
@@ -466,6 +469,7 @@ export type components = {
       noise_std: number;
       quantisation: number;
       steps: number;
+      move_times: number[];
       cycles?: number;
       settled: boolean;
       u0: number;
@@ -715,6 +719,7 @@ export type components = {
       notes: {
         code: string;
         detail: string;
+        deviation: boolean;
       }[];
     };
     Implemented: {
@@ -1353,6 +1358,7 @@ export type components = {
       notes: {
         code: string;
         detail: string;
+        deviation: boolean;
       }[];
     };
     SettingsRow: {

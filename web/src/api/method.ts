@@ -24,6 +24,8 @@ export interface Schema {
   "x-main"?: boolean;
   /** It adds what a page draws. */
   "x-draws"?: boolean;
+  /** Another option follows from it: they are not given together. */
+  "x-in-place-of"?: string;
   "x-slider"?: OptionSlider;
 }
 

@@ -1,6 +1,6 @@
 // Tuning requests that the page makes from answers: a candidate of Identify as what is to be tuned, the same request with
 // another lambda for one of its entries, and the same subject by every method.
-import type { Candidate, Entry, IdentifyRequest, Implement, Model, Plant, Result, TuneEntry, TuningRequest, TypedBaseline } from "../api/types.ts";
+import type { Candidate, Entry, IdentifyRequest, Implement, Method, Model, Plant, Result, TuneEntry, TuningRequest, TypedBaseline } from "../api/types.ts";
 
 /** What a candidate that was chosen on Identify is tuned as: its record where that leads to the same model again, else its plant. */
 export type TuneSubject =
@@ -88,14 +88,12 @@ export function withOptions(request: TuningRequest, method: string | null, optio
   return { ...request, tune };
 }
 
-/** Options that say the same as lambda in another way. */
-const IN_PLACE_OF_LAMBDA = ["Ms", "disturbance_peak", "dead_time_error"];
-
-/** `index`: of the entry in the result. */
-export function withLambda(request: TuningRequest, result: Result, index: number, lambda: number): TuningRequest {
+/** `index`: of the entry in the result. Options from which lambda would follow as well are left out. */
+export function withLambda(request: TuningRequest, result: Result, index: number, lambda: number, methods: readonly Method[]): TuningRequest {
   const entry = tuneEntryOf(request, result, index);
   if (!entry) return request;
-  const kept = Object.entries(entry).filter(([name]) => !IN_PLACE_OF_LAMBDA.includes(name));
+  const described = methods.find(({ id }) => id === entry.method)?.options?.properties ?? {};
+  const kept = Object.entries(entry).filter(([name]) => described[name]?.["x-in-place-of"] !== "lambda");
   return withTune(request, result, index, { ...Object.fromEntries(kept), method: entry.method, lambda, curve: true });
 }
 

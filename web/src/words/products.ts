@@ -103,9 +103,10 @@ const LABELS: Record<BuiltFigure, [label: string, name: string]> = {
   overshoot: ["Overshoot (%)", "the overshoot"],
 };
 
-/** How far the loop as built lies above the ideal one: percent, of the overshoot percentage points. */
-function differenceOf({ difference }: Implemented, figure: BuiltFigure): number | null {
-  if (figure === "overshoot") return difference.overshoot_points ?? null;
+/** How far the loop as built lies above the ideal one: percent, of the overshoot percentage points; undefined: the answer
+ * was kept before the service compared it. */
+function differenceOf({ difference }: Implemented, figure: BuiltFigure): number | null | undefined {
+  if (figure === "overshoot") return difference.overshoot_points;
   return difference[`${figure}_percent`];
 }
 
@@ -122,7 +123,7 @@ export function builtRows(ideal: Pick<Entry, "robustness" | "performance">, buil
   return FIGURES.flatMap((figure) => {
     const away = differenceOf(built, figure);
     if (figure === "overshoot" && away === null) return [];
-    const difference = away === null ? DASH : `${signed(away)}${figure === "overshoot" ? "" : " %"}`;
+    const difference = typeof away !== "number" ? DASH : `${signed(away)}${figure === "overshoot" ? "" : " %"}`;
     const far = built.difference.differs?.includes(figure) ?? false;
     return [{ label: LABELS[figure][0], ideal: figureText(ideal, figure), built: figureText(built, figure), difference, far }];
   });
@@ -134,10 +135,14 @@ function signed(percent: number): string {
   return Number(text) === 0 ? text : `${percent > 0 ? "+" : "−"}${text}`;
 }
 
+/** Of results that were kept before the service said which figures differ. */
+const NOT_COMPARED = "Tuned by an older version: tune again to see whether the implemented loop differs from the ideal one.";
+
 /** How far the loop as built lies from the ideal one, where the service says that it is another loop; else "". */
-export function differenceSentence(built: Implemented): string {
-  const parts = (built.difference.differs ?? []).map((figure) => {
-    const away = differenceOf(built, figure)!;
+export function differenceSentence({ difference, ...built }: Implemented): string {
+  if (difference.differs === undefined) return NOT_COMPARED;
+  const parts = difference.differs.map((figure) => {
+    const away = differenceOf({ ...built, difference }, figure)!;
     const unit = figure === "overshoot" ? "percentage points" : "%";
     return `${LABELS[figure][1]} ${Math.abs(away).toFixed(1)} ${unit} ${away > 0 ? "higher" : "lower"}`;
   });
@@ -148,15 +153,14 @@ export function differenceSentence(built: Implemented): string {
 export const builtTroubles = (entry: Pick<Entry, "warnings">): Notice[] =>
   (entry.warnings ?? []).filter(({ code }) => code === "unstable-as-built" || code === "not-as-built");
 
-/** How the loop was reckoned, and how slow it may be sampled. */
+/** How the loop was reckoned, and how slow it may be sampled; that it is sampled too slowly the verdict says. */
 export function samplingSentences(
-  built: Implemented | undefined,
-  longest: number | null | undefined,
+  { implemented, longest_sample_time: longest, verdict }: Pick<Entry, "implemented" | "longest_sample_time"> & Partial<Pick<Entry, "verdict">>,
   time: string,
 ): string[] {
   const sentences: string[] = [];
-  const period = built?.sample_time ?? null;
-  if (built)
+  const period = implemented?.sample_time ?? null;
+  if (implemented)
     sentences.push(
       period === null
         ? "Evaluated as continuous, because no sample time is known."
@@ -164,7 +168,7 @@ export function samplingSentences(
     );
   if (typeof longest !== "number") return sentences;
   sentences.push(
-    period !== null && period > longest
+    verdict?.some(({ code }) => code === "sample-time")
       ? `That is slow: up to ${formatNumber(longest)} ${time} would keep Ms within 5 % of the ideal loop's.`
       : `Sampling up to every ${formatNumber(longest)} ${time} keeps Ms within 5 %.`,
   );
@@ -189,10 +193,8 @@ export function evidenceSentence({ level, unverified }: Evidence): string {
 /** The rows name their own units; what the notes say is reckoned in the loop's. */
 export const noteTimes = (time: string): string => `Times in these notes are in ${time}, the loop's unit of time.`;
 
-/** Notes on how it was reckoned and what to know; every other one says what the block cannot be. */
-const REMARKS = ["action", "clock", "default", "discretisation", "outside-the-twin", "unverified"];
-
-export function splitNotes(notes: readonly Notice[]): { deviations: Notice[]; remarks: Notice[] } {
-  const remark = (note: Notice): boolean => REMARKS.includes(note.code);
+/** What the block cannot be, and how it was reckoned. Notes of an answer that does not tell them apart are all shown first. */
+export function splitNotes(notes: AsEntered["notes"]): Record<"deviations" | "remarks", AsEntered["notes"]> {
+  const remark = ({ deviation }: AsEntered["notes"][number]): boolean => deviation === false;
   return { deviations: notes.filter((note) => !remark(note)), remarks: notes.filter(remark) };
 }

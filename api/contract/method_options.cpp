@@ -237,6 +237,7 @@ Json option_schema(const OptionDescription& option) {
     if (!option.unit.empty()) schema["x-unit"] = option.unit;
     if (option.default_value) schema["default"] = to_json(*option.default_value);
     if (option.main) schema["x-main"] = true;
+    if (!option.in_place_of.empty()) schema["x-in-place-of"] = option.in_place_of;
     if (option.draws) schema["x-draws"] = true;
     if (option.slider) schema["x-slider"] = to_json(*option.slider);
     return schema;

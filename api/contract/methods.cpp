@@ -96,7 +96,8 @@ Json methods_schema(SchemaBook& book) {
         const Json options = options_schema(method.options)["properties"];
         for (const auto& [name, option] : options.items()) {
             Json any = option;
-            for (const char* of_one_form : {"default", "x-main", "x-draws", "x-slider"}) any.erase(of_one_form);
+            for (const char* of_one_form : {"default", "x-main", "x-draws", "x-slider", "x-in-place-of"})
+                any.erase(of_one_form);
             Json& known = of_all[name]["anyOf"];
             if (std::find(known.begin(), known.end(), any) == known.end()) known.push_back(std::move(any));
         }

@@ -432,13 +432,16 @@ const Description<EvaluateOptions>& evaluate_options_contract() {
                 [](const EvaluateOptions& options, Writer& out) {
                     out.begin_object();
                     out.key("Ms");
-                    out.number(options.rank_Ms);
+                    out.number(options.rank_Ms.value_or(limits::kDefaultMaxRankedMs));
                     out.end_object();
                 },
                 [](SchemaBook&) {
-                    return Json{{"type", "object"},
-                                {"properties", {{"Ms", {{"type", "number"}, {"exclusiveMinimum", 1}, {"default", 2}}}}},
-                                {"additionalProperties", false}};
+                    return Json{
+                        {"type", "object"},
+                        {"properties",
+                         {{"Ms",
+                           {{"type", "number"}, {"exclusiveMinimum", 1}, {"default", limits::kDefaultMaxRankedMs}}}}},
+                        {"additionalProperties", false}};
                 },
                 "Entries that exceed these limits rank last.")
             .field("optimum_at_Ms", &EvaluateOptions::optimum_at_Ms, maybe(boolean()),

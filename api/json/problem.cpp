@@ -5,6 +5,7 @@
 
 #include "api/json/json.h"
 #include "api/json/writer.h"
+#include "engine/identification/record/record_kind.h"
 #include "engine/number_text.h"
 
 namespace tunewright::api {
@@ -84,6 +85,7 @@ RecordSamples samples_of(const Record& record, std::size_t max) {
         samples.y.push_back(record.y[i]);
         if (!record.r.empty()) samples.r.push_back(record.r[i]);
     }
+    if (const auto clean = clean_record(record)) samples.move_times = move_times(*clean);
     return samples;
 }
 
@@ -103,6 +105,8 @@ static void write_record(const RecordSamples& samples, Writer& out) {
     write("u", samples.u);
     write("y", samples.y);
     if (!samples.r.empty()) write("r", samples.r);
+    out.key("move_times");
+    out.numbers(samples.move_times);
     out.end_object();
 }
 

@@ -26,7 +26,7 @@ struct EvaluateOptions {
     int points = 400;               ///< of each trace: 0 (none) or 2 to 20,000
     std::optional<ActuatorLimits> actuator;
     std::optional<NoiseOptions> noise;
-    double rank_Ms = 2.0;               ///< entries with Ms above it rank last
+    std::optional<double> rank_Ms;      ///< entries with Ms above it rank last; empty: as every ranking has it
     std::optional<bool> optimum_at_Ms;  ///< compare with the robust optimum at the same Ms; empty: of several
     bool tradeoff =
         false;  ///< entries have the trade-off between servo and regulation (tuning/arrieta/tradeoff_report.h)

@@ -392,6 +392,7 @@ Expected<IdentifiedModel> identify(const Record& record, const IdentifyOptions& 
         model =
             model_in_time(std::move(model), identified(counted_down(record), options, control), turned && turned->loop);
     }
+    if (model) grade_candidates(*model);
     if (model && control.progress) control.progress({1, "identify", "model found", nullptr});
     return model;
 }

@@ -31,6 +31,8 @@ struct Candidate {
     double criterion = 0;    ///< information criterion, smaller is better
     std::map<std::string, double> standard_errors;  ///< K, L and T, or T1, T2, or T, zeta, or a1, a2, b (sopdt_zero)
     std::vector<double> y_model;                    ///< its free run at the times of IdentifiedModel::fit
+    bool much_worse = false;                     ///< another candidate fits so much better that nobody need look at it
+    std::vector<std::string> undetermined = {};  ///< times that the record does not determine, as named above
 };
 
 /// Of the chosen plant's parameters; rows and columns in the order of `names`.
@@ -92,10 +94,11 @@ struct DataQuality {
     int samples = 0;
     double sample_time = 0;  ///< median spacing
     bool irregular = false;
-    double noise_std = 0;       ///< of y, high-frequency part
-    double quantisation = 0;    ///< step of y's grid, 0 if none found
-    int steps = 0;              ///< moves of u
-    std::optional<int> cycles;  ///< of a relay test: complete periods of u
+    double noise_std = 0;                 ///< of y, high-frequency part
+    double quantisation = 0;              ///< step of y's grid, 0 if none found
+    int steps = 0;                        ///< moves of u
+    std::vector<double> move_times = {};  ///< of the first 20 of them
+    std::optional<int> cycles;            ///< of a relay test: complete periods of u
     bool settled = false;
     int samples_dropped = 0;                        ///< rows whose y is not used
     double u0 = 0, y0 = 0;                          ///< operating point: given, or before the first change of u

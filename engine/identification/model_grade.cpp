@@ -27,6 +27,20 @@ ModelGrade grade_of(const IdentifiedModel& model) {
     return model.warnings.empty() ? ModelGrade::good : ModelGrade::usable;
 }
 
+void grade_candidates(IdentifiedModel& model) {
+    if (model.candidates.empty()) return;
+    const double best = std::ranges::max_element(model.candidates, {}, &Candidate::fit_percent)->fit_percent;
+    const double length = model.fit.t.empty() ? 0 : model.fit.t.back() - model.fit.t.front();
+    for (Candidate& candidate : model.candidates) {
+        candidate.much_worse = candidate.fit_percent < best - kMuchWorsePercent;
+        candidate.undetermined.clear();
+        for (const char* time : {"L", "T", "T1", "T2"})
+            if (const auto error = candidate.standard_errors.find(time);
+                error != candidate.standard_errors.end() && error->second > length)
+                candidate.undetermined.emplace_back(time);
+    }
+}
+
 const char* name_of(ModelGrade grade) {
     switch (grade) {
         case ModelGrade::good: return "good";

@@ -26,6 +26,14 @@ inline double share_left_by(const IdentifiedModel& model) { return 1 - model.fit
 /// noise (warning structured-residuals); or one of its warnings has the level `bad`. `usable`: it has other warnings.
 ModelGrade grade_of(const IdentifiedModel& model);
 
+/// So many points of fit below the best candidate's, a candidate is much worse: its residual is larger by 3 % of y's
+/// standard deviation, which shows in a plot.
+inline constexpr double kMuchWorsePercent = 3;
+
+/// Fills `much_worse` and `undetermined` of the candidates: a time constant or dead time with a standard error above
+/// the record's length is not determined by it.
+void grade_candidates(IdentifiedModel& model);
+
 /// Why a model is doubtful.
 enum class DoubtReason {
     fit,      ///< it explains too little of its record, whatever its warnings

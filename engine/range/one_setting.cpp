@@ -226,7 +226,7 @@ Expected<VerifiedEnd> verified_end(const std::vector<PointDesign*>& points, cons
     for (int round = 0; round < kRounds; ++round) {
         const DesignPoint x = joint.settings(end.v, 0, nullptr);
         const double excess = largest_excess(points, x);
-        if (excess <= 0.5 * limits::kMaxRelativeExcessVerified) return VerifiedEnd{x, end.stopped};
+        if (excess <= limits::kMaxRelativeExcessFound) return VerifiedEnd{x, end.stopped};
         if (!std::isfinite(excess)) break;
         search.margin += 1.5 * excess + 1e-6;
         end = search_jointly(joint, end.v, search, {});

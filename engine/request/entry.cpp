@@ -1,8 +1,37 @@
 #include "engine/request/entry.h"
 
 #include "engine/evaluation/response_pair.h"
+#include "engine/tuning/limits.h"
 
 namespace tunewright {
+namespace {
+
+std::optional<PlacedPeak> running(const Figure& ideal, const Figure* on_device) {
+    if (on_device != nullptr && *on_device) return PlacedPeak{**on_device, PeakLoop::on_device};
+    if (ideal) return PlacedPeak{*ideal};
+    return {};
+}
+
+}  // namespace
+
+bool PlacedPeak::exceeds(double limit) const {
+    return value >
+           limit * (1 + (on_worst_plant() ? limits::kMaxRelativeExcessShownOfWorst : limits::kMaxRelativeExcessShown));
+}
+
+std::optional<PlacedPeak> worst_Ms(const TuningEntry& entry) {
+    auto largest =
+        running(entry.evaluation->robustness.Ms, entry.on_device ? &entry.on_device->loop.robustness.Ms : nullptr);
+    if (!entry.evaluation->region) return largest;
+    const Figure& worst = entry.evaluation->region->worst_Ms;
+    if (worst && (!largest || *worst > largest->value))
+        largest = {*worst, entry.on_device ? PeakLoop::ideal_on_worst_plant : PeakLoop::worst_plant};
+    return largest;
+}
+
+std::optional<PlacedPeak> worst_Mt(const TuningEntry& entry) {
+    return running(entry.evaluation->robustness.Mt, entry.on_device ? &entry.on_device->loop.robustness.Mt : nullptr);
+}
 
 void draw_together(std::vector<TuningEntry>& entries) {
     std::vector<Responses*> all;

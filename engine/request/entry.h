@@ -35,6 +35,18 @@ struct Standing {
     bool holds() const { return group == StandingGroup::holds; }
 };
 
+/// The loop of which a peak is known: the ideal one, that of the user's controller, or either on the worst of several
+/// plants.
+enum class PeakLoop { ideal, on_device, worst_plant, ideal_on_worst_plant };
+
+struct PlacedPeak {
+    double value = 0;
+    PeakLoop loop = PeakLoop::ideal;
+    bool on_worst_plant() const { return loop == PeakLoop::worst_plant || loop == PeakLoop::ideal_on_worst_plant; }
+    /// Above its own limit by more than is shown as holding it (tuning/limits.h): what ranking and verdict go by.
+    bool exceeds(double limit) const;
+};
+
 /// A controller with its evaluation, or why there is none.
 struct TuningEntry {
     std::string method;  ///< id; "baseline" for today's settings; empty for controllers that were sent
@@ -66,6 +78,12 @@ struct TuningEntry {
         return report_among<Report>(reports);
     }
 };
+
+/// Ms of the loop that runs (of the ideal one where it has none), or that on the worst of several plants, which is
+/// known of the ideal loop alone, where it is larger. The entry has an evaluation.
+std::optional<PlacedPeak> worst_Ms(const TuningEntry& entry);
+/// The same of Mt, which is not known on the worst plant.
+std::optional<PlacedPeak> worst_Mt(const TuningEntry& entry);
 
 /// One horizon for the responses of all entries, ideal and as built, equations' own and their linearisation's.
 void draw_together(std::vector<TuningEntry>& entries);

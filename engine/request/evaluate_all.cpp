@@ -78,9 +78,12 @@ Expected<EvaluationResult> evaluate_all(const AnalysedPlant& subject, const std:
     const verdict::Context context{subject, options, labels,      device ? device->Ts : 0,
                                    model,   nullptr, given_steps, control};
     draw_together(result.controllers);
-    ranked(result.controllers, {options.rank_Ms, subject.linear() != nullptr});
+    const RankingTerms terms = ranking_terms(options, subject.linear() != nullptr);
+    ranked(result.controllers, terms);
     verdict::judge(result.controllers, context);
     result.verdict = verdict::of_all(result.controllers, by_load_IAE(result.controllers), context, false);
+    if (!result.controllers.empty()) result.rank_Ms = terms.rank_Ms;
+    result.proposed = verdict::proposed(result.controllers, result.verdict);
     return result;
 }
 

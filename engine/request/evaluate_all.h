@@ -18,7 +18,9 @@ namespace tunewright {
 struct EvaluationResult {
     std::optional<OperatingPoint> operating_point;  ///< of a nonlinear plant
     std::vector<TuningEntry> controllers;           ///< without a method, in the order sent
-    std::vector<verdict::Finding> verdict;          ///< over all of them
+    std::optional<double> rank_Ms;          ///< the limit on the Ms of all that their standing goes by; of controllers
+    std::vector<verdict::Finding> verdict;  ///< over all of them
+    std::optional<int> proposed;            ///< the one to show first; none without controllers
 };
 
 /// Each controller is judged alone, in the order sent; a stop is seen between two of them. Without controllers the

@@ -14,12 +14,14 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Of the loop as it will run: on the worst plant that it must serve, and in the user's own controller.
+// Of the loop as it will run: on the worst plant that it must serve, and in the user's own controller. Empty where one
+// of these has none.
 Figure judged_Ms(const TuningEntry& entry) {
     const Evaluation& evaluation = *entry.evaluation;
-    if (entry.on_device && (!evaluation.region || !entry.on_device->loop.robustness.Ms))
-        return entry.on_device->loop.robustness.Ms;
-    return evaluation.region ? evaluation.region->worst_Ms : evaluation.robustness.Ms;
+    const Figure& runs = entry.on_device ? entry.on_device->loop.robustness.Ms : evaluation.robustness.Ms;
+    if (!runs) return runs;
+    if (evaluation.region && !evaluation.region->worst_Ms) return evaluation.region->worst_Ms;
+    return Figure(worst_Ms(entry)->value);
 }
 
 // Why the responses do not come to rest where they should; empty where they do.
@@ -33,8 +35,9 @@ std::string unrest(const Performance& performance) {
 std::string above(const TuningEntry& entry, const Figure& Ms, double limit) {
     const bool several = entry.evaluation->region.has_value();
     if (Ms)
-        return std::string(several ? "On the worst plant that it must serve Ms is " : "Ms is ") + text(*Ms) +
-               ", above " + text(limit) + ".";
+        return std::string(worst_Ms(entry)->on_worst_plant() ? "On the worst plant that it must serve Ms is "
+                                                             : "Ms is ") +
+               text(*Ms) + ", above " + text(limit) + ".";
     if (entry.on_device && !entry.on_device->loop.robustness.stable)
         return "The loop is unstable as the user's controller computes it.";
     return several ? "The loop is unstable on some plant that it must serve." : "The loop has no Ms.";
@@ -54,7 +57,7 @@ Standing standing_of(const TuningEntry& entry, std::optional<double> own, const 
     const Evaluation& evaluation = *entry.evaluation;
     Standing standing;
     standing.Ms = judged_Ms(entry);
-    standing.within = !own || (standing.Ms && *standing.Ms <= (1 + limits::kMaxRelativeExcessShownOfWorst) * *own);
+    standing.within = !own || (standing.Ms && !worst_Ms(entry)->exceeds(*own));
     const std::string restless = terms.over_time ? unrest(evaluation.performance) : "";
     standing.settles = evaluation.robustness.stable && restless.empty();
     standing.min_limit = standing.settles && standing.within && standing.Ms
@@ -109,6 +112,10 @@ auto key_without_limits(const TuningEntry& entry) {
 }
 
 }  // namespace
+
+RankingTerms ranking_terms(const EvaluateOptions& options, bool over_time) {
+    return {options.rank_Ms.value_or(limits::kDefaultMaxRankedMs), over_time};
+}
 
 std::vector<int> ranked(std::vector<TuningEntry>& entries, const RankingTerms& terms) {
     const auto of_baseline = baseline_limit(entries);

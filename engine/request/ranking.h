@@ -10,9 +10,11 @@ namespace tunewright {
 
 /// What the order depends on beside the entries.
 struct RankingTerms {
-    double rank_Ms = 2;     ///< of every entry
+    double rank_Ms = 0;     ///< largest Ms of every entry that holds
     bool over_time = true;  ///< false: the plant is known by points alone, and nothing is known to settle
 };
+
+RankingTerms ranking_terms(const EvaluateOptions& options, bool over_time);
 
 /// Fills every evaluated entry's `standing` and returns the indices of these entries, best first:
 /// - stable before unstable, settling before not, within the limits on Ms before beyond;

@@ -45,6 +45,7 @@ private:
     RunControl share(double from, double to) const;
     void report(double fraction, const std::string& stage, const std::string& message) const;
     void report_better(Progress progress) const;
+    RankingTerms terms() const { return ranking_terms(request_.evaluate, subject_->linear() != nullptr); }
     bool stopped() const { return control_.stop.stop_requested(); }
 
     const TuningRequest& request_;
@@ -121,7 +122,7 @@ void TuningRun::state_problem() {
 void TuningRun::keep_best(const TuningEntry& entry) {
     if (!entry.evaluation) return;
     const auto& [robustness, load] = std::tie(entry.evaluation->robustness, entry.evaluation->performance.load);
-    if (!robustness.stable || !load.IAE || !robustness.Ms || *robustness.Ms > request_.evaluate.rank_Ms) return;
+    if (!robustness.stable || !load.IAE || !robustness.Ms || *robustness.Ms > terms().rank_Ms) return;
     if (best_ && best_->load_IAE <= *load.IAE) return;
     best_ = std::make_shared<const BestSoFar>(
         BestSoFar{entry.evaluation->controller, *load.IAE, *robustness.Ms, robustness.Mt.value_or(0)});
@@ -240,12 +241,11 @@ Expected<TuningResult> TuningRun::result() {
     }
     if (wants_optima() && !result_.partial) compare_with_optima(tuned);
     draw_together(result_.controllers);
-    const RankingTerms terms{request_.evaluate.rank_Ms, subject_->linear() != nullptr};
-    result_.ranking = ranked(result_.controllers, terms);
+    result_.ranking = ranked(result_.controllers, terms());
     if (result_.model && !result_.ranking.empty())
         result_.model->region = result_.controllers[static_cast<size_t>(result_.ranking.front())].evaluation->region;
-    result_.ranking_by = ranking_by(result_.controllers, terms);
-    result_.rank_Ms = terms.rank_Ms;
+    result_.ranking_by = ranking_by(result_.controllers, terms());
+    result_.rank_Ms = terms().rank_Ms;
     const verdict::Context context{*subject_,
                                    request_.evaluate,
                                    request_.labels,

@@ -1,5 +1,6 @@
 // The limits that a design keeps unless the request names others, and how exactly a limit is held at each step: by the
-// search, by the design that is returned, in a ranking, in what a verdict states. Nothing else defines any of them.
+// search, by the design that is returned, in a ranking, in what a verdict states. Nothing else defines any of them;
+// how far inside its limits a search aims is its own constant.
 #pragma once
 
 namespace tunewright::limits {
@@ -15,25 +16,37 @@ inline constexpr double kMaxMs = 4, kMaxMt = kMaxMs;
 inline constexpr double kDefaultTf_over_Td = 0.1;
 /// Largest overshoot of a set-point step, percent.
 inline constexpr double kDefaultMaxOvershootPercent = 5;
+/// Largest Ms of an entry that ranks among those that hold, whatever was asked of it: the upper end of Åström and
+/// Hägglund's reasonable range.
+inline constexpr double kDefaultMaxRankedMs = 2;
 
 // ---- largest relative excess over a limit that counts as holding it, from the tightest to the widest
 
-/// Search, on the frequencies that it knows: far below what the next step tells apart, far above rounding.
+/// Step: a point of the search for one PID after Newton's steps back to its limits; they end within rounding of them.
+inline constexpr double kMaxRelativeExcessStepped = 1e-8;
+/// Search: its end, on the frequencies that it knows. Far below what the next step tells apart, far above rounding.
 inline constexpr double kMaxRelativeExcessSearched = 1e-6;
+/// Find: the end of a search, on frequencies that it never saw, before it is handed on; and the searches in the plane
+/// of Ti and Td, which look between their grid's points. Half of what the next step accepts, so that a design that is
+/// verified once more on other plants still holds.
+inline constexpr double kMaxRelativeExcessFound = 1e-5;
 /// Verify: the returned design, on its own plants and on frequencies that the search never saw. Peaks that the search
 /// has interpolated differ from those by less.
 inline constexpr double kMaxRelativeExcessVerified = 2e-5;
 /// Judge: the same design on plants between its own, of a confidence region or of a range. A plant beyond it joins
 /// those that the design is made for.
 inline constexpr double kMaxRelativeExcessJudged = 5e-5;
-/// Rank: entries of a comparison, whose peaks have been computed to about 1e-5.
+/// Rank: entries of a comparison under the limit that is common to all, whose peaks have been computed to about 1e-5.
 inline constexpr double kMaxRelativeExcessRanked = 1e-4;
-/// Show: a peak that prints as the limit with three digits is as good as it.
+/// Show: an entry's own limit, in its rank and in its verdict. A peak that prints as the limit with three digits is as
+/// good as it.
 inline constexpr double kMaxRelativeExcessShown = 2e-3;
-/// Show the worst of several plants, which is found by a search.
+/// The same on the worst of several plants, which is found by a search.
 inline constexpr double kMaxRelativeExcessShownOfWorst = 1e-2;
 
-static_assert(kMaxRelativeExcessSearched < kMaxRelativeExcessVerified &&
+static_assert(kMaxRelativeExcessStepped < kMaxRelativeExcessSearched &&
+                  kMaxRelativeExcessSearched < kMaxRelativeExcessFound &&
+                  kMaxRelativeExcessFound < kMaxRelativeExcessVerified &&
                   kMaxRelativeExcessVerified < kMaxRelativeExcessJudged &&
                   kMaxRelativeExcessJudged < kMaxRelativeExcessRanked &&
                   kMaxRelativeExcessRanked < kMaxRelativeExcessShown &&

@@ -4,6 +4,7 @@
 #include "api/contract/result/evaluation.h"
 #include "api/examples/examples.h"
 #include "engine/evaluation/best_so_far.h"
+#include "engine/tuning/limits.h"
 #include "engine/tuning/method/method.h"
 #include "engine/tuning/registry.h"
 #include "support.h"
@@ -125,6 +126,27 @@ TEST(Answers, EvaluateKeepsTheOrderOfTheControllersAndFitsTheDocument) {
     EXPECT_FALSE(first.contains("method"));
 }
 
+TEST(Answers, AnEvaluationSaysByWhichLimitItsControllersStandAndWhichToShow) {
+    const std::string plant = R"("plant": {"type": "fopdt", "K": 1, "T": 10, "L": 3})";
+    const std::string two =
+        R"("controllers": [{"form": "ideal", "Kp": 30, "Ti": 4}, {"form": "ideal", "Kp": 1, "Ti": 9}])";
+    const auto answered = [&](const std::string& more) {
+        const Answer answer = evaluate_call("{" + plant + ", " + two + more + "}", {});
+        EXPECT_EQ(answer.status, 200) << answer.body;
+        const Json json = Json::parse(answer.body);
+        EXPECT_EQ(schema_faults(json, "EvaluateAnswer"), std::vector<std::string>{});
+        return json;
+    };
+    const Json usual = answered("");
+    EXPECT_EQ(usual["rank_limits"], (Json{{"Ms", limits::kDefaultMaxRankedMs}}));
+    EXPECT_EQ(usual["proposed"], 1);
+    EXPECT_EQ(usual["verdict"][0]["figures"]["entry"], 1);
+    EXPECT_EQ(usual["controllers"][1]["standing"]["group"], "holds");
+    const Json tight = answered(R"(, "evaluate": {"rank_limits": {"Ms": 1.1}})");
+    EXPECT_EQ(tight["rank_limits"], (Json{{"Ms", 1.1}}));
+    EXPECT_EQ(tight["controllers"][1]["standing"]["group"], "above_limit");
+}
+
 TEST(Answers, AnUnstableLoopIsAnEntryWithReasonsForItsNulls) {
     const Answer answer = evaluate_call(
         R"({"plant": {"type": "fopdt", "K": 2, "T": 10, "L": 3}, "controllers": [{"Kp": 50, "Ti": 10}]})", {});
@@ -229,6 +251,7 @@ TEST(Answers, IdentifyUsesOnlyThePartOfTheRecordThatIsAskedFor) {
     const Json model = Json::parse(answer.body)["model"];
     EXPECT_EQ(model["data_quality"]["samples"], 237);
     EXPECT_EQ(model["data_quality"]["test"], "one step of u");
+    EXPECT_EQ(model["data_quality"]["move_times"], Json::array({3}));
     EXPECT_THAT(model["data_quality"]["notes"].dump(), HasSubstr("the 237 from 1 to 60 were used"));
     EXPECT_EQ(model["fit"]["t"].front(), 1);
     EXPECT_EQ(model["fit"]["t"].back(), 60);

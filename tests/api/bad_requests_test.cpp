@@ -322,6 +322,18 @@ TEST(BadRequests, ARecordThatDeterminesNoModelComesBackAsItWasRead) {
     EXPECT_EQ(record["y"].back(), 4999 % 3);
 }
 
+TEST(BadRequests, ARecordThatDeterminesNoModelSaysWhenUMoves) {
+    std::string csv = "t;u;y\n";
+    for (int i = 0; i < 200; ++i)
+        csv += std::to_string(i) + (i < 50 ? ";0;" : i < 120 ? ";5;" : ";2;") + std::to_string(i % 7) + "\n";
+    const Json request{{"record", {{"csv", csv}}}, {"identify", {{"method", "relay_fourier"}}}};
+    const Answer answer = identify_call(request.dump(), {});
+    ASSERT_EQ(answer.status, 422) << answer.body;
+    const Json problem = Json::parse(answer.body);
+    EXPECT_EQ(schema_faults(problem, "Problem"), std::vector<std::string>{});
+    EXPECT_EQ(problem["record"]["move_times"], Json::array({50, 120}));
+}
+
 TEST(BadRequests, ARecordThatDeterminesNoModelIsShownByThreeRowsInFull) {
     std::string csv = "t;u;y;sp\n";
     for (int i = 0; i < 501; ++i) csv += std::to_string(1747040000 + i) + ".25;7;1.23456789;3\n";

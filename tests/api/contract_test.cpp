@@ -142,7 +142,7 @@ TEST(Requests, TheDefaultsOfTheContractHold) {
     EXPECT_EQ(decoded.value.timeout_s, 60);
     EXPECT_EQ(decoded.value.evaluate.points, 400);
     EXPECT_EQ(decoded.value.evaluate.setpoint_step, 1);
-    EXPECT_EQ(decoded.value.evaluate.rank_Ms, 2);
+    EXPECT_FALSE(decoded.value.evaluate.rank_Ms);
     ASSERT_EQ(decoded.value.tune.size(), 1u);
     EXPECT_EQ(decoded.value.tune[0].method, "robust");
 }

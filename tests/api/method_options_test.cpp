@@ -54,6 +54,26 @@ TEST(MethodOptions, TheDescriptionOfRobustHasTheEnginesLimits) {
     FAIL() << "the method robust is not described";
 }
 
+TEST(MethodOptions, OnesThatStandInPlaceOfAnotherSaySoAndAreNotGivenWithIt) {
+    int found = 0;
+    for (const Json& method : Json::parse(methods_json())["methods"])
+        for (const auto& [name, option] : method["options"]["properties"].items()) {
+            const std::string sentence = option.value("description", ""), opening = "In place of ";
+            const bool says = sentence.starts_with(opening), known = option.contains("x-in-place-of");
+            EXPECT_EQ(says, known) << method["id"] << " " << name;
+            if (!says || !known) continue;
+            ++found;
+            const std::string other = option["x-in-place-of"];
+            EXPECT_TRUE(sentence.starts_with(opening + other + ":")) << sentence;
+            const Json request{{"plant", {{"type", "fopdt"}, {"K", 1}, {"T", 10}, {"L", 3}}},
+                               {"tune", {{{"method", method["id"]}, {name, 2}, {other, 8}}}}};
+            const Answer answer = design_call(request.dump(), {});
+            EXPECT_EQ(answer.status, 422) << answer.body;
+            EXPECT_EQ(Json::parse(answer.body)["errors"].size(), 1u) << answer.body;
+        }
+    EXPECT_GE(found, 3);
+}
+
 struct Outcome {
     MethodOptions options;
     std::vector<std::string> faults;  // "pointer: sentence"

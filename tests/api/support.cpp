@@ -68,6 +68,7 @@ public:
                                                      "x-main",
                                                      "x-draws",
                                                      "x-slider",
+                                                     "x-in-place-of",
                                                      "x-written",
                                                      "x-null"};
         for (const auto& [keyword, ignored] : schema.items()) {

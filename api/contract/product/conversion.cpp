@@ -34,8 +34,13 @@ Json notes_schema(SchemaBook&) {
              {{"type", "object"},
               {"properties",
                {{"code", {{"type", "string"}, {"description", "Code for programs, kebab-case."}}},
-                {"detail", {{"type", "string"}, {"description", "A sentence with the figures."}}}}},
-              {"required", {"code", "detail"}},
+                {"detail", {{"type", "string"}, {"description", "A sentence with the figures."}}},
+                {"deviation",
+                 {{"type", "boolean"},
+                  {"description",
+                   "true: a part of the design that the product cannot do, or something to be done beside it. false: "
+                   "how the settings were computed."}}}}},
+              {"required", {"code", "detail", "deviation"}},
               {"additionalProperties", false}}}};
 }
 
@@ -47,6 +52,8 @@ void write_notes(const std::vector<product::Note>& notes, Writer& out) {
         out.text(note.code);
         out.key("detail");
         out.text(note.detail);
+        out.key("deviation");
+        out.boolean(product::tells_deviation(note));
         out.end_object();
     }
     out.end_array();

@@ -216,8 +216,8 @@ const Description<RangeContent>& range_content_contract() {
             .field(
                 "verdict", {}, [](const C& c, Writer& out) { finding_contract().write(*c.result.verdict, out); },
                 [](SchemaBook& book) { return finding_contract().schema(book); },
-                "Whether a schedule is worthwhile, as a finding; left out if a schedule was given.", {},
-                [](const C& c) { return !c.result.verdict; })
+                "Whether a schedule is worthwhile; for a given schedule, whether it holds the limits and what it costs.",
+                {}, [](const C& c) { return !c.result.verdict; })
             .field(
                 "runs", {},
                 [](const C& c, Writer& out) { list_of(answer(range_passage_contract())).write(c.result.runs, out); },

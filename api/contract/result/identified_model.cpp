@@ -131,6 +131,8 @@ const Description<DataQuality>& quality_contract() {
                    {.unit = "y"})
             .field("quantisation", &Q::quantisation, size(), "Resolution of y; 0: none found.", {.unit = "y"})
             .field("steps", &Q::steps, count(), "Number of moves of u; jitter below 2 % of its range does not count.")
+            .field("move_times", &Q::move_times, list_of(size()), "Times of the first 20 moves of u.",
+                   {.unit = "time"})
             .field("cycles", &Q::cycles, maybe(count()), "Number of complete periods of a relay test.")
             .field("settled", &Q::settled, truth(), "True if y settled.")
             .field("u0", &Q::u0, size(), "u before its first change.", {.unit = "u"})
@@ -183,6 +185,13 @@ const Description<Candidate>& candidate_contract() {
             .field("criterion", &Candidate::criterion, only_answered(number()),
                    "Information criterion; smaller is better.")
             .field("standard_errors", &Candidate::standard_errors, standard_errors(), "By parameter.")
+            .field(
+                "undetermined", &Candidate::undetermined,
+                unless<std::vector<std::string>>(list_of(sentence()), [](const auto& names) { return names.empty(); }),
+                "Time constants and dead times that the record does not determine: their standard errors are longer "
+                "than the record. Left out where there are none.")
+            .field("much_worse", &Candidate::much_worse, unless<bool>(truth(), [](bool it) { return !it; }),
+                   "true: its fit lies more than 3 points below the best candidate's. Left out otherwise.")
             .field("y_model", &Candidate::y_model,
                    unless<std::vector<double>>(trace(), [](const auto& y_model) { return y_model.empty(); }),
                    "Simulated output at the times of the model's fit; with identify.traces.", {.unit = "y"});

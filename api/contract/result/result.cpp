@@ -291,7 +291,32 @@ const Description<TuningEntry>& entry_contract() {
     return description;
 }
 
-// The fields ranking and ranking_by of an answer.
+// The fields rank_limits and proposed of an answer.
+template <class Answer, class Of>
+void add_choice(Description<Answer>& d, Of of) {
+    d.field(
+         "rank_limits", {},
+         [of](const Answer& answer, Writer& out) {
+             out.begin_object();
+             out.key("Ms");
+             out.number(*of(answer).rank_Ms);
+             out.end_object();
+         },
+         [](SchemaBook&) {
+             return Json{{"type", "object"}, {"properties", {{"Ms", {{"type", "number"}}}}}, {"required", {"Ms"}}};
+         },
+         "The limits of `standing` and the ranking: those of the request, or their defaults. Left out if the entries are "
+         "not ranked.",
+         {}, [of](const Answer& answer) { return !of(answer).rank_Ms; })
+        .field(
+            "proposed", {}, [of](const Answer& answer, Writer& out) { out.integer(*of(answer).proposed); },
+            whole_number,
+            "Index of the entry to show first: the one that the verdict proposes, or the nearest to today's settings; "
+            "else the first with a controller.",
+            {}, [of](const Answer& answer) { return !of(answer).proposed; });
+}
+
+// The fields of an answer that say how its entries are ranked.
 template <class Answer>
 void add_ranking(Description<Answer>& d, Callable<const TuningResult&(const Answer&)> of) {
     d.field(
@@ -307,27 +332,8 @@ void add_ranking(Description<Answer>& d, Callable<const TuningResult&(const Answ
          "Indices into controllers, best first; entries without a controller are left out.")
         .field(
             "ranking_by", {}, [of](const Answer& answer, Writer& out) { out.text(of(answer).ranking_by); },
-            words().schema, "Criterion of the ranking.")
-        .field(
-            "rank_limits", {},
-            [of](const Answer& answer, Writer& out) {
-                out.begin_object();
-                out.key("Ms");
-                out.number(*of(answer).rank_Ms);
-                out.end_object();
-            },
-            [](SchemaBook&) {
-                return Json{{"type", "object"}, {"properties", {{"Ms", {{"type", "number"}}}}}, {"required", {"Ms"}}};
-            },
-            "The limits of the ranking: those of the request, or their defaults. Left out if the entries are not "
-            "ranked.",
-            {}, [of](const Answer& answer) { return !of(answer).rank_Ms; })
-        .field(
-            "proposed", {}, [of](const Answer& answer, Writer& out) { out.integer(*of(answer).proposed); },
-            whole_number,
-            "Index of the entry to show first: the one that the verdict proposes, or the nearest to today's settings; "
-            "else the first with a controller.",
-            {}, [of](const Answer& answer) { return !of(answer).proposed; });
+            words().schema, "Criterion of the ranking.");
+    add_choice<Answer>(d, of);
 }
 
 }  // namespace
@@ -392,6 +398,7 @@ const Description<EvaluationResult>& evaluate_answer_contract() {
         d.field("controllers", &EvaluationResult::controllers, list_of(answer(entry_contract())),
                 "One entry a controller.")
             .field("verdict", &EvaluationResult::verdict, findings(), kWhichToTake);
+        add_choice(d, [](const EvaluationResult& a) -> const EvaluationResult& { return a; });
         return d;
     }();
     return description;

@@ -186,6 +186,12 @@ void note_evidence(const Comparison& it, std::vector<Note>& notes) {
 
 }  // namespace
 
+bool tells_deviation(const Note& note) {
+    static constexpr std::string_view kOthers[] = {"action",           "clock",     "default", "discretisation",
+                                                   "outside-the-twin", "unverified"};
+    return std::ranges::find(kOthers, note.code) == std::end(kOthers);
+}
+
 std::string setpoint_prefilter(const IdealPid& asked, const IdealPid& realised) {
     if (!asked.has_integral() || !same(asked.Ti, realised.Ti) || !same(asked.Kp, realised.Kp)) return "";
     // What the set point's derivative becomes is as far from the design's as the filters are from each other.

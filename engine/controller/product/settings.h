@@ -39,6 +39,10 @@ struct Note {
     bool operator==(const Note&) const = default;
 };
 
+/// Says what of the design the product cannot be, or what has to be done beside it; other notes say how the settings
+/// were computed, and what to know about that. By the code alone.
+bool tells_deviation(const Note& note);
+
 struct Converted {
     Settings settings = {};  ///< in full precision
     std::vector<Note> notes = {};

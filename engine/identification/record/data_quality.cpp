@@ -160,6 +160,7 @@ void describe_input(const CleanRecord& r, DataQuality& quality) {
     const RecordKind found = found_kind(r);
     quality.kind = r.kind == RecordKind::automatic ? found : r.kind;
     quality.steps = levels.moves();
+    quality.move_times = move_times(r);
     if (quality.kind == RecordKind::relay) {
         const auto switches = static_cast<int>(two_levels(levels).switch_time.size());
         quality.cycles = std::max(0, (switches - 1) / 2);

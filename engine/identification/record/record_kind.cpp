@@ -155,6 +155,14 @@ InputLevels input_levels(const CleanRecord& r) {
     return out;
 }
 
+std::vector<double> move_times(const CleanRecord& record) {
+    const InputLevels levels = input_levels(record);
+    std::vector<double> times;
+    for (std::size_t j = 1; j < levels.time.size() && times.size() < std::size_t{kMaxSteps}; ++j)
+        times.push_back(record.scale.t_origin + record.scale.t_scale * levels.time[j]);
+    return times;
+}
+
 TwoLevels two_levels(const InputLevels& levels) {
     TwoLevels best;
     const std::size_t n = levels.level.size();

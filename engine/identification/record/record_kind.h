@@ -19,6 +19,9 @@ struct InputLevels {
 
 InputLevels input_levels(const CleanRecord& record);
 
+/// When u moves, by its levels, in the record's unit of time: the first 20 times; more are another kind of test.
+std::vector<double> move_times(const CleanRecord& record);
+
 /// Switches between two levels that lie 10 times as far apart as each varies. The level before the test and the one
 /// after it, where the relay was turned off, may be others.
 struct TwoLevels {

@@ -41,16 +41,18 @@ concept LeastSquaresProblem = requires(Problem& problem, double damping) {
 template <LeastSquaresProblem Problem>
 int levenberg_marquardt(Problem& problem, int max_iterations, const MarquardtDamping& constants = {}) {
     double damping = constants.first;
-    int iteration = 0;
-    for (; iteration < max_iterations && damping < constants.max && problem.linearise(); ++iteration) {
-        for (Trial trial = Trial::worse; trial == Trial::worse && damping < constants.max;) {
+    int taken = 0;
+    while (taken < max_iterations && damping < constants.max && problem.linearise()) {
+        Trial trial = Trial::worse;
+        while (trial == Trial::worse && damping < constants.max) {
             trial = problem.try_step(damping);
-            if (trial == Trial::end) return iteration;
             damping = trial == Trial::better ? std::max(constants.min, damping / constants.ease)
                                              : damping * constants.tighten;
         }
+        if (trial != Trial::better) break;
+        ++taken;
     }
-    return iteration;
+    return taken;
 }
 
 /// The normal matrix with its diagonal damped.

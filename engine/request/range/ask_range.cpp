@@ -53,6 +53,31 @@ verdict::Finding finding_of(const RangeDesign& design) {
     return draft;
 }
 
+/// Of a schedule that was given: whether it holds the limits, and what it costs.
+verdict::Finding finding_of_given(const range::ScheduleDesign& given) {
+    using verdict::FindingBuilder, verdict::Level;
+    const bool one = given.schedule.rows.size() == 1;
+    const std::size_t rows = given.schedule.rows.size();
+    FindingBuilder draft = !given.holds_limits      ? FindingBuilder("schedule-exceeds", Level::bad)
+                           : given.within_allowance ? FindingBuilder("schedule-holds", Level::good)
+                                                    : FindingBuilder("schedule-costs", Level::warning);
+    draft.say(given.holds_limits ? (one ? "This " : "These ") : (one ? "With this " : "With these "))
+        .say(one ? "row" : std::to_string(rows) + " rows")
+        .figure("rows", double(rows));
+    if (!given.holds_limits)
+        draft.say(" the limits do not hold everywhere in the range.");
+    else if (given.within_allowance)
+        draft.say(std::string(one ? " holds" : " hold") + " the limits everywhere, within the allowance.");
+    else
+        draft.say(std::string(one ? " holds" : " hold") + " the limits, but " + (one ? "costs" : "cost") +
+                  " more than the allowance.");
+    if (!std::isfinite(given.worst_relative_IAE)) return draft;
+    if (!given.holds_limits) return draft.figure("schedule_worst_relative_IAE", given.worst_relative_IAE);
+    return draft.say(" The IAE is at most ")
+        .number("schedule_worst_relative_IAE", given.worst_relative_IAE)
+        .say(" times each operating point's own optimum.");
+}
+
 /// A fault of the options is one of the schedule's question.
 Error in_words_of_question(Error error) {
     if (error.where.starts_with("options/")) error.where = "schedule/" + error.where.substr(8);
@@ -124,7 +149,7 @@ private:
         if (!found) return found.error();
         result_.design = std::move(*found);
         result_.design.warnings.insert(result_.design.warnings.begin(), warnings_.begin(), warnings_.end());
-        if (!result_.given) result_.verdict = finding_of(result_.design);
+        result_.verdict = result_.given ? finding_of_given(*result_.design.schedule) : finding_of(result_.design);
         return std::nullopt;
     }
 

@@ -62,7 +62,7 @@ struct RangeResult {
     double low = 0, high = 0;
     std::vector<RangePointPlant> points;
     range::RangeDesign design;
-    bool given = false;              ///< the schedule was given: no one setting, no verdict
+    bool given = false;              ///< the schedule was given: no one setting; the verdict is on the schedule
     std::vector<RangePlace> places;  ///< those of the curves
     std::vector<RangePassage> runs;
     std::optional<verdict::Finding> verdict;

@@ -9,13 +9,6 @@ std::optional<double> above(std::optional<double> value, double floor) {
     return value && *value > floor ? value : std::nullopt;
 }
 
-/// Of the loop that runs; of the ideal one where nothing else is known.
-std::optional<PlacedPeak> running(const Figure& runs, const Figure& ideal, bool on_device) {
-    if (runs) return PlacedPeak{*runs, on_device ? PeakLoop::on_device : PeakLoop::ideal};
-    if (ideal) return PlacedPeak{*ideal};
-    return {};
-}
-
 }  // namespace
 
 std::string words_of(PeakLoop loop) {
@@ -46,19 +39,6 @@ bool VerdictInput::warned_of(const std::string& code) const {
 
 RequestedLimits VerdictInput::limits() const {
     return {above(entry.Ms_limit, 1), above(entry.options.number("Mt"), 1), above(entry.options.number("Mks"), 0)};
-}
-
-std::optional<PlacedPeak> VerdictInput::worst_Ms() const {
-    std::optional<PlacedPeak> largest = running(robustness().Ms, evaluation.robustness.Ms, on_device());
-    if (!evaluation.region) return largest;
-    const Figure& worst = evaluation.region->worst_Ms;
-    if (worst && (!largest || *worst > largest->value))
-        largest = {*worst, on_device() ? PeakLoop::ideal_on_worst_plant : PeakLoop::worst_plant};
-    return largest;
-}
-
-std::optional<PlacedPeak> VerdictInput::worst_Mt() const {
-    return running(robustness().Mt, evaluation.robustness.Mt, on_device());
 }
 
 std::string printed_unit(const std::string& unit) { return unit == "degC" ? "°C" : unit == "degF" ? "°F" : unit; }

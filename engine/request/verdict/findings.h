@@ -15,16 +15,6 @@ struct RequestedLimits {
     std::optional<double> Ms, Mt, Mks;
 };
 
-/// The loop of which a peak is known: the ideal one, that of the user's controller, or either on the worst of several
-/// plants.
-enum class PeakLoop { ideal, on_device, worst_plant, ideal_on_worst_plant };
-
-struct PlacedPeak {
-    double value = 0;
-    PeakLoop loop = PeakLoop::ideal;
-    bool on_worst_plant() const { return loop == PeakLoop::worst_plant || loop == PeakLoop::ideal_on_worst_plant; }
-};
-
 /// What follows the figure in a sentence: "" or " on the worst plant".
 std::string words_of(PeakLoop loop);
 
@@ -44,9 +34,8 @@ struct VerdictInput {
     bool has_integral() const;
     bool warned_of(const std::string& code) const;
     RequestedLimits limits() const;
-    /// The larger of the loop that runs and of the worst of several plants (which is known of the ideal loop alone).
-    std::optional<PlacedPeak> worst_Ms() const;
-    std::optional<PlacedPeak> worst_Mt() const;
+    std::optional<PlacedPeak> worst_Ms() const { return tunewright::worst_Ms(entry); }
+    std::optional<PlacedPeak> worst_Mt() const { return tunewright::worst_Mt(entry); }
 };
 
 /// The loop of an entry that runs; null where there is none.

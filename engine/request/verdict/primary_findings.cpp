@@ -77,12 +77,8 @@ OptionalFinding above_limit(const VerdictInput& c) {
             .number(std::string(name) + "_limit", limit)
             .say(".");
     };
-    const auto beyond = [](const PlacedPeak& peak, double limit) {
-        return peak.value > limit * (1 + (peak.on_worst_plant() ? limits::kMaxRelativeExcessShownOfWorst
-                                                                : limits::kMaxRelativeExcessShown));
-    };
-    if (worst && limits.Ms && beyond(*worst, *limits.Ms)) return broken("Ms", *worst, *limits.Ms);
-    if (Mt && limits.Mt && beyond(*Mt, *limits.Mt)) return broken("Mt", *Mt, *limits.Mt);
+    if (worst && limits.Ms && worst->exceeds(*limits.Ms)) return broken("Ms", *worst, *limits.Ms);
+    if (Mt && limits.Mt && Mt->exceeds(*limits.Mt)) return broken("Mt", *Mt, *limits.Mt);
     return {};
 }
 

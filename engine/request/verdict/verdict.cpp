@@ -6,7 +6,6 @@
 #include <variant>
 
 #include "engine/request/verdict/findings.h"
-#include "engine/tuning/limits.h"
 
 namespace tunewright::verdict {
 namespace {
@@ -82,8 +81,7 @@ double asked_limit(const std::vector<TuningEntry>& entries) {
 
 /// Little margin is nothing against an entry where it was asked for.
 Level level_for_choice(const TuningEntry& entry, double asked_Ms) {
-    const Figure& Ms = entry.standing ? entry.standing->Ms : Figure{};
-    const bool as_asked = Ms && *Ms <= asked_Ms * (1 + limits::kMaxRelativeExcessShown);
+    const bool as_asked = entry.standing && entry.standing->Ms && !worst_Ms(entry)->exceeds(asked_Ms);
     Level level = Level::good;
     for (const Finding& finding : entry.verdict)
         if (finding.head && !(as_asked && finding.code == "little-margin")) level = std::max(level, finding.level);

@@ -40,8 +40,8 @@ constexpr double kMinStartDistance = 0.05;       // of two of them, in a unit bo
 constexpr int kMaxPolishSteps = 25;
 constexpr double kDifference = 1e-4;        // of a derivative, relative to the unknown
 constexpr double kMinExpectedFall = 1e-10;  // expected fall of J, relative, at which a polish ends
-constexpr optimise::MarquardtDamping kDamping = {.ease = 10,
-                                                 .tighten = 10};  // J ends as flat as `kMinExpectedFall` with few runs
+// J ends as flat as `kMinExpectedFall` with few runs; a simulation is dear: damped more, its steps are not worth one.
+constexpr optimise::MarquardtDamping kDamping = {.max = 1e8, .ease = 10, .tighten = 10};
 constexpr double kMaxConfidentDamping = 10;  // damping up to which a small expected fall means that J is flat
 constexpr double kMaxPolishStep = 0.5;       // relative to the unknown
 constexpr double kSubplexStep = 0.02;        // in a unit box

@@ -130,6 +130,12 @@ public:
         return *this;
     }
 
+    /// From each option of these names follows `other`, which is then not given.
+    OptionSet& in_place_of(std::string_view other, std::initializer_list<std::string_view> names) {
+        for (const std::string_view name : names) list_.described(name).in_place_of = other;
+        return *this;
+    }
+
     /// The option adds what a page draws.
     OptionSet& draws(std::string_view name) {
         list_.described(name).draws = true;

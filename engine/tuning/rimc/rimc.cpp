@@ -184,7 +184,7 @@ OptionSet<RimcOptions> described_options() {
                Words<RimcApproximation>{{"maclaurin", maclaurin}, {"linear_fractional", linear_fractional}});
     set.flag(&O::curve, "curve",
              "Also return the load response's peak and Ms over lambda/T for this plant (Fig. 2 of the source).");
-    set.main({"lambda", "Ms"}).draws("curve");
+    set.main({"lambda", "Ms"}).in_place_of("lambda", {"Ms", "disturbance_peak", "dead_time_error"}).draws("curve");
     add_reduction(set, "half_rule; tangent where that does not apply.");
     return set;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/numerics/optimise/direct_search.h"
+#include "engine/tuning/limits.h"
 #include "engine/tuning/robust/starts.h"
 
 namespace tunewright::robust {
@@ -289,7 +290,6 @@ struct PlaneSearchConstants {
     double aim_below = 1e-8;       ///< of a peak's logarithm: inside the limit
     double min_step = 1e-10;       ///< of ln Kp: changes nothing any more
     double max_step = 0.1;         ///< of ln Kp: leaves the gap's end
-    double closed = 1e-5;          ///< of a peak's logarithm: between grid points the gap is closed after all
     double no_Td = 1e-300;         ///< in place of Td = 0, whose logarithm is not used
 };
 constexpr PlaneSearchConstants kPlane;
@@ -321,7 +321,8 @@ std::optional<DesignResult> best_gain(const Sweep& sweep, const DesignProblem& p
         tighten(sweep, x, i % 2 == 0);  // the ends of a gap follow each other, the upper one first
         if (best && log_cost_bound(problem, x) >= best->log_cost) continue;
         const auto peaks = sweep.peaks(x, kPlane.near_limit);
-        if (!peaks.empty() && peaks[0].value > kPlane.closed) continue;
+        // Between the grid's points the gap is closed after all.
+        if (!peaks.empty() && peaks[0].value > limits::kMaxRelativeExcessFound) continue;
         const double cost = log_cost(problem, x, kPlane.simulation_tolerance);
         if (std::isfinite(cost) && (!best || cost < best->log_cost)) best = DesignResult{x, cost, false};
     }

@@ -8,6 +8,7 @@
 #include "engine/loop/stability.h"
 #include "engine/numerics/optimise/quadratic_program.h"
 #include "engine/numerics/optimise/sqp.h"
+#include "engine/tuning/limits.h"
 
 namespace tunewright::robust {
 namespace {
@@ -20,10 +21,10 @@ using Matrix = SmallProgram::Matrix;
 /// the search was made, on the AMIGO batch and random plants; `bench/robust_batch` shows what a change costs in time,
 /// `bench/robust_search` in designs.
 struct DesignSqpConstants {
-    double near = -0.25;                  ///< constraints below it cannot become active within a step
-    double aim_below = 1e-7;              ///< feasibility is aimed this far inside
-    double feasible = 1e-8;               ///< and accepted with this much slack
-    std::size_t max_peaks = 8;            ///< the largest ones, as constraints of a step
+    double near = -0.25;                                  ///< constraints below it cannot become active within a step
+    double aim_below = 1e-7;                              ///< feasibility is aimed this far inside
+    double feasible = limits::kMaxRelativeExcessStepped;  ///< and accepted with this much slack
+    std::size_t max_peaks = 8;                            ///< the largest ones, as constraints of a step
     int max_restoring_steps = 12;         ///< Newton steps back to the feasible side; three or four are usual
     double near_of_restoring = -0.1;      ///< constraints below it do not stop a step back
     double restoring_radius = 0.5;        ///< as the first trust region

@@ -169,7 +169,7 @@ Expected<DesignResult> checked_search(SearchKind kind, const Sweep& sweep, Desig
     double tighter = 0;
     for (int round = 0; round < kRounds; ++round) {
         const double excess = measured_excess(problem, found->x);
-        if (excess <= 0.5 * limits::kMaxRelativeExcessVerified) return *found;
+        if (excess <= limits::kMaxRelativeExcessFound) return *found;
         if (!std::isfinite(excess) || round + 1 == kRounds) break;
         tighter += 1.5 * excess * problem.limits.Ms / (problem.limits.Ms - 1) + kMinTightening;
         const DesignProblem narrowed = tightened(problem, std::min(tighter, kMaxTightening));

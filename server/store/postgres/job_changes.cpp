@@ -49,8 +49,8 @@ std::string accept_sql(bool limited) {
            "SELECT id, seq, not_before FROM made";
 }
 
-/// A job that failed or was cancelled gives its key up to a unique one, and keeps it behind its id. The caller holds
-/// the lock of kInTurn: a job that is queued again takes the same lock first.
+/// A job that failed or was cancelled gives its key up to a unique one, and keeps it behind its id. The caller has taken
+/// the lock of that key (take_turns): a job that is queued again takes the same lock first.
 void free_key(Session& session, const std::string& owner, const std::string& key) {
     session.run(
         "WITH free AS MATERIALIZED (SELECT e.seq FROM jobs j JOIN ended e ON e.seq = j.seq WHERE j.owner = $1 "
@@ -59,28 +59,15 @@ void free_key(Session& session, const std::string& owner, const std::string& key
         Values().text(owner).text(key));
 }
 
-// Only one process at a time accepts jobs of a client with a limit, and unique jobs of one key: jobs that another
-// process is about to commit count. This lock comes before all other locks of accepting, in one order for all
-// processes.
-const std::string kInTurn =
-    "SELECT count(pg_advisory_xact_lock(x'74756e65'::int, hash)) FROM "
-    "(SELECT DISTINCT hashtext(name) AS hash FROM unnest($1::text[]) AS g (name) ORDER BY hash OFFSET 0) f";
-
 /// A job that has given its key up takes it back; false if a later job has it. Until the commit no other job is
-/// accepted with that key, given up or not.
+/// accepted with that key, given up or not: take_turns holds its lock.
 bool take_key_back(Session& session, std::int64_t seq) {
     static const std::string look =
-        "SELECT owner, CASE WHEN given_up THEN substr(key, 2 + length(id)) ELSE key END, given_up FROM "
-        "(SELECT id, owner, idempotency_key AS key, starts_with(idempotency_key, ' ' || id) AS given_up "
-        "FROM jobs WHERE seq = $1 AND idempotency_key IS NOT NULL) k";
-    const pqxx::result kept = session.run(look, Values().number(seq));
-    if (kept.empty()) return true;
-    const std::string owner = text_of(kept[0][0]), key = text_of(kept[0][1]);
-    TextArray in_turn;
-    in_turn.add(key);
-    session.run(kInTurn, Values().plain(in_turn.literal()));
-    const pqxx::result now = session.run(look, Values().number(seq));
-    if (now.empty() || !now[0][2].as<bool>()) return true;
+        "SELECT owner, substr(idempotency_key, 2 + length(id)) FROM jobs "
+        "WHERE seq = $1 AND starts_with(idempotency_key, ' ' || id)";
+    const pqxx::result given_up = session.run(look, Values().number(seq));
+    if (given_up.empty()) return true;
+    const std::string owner = text_of(given_up[0][0]), key = text_of(given_up[0][1]);
     free_key(session, owner, key);
     return session
                .run(
@@ -169,9 +156,29 @@ constexpr int kLooks = 20;  // attempts for a job that others move meanwhile
 
 }  // namespace
 
+void take_turns(Session& session, const std::vector<const NewJob*>& accepted,
+                const std::vector<std::string>& requeued) {
+    static const std::string names_of_requeued =
+        "SELECT unnest(ARRAY[j.id, 'batch ' || j.batch, CASE WHEN starts_with(j.idempotency_key, ' ' || j.id) "
+        "THEN substr(j.idempotency_key, 2 + length(j.id)) ELSE j.idempotency_key END]) "
+        "FROM jobs j WHERE j.id = ANY ($1::text[])";
+    static const std::string lock =
+        "SELECT count(pg_advisory_xact_lock(x'74756e65'::int, hash)) FROM "
+        "(SELECT DISTINCT hashtext(name) AS hash FROM unnest($1::text[]) AS g (name) ORDER BY hash OFFSET 0) f";
+    TextArray names, ids;
+    for (const NewJob* job : accepted) {
+        if (job->client_limit > 0) names.add(job->flow);
+        if (job->unique) names.add(job->idempotency_key);
+    }
+    for (const std::string& id : requeued) ids.add(id);
+    if (!requeued.empty())
+        for (const pqxx::row& row : session.run(names_of_requeued, Values().plain(ids.literal())))
+            if (!row[0].is_null()) names.add(text_of(row[0]));
+    if (names.literal() != "{}") session.run(lock, Values().plain(names.literal()));
+}
+
 std::vector<Accepted> accept_jobs(Session& session, const std::vector<const NewJob*>& jobs) {
     TextArray id, name, timeout, request, hash, key, owner, flow, created, priority, notify, call, trace, not_before;
-    TextArray in_turn;
     const std::size_t client_limit = jobs.front()->client_limit;  // the same for all jobs of a process
     for (const NewJob* job : jobs) {
         id.add(job->id);
@@ -188,10 +195,7 @@ std::vector<Accepted> accept_jobs(Session& session, const std::vector<const NewJ
         call.add(job->origin.request_id);
         trace.add(job->origin.traceparent);
         not_before.add_plain(std::to_string(job->not_before.value_or(0)));
-        if (client_limit > 0) in_turn.add(job->flow);
-        if (job->unique) in_turn.add(job->idempotency_key);
     }
-    if (in_turn.literal() != "{}") session.run(kInTurn, Values().plain(in_turn.literal()));
     for (const NewJob* job : jobs)
         if (job->unique) free_key(session, job->owner, job->idempotency_key);
     Values values;

@@ -9,7 +9,13 @@
 
 namespace tunewright::server::postgres {
 
-// ---- jobs: the answers are in the order of the arguments
+/// Only one process at a time accepts jobs of a client with a limit and unique jobs of one key, and queues a job again,
+/// with its key and its batch: jobs that another process is about to commit count. A group takes all these locks here,
+/// in one order for all processes, before any other lock; otherwise two groups could wait for each other. `requeued`:
+/// ids.
+void take_turns(Session& session, const std::vector<const NewJob*>& accepted, const std::vector<std::string>& requeued);
+
+// ---- jobs, after take_turns: the answers are in the order of the arguments
 std::vector<Accepted> accept_jobs(Session& session, const std::vector<const NewJob*>& jobs);
 std::vector<bool> finish_jobs(Session& session, const std::vector<const JobEnd*>& ends);
 CancelEffect cancel_job(Session& session, const std::string& id, UnixMs now);

@@ -116,12 +116,12 @@ public:
     void requeue(std::string id, Done<RequeueEffect> done) override {
         write<RequeueEffect>(
             kQuick,
-            [id = std::move(id)](Work& work) {
+            [id](Work& work) {
                 const RequeueEffect effect = requeue_job(work.session, id);
                 if (effect == RequeueEffect::requeued) work.notices.queued();
                 return effect;
             },
-            std::move(done));
+            std::move(done), id);
     }
     void pause(bool paused, Done<bool> done) override {
         write<bool>(
@@ -199,15 +199,16 @@ public:
 private:
     enum Manner { kQuick, kBulky };
 
-    /// Queues `apply` for the writer and passes its value on after the commit.
+    /// Queues `apply` for the writer and passes its value on after the commit. `requeued`: OtherChange's.
     template <class T, class Apply>
-    void write(Manner manner, Apply apply, Done<T> done) {
+    void write(Manner manner, Apply apply, Done<T> done, std::string requeued = {}) {
         auto value = std::make_shared<T>();
         OtherChange change;
         change.apply = [value, apply = std::move(apply)](Work& work) { *value = apply(work); };
         change.done = [value, done = std::move(done)](const std::optional<StoreFault>& fault) {
             fault ? done(*fault) : done(std::move(*value));
         };
+        change.requeued = std::move(requeued);
         (manner == kBulky ? bulk_ : writer_).change(std::move(change));
     }
 

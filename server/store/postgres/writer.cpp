@@ -113,6 +113,13 @@ void one_by_one(std::vector<T>& from, std::vector<T> Group::*place, Each each) {
 
 }  // namespace
 
+std::vector<std::string> Group::requeued() const {
+    std::vector<std::string> ids;
+    for (const OtherChange& change : others)
+        if (!change.requeued.empty()) ids.push_back(change.requeued);
+    return ids;
+}
+
 Writer::Writer(Address address, std::string tag, Watch& watch)
     : address_(std::move(address)), tag_(std::move(tag)), line_(watch.line()), thread_([this] { work(); }) {}
 
@@ -226,6 +233,7 @@ std::optional<Failure> Writer::try_once(Group& group) {
     try {
         Notices notices;
         const std::int64_t transaction = session_->begin(group.durable());
+        take_turns(*session_, questions(group.accepts), group.requeued());
         accept_all(*session_, group.accepts, notices);
         finish_all(*session_, group.ends, notices);
         beat_all(*session_, group.beats, notices);

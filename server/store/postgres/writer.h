@@ -36,6 +36,7 @@ struct Ask {
 struct OtherChange {
     std::function<void(Work&)> apply;
     std::function<void(std::optional<StoreFault>)> done;
+    std::string requeued = {};  ///< id of the job that it queues again; empty for any other change
 };
 
 /// The changes of one transaction, in their order.
@@ -46,6 +47,8 @@ struct Group {
     std::vector<OtherChange> others;
     std::vector<Ask<Claim, std::vector<JobRecord>>> claims;
 
+    /// Ids of the jobs that it queues again.
+    std::vector<std::string> requeued() const;
     std::size_t size() const { return accepts.size() + ends.size() + beats.size() + others.size() + claims.size(); }
     /// Claims and heartbeats alone do not wait for the disk: if a crash of the server undoes them, the jobs are queued
     /// again, as they should be. The first process that ends such a job ends it.

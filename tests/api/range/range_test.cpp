@@ -67,6 +67,24 @@ TEST(RangeCall, TheAnswerFitsTheDocumentAndTheScheduleHoldsItsLimitsAndAllowance
     EXPECT_GT(range["one"]["worst_relative_IAE"].get<double>(), 1.3);
 }
 
+TEST(RangeCall, TheVerdictOnAGivenScheduleFollowsFromItsFigures) {
+    Json request = three_loads();
+    const Json rows = answered(request)["range"]["schedule"]["rows"];
+    for (const double factor : {0.5, 1.0, 2.0}) {
+        SCOPED_TRACE(factor);
+        request["schedule"]["given"] = rows;
+        for (Json& row : request["schedule"]["given"]) row["Kp"] = factor * row["Kp"].get<double>();
+        const Json range = answered(request)["range"];
+        const Json &schedule = range["schedule"], &verdict = range["verdict"];
+        const bool holds = schedule["holds_limits"], cheap = schedule["within_allowance"];
+        EXPECT_EQ(holds, factor <= 1);
+        EXPECT_EQ(cheap, factor >= 1);
+        EXPECT_EQ(verdict["code"], !holds ? "schedule-exceeds" : cheap ? "schedule-holds" : "schedule-costs");
+        EXPECT_EQ(verdict["level"], !holds ? "bad" : cheap ? "good" : "warning");
+        EXPECT_EQ(verdict["figures"]["schedule_worst_relative_IAE"], schedule["worst_relative_IAE"]);
+    }
+}
+
 TEST(RangeCall, AGivenScheduleIsJudgedAsTheDesignJudgedIt) {
     Json request = three_loads();
     const Json designed = answered(request)["range"];
@@ -75,7 +93,10 @@ TEST(RangeCall, AGivenScheduleIsJudgedAsTheDesignJudgedIt) {
     EXPECT_EQ(schema_faults(given, "Range"), std::vector<std::string>{});
     EXPECT_TRUE(given["one"].is_null());
     EXPECT_THAT(given["why_null"]["one"].get<std::string>(), HasSubstr("given"));
-    EXPECT_FALSE(given.contains("verdict"));
+    EXPECT_EQ(given["verdict"]["code"], "schedule-holds");
+    EXPECT_EQ(given["verdict"]["level"], "good");
+    EXPECT_EQ(given["verdict"]["figures"]["rows"], designed["schedule"]["rows"].size());
+    EXPECT_EQ(given["verdict"]["figures"]["schedule_worst_relative_IAE"], given["schedule"]["worst_relative_IAE"]);
     EXPECT_FALSE(given["curves"].contains("one"));
     EXPECT_EQ(given["schedule"]["rows"], designed["schedule"]["rows"]);
     EXPECT_TRUE(given["schedule"]["holds_limits"]);

@@ -46,5 +46,26 @@ TEST(ModelGrade, ADoubtfulModelHasAReasonAndOnlyADoubtfulOne) {
         EXPECT_FALSE(reason_of_doubt(model));
 }
 
+TEST(Candidates, ThoseThatFitMuchWorseAreTold) {
+    IdentifiedModel model;
+    for (const double fit : {93.9, 97.0, 94.0, 94.1}) model.candidates.emplace_back().fit_percent = fit;
+    grade_candidates(model);
+    std::vector<bool> worse;
+    for (const Candidate& candidate : model.candidates) worse.push_back(candidate.much_worse);
+    EXPECT_EQ(worse, (std::vector<bool>{true, false, false, false})) << "3 points below the best are not yet much";
+    IdentifiedModel none;
+    grade_candidates(none);
+}
+
+TEST(Candidates, ATimeWhoseErrorIsLongerThanTheRecordIsNotDetermined) {
+    IdentifiedModel model;
+    model.fit.t = {100, 500, 900};
+    model.candidates.emplace_back().standard_errors = {{"K", 2e3}, {"L", 799}, {"T1", 801}, {"zeta", 1e9}};
+    model.candidates.emplace_back().standard_errors = {{"T", 2.1e8}, {"L", 2e4}};
+    for (int twice = 0; twice < 2; ++twice) grade_candidates(model);
+    EXPECT_EQ(model.candidates[0].undetermined, std::vector<std::string>{"T1"}) << "no gain, no ratio";
+    EXPECT_EQ(model.candidates[1].undetermined, (std::vector<std::string>{"L", "T"}));
+}
+
 }  // namespace
 }  // namespace tunewright

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/engine/identification/record_files.h"
 #include "tests/engine/identification/simulated_record.h"
 
@@ -75,6 +77,23 @@ TEST(RecordKind, LevelsThatAreMeasuredThemselvesMayJitter) {
     Record step = simulate(even_times(300, 1), 40, 20, {{30, 50}}, first_order(1, 30, 5));
     for (double& u : step.u) u += 0.1 * (bits() / 4294967296.0 - 0.5);
     EXPECT_EQ(kind_of(step), RecordKind::step);
+}
+
+TEST(RecordKind, MovesOfUAreToldByTheirTimesAndJitterIsNone) {
+    // Times that begin elsewhere than at 0, in a unit of their own.
+    Record record = simulate(even_times(300, 1), 40, 20, {{30, 50}, {200, 45}}, first_order(1, 30, 5));
+    std::mt19937 bits(4);
+    for (double& u : record.u) u += 0.1 * (bits() / 4294967296.0 - 0.5);
+    for (double& t : record.t) t = 1000 + 60 * t;
+    const auto times = move_times(*clean_record(record));
+    ASSERT_EQ(times.size(), 2u);
+    EXPECT_NEAR(times[0], 1000 + 60 * 30, 60);
+    EXPECT_NEAR(times[1], 1000 + 60 * 200, 60);
+    Steps many;
+    for (int k = 1; k < 60; ++k) many.push_back({5.0 * k, k % 2 ? 1.0 : -1.0});
+    const auto first = move_times(*clean_record(simulate(even_times(600, 0.5), -1, 0, many, first_order(2, 8, 2))));
+    EXPECT_EQ(first.size(), 20u) << "no more are told";
+    EXPECT_TRUE(std::ranges::is_sorted(first));
 }
 
 TEST(RecordKind, AStepOverThreeSamplesIsOneStep) {

@@ -235,6 +235,27 @@ TEST(LevenbergMarquardt, FindsTheEndOfRosenbrocksValley) {
     EXPECT_NEAR(valley.x[1], 1, 1e-9);
 }
 
+/// Takes so many steps, then finds none that is better.
+struct FiniteSteps {
+    int left = 0, linearised = 0, tries = 0;
+    bool linearise() { return ++linearised, true; }
+    Trial try_step(double) { return ++tries, left-- > 0 ? Trial::better : Trial::worse; }
+};
+
+TEST(LevenbergMarquardt, CountsTheStepsThatWereTaken) {
+    for (const int steps : {0, 1, 7}) {
+        FiniteSteps problem{.left = steps};
+        EXPECT_EQ(levenberg_marquardt(problem, 50), steps);
+        EXPECT_EQ(problem.linearised, steps + 1) << "from the last one no step is better, whatever the damping";
+    }
+    FiniteSteps endless{.left = 1000};
+    EXPECT_EQ(levenberg_marquardt(endless, 50), 50);
+    // From 1e-3 on the damping rises tenfold: the largest that is tried lies below `max`.
+    FiniteSteps none;
+    EXPECT_EQ(levenberg_marquardt(none, 50, {.max = 2e3, .tighten = 10}), 0);
+    EXPECT_EQ(none.tries, 7);
+}
+
 TEST(LevenbergMarquardt, DampsWhatNothingDependsOn) {
     const Eigen::Matrix2d H{{4, 0}, {0, 0}};
     EXPECT_EQ(damped(H, 0.5)(0, 0), 6);

@@ -131,6 +131,60 @@ TEST(Ranking, TheEntryToShowFirstIsTheOneThatTheVerdictNames) {
     EXPECT_EQ(verdict::proposed(entries, {}), 1);
 }
 
+/// Stable, at rest, with these peaks.
+TuningEntry entry_with(double Ms, std::optional<double> worst_Ms = {}, std::optional<double> Ms_as_built = {}) {
+    TuningEntry entry;
+    entry.method = "robust";
+    entry.Ms_limit = entry.asked_Ms = 1.4;
+    Evaluation evaluation;
+    evaluation.controller = IdealPid{.Kp = 1, .Ti = 1};
+    evaluation.robustness.stable = true;
+    evaluation.robustness.Ms = Figure(Ms);
+    Performance& does = evaluation.performance;
+    for (Figure* figure : {&does.setpoint.settling_time, &does.setpoint.IAE, &does.load.recovery_time, &does.load.IAE})
+        *figure = Figure(1.0);
+    if (worst_Ms) {
+        evaluation.region.emplace();
+        evaluation.region->stable_fraction = 1;
+        evaluation.region->worst_Ms = Figure(*worst_Ms);
+    }
+    if (Ms_as_built) {
+        entry.on_device.emplace();
+        entry.on_device->loop = {evaluation.robustness, evaluation.performance, {}, {}};
+        entry.on_device->loop.robustness.Ms = Figure(*Ms_as_built);
+    }
+    entry.evaluation = std::move(evaluation);
+    return entry;
+}
+
+TEST(Ranking, AnOwnLimitHoldsInTheRankWhereTheVerdictSaysSo) {
+    const AnalysedPlant subject = test::subject_of(Fopdt{.K = 1, .T = 10, .L = 3});
+    const EvaluateOptions options;
+    const RunControl control;
+    const verdict::Context context{subject, options, {}, 0, nullptr, nullptr, {}, control};
+    int held = 0, exceeded = 0;
+    for (const double over : {0.0, 0.001, 0.0019, 0.0021, 0.005, 0.0099, 0.0101, 0.02}) {
+        const double Ms = 1.4 * (1 + over);
+        std::vector<TuningEntry> entries = {
+            entry_with(Ms),          entry_with(1.3, Ms),       entry_with(Ms, 1.3),
+            entry_with(1.4, {}, Ms), entry_with(1.3, 1.35, Ms), entry_with(1.3, Ms, 1.3)};
+        ranked(entries, {2, true});
+        verdict::judge(entries, context);
+        for (std::size_t i = 0; i < entries.size(); ++i) {
+            SCOPED_TRACE(testing::Message() << over << ", entry " << i);
+            const auto above = std::ranges::find(entries[i].verdict, "above-limit", &verdict::Finding::code);
+            EXPECT_EQ(entries[i].standing->within, above == entries[i].verdict.end());
+            EXPECT_EQ(entries[i].standing->within, entries[i].standing->holds());
+            EXPECT_EQ(*entries[i].standing->Ms, Ms) << "of the loop as it will run, wherever that is largest";
+            // On the worst plant it is known to 1 %.
+            EXPECT_EQ(entries[i].standing->within, over < (i == 1 || i == 5 ? 0.01 : 0.002));
+            ++(entries[i].standing->within ? held : exceeded);
+        }
+    }
+    EXPECT_GT(held, 10);
+    EXPECT_GT(exceeded, 10);
+}
+
 TEST(Ranking, OnANonlinearPlantTheEquationsDecideWhatSettles) {
     // pH: a set-point step of 0.5 drives the sharper loops into a limit cycle, although their linearisation is well
     // damped.
@@ -220,7 +274,7 @@ TEST(Ranking, NoRowThatDoesNotHoldStandsAboveOneThatDoes) {
         if (i % 3 == 0) request.evaluate.horizon = any.log_uniform(50, 500);
         if (i % 4 == 0) request.evaluate.actuator = ActuatorLimits{-2, 2};
         const auto result = tune(request, {});
-        if (result) expect_order(*result, request.evaluate.rank_Ms);
+        if (result) expect_order(*result, *request.evaluate.rank_Ms);
     }
 }
 

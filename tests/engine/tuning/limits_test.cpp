@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/number_text.h"
+#include "engine/request/ranking.h"
 #include "engine/tuning/device/device_loop.h"
 #include "engine/tuning/registry.h"
 #include "engine/tuning/robust/frontier.h"
@@ -37,6 +38,13 @@ TEST(RobustnessLimits, ADesignWithoutLimitsHoldsTheDefaultAsItIsVerified) {
     const auto design = robust_method().tune({plant, *LinearPlant::make(plant), {}, {}}, {}, {});
     ASSERT_TRUE(design);
     EXPECT_EQ(design->Ms_limit, limits::kDefaultMs);
+}
+
+TEST(RobustnessLimits, TheLimitOnTheMsOfAllIsTheTablesWhereNoneIsAskedFor) {
+    EXPECT_EQ(ranking_terms(EvaluateOptions{}, true).rank_Ms, limits::kDefaultMaxRankedMs);
+    EvaluateOptions asked;
+    asked.rank_Ms = 1.6;
+    EXPECT_EQ(ranking_terms(asked, true).rank_Ms, 1.6);
 }
 
 TEST(RobustnessLimits, APeakThatIsShownAsTheLimitCountsAsHoldingIt) {

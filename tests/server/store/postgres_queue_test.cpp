@@ -103,5 +103,61 @@ TEST_F(PostgresStore, UniqueJobsInOppositeOrdersNeverWaitForEachOther) {
     EXPECT_EQ(database_->run("SELECT deadlocks FROM pg_stat_database WHERE datname = current_database()"), "0");
 }
 
+/// Two processes queue failed jobs again in opposite orders, while others of the same keys and clients are posted.
+TEST_F(PostgresStore, RequeuesInOppositeOrdersNeverWaitForEachOther) {
+    constexpr int kinds = 12, rounds = 25;
+    const auto one = open(), two = open();
+    const auto fail_all = [&] {
+        database_->run(
+            "SET search_path TO tunewright; WITH gone AS (DELETE FROM waiting RETURNING seq) INSERT INTO ended (seq, "
+            "single, status, attempts, cancel_requested, finished_at) SELECT seq, true, 'failed', 0, false, 1 FROM "
+            "gone");
+    };
+    const auto unique_job = [&](const std::string& id, int i) {
+        NewJob made = job(id);
+        if (i % 3 == 0) return made;  // a third has no key
+        made.unique = true;
+        made.request_hash = std::to_string(i);
+        made.idempotency_key = " unique " + std::to_string(i);
+        made.flow = "flow" + std::to_string(i % 5);
+        made.client_limit = 1000;
+        return made;
+    };
+    for (int i = 0; i < kinds; i++) {
+        const NewJob made = unique_job("job" + std::to_string(i), i);
+        completed<Accepted>([&](auto done) { one->accept(made, done); });
+    }
+    const auto requeue_all = [&](JobStore& store, int round, bool backwards) {
+        std::vector<std::promise<void>> answers(2 * kinds);
+        const auto answered = [&answers](int at) {
+            return [&answers, at](const auto& outcome) {
+                EXPECT_FALSE(std::holds_alternative<StoreFault>(outcome));
+                answers[static_cast<std::size_t>(at)].set_value();
+            };
+        };
+        for (int i = 0; i < kinds; i++) {
+            const int kind = backwards ? kinds - 1 - i : i;
+            store.requeue("job" + std::to_string(kind), answered(i));
+            const std::string id = (backwards ? "b" : "a") + std::to_string(round) + "-" + std::to_string(kind);
+            store.accept(unique_job(id, (kind + 5) % kinds), answered(kinds + i));
+        }
+        for (auto& answer : answers) answer.get_future().get();
+    };
+    for (int round = 0; round < rounds; round++) {
+        fail_all();
+        {
+            const std::jthread a([&] { requeue_all(*one, round, false); });
+            const std::jthread b([&] { requeue_all(*two, round, true); });
+        }
+        EXPECT_EQ(database_->run("SELECT count(*) FROM tunewright.waiting w JOIN tunewright.jobs j ON j.seq = w.seq "
+                                 "WHERE starts_with(j.idempotency_key, ' unique ')"),
+                  std::to_string(kinds - kinds / 3))
+            << round << ": of each key one job waits";
+    }
+    // Its counts come a second late.
+    std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+    EXPECT_EQ(database_->run("SELECT deadlocks FROM pg_stat_database WHERE datname = current_database()"), "0");
+}
+
 }  // namespace
 }  // namespace tunewright::server

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import type { Entry, Result } from "../../../web/src/api/types.ts";
+import type { Entry, Method, Result } from "../../../web/src/api/types.ts";
 import { defaultOverlay, entryNames } from "../../../web/src/charts/drawn.ts";
 import { byAllMethods, withLambda } from "../../../web/src/form/tuning_request.ts";
 import { csvText } from "../../../web/src/plot/export.ts";
@@ -229,9 +229,11 @@ test("a comparison of all methods is tuned again as the variants that it ran", (
       { method: "baseline" },
     ],
   };
+  const options = { properties: { lambda: {}, Ms: { "x-in-place-of": "lambda" } } };
+  const methods = [{ id: "rimc", options }] as unknown as Method[];
   const request = byAllMethods({ plant: { type: "fopdt" }, tune: [{ method: "robust" }] });
   assert.deepEqual(request.tune, [{ method: "all" }]);
-  assert.deepEqual(withLambda(request, ran, 1, 7).tune, [
+  assert.deepEqual(withLambda(request, ran, 1, 7, methods).tune, [
     { method: "simc", controller: "PI" },
     { method: "rimc", lambda: 7, curve: true },
   ]);

@@ -35,6 +35,8 @@ const model: Model = {
     irregular: false,
     noise_std: 0.01,
     quantisation: 0,
+    steps: 1,
+    move_times: [1],
     settled: true,
   },
   warnings: [],
@@ -110,9 +112,12 @@ test("parameters carry their errors with as many digits as these allow", () => {
   assert.deepEqual(parameterTexts(ipdt, units), ["K 0.03 °C/%/s", "L 7 s"]);
 });
 
-test("a time whose error is longer than the record is said to be unknown", () => {
-  const loose = { ...fopdt, standard_errors: { K: 0.012, T: 0.31, L: 2.1e8 } };
-  assert.deepEqual(parameterTexts(loose, units, 800)[2], "L 8 ± unknown s");
+test("a time that the service says not to be determined is said to be unknown, whatever its error", () => {
+  assert.deepEqual(parameterTexts({ ...fopdt, undetermined: ["L"] }, units), [
+    "K 1.250 ± 0.012 °C/%",
+    "T 40.00 ± 0.31 s",
+    "L 8 ± unknown s",
+  ]);
 });
 
 test("what the service concludes of a model is shown, whatever its figures are", () => {
@@ -157,6 +162,7 @@ test("the record is described by its figures, and by those that this page does n
   assert.equal(words.input, "u steps once, at 1 s, from 0 to 5 %.");
   assert.deepEqual(Object.fromEntries(words.rows), {
     Samples: "3, 2 left out",
+    "Moves of u": "1",
     "Spacing (s)": "1",
     "Noise of y (°C)": "0.010, 1.0 %",
     "Smallest step of y (°C)": "none found",
@@ -240,13 +246,25 @@ test("a preview says how the file is written and what its times are", () => {
   assert.equal(timeWords({ ...previewed, time: undefined } as unknown as Preview), "");
 });
 
-test("each move of u has the part of the record that shows it alone", () => {
+test("each move of u that the service names has the part of the record that shows it alone", () => {
   const t = Array.from({ length: 100 }, (_, index) => index);
-  const u = t.map((time) => (time < 20 ? 0 : time < 60 ? 5 + 0.01 * (time % 2) : 2));
-  assert.deepEqual(stepParts(t, u), [
+  assert.deepEqual(stepParts(t, [20, 60]), [
     { at: 20, from: 10, to: 59 },
     { at: 60, from: 40, to: 99 },
   ]);
+  assert.deepEqual(stepParts(t, []), []);
+});
+
+test("what u does is said as the service counts its moves: jitter is none, whatever the samples show", () => {
+  const fit = { t: [0, 1, 2, 3], u: [0, 0.01, 5, 5.01], y: [0, 0, 1, 2], y_model: [0, 0, 1, 2] };
+  const words = (more: Partial<NonNullable<Model["data_quality"]>>): string =>
+    qualityOf({ ...model, fit, data_quality: { ...model.data_quality!, ...more } }, units).input;
+  assert.equal(words({ steps: 1, move_times: [2] }), "u steps once, at 2 s, from 0 to 5.01 %.");
+  assert.equal(words({ steps: 40, move_times: Array.from({ length: 20 }, (_, at) => at) }), "u changes 40 times, from 0 to 5.01 %.");
+  assert.equal(words({ steps: 0, move_times: [] }), "u is constant at 0 % from the first sample on.");
+  assert.equal(words({ steps: 1, move_times: [0] }), "u is constant at 0 % from the first sample on.", "it moved before the record");
+  const { move_times: _times, ...kept } = model.data_quality!;
+  assert.equal(qualityOf({ ...model, fit, data_quality: kept as typeof model.data_quality }, units).input, "u steps once, from 0 to 5.01 %.");
 });
 
 test("what the tab's storage holds is a record, or is passed over", () => {

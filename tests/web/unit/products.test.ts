@@ -191,6 +191,17 @@ test("what differs is said as the service concludes, and what leaves nothing to 
     "The implemented loop differs from the ideal one: Ms 5.9 % higher, the load IAE 2.0 % lower.",
   );
   assert.equal(differenceSentence(built(5.91, null)), "");
+  const { difference, ...loop } = built(5.91, 30);
+  const kept = { ...loop, difference: { Ms_percent: difference.Ms_percent, load_IAE_percent: 30 } } as Implemented;
+  assert.equal(
+    differenceSentence(kept),
+    "Tuned by an older version: tune again to see whether the implemented loop differs from the ideal one.",
+  );
+  const over = (percent: number) => ({ setpoint: { overshoot_percent: percent } });
+  assert.deepEqual(
+    builtRows({ performance: over(5) }, { ...kept, performance: over(30) }).map(({ label, difference: away, far }) => [label, away, far]),
+    [["Ms", "+5.9 %", false], ["Load IAE", "+30.0 %", false], ["Overshoot (%)", "–", false]],
+  );
   const warning = (code: string) => ({ code, detail: code });
   const entry = { warnings: ["differs-as-built", "far-from-linear", "unstable-as-built"].map(warning) };
   assert.deepEqual(
@@ -201,15 +212,18 @@ test("what differs is said as the service concludes, and what leaves nothing to 
 });
 
 test("it is said how the loop was reckoned and how slow it may be sampled", () => {
-  assert.deepEqual(samplingSentences(built(0, 0), 3.61, "s"), [
+  const sampled = (implemented: Implemented, longest_sample_time: number | null) => ({ implemented, longest_sample_time });
+  assert.deepEqual(samplingSentences(sampled(built(0, 0), 3.61), "s"), [
     "Evaluated with a sample every 0.5 s.",
     "Sampling up to every 3.61 s keeps Ms within 5 %.",
   ]);
-  assert.deepEqual(samplingSentences({ ...built(0, 0), sample_time: null }, null, "s"), [
+  assert.deepEqual(samplingSentences(sampled({ ...built(0, 0), sample_time: null }, null), "s"), [
     "Evaluated as continuous, because no sample time is known.",
   ]);
-  assert.match(samplingSentences(built(0, 0), 0.2, "s")[1]!, /^That is slow: up to 0.200 s /);
-  assert.deepEqual(samplingSentences(undefined, undefined, "s"), []);
+  const verdict = [{ code: "sample-time", level: "warning" as const, text: "", figures: {} }];
+  assert.match(samplingSentences({ ...sampled(built(0, 0), 3.61), verdict }, "s")[1]!, /^That is slow: up to 3.61 s /, "as the verdict says");
+  assert.match(samplingSentences(sampled(built(0, 0), 0.2), "s")[1]!, /^Sampling up to every 0.200 s /);
+  assert.deepEqual(samplingSentences({}, "s"), []);
 });
 
 test("evidence names what was not verified, and sends to the manual where not all was read", () => {
@@ -220,13 +234,12 @@ test("evidence names what was not verified, and sends to the manual where not al
   assert.equal(evidenceSentence({ level: "read", read: [], unverified: [], sources: [] }), "Read in the maker's code or text.");
 });
 
-test("notes on what the block cannot be are kept apart; an unknown one counts among them", () => {
-  const notes = ["filter", "unverified", "something-new", "discretisation"].map((code) => ({ code, detail: "" }));
-  const { deviations, remarks } = splitNotes(notes);
-  assert.deepEqual([deviations.map((note) => note.code), remarks.map((note) => note.code)], [
-    ["filter", "something-new"],
-    ["unverified", "discretisation"],
-  ]);
+test("notes on what the block cannot be are kept apart as the service tells them; of an older answer all are shown", () => {
+  const notes = [true, false, true].map((deviation, at) => ({ code: `note-${at}`, detail: "", deviation }));
+  const codes = ({ deviations, remarks }: ReturnType<typeof splitNotes>) => [deviations, remarks].map((list) => list.map(({ code }) => code));
+  assert.deepEqual(codes(splitNotes(notes)), [["note-0", "note-2"], ["note-1"]]);
+  const older = [{ code: "unverified", detail: "" }] as unknown as typeof notes;
+  assert.deepEqual(codes(splitNotes(older)), [["unverified"], []]);
 });
 
 test("a product's parameters are fields, with one for the direction", () => {

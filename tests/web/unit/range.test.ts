@@ -17,11 +17,11 @@ import {
 import { formatRoute, parseRoute } from "../../../web/src/routes.ts";
 import { unitNames } from "../../../web/src/words/numbers.ts";
 import {
-  manualVerdict,
   placeWords,
   rangeWords,
   runFacts,
   settingWords,
+  verdictOf,
   worstWords,
 } from "../../../web/src/words/range.ts";
 
@@ -237,7 +237,7 @@ test("names and units leave a design as it is; plants and limits do not", () => 
 
 test("the plots show the design with its limits, then the moved rows beside the one setting of the design", () => {
   const moved: RangeContent = { ...content, one: null, curves: { ...content.curves, at: [30, 50, 100], one: null } };
-  const shown = { designed: content, moved: null, rows: content.schedule!.rows, Ms: 1.4, allowance: 0.05, units };
+  const shown = { designed: content, moved: null, rows: content.schedule!.rows, Ms: 1.4, IAE: 1.05, units };
   const [Ms, IAE] = robustnessFrame(shown).panes;
   assert.deepEqual(
     Ms!.traces.map((trace) => trace.name),
@@ -302,9 +302,12 @@ test("places, settings and verdicts in words", () => {
     handleWords(row(51.875, 0.553), 1, { designed: content, moved: null }),
     "Row 2 at load 51.875 %, Kp 0.553, largest Ms 1.40",
   );
-  assert.equal(manualVerdict({ ...content.schedule!, holds_limits: false }).level, "bad");
-  assert.equal(manualVerdict({ ...content.schedule!, within_allowance: false }).level, "warning");
-  assert.match(manualVerdict(content.schedule!).text, /^These 2 rows hold the limits everywhere.* 1\.03 times/);
+  const verdict = { code: "schedule-holds", level: "good" as const, text: "These 2 rows hold.", figures: {} };
+  assert.equal(verdictOf({ ...content, verdict }), verdict, "the service's, of rows that were moved too");
+  const { verdict: _verdict, ...unjudged } = content;
+  assert.match(verdictOf(unjudged).text, /older version/, "the page draws no conclusion of its own");
+  const { schedule: _schedule, ...none } = unjudged;
+  assert.equal(verdictOf(none).level, "bad");
   assert.equal(rangeWords(loads), "operating range over load (%): 2 points");
   assert.equal(rangeWords(cone), "operating range of equations, 10 to 32");
 });

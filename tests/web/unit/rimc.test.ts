@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import type { Entry, Result, Rimc, TuningRequest } from "../../../web/src/api/types.ts";
+import type { Entry, Method, Result, Rimc, TuningRequest } from "../../../web/src/api/types.ts";
 import { fullControllerFrame, interpolate, rimcFrame, rimcRows } from "../../../web/src/charts/rimc.ts";
 import { withLambda } from "../../../web/src/form/tuning_request.ts";
 import { unitNames } from "../../../web/src/words/numbers.ts";
@@ -90,11 +90,14 @@ test("another lambda replaces what stood for it, in its own entry only, and asks
     ],
   };
   const result: Result = { controllers: [{ method: "robust" }, { method: "rimc" }, { method: "baseline" }] };
-  assert.deepEqual(withLambda(request, result, 1, 7).tune, [
+  const instead = { "x-in-place-of": "lambda" };
+  const properties = { lambda: {}, Ms: instead, disturbance_peak: instead, Tf_over_Td: {} };
+  const methods = [{ id: "rimc", options: { properties } }] as unknown as Method[];
+  assert.deepEqual(withLambda(request, result, 1, 7, methods).tune, [
     { method: "robust", Ms: 1.4 },
     { Tf_over_Td: 0.1, method: "rimc", lambda: 7, curve: true },
   ]);
-  assert.deepEqual(withLambda({ ...request, tune: "all" }, result, 1, 7).tune, [
+  assert.deepEqual(withLambda({ ...request, tune: "all" }, result, 1, 7, methods).tune, [
     { method: "robust" },
     { method: "rimc", lambda: 7, curve: true },
   ]);

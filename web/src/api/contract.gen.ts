@@ -20,6 +20,7 @@ export type components = {
         u: number[];
         y: number[];
         r?: number[];
+        move_times: number[];
       };
     };
     Fault: {
@@ -453,6 +454,8 @@ export type components = {
       standard_errors: {
         [key: string]: number | null;
       };
+      undetermined?: string[];
+      much_worse?: boolean;
       y_model?: (number | null)[];
     };
     Fit: {
@@ -471,6 +474,7 @@ export type components = {
       noise_std: number;
       quantisation: number;
       steps: number;
+      move_times: number[];
       cycles?: number;
       settled: boolean;
       u0: number;
@@ -720,6 +724,7 @@ export type components = {
       notes: {
         code: string;
         detail: string;
+        deviation: boolean;
       }[];
     };
     Implemented: {
@@ -1358,6 +1363,7 @@ export type components = {
       notes: {
         code: string;
         detail: string;
+        deviation: boolean;
       }[];
     };
     SettingsRow: {

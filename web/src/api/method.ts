@@ -24,6 +24,8 @@ export interface Schema {
   "x-main"?: boolean;
   /** An option that adds data for a drawing. */
   "x-draws"?: boolean;
+  /** Another option follows from it: they are not given together. */
+  "x-in-place-of"?: string;
   "x-slider"?: OptionSlider;
 }
 

@@ -13,7 +13,8 @@ export interface RangeShown {
   rows: readonly ScheduleRow[];
   /** The limit; null: not known. */
   Ms: number | null;
-  allowance: number;
+  /** The limit on the IAE, over each place's own optimum; null: not known. */
+  IAE: number | null;
   units: UnitNames;
 }
 
@@ -42,8 +43,8 @@ function rangeOfMs(traces: Trace[], limit: number | null): Range {
   return [1 - 0.06 * (top - 1), top + 0.12 * (top - 1)];
 }
 
-const limitLine = (limit: number | null): Mark[] =>
-  limit === null ? [] : [{ kind: "level", value: limit, role: "limit", label: `limit ${formatNumber(limit)}` }];
+const limitLine = (limit: number | null, label = `limit ${formatNumber(limit)}`): Mark[] =>
+  limit === null ? [] : [{ kind: "level", value: limit, role: "limit", label }];
 
 /** One setting may have many times the IAE of the schedule: a logarithmic axis shows both. */
 const MAX_IAE = 100;
@@ -106,7 +107,7 @@ export function robustnessFrame(shown: RangeShown): Frame {
         traces: IAE,
         marks: [
           ...uprights(shown.rows),
-          { kind: "level", value: 1 + shown.allowance, role: "limit", label: "allowance" },
+          ...limitLine(shown.IAE, "allowance"),
         ],
       },
     ],

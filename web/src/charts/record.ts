@@ -1,6 +1,5 @@
 // A recorded test as panes of y and u, with the output of the model identified from it.
 import type { Model, TuningRequest } from "../api/types.ts";
-import { extent } from "../plot/axis.ts";
 import type { Frame, Mark, Pane } from "../plot/frame.ts";
 import { formatNumber, unitNames, withUnit } from "../words/numbers.ts";
 import type { UnitNames } from "../words/numbers.ts";
@@ -59,19 +58,13 @@ export function recordFramed(panes: Pane[], title: string, description: string, 
   };
 }
 
-/** The moves of u beyond 2 % of its range, each from the middle of the rest before it to the next one. */
-export function stepParts(t: readonly number[], u: Column): { at: number; from: number; to: number }[] {
-  const [min, max] = extent([u], "linear");
-  const range = max - min;
-  const moves: number[] = [];
-  for (let index = 1; index < t.length; index += 1) {
-    const [before, now] = [u[index - 1], u[index]];
-    if (typeof before === "number" && typeof now === "number" && Math.abs(now - before) > 0.02 * range) moves.push(index);
-  }
-  return moves.map((index, count) => {
-    const previous = count > 0 ? t[moves[count - 1]!]! : t[0]!;
-    const next = moves[count + 1];
-    return { at: t[index]!, from: (previous + t[index]!) / 2, to: next === undefined ? t[t.length - 1]! : t[next - 1]! };
+/** The parts of a record in which exactly one of the moves of u at these times is seen: from the middle of the rest
+    before it to the next move. */
+export function stepParts(t: readonly number[], moves: readonly number[]): { at: number; from: number; to: number }[] {
+  return moves.map((at, count) => {
+    const previous = count > 0 ? moves[count - 1]! : t[0]!;
+    const next = moves[count + 1] ?? Infinity;
+    return { at, from: (previous + at) / 2, to: Math.max(at, ...t.filter((time) => time < next).slice(-1)) };
   });
 }
 

@@ -1,6 +1,6 @@
 // Tuning requests that the page makes from answers: for a candidate of Identify, for the same request with another
 // lambda for one of its entries, and for the same subject with every method.
-import type { Candidate, Entry, IdentifyRequest, Implement, Model, Plant, Result, TuneEntry, TuningRequest, TypedBaseline } from "../api/types.ts";
+import type { Candidate, Entry, IdentifyRequest, Implement, Method, Model, Plant, Result, TuneEntry, TuningRequest, TypedBaseline } from "../api/types.ts";
 
 /** The subject for a candidate that was chosen on Identify: its record if that leads to the same model again, else
     its plant. */
@@ -89,14 +89,12 @@ export function withOptions(request: TuningRequest, method: string | null, optio
   return { ...request, tune };
 }
 
-/** Options that replace lambda. */
-const IN_PLACE_OF_LAMBDA = ["Ms", "disturbance_peak", "dead_time_error"];
-
-/** `index`: of the entry in the result. */
-export function withLambda(request: TuningRequest, result: Result, index: number, lambda: number): TuningRequest {
+/** `index`: of the entry in the result. Options that replace lambda are left out. */
+export function withLambda(request: TuningRequest, result: Result, index: number, lambda: number, methods: readonly Method[]): TuningRequest {
   const entry = tuneEntryOf(request, result, index);
   if (!entry) return request;
-  const kept = Object.entries(entry).filter(([name]) => !IN_PLACE_OF_LAMBDA.includes(name));
+  const described = methods.find(({ id }) => id === entry.method)?.options?.properties ?? {};
+  const kept = Object.entries(entry).filter(([name]) => described[name]?.["x-in-place-of"] !== "lambda");
   return withTune(request, result, index, { ...Object.fromEntries(kept), method: entry.method, lambda, curve: true });
 }
 

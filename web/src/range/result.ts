@@ -92,7 +92,7 @@ export function rangeResult(
       moved,
       rows: manual.rows(),
       Ms: limitOn("Ms", designed) ?? about.schedule?.Ms ?? null,
-      allowance: about.schedule?.allowance ?? DEFAULT_ALLOWANCE,
+      IAE: limitOn("relative_IAE", designed) ?? null,
       units: unitNames(about.units),
     };
   }
@@ -191,5 +191,3 @@ export function rangeResult(
 /** The limit that the answer states. */
 const limitOn = (quantity: string, { worst }: RangeContent): number | undefined =>
   [...(worst.schedule ?? []), ...(worst.one ?? [])].find((place) => place.quantity === quantity)?.limit;
-
-const DEFAULT_ALLOWANCE = 0.05;

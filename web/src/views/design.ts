@@ -127,7 +127,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
   async function retune(lambda: number): Promise<void> {
     if (!finished || !screen) return;
     const request = requestShown(finished.job, screen);
-    await events.onRetune(withLambda(request, screen.result, screen.index, lambda), screen.index);
+    await events.onRetune(withLambda(request, screen.result, screen.index, lambda, store.get().methods), screen.index);
   }
 
   async function retuneWhole(request: TuningRequest): Promise<void> {

@@ -153,7 +153,7 @@ export function identifyView(
       model = answer;
       answered = asked;
       menu.show("v1/identify", asked);
-      if (isWhole(asked)) takeWhole(answer.fit);
+      if (isWhole(asked)) takeWhole(answer.fit, answer.data_quality?.move_times ?? []);
       body.hidden = false;
       side.hidden = false;
       candidates.show(answer, units);
@@ -173,7 +173,7 @@ export function identifyView(
       side.hidden = true;
       cycle.show(undefined, undefined, [], units);
       sentence.textContent = "Choose a part of it that a model can explain, or another model or method above.";
-      if (isWhole(asked)) takeWhole(problem.record);
+      if (isWhole(asked)) takeWhole(problem.record, problem.record?.move_times ?? []);
       body.hidden = whole === null;
       draw();
       if (!whole) void look();
@@ -223,12 +223,13 @@ export function identifyView(
 
   const isWhole = (asked: IdentifyRequest): boolean => asked.record.from === undefined && asked.record.to === undefined;
 
-  function takeWhole(record: Samples | undefined): void {
+  /** `moves`: the times at which u moves. */
+  function takeWhole(record: Samples | undefined, moves: readonly number[]): void {
     const { t = [], y = [], u } = record ?? {};
     if (t.length < 2) return;
     whole = { t, y, ...(u ? { u } : {}) };
     part.setExtent({ from: t[0]!, to: t[t.length - 1]! });
-    part.setSteps(u ? stepParts(t, u) : []);
+    part.setSteps(stepParts(t, moves));
   }
 
   function draw(): void {
@@ -289,10 +290,11 @@ export function identifyView(
   async function askWithPart(start: number | undefined, end: number | undefined): Promise<void> {
     const { from: _from, to: _to, ...record } = given.record;
     try {
-      takeWhole((await identify({ ...given, record })).fit);
+      const { fit, data_quality } = await identify({ ...given, record });
+      takeWhole(fit, data_quality?.move_times ?? []);
     } catch (error) {
       // The whole record cannot be identified, but the part may be.
-      if (error instanceof ApiError) takeWhole(error.problem.record);
+      if (error instanceof ApiError) takeWhole(error.problem.record, error.problem.record?.move_times ?? []);
     }
     if (!whole) part.setExtent({ from: start ?? 0, to: end ?? (start ?? 0) + 1 });
     part.set({ from: start ?? -Infinity, to: end ?? Infinity });

@@ -28,7 +28,8 @@ export function cycleRows(cycle: LimitCycle, ultimate: UltimatePoint | null | un
       rows.push({ label, meaning, text: formatNumber(value, digits) });
   };
   add(withUnit("Ku", inverse), "ultimate gain, of the plant itself", ultimate?.Ku);
-  if (ultimate && differs(ultimate.Pu, cycle.Pu))
+  // The same text twice would say nothing.
+  if (ultimate && formatNumber(ultimate.Pu, 4) !== formatNumber(cycle.Pu, 4))
     add(withUnit("Pu at Ku", units.time), "ultimate period, of the plant itself", ultimate.Pu);
   add(
     withUnit("Ku, estimated", inverse),
@@ -42,5 +43,3 @@ export function cycleRows(cycle: LimitCycle, ultimate: UltimatePoint | null | un
   add(withUnit("Model − record, rms", units.y), "over the steady periods", cycle.fit_rms, 3);
   return rows;
 }
-
-const differs = (a: number | null, b: number): boolean => typeof a === "number" && Math.abs(a / b - 1) > 1e-3;

@@ -104,9 +104,10 @@ const LABELS: Record<BuiltFigure, [label: string, name: string]> = {
   overshoot: ["Overshoot (%)", "the overshoot"],
 };
 
-/** The difference of the implemented loop from the ideal one: in percent, for the overshoot in percentage points. */
-function differenceOf({ difference }: Implemented, figure: BuiltFigure): number | null {
-  if (figure === "overshoot") return difference.overshoot_points ?? null;
+/** The difference of the implemented loop from the ideal one: in percent, for the overshoot in percentage points;
+    undefined in an answer that was kept before the service compared it. */
+function differenceOf({ difference }: Implemented, figure: BuiltFigure): number | null | undefined {
+  if (figure === "overshoot") return difference.overshoot_points;
   return difference[`${figure}_percent`];
 }
 
@@ -123,7 +124,7 @@ export function builtRows(ideal: Pick<Entry, "robustness" | "performance">, buil
   return FIGURES.flatMap((figure) => {
     const away = differenceOf(built, figure);
     if (figure === "overshoot" && away === null) return [];
-    const difference = away === null ? DASH : `${signed(away)}${figure === "overshoot" ? "" : " %"}`;
+    const difference = typeof away !== "number" ? DASH : `${signed(away)}${figure === "overshoot" ? "" : " %"}`;
     const far = built.difference.differs?.includes(figure) ?? false;
     return [{ label: LABELS[figure][0], ideal: figureText(ideal, figure), built: figureText(built, figure), difference, far }];
   });
@@ -135,11 +136,15 @@ function signed(percent: number): string {
   return Number(text) === 0 ? text : `${percent > 0 ? "+" : "−"}${text}`;
 }
 
+/** For results that were kept before the service named the figures that differ. */
+const NOT_COMPARED = "Tuned by an older version: tune again to see whether the implemented loop differs from the ideal one.";
+
 /** The difference of the implemented loop from the ideal one, if the service says that it is a different loop; else
     "". */
-export function differenceSentence(built: Implemented): string {
-  const parts = (built.difference.differs ?? []).map((figure) => {
-    const away = differenceOf(built, figure)!;
+export function differenceSentence({ difference, ...built }: Implemented): string {
+  if (difference.differs === undefined) return NOT_COMPARED;
+  const parts = difference.differs.map((figure) => {
+    const away = differenceOf({ ...built, difference }, figure)!;
     const unit = figure === "overshoot" ? "percentage points" : "%";
     return `${LABELS[figure][1]} ${Math.abs(away).toFixed(1)} ${unit} ${away > 0 ? "higher" : "lower"}`;
   });
@@ -150,15 +155,14 @@ export function differenceSentence(built: Implemented): string {
 export const builtTroubles = (entry: Pick<Entry, "warnings">): Notice[] =>
   (entry.warnings ?? []).filter(({ code }) => code === "unstable-as-built" || code === "not-as-built");
 
-/** Sentences on how the loop was computed, and on its longest sample time. */
+/** Sentences on how the loop was computed, and on its longest sample time; the verdict says whether it is too long. */
 export function samplingSentences(
-  built: Implemented | undefined,
-  longest: number | null | undefined,
+  { implemented, longest_sample_time: longest, verdict }: Pick<Entry, "implemented" | "longest_sample_time"> & Partial<Pick<Entry, "verdict">>,
   time: string,
 ): string[] {
   const sentences: string[] = [];
-  const period = built?.sample_time ?? null;
-  if (built)
+  const period = implemented?.sample_time ?? null;
+  if (implemented)
     sentences.push(
       period === null
         ? "Evaluated as continuous, because no sample time is known."
@@ -166,7 +170,7 @@ export function samplingSentences(
     );
   if (typeof longest !== "number") return sentences;
   sentences.push(
-    period !== null && period > longest
+    verdict?.some(({ code }) => code === "sample-time")
       ? `That is slow: up to ${formatNumber(longest)} ${time} would keep Ms within 5 % of that of the ideal loop.`
       : `Sampling up to every ${formatNumber(longest)} ${time} keeps Ms within 5 %.`,
   );
@@ -191,10 +195,9 @@ export function evidenceSentence({ level, unverified }: Evidence): string {
 /** The rows name their own units; times in the notes are in the loop's. */
 export const noteTimes = (time: string): string => `Times in these notes are in ${time}, the loop's unit of time.`;
 
-/** Notes on the computation and other remarks; every other note is a deviation of the block. */
-const REMARKS = ["action", "clock", "default", "discretisation", "outside-the-twin", "unverified"];
-
-export function splitNotes(notes: readonly Notice[]): { deviations: Notice[]; remarks: Notice[] } {
-  const remark = (note: Notice): boolean => REMARKS.includes(note.code);
+/** The deviations of the product, and the remarks on the computation. Notes of an older answer, which are not
+    separated, all come first. */
+export function splitNotes(notes: AsEntered["notes"]): Record<"deviations" | "remarks", AsEntered["notes"]> {
+  const remark = ({ deviation }: AsEntered["notes"][number]): boolean => deviation === false;
   return { deviations: notes.filter((note) => !remark(note)), remarks: notes.filter(remark) };
 }

@@ -90,6 +90,7 @@ function rowsOf(model: Model, units: UnitNames): [string, string][] {
     "kind",
     "test",
     "steps",
+    "move_times",
     "settled",
     "notes",
     "time_unit_assumed",
@@ -136,20 +137,17 @@ const testWords = (model: Model): string => String(model.data_quality?.["test"] 
 /** "u steps once, at 120 s, from 30 to 35 %." */
 function inputWords(model: Model, units: UnitNames): string {
   const { t = [], u = [] } = model.fit ?? {};
-  const changes: number[] = [];
-  for (let index = 1; index < u.length; index += 1)
-    if (typeof u[index] === "number" && typeof u[index - 1] === "number" && u[index] !== u[index - 1])
-      changes.push(index);
   const values = u.filter((value): value is number => typeof value === "number");
   if (values.length === 0) return "";
   const unit = units.u ? ` ${units.u}` : "";
   const range = `from ${formatParameter(minimum(values))} to ${formatParameter(maximum(values))}${unit}`;
-  if (changes.length === 0) return `u is constant at ${formatParameter(values[0]!)}${unit} from the first sample on.`;
+  const { steps, move_times = [], closed_loop } = model.data_quality ?? {};
   const test = testWords(model);
-  if (model.data_quality?.["closed_loop"]) return `${test.charAt(0).toUpperCase()}${test.slice(1)}: the controller moved u ${range}.`;
-  if (changes.length > 1) return `u changes ${changes.length} times, ${range}.`;
-  const at = changes[0]!;
-  return `u steps once, at ${formatParameter(t[at]!)} ${units.time}, from ${formatParameter(u[at - 1]!)} to ${formatParameter(u[at]!)}${unit}.`;
+  if (closed_loop) return `${test.charAt(0).toUpperCase()}${test.slice(1)}: the controller moved u ${range}.`;
+  if (steps === 0 || (steps === 1 && move_times[0]! <= t[0]!)) return `u is constant at ${formatParameter(values[0]!)}${unit} from the first sample on.`;
+  if (steps !== 1) return `u changes${steps === undefined ? "" : ` ${steps} times`}, ${range}.`;
+  const at = move_times.length === 1 ? `, at ${formatParameter(move_times[0]!)} ${units.time}` : "";
+  return `u steps once${at}, from ${formatParameter(values[0]!)} to ${formatParameter(values[values.length - 1]!)}${unit}.`;
 }
 
 // Math.min(...list) overflows the stack with long lists.

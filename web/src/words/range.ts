@@ -1,6 +1,6 @@
 // An operating range in words: the state of its schedule, its settings, its points, its runs.
 import type { RangeRequest } from "../api/range.ts";
-import type { Finding, OneSetting, RangeContent, RangeRun, Schedule, WorstPlace } from "../api/types.ts";
+import type { Finding, OneSetting, RangeContent, RangeRun, WorstPlace } from "../api/types.ts";
 import { DASH, formatNumber, formatSetting, product, quotient, withUnit } from "./numbers.ts";
 import type { UnitNames } from "./numbers.ts";
 
@@ -43,38 +43,18 @@ export function settingWords(settings: Settings, units: UnitNames): string {
   return [`Kp ${formatSetting(settings.Kp)}`, ...times].join(", ");
 }
 
-/** A schedule that was moved by hand has no verdict of the service: its state follows from the figures of the
-    answer. */
-export function manualVerdict(schedule: Schedule): Finding {
-  const rows = counted(schedule.rows.length, "row");
-  const IAE = schedule.worst_relative_IAE;
-  if (!schedule.holds_limits)
-    return {
-      code: "hand-exceeds",
-      level: "bad",
-      text: `With these ${rows} the limits do not hold everywhere in the range.`,
-      figures: {},
-    };
-  const cost = IAE === null ? "" : ` Its IAE is at most ${formatNumber(IAE)} times each operating point's own optimum.`;
-  return schedule.within_allowance
-    ? {
-        code: "hand-holds",
-        level: "good",
-        text: `These ${rows} hold the limits everywhere, within the allowance.${cost}`,
-        figures: {},
-      }
-    : {
-        code: "hand-costs",
-        level: "warning",
-        text: `These ${rows} hold the limits, but cost more than the allowance.${cost}`,
-        figures: {},
-      };
-}
+/** For results that were kept before the service judged a given schedule. */
+const NOT_JUDGED: Finding = {
+  code: "none",
+  level: "note",
+  text: "Computed by an older version: move a row for a verdict on this schedule.",
+  figures: {},
+};
 
-export function verdictOf(content: RangeContent): Finding {
-  if (content.verdict) return content.verdict;
-  if (content.schedule) return manualVerdict(content.schedule);
-  return { code: "none", level: "bad", text: content.why_null?.["schedule"] ?? "There is no schedule for this range.", figures: {} };
+export function verdictOf({ verdict, schedule, why_null }: RangeContent): Finding {
+  if (verdict) return verdict;
+  if (schedule) return NOT_JUDGED;
+  return { code: "none", level: "bad", text: why_null?.["schedule"] ?? "There is no schedule for this range.", figures: {} };
 }
 
 const QUANTITIES: Record<WorstPlace["quantity"], string> = {

@@ -36,6 +36,13 @@ TEST(ProductTraps, BackCalculationOfAPIHasItsIntegralTime) {
     EXPECT_NEAR(number(typed("discretepids_jl", kDesign).settings, "Tt"), std::sqrt(120.0 * 20), 1e-12);
 }
 
+TEST(ProductTraps, NotesOnHowSettingsWereComputedAreToldFromWhatTheProductCannotBe) {
+    for (const char* code : {"action", "clock", "default", "discretisation", "outside-the-twin", "unverified"})
+        EXPECT_FALSE(tells_deviation({code, ""})) << code;
+    for (const char* code : {"filter", "setpoint-weights", "rounding", "nearest", "limit", "a-code-of-tomorrow"})
+        EXPECT_TRUE(tells_deviation({code, ""})) << code;
+}
+
 TEST(ProductTraps, WithoutIntegralActionItsTimeIsNought) {
     const IdealPid P{.Kp = 1.5, .Ti = kNoIntegral};
     EXPECT_EQ(number(typed("discretepids_jl", P).settings, "Ti"), 0);

@@ -37,7 +37,6 @@ export function candidatesCard(methods: string[], first: CandidateChoice, events
   let structure = first.structure;
   let candidates: Candidate[] = [];
   let index = -1;
-  let duration = Infinity;
   const title = h("h2", { id: uniqueId("candidates") }, "Model candidates");
   const list = h("fieldset", { class: "candidates" });
   const reason = h("p", { class: "hint" });
@@ -88,7 +87,7 @@ export function candidatesCard(methods: string[], first: CandidateChoice, events
         h(
           "span",
           { class: "parameters" },
-          parameterTexts(candidate, units, duration).map((text) => h("span", {}, text)),
+          parameterTexts(candidate, units).map((text) => h("span", {}, text)),
         ),
       ),
     );
@@ -99,8 +98,6 @@ export function candidatesCard(methods: string[], first: CandidateChoice, events
     show(model, units) {
       candidates = model.candidates ?? [];
       const preferred = serviceChoice(model);
-      const t = model.fit?.t ?? [];
-      duration = t.length > 1 ? t[t.length - 1]! - t[0]! : Infinity;
       // The reader's choice is kept when the same record is identified again.
       const again = candidates.findIndex((candidate) => structureTitle(candidate.plant) === structure);
       index = again >= 0 ? again : Math.max(0, preferred);
@@ -108,7 +105,7 @@ export function candidatesCard(methods: string[], first: CandidateChoice, events
       const name = uniqueId("candidate");
       const only: Candidate = { ...model };
       const items = candidates.map((candidate, at) => item(candidate, at, preferred, units, name));
-      const folded = items.filter((_, at) => at !== index && poor(candidates, at));
+      const folded = items.filter((_, at) => at !== index && candidates[at]!.much_worse);
       list.replaceChildren(
         h("legend", { class: "visually-hidden" }, "Which model to use"),
         ...(items.length > 0 ? items.filter((row) => !folded.includes(row)) : [item(only, -1, -1, units, name)]),
@@ -134,14 +131,6 @@ export function candidatesCard(methods: string[], first: CandidateChoice, events
   };
 }
 
-/** A candidate whose fit is this much below the best, in per cent, is folded at first. */
-const WORSE_PERCENT = 3;
-
-function poor(candidates: Candidate[], at: number): boolean {
-  const fits = candidates.map((candidate) => candidate.fit_percent ?? -Infinity);
-  return fits[at]! < Math.max(...fits) - WORSE_PERCENT;
-}
-
 const capital = (text: string): string => text.charAt(0).toUpperCase() + text.slice(1);
 
 /** For structures that their parameters alone do not describe. In a narrow card it scrolls, also with the keyboard. */
@@ -153,13 +142,11 @@ function formulaOf(candidate: Candidate): HTMLElement | null {
   return formula;
 }
 
-/**
- * "K 1.25 ± 0.01 °C/%" for each parameter; for a transfer function only the errors of its coefficients. A time whose
- * error is longer than the record is shown as unknown.
- */
-export function parameterTexts(candidate: Candidate, units: UnitNames, duration = Infinity): string[] {
+/** "K 1.25 ± 0.01 °C/%" for each parameter; for a transfer function only the errors of its coefficients. A time that
+    the record does not determine is shown as unknown. */
+export function parameterTexts(candidate: Candidate, units: UnitNames): string[] {
   const errors = candidate.standard_errors ?? {};
-  const known = (name: string): boolean => !(["L", "T", "T1", "T2"].includes(name) && (errors[name] ?? 0) > duration);
+  const known = (name: string): boolean => !candidate.undetermined?.includes(name);
   const texts = Object.entries(candidate.plant).flatMap(([name, value]) => {
     if (typeof value !== "number" || (candidate.plant.type === "ipdt" && name === "T" && value === 0)) return [];
     const unit = parameterUnit(candidate.plant, name, units);

@@ -1,5 +1,5 @@
 // The settings in the product's own list: the values to type, the effect in the block, and the deviations.
-import type { AsEntered, Entry, Notice, Product } from "../../api/types.ts";
+import type { AsEntered, Entry, Product } from "../../api/types.ts";
 import { breakable, h, uniqueId } from "../../dom.ts";
 import {
   builtRows,
@@ -22,7 +22,7 @@ export interface TypedSettings {
   name: string;
   entered: AsEntered;
   /** The ideal loop, and the implemented one if it is known; null for settings that are tried by hand. */
-  judged: Pick<Entry, "robustness" | "performance" | "implemented" | "warnings" | "longest_sample_time"> | null;
+  judged: Pick<Entry, "robustness" | "performance" | "implemented" | "warnings" | "longest_sample_time" | "verdict"> | null;
   time: string;
 }
 
@@ -102,14 +102,14 @@ export function typedCard(announce: (sentence: string) => void, ...below: HTMLEl
   };
 }
 
-const noteItems = (notes: Notice[]): HTMLElement =>
+const noteItems = (notes: AsEntered["notes"]): HTMLElement =>
   h(
     "ul",
     { class: "notes" },
     notes.map((note) => h("li", {}, note.detail)),
   );
 
-const noteList = (heading: string, notes: Notice[]): HTMLElement[] =>
+const noteList = (heading: string, notes: AsEntered["notes"]): HTMLElement[] =>
   notes.length === 0 ? [] : [h("h3", {}, heading), noteItems(notes)];
 
 /** The implemented loop next to the ideal one, after the most important remarks. */
@@ -117,7 +117,7 @@ function judgement(judged: TypedSettings["judged"], time: string): HTMLElement[]
   if (!judged) return [h("p", { class: "hint" }, "Manual settings: the figures next to the sliders are those of the loop with an ideal controller.")];
   const { implemented } = judged;
   const differs = implemented ? differenceSentence(implemented) : "";
-  const sampling = samplingSentences(implemented, judged.longest_sample_time, time).join(" ");
+  const sampling = samplingSentences(judged, time).join(" ");
   return [
     ...builtTroubles(judged).map((warning) =>
       h("p", { class: warning.code === "unstable-as-built" ? "trouble bad" : "trouble" }, warning.detail),

@@ -64,8 +64,10 @@ void HeldMotion::advance(const HeldStep& step, double v, std::vector<double>& x)
     std::copy(next, next + n_, x.begin());
 }
 
+double HeldMotion::value(const std::vector<double>& x, double v) const { return dot(C_, x) + D_ * v; }
+
 OutputMotion HeldMotion::output(const std::vector<double>& x, double v) const {
-    return {dot(C_, x) + D_ * v, dot(CA_, x) + CB_ * v, dot(CAA_, x) + CAB_ * v};
+    return {value(x, v), dot(CA_, x) + CB_ * v, dot(CAA_, x) + CAB_ * v};
 }
 
 std::vector<double> HeldMotion::rate(const std::vector<double>& x, double v) const {

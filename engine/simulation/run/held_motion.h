@@ -29,6 +29,7 @@ public:
     double direct_term() const { return D_; }
     HeldStep step(double h) const;
     void advance(const HeldStep& step, double v, std::vector<double>& x) const;
+    double value(const std::vector<double>& x, double v) const;  ///< y alone
     OutputMotion output(const std::vector<double>& x, double v) const;
     std::vector<double> rate(const std::vector<double>& x, double v) const;  ///< A x + B v
     const std::vector<double>& C() const { return C_; }

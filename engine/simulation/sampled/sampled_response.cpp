@@ -70,7 +70,7 @@ private:
         return !(largest_u_ <= kMaxResponseRatio * sizes_.u && largest_y_ <= kMaxResponseRatio * sizes_.y);
     }
     void run_piece(Piece& piece, int level, double t, double t_end, double v, double u);
-    void add_node(double t, double v, double u);
+    void add_node(double t, const OutputMotion& now, double u);
     bool swings(Piece& piece, int level, std::vector<double> x, const ResponseNode& left, const OutputMotion& end,
                 double v);
     void note(double t);
@@ -127,8 +127,7 @@ std::vector<Piece> SampledRun::pieces() const {
     return made;
 }
 
-void SampledRun::add_node(double t, double v, double u) {
-    const OutputMotion now = motion_.output(x_, v);
+void SampledRun::add_node(double t, const OutputMotion& now, double u) {
     response_.nodes.push_back({t, now.y, now.slope, u, 0, in_.r * t - x_.back()});
     largest_y_ = std::max(largest_y_, std::abs(now.y));
     largest_u_ = std::max(largest_u_, std::abs(u));
@@ -139,7 +138,7 @@ bool SampledRun::swings(Piece& piece, int level, std::vector<double> x, const Re
                         const OutputMotion& end, double v) {
     const double h = halved(piece.whole, level).h, s = kProbeShare, r = 1 - s;
     motion_.advance(halved(piece.probe, level), v, x);
-    const double y = motion_.output(x, v).y;
+    const double y = motion_.value(x, v);
     const double cubic =
         r * r * (1 + 2 * s) * left.y + s * s * (1 + 2 * r) * end.y + h * s * r * (r * left.y_slope - s * end.slope);
     return std::abs(cubic - y) > options_.tolerance * std::max(largest_y_, std::abs(y));
@@ -152,7 +151,7 @@ void SampledRun::run_piece(Piece& piece, int level, double t, double t_end, doub
     const HeldStep& half = halved(piece.whole, level + 1);
     const double h = 2 * half.h;
     motion_.advance(half, v, x_);
-    const double y_middle = motion_.output(x_, v).y;
+    const double y_middle = motion_.value(x_, v);
     motion_.advance(half, v, x_);
     const OutputMotion end = motion_.output(x_, v);
     const double cubic = 0.5 * (left.y + end.y) + 0.125 * h * (left.y_slope - end.slope);
@@ -166,7 +165,7 @@ void SampledRun::run_piece(Piece& piece, int level, double t, double t_end, doub
         run_piece(piece, level + 1, t_middle, t_end, v, u);
         return;
     }
-    add_node(t_end, v, u);
+    add_node(t_end, end, u);
 }
 
 void SampledRun::run_period(int k) {
@@ -178,7 +177,7 @@ void SampledRun::run_period(int k) {
         const bool loaded = k > load_.whole || (k == load_.whole && piece.from >= load_.rest);
         const double v = input(k, piece.arrived) + (loaded ? in_.d : 0), u = output(k, piece.given);
         const bool jumps = v != last_v_ || response_.nodes.empty() || u != response_.nodes.back().u;
-        if (jumps) add_node(t, v, u);
+        if (jumps) add_node(t, motion_.output(x_, v), u);
         last_v_ = v;
         if (ends_by(t_end)) {
             if (t_end == end_) return run_piece(piece, 0, t, end_, v, u);
@@ -192,7 +191,7 @@ void SampledRun::run_period(int k) {
 void SampledRun::sample(int k) {
     // Taken just before anything changes at t_k: what arrives at that very instant is not seen yet.
     const double v = input(k, false) + (k > load_.whole ? in_.d : 0);
-    u_.push_back(program_.step(in_.r, motion_.output(x_, v).y));
+    u_.push_back(program_.step(in_.r, motion_.value(x_, v)));
 }
 
 void SampledRun::note(double t) {

@@ -42,10 +42,10 @@ int nodes_for(const Loop& loop, const LoopGrid& grid) {
 }
 
 /// What the loop itself says; `add_performance` adds what its responses do.
-Verification verify(const Loop& loop, const Peaks& peaks) {
+Verification verify(const Loop& loop, const Figure& Ms) {
     Verification v;
     const LoopGrid other = make_loop_grid(loop, 0.2, 17);
-    v.ms_grid_difference = std::abs(find_sensitivity_peak(loop, other).value / peaks.S.value - 1);
+    v.ms_grid_difference = std::abs(find_sensitivity_peak(loop, other).value / Ms.value_or(HUGE_VAL) - 1);
     if (const auto pole = rightmost_pole(loop, nodes_for(loop, other))) v.stability_methods_agree = pole->real() < 0;
     return v;
 }
@@ -90,8 +90,7 @@ void warn_of_limits(Evaluation& evaluation, const StepResponse& response, const 
 }
 
 /// Adds the time domain to a stable loop's evaluation.
-void add_performance(Evaluation& evaluation, const LinearPlant& plant, const Loop& loop, const EvaluateOptions& o,
-                     const Peaks& peaks) {
+void add_performance(Evaluation& evaluation, const LinearPlant& plant, const Loop& loop, const EvaluateOptions& o) {
     const auto* npid = std::get_if<Npid>(&evaluation.controller);
     const auto delta_r = npid != nullptr ? npid->delta_r : std::nullopt;
     MeasuredResponse of_setpoint = respond(plant, loop, delta_r, {o.setpoint_step, 0}, o),
@@ -101,7 +100,7 @@ void add_performance(Evaluation& evaluation, const LinearPlant& plant, const Loo
     evaluation.performance.setpoint = setpoint_figures(setpoint, o.setpoint_step, to_infinity, of_setpoint.indices);
     evaluation.performance.load = load_figures(load, to_infinity, of_load.indices);
     if (o.noise) evaluation.performance.noise = noise_figures(loop, *o.noise);
-    evaluation.verification = verify(loop, peaks);
+    evaluation.verification = verify(loop, evaluation.robustness.Ms);
     evaluation.verification.setpoint_errors = of_setpoint.errors;
     evaluation.verification.load_errors = of_load.errors;
     evaluation.verification.iae_step_halving = of_load.errors.IAE;
@@ -162,10 +161,9 @@ Expected<Evaluation> evaluate_linear(const AnalysedLinear& subject, const Contro
     const StabilityCount count = count_unstable_poles(*loop);
     const LoopGrid grid = make_peak_grid(*loop);
     if (count.stable()) {
-        const Peaks peaks = find_peaks(*loop, grid);
-        evaluation.robustness = robustness_of(peaks, find_margins(*loop, grid));
+        evaluation.robustness = robustness_of(*loop, grid);
         if (auto error = stopped(options)) return *error;
-        add_performance(evaluation, subject.nominal, *loop, options, peaks);
+        add_performance(evaluation, subject.nominal, *loop, options);
     } else {
         mark_unstable(evaluation, count);
     }
@@ -188,18 +186,18 @@ Expected<Evaluation> evaluate_measured(const MeasuredPlant& plant, const Control
     if (auto error = refuse_evaluation(controller, options)) return *error;
     const auto loop = MeasuredLoop::make(plant, gains(controller));
     if (!loop) return of_controller(loop.error());
-    if (const auto reason = loop->band_too_short()) return Error{ErrorKind::unsupported, "controller", *reason};
 
     Evaluation evaluation = begun(controller, options);
     evaluation.performance = no_performance(kNoTime);
     if (options.noise) evaluation.performance.noise = NoisePerformance{no_figure(kNoTime), no_figure(kNoTime)};
-    const StabilityCount count = loop->count_unstable_poles();
+    const StabilityCount count = count_unstable_poles(*loop);
+    const LoopGrid grid = make_loop_grid(*loop);
     if (count.stable())
-        evaluation.robustness = robustness_of(loop->peaks(), loop->margins());
+        evaluation.robustness = robustness_of(*loop, grid);
     else
         mark_unstable(evaluation, count);
     if (std::holds_alternative<Npid>(controller)) warn_of_linear_part(evaluation);
-    if (options.points >= 2) evaluation.frequency = frequency_traces(*loop, options.points);
+    if (options.points >= 2) evaluation.frequency = frequency_traces(grid, options.points);
     return evaluation;
 }
 

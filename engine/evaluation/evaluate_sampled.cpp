@@ -57,14 +57,14 @@ Expected<DeviceLoop> evaluate_sampled(const AnalysedPlant& subject, const Sample
     if (const auto error = refuse_sampling(*linear, law.Ts, law.computation_delay)) return *error;
     DeviceLoop on_device;
     const SampledLoop loop(*linear, law);
-    const LoopGrid grid = loop.grid();
-    const StabilityCount count = loop.count_unstable_poles(grid);
+    const LoopGrid grid = make_peak_grid(loop);
+    const StabilityCount count = count_unstable_poles(loop, grid);
     if (!count.stable()) {
         on_device.robustness = unstable_robustness(count);
         on_device.performance = no_performance("On the controller as it is built the loop is unstable.");
         return on_device;
     }
-    on_device.robustness = robustness_of(loop.peaks(grid), loop.margins(grid));
+    on_device.robustness = robustness_of(loop, grid);
     if (auto error = stopped(options)) return *error;
     const NonlinearSystem* system = subject.equations();
     ProgramLimits all = limits;

@@ -31,7 +31,8 @@ void store_margins(Robustness& r, const Margins& m) {
 
 }  // namespace
 
-Robustness robustness_of(const Peaks& peaks, const Margins& margins) {
+Robustness robustness_of(const AnyLoop& loop, const LoopGrid& grid) {
+    const Peaks peaks = find_peaks(loop, grid);
     Robustness r;
     r.stable = true;
     const std::string unbounded = "The derivative has no filter: |C S| grows without bound with frequency.",
@@ -41,7 +42,7 @@ Robustness robustness_of(const Peaks& peaks, const Margins& margins) {
     r.Mks = finite_or(peaks.CS.value, unbounded);
     r.omega_Ms = finite_or(peaks.S.omega, at_infinity);
     r.omega_Mt = finite_or(peaks.T.omega, at_infinity);
-    store_margins(r, margins);
+    store_margins(r, find_margins(loop, grid));
     const bool by_S = peaks.S.value >= peaks.T.value;
     const Peak& largest = by_S ? peaks.S : peaks.T;
     r.binding = std::string(by_S ? "Ms" : "Mt") +
@@ -238,8 +239,7 @@ FrequencyTraces frequency_traces(const Loop& loop, const LoopGrid& grid, int poi
     return traces_of(shown, phase);
 }
 
-FrequencyTraces frequency_traces(const MeasuredLoop& loop, int points) {
-    const LoopGrid whole = loop.grid();
+FrequencyTraces frequency_traces(const LoopGrid& whole, int points) {
     LoopGrid some;
     const std::size_t max = static_cast<std::size_t>(points),
                       stride = std::max<std::size_t>(1, (whole.omega.size() + max - 1) / max);

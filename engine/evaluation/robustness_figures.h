@@ -5,17 +5,14 @@
 #include <vector>
 
 #include "engine/evaluation/evaluation.h"
-#include "engine/loop/frequency_grid.h"
 #include "engine/loop/margins.h"
-#include "engine/loop/measured_loop.h"
 #include "engine/loop/peaks.h"
-#include "engine/loop/stability.h"
 #include "engine/plant/plant_family.h"
 
 namespace tunewright {
 
-/// Of a stable loop.
-Robustness robustness_of(const Peaks& peaks, const Margins& margins);
+/// Of a stable loop, from its peaks and margins on a grid of its own.
+Robustness robustness_of(const AnyLoop& loop, const LoopGrid& grid);
 
 /// Of an unstable loop: every figure is empty and has the reason.
 Robustness unstable_robustness(const StabilityCount& count);
@@ -31,7 +28,7 @@ RegionFigures region_figures(const PlantFamily& family, const ParallelPid& contr
 FrequencyTraces frequency_traces(const Loop& loop, const LoopGrid& grid, int points,
                                  const std::vector<double>& kept = {});
 
-/// The whole measured band.
-FrequencyTraces frequency_traces(const MeasuredLoop& loop, int points);
+/// The whole grid, of a measured plant, every so many points.
+FrequencyTraces frequency_traces(const LoopGrid& whole, int points);
 
 }  // namespace tunewright

@@ -1,7 +1,4 @@
 // Frequencies at which a loop is looked at: chosen by the loop itself.
-//
-//   const LoopGrid grid = make_loop_grid(loop);
-//   const Margins margins = find_margins(loop, grid);   // one grid serves peaks and margins alike
 #pragma once
 
 #include <functional>
@@ -11,12 +8,6 @@
 #include "engine/loop/loop.h"
 
 namespace tunewright {
-
-struct LoopGrid {
-    std::vector<double> omega;     ///< > 0, ascending, at least two
-    std::vector<LoopPoint> point;  ///< the loop at each omega
-    double resolved_to = 0;  ///< above it the dead time turns L faster than the grid follows; |L| is still followed
-};
 
 /// Where a grid starts from: `density` points a decade from far below to far above every corner of plant and
 /// controller, or up to `highest`, and more at resonances. `open_loop`: L(j omega), asked at a few frequencies for

@@ -5,15 +5,13 @@
 #include <limits>
 #include <numbers>
 
-#include "engine/loop/interior_margins.h"
+#include "engine/loop/winding.h"
 
 namespace tunewright {
 namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double kMaxRelativeChange =
-    0.4;  // |D2 - D1| relative to the smaller: below it the argument cannot be mistaken
 constexpr int kMaxHalvings = 40;
 constexpr double kMaxAxisDistance = 1e-9;  // |D|: closer to 0 counts as on the axis
 constexpr double kTurnsResolved = 60;      // periods of the longer dead time that are followed one by one
@@ -21,17 +19,15 @@ constexpr int kPointsPerDecade = 24;
 
 constexpr double kBelowCorners = 1e-3, kAboveCorners = 1e2;  // of the outermost corners
 constexpr double kGridStep = 0.05;                           // of S between neighbours
-constexpr double kMinPeakRatio = 1 + 1e-12;  // a limit must exceed a peak by more than rounding to stand for it
 
-using Function = std::function<Complex(double)>;
-
-double turn_between(const Function& D, double left, Complex D_left, double right, Complex D_right, int depth) {
-    const double smaller = std::min(std::abs(D_left), std::abs(D_right));
-    if (depth == 0 || std::abs(D_right - D_left) <= kMaxRelativeChange * smaller) return std::arg(D_right / D_left);
+/// Follows D from one frequency to another, halving the step until its turn is unmistakable.
+void follow(const ImcLoop& loop, Winding& winding, double left, Complex D_left, double right, Complex D_right,
+            int depth = kMaxHalvings) {
+    if (depth == 0 || Winding::is_short(D_left, D_right)) return winding.turn(std::arg(D_right / D_left), D_right);
     const double middle = std::sqrt(left * right);
-    const Complex D_middle = D(middle);
-    return turn_between(D, left, D_left, middle, D_middle, depth - 1) +
-           turn_between(D, middle, D_middle, right, D_right, depth - 1);
+    const Complex D_middle = loop.characteristic(middle);
+    follow(loop, winding, left, D_left, middle, D_middle, depth - 1);
+    follow(loop, winding, middle, D_middle, right, D_right, depth - 1);
 }
 
 }  // namespace
@@ -47,71 +43,54 @@ Complex ImcLoop::characteristic(double omega) const {
     return 1.0 + (plant_.at(s) - controller_.model(s)) * controller_.Q(s);
 }
 
-bool ImcLoop::stable() const {
-    const Function D = [this](double omega) { return characteristic(omega); };
-    const Complex start = D(0);
-    if (!(start.real() > kMaxAxisDistance)) return false;  // an odd number of turns: P(0) and the model differ in sign
-    const double ratio = std::pow(10.0, 1.0 / kPointsPerDecade);
-    double angle = 0, omega = lowest_corner() * kBelowCorners;
-    Complex last = D(omega);
-    angle += std::arg(last / start);
-    // P, G and Q have fallen below their corners from here on: D stays near 1.
-    const double end = kAboveCorners * highest_corner();
-    while (omega < end) {
-        const Complex next = D(omega * ratio);
-        if (std::abs(next) < kMaxAxisDistance) return false;
-        angle += turn_between(D, omega, last, omega * ratio, next, kMaxHalvings);
-        omega *= ratio;
-        last = next;
-    }
-    angle += std::arg(1.0 / last);
-    return std::lround(angle / std::numbers::pi) == 0;
+LoopGrid ImcLoop::ends() const {
+    const double lambda = controller_.lambda,
+                 CS = controller_.beta * controller_.tau / (controller_.kp * lambda * lambda);
+    return {{0, std::numeric_limits<double>::infinity()}, {at(0), {0, 1, 0, CS}}};
 }
 
-double ImcLoop::lowest_corner() const {
+ImcLoop::Band ImcLoop::band() const {
     double low = std::min(1 / controller_.lambda, 1 / controller_.tau);
-    for (const auto pole : plant_.poles()) low = std::min(low, std::abs(pole));
-    for (const auto zero : plant_.zeros()) low = std::min(low, std::abs(zero));
-    return low;
-}
-
-double ImcLoop::highest_corner() const {
     double high = std::max(
         {1 / controller_.lambda, 1 / controller_.tau, controller_.beta != 0 ? 1 / std::abs(controller_.beta) : 0});
     for (const double L : {plant_.dead_time(), controller_.theta})
         if (L > 0) high = std::max(high, 1 / L);
-    for (const auto pole : plant_.poles()) high = std::max(high, std::abs(pole));
-    for (const auto zero : plant_.zeros()) high = std::max(high, std::abs(zero));
-    return high;
+    for (const auto& roots : {plant_.poles(), plant_.zeros()})
+        for (const auto root : roots) {
+            low = std::min(low, std::abs(root));
+            high = std::max(high, std::abs(root));
+        }
+    return {low * kBelowCorners, high * kAboveCorners};
 }
 
-LoopGrid ImcLoop::grid() const {
-    const double low = lowest_corner() * kBelowCorners, high = highest_corner() * kAboveCorners;
+LoopGrid make_loop_grid(const ImcLoop& loop) {
+    const auto [low, high] = loop.band();
     const int n = static_cast<int>(std::ceil(kPointsPerDecade * std::log10(high / low)));
     std::vector<double> base;
     for (int i = 0; i <= n; ++i) base.push_back(low * std::pow(high / low, static_cast<double>(i) / n));
-    const double longest = std::max(plant_.dead_time(), controller_.theta);
+    const double longest = loop.longest_dead_time();
     const double resolved_to = longest > 0 ? kTurnsResolved * 2 * std::numbers::pi / longest : base.back();
-    return refined_grid([this](double omega) { return at(omega); }, base, resolved_to, kGridStep);
+    return refined_grid([&](double omega) { return loop.at(omega); }, base, resolved_to, kGridStep);
 }
 
-Peaks ImcLoop::peaks(const LoopGrid& grid) const {
-    Peaks peaks = find_interior_peaks([this](double omega) { return at(omega); }, grid);
-    const auto raise = [](Peak& peak, double value, double omega) {
-        if (value > peak.value * kMinPeakRatio || (value >= peak.value && omega == 0)) peak = {value, omega};
-    };
-    const LoopPoint zero = at(0);
-    raise(peaks.S, std::abs(zero.S), 0);
-    raise(peaks.T, std::abs(zero.T), 0);
-    raise(peaks.CS, std::abs(zero.CS), 0);
-    const double infinity = std::numeric_limits<double>::infinity(), lambda = controller_.lambda;
-    raise(peaks.S, 1, infinity);
-    raise(peaks.CS, std::abs(controller_.beta * controller_.tau / (controller_.kp * lambda * lambda)), infinity);
-    return peaks;
-}
-
-Margins ImcLoop::margins(const LoopGrid& grid) const {
-    return find_interior_margins([this](double omega) { return at(omega).L; }, grid, plant_.dead_time());
+StabilityCount count_unstable_poles(const ImcLoop& loop) {
+    const Complex start = loop.characteristic(0);
+    // Else an odd number of turns: P(0) and the model differ in sign.
+    if (!(start.real() > kMaxAxisDistance)) return {.unstable_poles = 1};
+    const double ratio = std::pow(10.0, 1.0 / kPointsPerDecade);
+    const auto [low, end] = loop.band();
+    Winding winding(start);
+    Complex last = loop.characteristic(low);
+    winding.turn(std::arg(last / start), last);
+    for (double omega = low; omega < end; omega *= ratio) {
+        const Complex next = loop.characteristic(omega * ratio);
+        if (std::abs(next) < kMaxAxisDistance) return {.on_the_boundary = true};
+        follow(loop, winding, omega, last, omega * ratio, next);
+        last = next;
+    }
+    // P, G and Q have fallen below their corners: D stays near 1.
+    const double angle = winding.angle() + std::arg(1.0 / last);
+    return {.unstable_poles = static_cast<int>(std::lround(-angle / std::numbers::pi))};
 }
 
 }  // namespace tunewright

@@ -5,12 +5,10 @@
 // On the model itself D = 1: T is the design's own.
 #pragma once
 
-#include <functional>
+#include <algorithm>
 
 #include "engine/controller/imc_controller.h"
-#include "engine/loop/frequency_grid.h"
-#include "engine/loop/margins.h"
-#include "engine/loop/peaks.h"
+#include "engine/loop/frequency_loop.h"
 
 namespace tunewright {
 
@@ -21,21 +19,24 @@ public:
 
     LoopPoint at(double omega) const;
     std::complex<double> characteristic(double omega) const;  ///< D
+    LoopGrid ends() const;
+    double turning_time() const { return plant_.dead_time(); }
+    double longest_dead_time() const { return std::max(plant_.dead_time(), controller_.theta); }
 
-    /// Plant and Q being stable, the loop is where D does not encircle 0: the change of its argument from 0 to
-    /// infinity, step by step, until it cannot be mistaken.
-    bool stable() const;
-
-    LoopGrid grid() const;
-    Peaks peaks(const LoopGrid& grid) const;  ///< of a stable loop, both ends included
-    Margins margins(const LoopGrid& grid) const;
+    struct Band {
+        double low, high;
+    };
+    Band band() const;  ///< from far below to far above the corners of plant, model and Q
 
 private:
-    double lowest_corner() const;
-    double highest_corner() const;
-
     const LinearPlant& plant_;
     ImcController controller_;
 };
+
+LoopGrid make_loop_grid(const ImcLoop& loop);
+
+/// Plant and Q being stable, the loop is where D does not encircle 0: the change of its argument from 0 to infinity,
+/// step by step, until it cannot be mistaken.
+StabilityCount count_unstable_poles(const ImcLoop& loop);
 
 }  // namespace tunewright

@@ -128,6 +128,15 @@ std::vector<LoopPoint> Loop::at(std::span<const double> omega) const {
     return points;
 }
 
+LoopGrid Loop::ends() const {
+    LoopPoint zero = at(0);
+    if (!std::isfinite(magnitude(zero.CS))) zero.CS = 0;
+    // A dead time turns L to every direction again and again, to the worst too.
+    const double q = signed_high_frequency_gain(), L = plant_->dead_time() > 0 ? -std::abs(q) : q, nearest = 1 + L;
+    return {{0, std::numeric_limits<double>::infinity()},
+            {zero, {L, 1 / nearest, L / nearest, controller_high_frequency_gain() / nearest}}};
+}
+
 int Loop::controller_excess() const {
     const int integral = gains_.Ki != 0 ? 1 : 0;
     const int denominator = filter_order(gains_.filter.type) + integral;

@@ -21,6 +21,13 @@ struct LoopPoint {
     std::complex<double> L, S, T, CS;
 };
 
+/// Points along a loop, omega ascending.
+struct LoopGrid {
+    std::vector<double> omega;
+    std::vector<LoopPoint> point;  ///< the loop at each omega
+    double resolved_to = 0;  ///< above it the dead time turns L faster than the grid follows; |L| is still followed
+};
+
 /// What no loop may have, whatever the plant: numbers that are not finite, Tf <= 0 with a filter, all gains 0, a
 /// derivative of r without filter.
 std::optional<Error> check_controller(const ParallelPid& gains);
@@ -38,6 +45,9 @@ public:
     LoopPoint at(double omega) const;
     /// At many frequencies, several times as quick; the same to 1e-12 of each.
     std::vector<LoopPoint> at(std::span<const double> omega) const;
+    /// At 0 and, with a dead time at its worst phase, at infinity; |C S| is left out at 0 where it is infinite.
+    LoopGrid ends() const;
+    double turning_time() const { return plant_->dead_time(); }
     std::complex<double> controller(std::complex<double> s) const;
     std::complex<double> open_loop(std::complex<double> s) const;
 

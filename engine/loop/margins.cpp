@@ -1,13 +1,21 @@
+// Margins of a loop whose dead time turns L any number of times between two points of its grid.
+//
+// 1. Between neighbours that a dead time turns by less than a radian, L crosses the real axis and the unit circle at
+//    most once: where its sign, or |L| - 1, changes.
+// 2. Where it turns by more, crossings of the real axis lie 2 pi/delay apart, all along a |L| that rises or falls. The
+//    one nearest to -1 is the first beside the place where |L| = 1; where there is none, the first beside the top of
+//    |L|: that of a hill between three points of the grid, else the end at which |L| is larger.
+// 3. From there the axis is walked along in strides of a quarter of a radian of the dead time, to the first change of
+//    sign on the negative side on either hand, which is located to rounding.
+// 4. Stretches whose |L| is smaller than at a crossing that is known are left out.
 #include "engine/loop/margins.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <numbers>
 
-#include "engine/loop/interior_margins.h"
 #include "engine/loop/stability.h"
 #include "engine/numerics/fast_complex.h"
 #include "engine/numerics/optimise/line_search.h"
@@ -34,91 +42,22 @@ constexpr double kEdgeTolerance = 1e-13;    // relative, of the frequency at whi
 constexpr double kMinShareOfMaximum = 0.9;  // of the largest value so far: a grid point below it is no peak's top
 constexpr double kMinRelevantShare = 0.45;  // of the largest value so far: 2 |T| cannot come near it
 
-using OpenLoop = std::function<std::complex<double>(double)>;
-
 /// The frequency at which L crosses the real axis, between two at which it is known.
-double real_crossing(const OpenLoop& open_loop, double left, double right, std::complex<double> a,
-                     std::complex<double> b) {
+double real_crossing(const AnyLoop& loop, double left, double right, std::complex<double> a, std::complex<double> b) {
     const auto imaginary = [&](double omega) {
-        const auto L = open_loop(omega);
+        const auto L = loop.at(omega).L;
         return L.imag() / magnitude(L);
     };
     return log_root(imaginary, left, right, a.imag() / magnitude(a), b.imag() / magnitude(b), kLogFrequencyTolerance);
 }
 
 /// The frequency at which |L| = 1, between two such frequencies.
-double unit_crossing(const OpenLoop& open_loop, double left, double right, std::complex<double> a,
-                     std::complex<double> b) {
-    const auto log_gain = [&](double omega) { return std::log(magnitude(open_loop(omega))); };
+double unit_crossing(const AnyLoop& loop, double left, double right, std::complex<double> a, std::complex<double> b) {
+    const auto log_gain = [&](double omega) { return std::log(magnitude(loop.at(omega).L)); };
     return log_root(log_gain, left, right, std::log(magnitude(a)), std::log(magnitude(b)), kLogFrequencyTolerance);
 }
 
-/// The first frequency on the way at which L is negative: where |L| falls, or rises, all the way from 1 or from a top
-/// on, no later one is as near to -1.
-void note_first_crossing(Margins& margins, const OpenLoop& open_loop, double delay, double from, double to) {
-    const double stride = std::copysign(kStride / delay, to - from);
-    auto a = open_loop(from);
-    for (int i = 0; i < kMaxStrides && from != to; ++i) {
-        const bool last = (from + stride - to) * stride >= 0;
-        const double next = last ? to : from + stride;
-        const auto b = open_loop(next);
-        if ((a.imag() < 0) != (b.imag() < 0) && a.real() + b.real() < 0) {
-            const double omega =
-                from < next ? real_crossing(open_loop, from, next, a, b) : real_crossing(open_loop, next, from, b, a);
-            return note_real_crossing(margins, open_loop(omega).real(), omega);
-        }
-        from = next;
-        a = b;
-    }
-}
-
-/// Between the grid's points i - 1 and i, where the dead time turns L often: of all crossings those nearest to -1. They
-/// lie beside |L| = 1, else beside the place where |L| is largest.
-void note_crossings_of_turns(Margins& margins, const OpenLoop& open_loop, const LoopGrid& grid, std::size_t i,
-                             double delay) {
-    const auto gain = [&](std::size_t k) { return magnitude(grid.point[k].L); };
-    const double left = grid.omega[i - 1], right = grid.omega[i];
-    const std::size_t larger = gain(i - 1) >= gain(i) ? i - 1 : i;
-    double from = grid.omega[larger];
-    if ((gain(i - 1) < 1) != (gain(i) < 1)) {
-        from = unit_crossing(open_loop, left, right, grid.point[i - 1].L, grid.point[i].L);
-    } else if (larger > 0 && larger + 1 < grid.omega.size() && gain(larger) >= gain(larger - 1) &&
-               gain(larger) >= gain(larger + 1)) {
-        const auto f = [&](double omega) { return magnitude(open_loop(omega)); };
-        const double top = log_maximum(f, grid.omega[larger - 1], {from, gain(larger)}, grid.omega[larger + 1]).x;
-        if (top > left && top < right) from = top;
-    }
-    if (from > left) note_first_crossing(margins, open_loop, delay, from, left);
-    if (from < right) note_first_crossing(margins, open_loop, delay, from, right);
-}
-
-void note_unit_crossing(Margins& margins, std::complex<double> L, double omega) {
-    double lag = std::arg(L) + kPi;  // from -1 counter-clockwise to L: what a further lag uses up, in [0, 2 pi)
-    if (lag >= 2 * kPi) lag -= 2 * kPi;
-    const double distance = std::min(lag, 2 * kPi - lag);
-    if (distance < margins.phase_margin) {
-        margins.phase_margin = distance;
-        margins.gain_crossover = omega;
-    }
-    margins.delay_margin = std::min(margins.delay_margin, lag / omega);
-}
-
-/// The two ends of the axis, where L is real or its magnitude tends to a limit.
-void note_limits(Margins& margins, const Loop& loop) {
-    const auto [numerator, denominator] = loop.fraction(0);
-    if (denominator != 0.0) note_real_crossing(margins, (numerator / denominator).real(), 0);
-    const double q = loop.signed_high_frequency_gain();
-    if (q == 0) return;
-    if (loop.plant().dead_time() > 0) {
-        note_real_crossing(margins, -std::abs(q), kInfinity);  // every direction is reached again and again
-    } else {
-        note_real_crossing(margins, q, kInfinity);
-        if (std::abs(q) > 1) margins.delay_margin = 0;
-    }
-}
-
-}  // namespace
-
+/// L is `real` at some frequency, perhaps at an end of the axis: the factor -1/L brings it to -1.
 void note_real_crossing(Margins& margins, double real, double omega) {
     if (!(real < 0)) return;
     const double factor = -1 / real;
@@ -132,7 +71,58 @@ void note_real_crossing(Margins& margins, double real, double omega) {
     }
 }
 
-Margins find_interior_margins(const OpenLoop& open_loop, const LoopGrid& grid, double delay) {
+/// The first frequency on the way at which L is negative: where |L| falls, or rises, all the way from 1 or from a top
+/// on, no later one is as near to -1.
+void note_first_crossing(Margins& margins, const AnyLoop& loop, double from, double to) {
+    const double stride = std::copysign(kStride / loop.turning_time, to - from);
+    auto a = loop.at(from).L;
+    for (int i = 0; i < kMaxStrides && from != to; ++i) {
+        const bool last = (from + stride - to) * stride >= 0;
+        const double next = last ? to : from + stride;
+        const auto b = loop.at(next).L;
+        if ((a.imag() < 0) != (b.imag() < 0) && a.real() + b.real() < 0) {
+            const double omega =
+                from < next ? real_crossing(loop, from, next, a, b) : real_crossing(loop, next, from, b, a);
+            return note_real_crossing(margins, loop.at(omega).L.real(), omega);
+        }
+        from = next;
+        a = b;
+    }
+}
+
+/// Between the grid's points i - 1 and i, where the dead time turns L often: of all crossings those nearest to -1. They
+/// lie beside |L| = 1, else beside the place where |L| is largest.
+void note_crossings_of_turns(Margins& margins, const AnyLoop& loop, const LoopGrid& grid, std::size_t i) {
+    const auto gain = [&](std::size_t k) { return magnitude(grid.point[k].L); };
+    const double left = grid.omega[i - 1], right = grid.omega[i];
+    const std::size_t larger = gain(i - 1) >= gain(i) ? i - 1 : i;
+    double from = grid.omega[larger];
+    if ((gain(i - 1) < 1) != (gain(i) < 1)) {
+        from = unit_crossing(loop, left, right, grid.point[i - 1].L, grid.point[i].L);
+    } else if (larger > 0 && larger + 1 < grid.omega.size() && gain(larger) >= gain(larger - 1) &&
+               gain(larger) >= gain(larger + 1)) {
+        const auto f = [&](double omega) { return magnitude(loop.at(omega).L); };
+        const double top = log_maximum(f, grid.omega[larger - 1], {from, gain(larger)}, grid.omega[larger + 1]).x;
+        if (top > left && top < right) from = top;
+    }
+    if (from > left) note_first_crossing(margins, loop, from, left);
+    if (from < right) note_first_crossing(margins, loop, from, right);
+}
+
+void note_unit_crossing(Margins& margins, std::complex<double> L, double omega) {
+    double lag = std::arg(L) + kPi;  // from -1 counter-clockwise to L: what a further lag uses up, in [0, 2 pi)
+    if (lag >= 2 * kPi) lag -= 2 * kPi;
+    const double distance = std::min(lag, 2 * kPi - lag);
+    if (distance < margins.phase_margin) {
+        margins.phase_margin = distance;
+        margins.gain_crossover = omega;
+    }
+    margins.delay_margin = std::min(margins.delay_margin, lag / omega);
+}
+
+}  // namespace
+
+Margins find_margins(const AnyLoop& loop, const LoopGrid& grid) {
     Margins margins{kInfinity, 0, kInfinity, kInfinity, 0, 0};
     for (std::size_t i = 1; i < grid.omega.size(); ++i) {
         const auto a = grid.point[i - 1].L, b = grid.point[i].L;
@@ -141,31 +131,22 @@ Margins find_interior_margins(const OpenLoop& open_loop, const LoopGrid& grid, d
         // A crossing nearer to 0 than one that is known says nothing new.
         const bool counts =
             kMaxModulusRatioBetween * std::max(magnitude(a), magnitude(b)) > std::min(1.0, 1 / margins.gain_margin);
-        if (counts && delay * (right - left) > kMaxSingleCrossingTurn) {
-            note_crossings_of_turns(margins, open_loop, grid, i, delay);
+        if (counts && loop.turning_time * (right - left) > kMaxSingleCrossingTurn) {
+            note_crossings_of_turns(margins, loop, grid, i);
         } else if (counts && (a.imag() < 0) != (b.imag() < 0) && (a.real() < 0 || b.real() < 0)) {
-            const double omega = real_crossing(open_loop, left, right, a, b);
-            note_real_crossing(margins, open_loop(omega).real(), omega);
+            const double omega = real_crossing(loop, left, right, a, b);
+            note_real_crossing(margins, loop.at(omega).L.real(), omega);
         }
         if ((magnitude(a) < 1) != (magnitude(b) < 1)) {
-            const double omega = unit_crossing(open_loop, left, right, a, b);
-            note_unit_crossing(margins, open_loop(omega), omega);
+            const double omega = unit_crossing(loop, left, right, a, b);
+            note_unit_crossing(margins, loop.at(omega).L, omega);
         }
     }
-    return margins;
-}
-
-Margins find_interior_margins(const OpenLoop& open_loop, const LoopGrid& grid) {
-    return find_interior_margins(open_loop, grid, 0);
-}
-
-Margins find_margins(const Loop& loop, const LoopGrid& grid) {
-    Margins margins = find_interior_margins(
-        [&](double omega) {
-            return loop.open_loop({0, omega});
-        },
-        grid, loop.plant().dead_time());
-    note_limits(margins, loop);
+    for (std::size_t i = 0; i < loop.ends.omega.size(); ++i) {
+        const double omega = loop.ends.omega[i], L = loop.ends.point[i].L.real();
+        note_real_crossing(margins, L, omega);
+        if (omega == kInfinity && std::abs(L) > 1) margins.delay_margin = 0;
+    }
     return margins;
 }
 

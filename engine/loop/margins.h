@@ -2,10 +2,9 @@
 // oscillates, and how much the dead time may be off.
 #pragma once
 
-#include <functional>
 #include <optional>
 
-#include "engine/loop/frequency_grid.h"
+#include "engine/loop/frequency_loop.h"
 #include "engine/plant/linear/linear_plant.h"
 
 namespace tunewright {
@@ -22,13 +21,10 @@ struct Margins {
     double phase_crossover;  ///< omega of the gain margin (of the lower one if only that exists); 0 without crossing
 };
 
-Margins find_margins(const Loop& loop, const LoopGrid& grid);
-
-/// Of any loop, from its gain as a function of omega: crossings within the grid, without the limits at its ends.
-Margins find_interior_margins(const std::function<std::complex<double>(double)>& open_loop, const LoopGrid& grid);
-
-/// L is `real` at some frequency, perhaps at an end of the axis: the factor -1/L brings it to -1.
-void note_real_crossing(Margins& margins, double real, double omega);
+/// From the crossings within the grid and at the loop's ends. L without the dead time must change little from point to
+/// point: the grid has points of its own around corners and resonances. At a coarser one a crossing beside a hill
+/// between two points would be missed.
+Margins find_margins(const AnyLoop& loop, const LoopGrid& grid);
 
 /// A gain and the period at which the loop oscillates with it.
 struct UltimatePoint {

@@ -1,11 +1,7 @@
 // A controller around a plant that is known at measured frequencies alone.
 #pragma once
 
-#include <vector>
-
-#include "engine/loop/margins.h"
-#include "engine/loop/peaks.h"
-#include "engine/loop/stability.h"
+#include "engine/loop/frequency_loop.h"
 #include "engine/plant/frequency_response.h"
 
 namespace tunewright {
@@ -14,32 +10,30 @@ namespace tunewright {
 /// phase, bounds what follows; below it the plant is taken to be its static gain with its integrators.
 class MeasuredLoop {
 public:
-    /// Errors: those of check_controller.
+    /// Errors: those of check_controller; unsupported ("controller") where |L| at the band's end is above
+    /// kMaxModulusAtEnd, so that the band does not hold all that matters.
     static Expected<MeasuredLoop> make(const MeasuredPlant& plant, const ParallelPid& gains);
 
     LoopPoint at(double omega) const;
 
-    /// Why the band does not hold all that matters, in words: |L| at its end above kLargestEnd. Empty: it does.
-    std::optional<std::string> band_too_short() const;
-    static constexpr double kLargestEnd = 0.5;
+    static LoopGrid ends() { return {}; }       ///< the band's own ends are on its grid
+    static double turning_time() { return 0; }  ///< the grid follows every turn
+    static constexpr double kMaxModulusAtEnd = 0.5;
 
-    /// Nyquist's criterion with the plant's unstable poles and integrators; meaningful where the band is not too short.
-    StabilityCount count_unstable_poles() const;
-
-    /// Within the band; both ends may hold the maximum.
-    Peaks peaks() const;
-    Margins margins() const;
-
-    /// The band's points, with more between them where L turns fast.
-    const std::vector<double>& omega() const { return omega_; }
-    LoopGrid grid() const;  ///< the loop at these
+    const MeasuredPlant& plant() const { return *plant_; }
+    const ParallelPid& gains() const { return gains_; }
 
 private:
-    MeasuredLoop(const MeasuredPlant& plant, const ParallelPid& gains);
+    MeasuredLoop(const MeasuredPlant& plant, const ParallelPid& gains) : plant_(&plant), gains_(gains) {}
 
     const MeasuredPlant* plant_;
     ParallelPid gains_;
-    std::vector<double> omega_;
 };
+
+/// The band's points, with more between them where L turns fast.
+LoopGrid make_loop_grid(const MeasuredLoop& loop);
+
+/// Nyquist's criterion with the plant's unstable poles and integrators.
+StabilityCount count_unstable_poles(const MeasuredLoop& loop);
 
 }  // namespace tunewright

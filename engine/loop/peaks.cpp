@@ -11,7 +11,6 @@
 namespace tunewright {
 namespace {
 
-using LoopFunction = std::function<LoopPoint(double)>;
 using Magnitude = double (*)(const LoopPoint&);
 
 double magnitude_S(const LoopPoint& p) { return magnitude(p.S); }
@@ -32,14 +31,14 @@ constexpr double kMinPeakRatio = 1 + 1e-12;  // a limit must exceed a peak by mo
 constexpr double kMaxLowRise = 0.3;          // of |S| - 1: below it the usual grid is too coarse for so flat a maximum
 constexpr double kFinestStep = 5e-3, kUsualStep = 0.15;  // of S between neighbours
 
-Peak interior_peak(const LoopFunction& at, const LoopGrid& grid, Magnitude magnitude) {
+Peak interior_peak(const AnyLoop& loop, const LoopGrid& grid, Magnitude magnitude) {
     const std::size_t n = grid.omega.size();
     std::vector<double> value(n);
     for (std::size_t i = 0; i < n; ++i) value[i] = magnitude(grid.point[i]);
     const auto largest = std::max_element(value.begin(), value.end());
     Peak best{*largest, grid.omega[static_cast<std::size_t>(largest - value.begin())]};
     const double threshold = kMinShareOfMaximum * *largest;
-    const auto f = [&](double omega) { return magnitude(at(omega)); };
+    const auto f = [&](double omega) { return magnitude(loop.at(omega)); };
     const auto point = [&](std::size_t i) -> Maximum { return {grid.omega[i], value[i]}; };
     const auto refine = [&](std::size_t i) {
         const auto peak = log_maximum(f, grid.omega[i - 1], point(i), grid.omega[i + 1]);
@@ -56,9 +55,9 @@ Peak interior_peak(const LoopFunction& at, const LoopGrid& grid, Magnitude magni
 
 /// Beyond the resolved range: |S| <= 1/(1 - |L|), reached once every turn of the dead time. Scans a few turns around
 /// the places where such a bound is locally largest.
-void raise_by_fast_turning(const Loop& loop, const LoopGrid& grid, Peaks& peaks) {
-    const double L = loop.plant().dead_time();
-    if (L == 0) return;
+void raise_by_fast_turning(const AnyLoop& loop, const LoopGrid& grid, Peaks& peaks) {
+    const double L = loop.turning_time;
+    if (L == 0 || loop.ends.omega.empty() || std::isfinite(loop.ends.omega.back())) return;
     const double period = 2 * std::numbers::pi / L;
     const auto scan = [&](double around, Magnitude magnitude, Peak& best) {
         const double from = std::max(around - 1.5 * period, grid.resolved_to), step = period / 24;
@@ -95,55 +94,17 @@ void raise_by_fast_turning(const Loop& loop, const LoopGrid& grid, Peaks& peaks)
     raise(peaks.CS, magnitude_CS, magnitude_C);
 }
 
-void raise(Peak& peak, double value, double omega) {
-    if (value > peak.value * kMinPeakRatio || (value >= peak.value && omega == 0)) peak = {value, omega};
+void raise_by_ends(const AnyLoop& loop, Peaks& peaks) {
+    for (std::size_t i = 0; i < loop.ends.omega.size(); ++i) {
+        const double omega = loop.ends.omega[i];
+        const auto raise = [&](Peak& peak, double value) {
+            if (value > peak.value * kMinPeakRatio || (value >= peak.value && omega == 0)) peak = {value, omega};
+        };
+        raise(peaks.S, magnitude_S(loop.ends.point[i]));
+        raise(peaks.T, magnitude_T(loop.ends.point[i]));
+        raise(peaks.CS, magnitude_CS(loop.ends.point[i]));
+    }
 }
-
-void raise_by_limits(const Loop& loop, Peaks& peaks) {
-    const LoopPoint zero = loop.at(0);
-    raise(peaks.S, std::abs(zero.S), 0);
-    raise(peaks.T, std::abs(zero.T), 0);
-    if (std::isfinite(std::abs(zero.CS))) raise(peaks.CS, std::abs(zero.CS), 0);
-
-    const double infinity = std::numeric_limits<double>::infinity(), q = loop.signed_high_frequency_gain();
-    const double nearest = loop.plant().dead_time() > 0 ? 1 - std::abs(q) : std::abs(1 + q);
-    raise(peaks.S, 1 / nearest, infinity);
-    raise(peaks.T, std::abs(q) / nearest, infinity);
-    raise(peaks.CS, std::abs(loop.controller_high_frequency_gain()) / nearest, infinity);
-}
-
-}  // namespace
-
-LoopGrid make_peak_grid(const Loop& loop) {
-    LoopGrid grid = make_loop_grid(loop);
-    double largest = 0;
-    for (const auto& point : grid.point) largest = std::max(largest, magnitude(point.S));
-    // Where S never rises far above one, its maximum is as flat: look closer.
-    const double rise = largest - 1;
-    if (rise < kMaxLowRise)
-        grid = refined_grid([&](double omega) { return loop.at(omega); }, grid,
-                            std::clamp(kMaxLowRise * rise, kFinestStep, kUsualStep));
-    return grid;
-}
-
-Peaks find_interior_peaks(const LoopFunction& at, const LoopGrid& grid) {
-    return {interior_peak(at, grid, magnitude_S), interior_peak(at, grid, magnitude_T),
-            interior_peak(at, grid, magnitude_CS)};
-}
-
-Peaks find_interior_sensitivity_peak(const LoopFunction& at, const LoopGrid& grid) {
-    constexpr Peak found{std::numeric_limits<double>::infinity(), 0};
-    return {interior_peak(at, grid, magnitude_S), found, found};
-}
-
-Peak find_sensitivity_peak(const Loop& loop, const LoopGrid& grid) {
-    Peaks peaks = find_interior_sensitivity_peak([&](double omega) { return loop.at(omega); }, grid);
-    raise_by_limits(loop, peaks);
-    raise_by_fast_turning(loop, grid, peaks);
-    return peaks.S;
-}
-
-namespace {
 
 /// Between neighbours of the grid, where the dead time turns L so far that a peak can hide.
 struct Stretch {
@@ -214,9 +175,9 @@ void look_along(const Stretch& s, double time, const std::function<double(double
     }
 }
 
-}  // namespace
-
-void raise_by_turns(const LoopFunction& at, double time, const LoopGrid& grid, Peaks& peaks) {
+/// |1 + L| is at least |1 - |L||, and near its values at both ends where the turn is short.
+void raise_by_turns(const AnyLoop& loop, const LoopGrid& grid, Peaks& peaks) {
+    const double time = loop.turning_time;
     std::vector<Stretch> stretches = stretches_of(grid, time);
     give_room(stretches);
     std::vector<const Stretch*> higher;
@@ -225,7 +186,7 @@ void raise_by_turns(const LoopFunction& at, double time, const LoopGrid& grid, P
         for (const Stretch& s : stretches)
             if (s.*bound > best.value) higher.push_back(&s);
         std::ranges::sort(higher, std::greater(), [&](const Stretch* s) { return s->*bound; });
-        const auto f = [&](double omega) { return value(at(omega)); };
+        const auto f = [&](double omega) { return value(loop.at(omega)); };
         for (const Stretch* s : higher) {
             if (s->*bound <= best.value) return;
             look_along(*s, time, f, best);
@@ -236,13 +197,33 @@ void raise_by_turns(const LoopFunction& at, double time, const LoopGrid& grid, P
     raise(peaks.CS, &Stretch::CS, magnitude_CS);
 }
 
-Peaks find_peaks(const Loop& loop, const LoopGrid& grid) {
-    const LoopFunction at = [&](double omega) { return loop.at(omega); };
-    Peaks peaks = find_interior_peaks(at, grid);
-    raise_by_limits(loop, peaks);  // first: the higher a peak already is, the fewer places may exceed it
-    raise_by_turns(at, loop.plant().dead_time(), grid, peaks);
+/// Beginning with those within the grid.
+Peaks raised(Peaks peaks, const AnyLoop& loop, const LoopGrid& grid) {
+    raise_by_ends(loop, peaks);  // first: the higher a peak already is, the fewer places may exceed it
+    raise_by_turns(loop, grid, peaks);
     raise_by_fast_turning(loop, grid, peaks);
     return peaks;
+}
+
+}  // namespace
+
+Peaks find_peaks(const AnyLoop& loop, const LoopGrid& grid) {
+    return raised({interior_peak(loop, grid, magnitude_S), interior_peak(loop, grid, magnitude_T),
+                   interior_peak(loop, grid, magnitude_CS)},
+                  loop, grid);
+}
+
+Peak find_sensitivity_peak(const AnyLoop& loop, const LoopGrid& grid) {
+    constexpr Peak highest{std::numeric_limits<double>::infinity(), 0};  // which nothing raises
+    return raised({interior_peak(loop, grid, magnitude_S), highest, highest}, loop, grid).S;
+}
+
+LoopGrid refined_at_low_peak(const AnyLoop& loop, LoopGrid grid, double enough_below) {
+    double largest = 0;
+    for (const auto& point : grid.point) largest = std::max(largest, magnitude(point.S));
+    const double rise = largest - 1;
+    if (rise >= kMaxLowRise) return grid;
+    return refined_grid(loop.at, grid, {std::clamp(kMaxLowRise * rise, kFinestStep, kUsualStep), enough_below});
 }
 
 }  // namespace tunewright

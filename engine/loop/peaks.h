@@ -1,9 +1,9 @@
 // The largest values of |S|, |T| and |C S| over all frequencies, both ends included.
 #pragma once
 
-#include <functional>
+#include <optional>
 
-#include "engine/loop/frequency_grid.h"
+#include "engine/loop/frequency_loop.h"
 
 namespace tunewright {
 
@@ -16,25 +16,28 @@ struct Peaks {
     Peak S, T, CS;
 };
 
-/// Peaks of a stable loop, refined between grid points to a relative error below 1e-9 where the grid is resolved;
-/// beyond it (dead time turning faster than any grid) the envelope's maximum is searched turn by turn.
-Peaks find_peaks(const Loop& loop, const LoopGrid& grid);
+/// Peaks of a stable loop, refined between grid points to a relative error below 1e-9 where the grid is resolved, its
+/// ends included. Where S moves little between neighbours the dead time may still turn L between them, and C S with
+/// it: the turns that let a peak be higher are looked at. Beyond the resolved range of a loop that goes on to infinity
+/// the envelope's maximum is searched turn by turn.
+Peaks find_peaks(const AnyLoop& loop, const LoopGrid& grid);
 
 /// That of |S| alone, at a third of the cost.
-Peak find_sensitivity_peak(const Loop& loop, const LoopGrid& grid);
+Peak find_sensitivity_peak(const AnyLoop& loop, const LoopGrid& grid);
 
-/// Peaks of any stable loop among and between the grid's points, without what lies beyond them.
-Peaks find_interior_peaks(const std::function<LoopPoint(double)>& at, const LoopGrid& grid);
+/// The grid, finer where all of |S| - 1 is small and its maximum as flat. `enough_below`: as in Refinement.
+LoopGrid refined_at_low_peak(const AnyLoop& loop, LoopGrid grid, double enough_below = 0);
 
-/// That of |S| alone; those of |T| and |C S| are infinite, so that nothing raises them.
-Peaks find_interior_sensitivity_peak(const std::function<LoopPoint(double)>& at, const LoopGrid& grid);
+/// A grid fine enough for `find_peaks` also there.
+template <FrequencyLoop L>
+LoopGrid make_peak_grid(const L& loop) {
+    return refined_at_low_peak(loop, make_loop_grid(loop));
+}
 
-/// Where S moves little between neighbours of the grid, the dead time may still turn L between them, and C S with it:
-/// |1 + L| is at least |1 - |L||, and near its values at both ends where the turn is short. Looks there, up to
-/// `resolved_to`, where that lets a peak be higher. `time`: rad of turning for one rad/time.
-void raise_by_turns(const std::function<LoopPoint(double)>& at, double time, const LoopGrid& grid, Peaks& peaks);
-
-/// A grid fine enough for `find_peaks` also where all of |S| - 1 is small.
-LoopGrid make_peak_grid(const Loop& loop);
+/// Peaks on the loop's own grid; empty where there is no loop or it is not stable.
+template <FrequencyLoop L>
+std::optional<Peaks> stable_peaks(const Expected<L>& loop) {
+    return is_stable(loop) ? std::optional(find_peaks(*loop, make_loop_grid(*loop))) : std::nullopt;
+}
 
 }  // namespace tunewright

@@ -79,7 +79,7 @@ Expected<WorstPoint> checked(PointDesigns& places, const SettingsInUse& settings
                              double allowance) {
     const auto place = places.at(at);
     if (!place) return place.error();
-    const robust::RobustnessLimits& limits = places.rules().limits;
+    const PeakLimits& limits = places.rules().limits;
     WorstPoint worst{.quantity = quantity, .at = at, .value = {}, .limit = 1 + allowance};
     if (quantity != Quantity::relative_IAE) worst.limit = quantity == Quantity::Ms ? limits.Ms : limits.Mt;
     for (const IdealPid& pid : settings(at)) {

@@ -5,13 +5,11 @@
 #include <limits>
 
 #include "engine/evaluation/best_so_far.h"
-#include "engine/loop/measured_loop.h"
-#include "engine/loop/peaks.h"
-#include "engine/loop/stability.h"
 #include "engine/number_text.h"
 #include "engine/range/one_setting_problem.h"
 #include "engine/range/schedule/point_evaluation.h"
 #include "engine/tuning/limits.h"
+#include "engine/tuning/robust/problem_loops.h"
 #include "engine/tuning/robust/sqp.h"
 #include "engine/tuning/robust/verified_search.h"
 
@@ -100,7 +98,7 @@ bool same(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
 
 class Progressing {
 public:
-    Progressing(const DesignRules& rules, const RunControl& control, const robust::RobustnessLimits& limits)
+    Progressing(const DesignRules& rules, const RunControl& control, const PeakLimits& limits)
         : rules_(rules), control_(control), limits_(limits) {}
 
     void operator()(const JointResult& result, const DesignPoint& x) {
@@ -117,7 +115,7 @@ public:
 private:
     const DesignRules& rules_;
     const RunControl& control_;
-    const robust::RobustnessLimits& limits_;
+    const PeakLimits& limits_;
     int steps_ = 0;
 };
 
@@ -159,25 +157,18 @@ namespace {
 /// Peaks on every plant of the place, those set aside too; empty where one loop is not stable.
 std::optional<Peaks> worst_peaks(const PointDesign& place, const IdealPid& controller) {
     const ParallelPid gains = to_parallel(controller);
-    if (const auto& measured = place.model().measured) {
-        const auto loop = MeasuredLoop::make(*measured, gains);
-        if (!loop || loop->band_too_short() || !loop->count_unstable_poles().stable()) return std::nullopt;
-        return loop->peaks();
-    }
     std::optional<Peaks> worst;
-    const auto take = [&](const LinearPlant& plant) {
-        const auto loop = Loop::make(plant, gains);
-        if (!loop || !count_unstable_poles(*loop).stable()) return false;
-        const Peaks peaks = find_peaks(*loop, make_loop_grid(*loop));
+    const auto take = [&](const auto& loop) {
+        const auto peaks = stable_peaks(loop);
+        if (!peaks) return false;
         if (!worst) worst = peaks;
-        if (peaks.S.value > worst->S.value) worst->S = peaks.S;
-        if (peaks.T.value > worst->T.value) worst->T = peaks.T;
+        if (peaks->S.value > worst->S.value) worst->S = peaks->S;
+        if (peaks->T.value > worst->T.value) worst->T = peaks->T;
         return true;
     };
-    for (std::size_t i = 0; i < place.problem().plants(); ++i)
-        if (!take(place.problem().plant_at(i))) return std::nullopt;
+    if (!robust::holds_on_every_loop(place.problem(), gains, take)) return std::nullopt;
     for (const LinearPlant& plant : place.set_aside())
-        if (!take(plant)) return std::nullopt;
+        if (!take(Loop::make(plant, gains))) return std::nullopt;
     return worst;
 }
 

@@ -36,7 +36,7 @@ enum class Aim { worst, mean };
 
 struct RangeOptions {
     ControllerKind controller = ControllerKind::PID;  ///< PI or PID
-    robust::RobustnessLimits limits = {};             ///< held everywhere; no m_circle
+    PeakLimits limits = {};                           ///< held everywhere; no m_circle
     RobustFilterOptions filter = {};                  ///< empty: range_filter_rule
     Aim aim = Aim::worst;
     double b = 1;                  ///< set-point weight of every row, 0 to 1

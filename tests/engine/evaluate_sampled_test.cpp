@@ -52,7 +52,7 @@ std::vector<ContinuousLoop> continuous_loops(int count) {
 
 double sampled_Ms(const ContinuousLoop& loop, double Ts) {
     const SampledLoop sampled(loop.plant, {.gains = loop.gains, .Ts = Ts});
-    return sampled.count_unstable_poles().stable() ? sampled.peaks(sampled.grid()).S.value : INFINITY;
+    return count_unstable_poles(sampled).stable() ? find_peaks(sampled, make_peak_grid(sampled)).S.value : INFINITY;
 }
 
 // At the longest sample time the sampled loop's Ms is the allowed one, to 1e-3, and at shorter sample times it is

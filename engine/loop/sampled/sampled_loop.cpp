@@ -6,7 +6,6 @@
 #include <numbers>
 #include <vector>
 
-#include "engine/loop/interior_margins.h"
 #include "engine/loop/winding.h"
 #include "engine/numerics/fast_complex.h"
 
@@ -15,11 +14,8 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr int kGridDensity = 24;     // points a decade to start with
-constexpr int kSparseDensity = 8;    // where |S| alone is asked for: its own steps refine the grid
-constexpr double kGridStep = 0.15;   // of S between neighbours
-constexpr double kMaxLowRise = 0.3;  // of |S| - 1: below it so flat a maximum needs a finer grid
-constexpr double kFinestStep = 5e-3;
+constexpr int kSparseDensity = 8;   // points a decade where |S| alone is asked for: its own steps refine the grid
+constexpr double kGridStep = 0.15;  // of S between neighbours
 constexpr double kMinFrequencyShare = 1e-3;  // of 1/Ts: where the integral's phase is read
 constexpr double kLightDamping = 0.3;        // of a plant's pole: below it a resonance shows, also folded below pi/Ts
 constexpr double kMinWidth = 1e-6;           // of a folded resonance, relative
@@ -116,12 +112,23 @@ Complex SampledLoop::open_loop(double omega) const {
     return plant_.at(omega, z) * pulse_response(law_, omega, z);
 }
 
-LoopGrid SampledLoop::grid_from(const Refinement& refinement, int density) const {
+LoopGrid SampledLoop::ends() const {
+    LoopPoint zero{std::numeric_limits<double>::infinity(), 0, 1, 0};
+    if (finite_at_zero())
+        zero = at(0);
+    else if (plant_.plant().integrators() <= 0)
+        zero.CS = 1 / plant_.plant().low_frequency_gain();
     const double highest = highest_frequency();
+    return {{0, highest}, {zero, at(highest)}};
+}
+
+LoopGrid make_loop_grid(const SampledLoop& loop, const Refinement& refinement, int density) {
+    const LinearPlant& plant = loop.plant().plant();
+    const double highest = loop.highest_frequency();
     std::vector<double> base = base_frequencies(
-        plant_.plant(), law_.gains, [&](double omega) { return open_loop(std::min(omega, highest)); }, density,
+        plant, loop.law().gains, [&](double omega) { return loop.open_loop(std::min(omega, highest)); }, density,
         highest);
-    for (const Complex pole : plant_.plant().poles()) {
+    for (const Complex pole : plant.poles()) {
         if (pole.imag() <= highest || std::abs(pole.real()) > kLightDamping * std::abs(pole)) continue;
         const double folded = std::abs(std::remainder(pole.imag(), 2 * highest));
         const double width = std::max(std::abs(pole.real()), kMinWidth * folded);
@@ -132,63 +139,20 @@ LoopGrid SampledLoop::grid_from(const Refinement& refinement, int density) const
     if (base.size() < 2) base.push_back(kMinFrequencyShare * highest);
     std::sort(base.begin(), base.end());
     base.erase(std::unique(base.begin(), base.end()), base.end());
-    return refined_grid([&](double omega) { return at(omega); }, base, highest, refinement);
-}
-
-LoopGrid SampledLoop::grid() const { return grid_of(kGridDensity); }
-
-LoopGrid SampledLoop::grid_of(int density, double enough_below) const {
-    LoopGrid grid = grid_from({kGridStep, enough_below}, density);
-    double largest = 0;
-    for (const LoopPoint& point : grid.point) largest = std::max(largest, magnitude(point.S));
-    const double rise = largest - 1;
-    if (rise >= kMaxLowRise) return grid;
-    return refined_grid([&](double omega) { return at(omega); }, grid,
-                        {std::clamp(kMaxLowRise * rise, kFinestStep, kGridStep), enough_below});
-}
-
-LoopPoint SampledLoop::at_zero() const {
-    if (finite_at_zero()) return at(0);
-    const bool integrates = plant_.plant().integrators() > 0;
-    return {std::numeric_limits<double>::infinity(), 0, 1, integrates ? 0 : 1 / plant_.plant().low_frequency_gain()};
-}
-
-Peaks SampledLoop::peaks(const LoopGrid& grid) const {
-    return raised(find_interior_peaks([&](double omega) { return at(omega); }, grid), grid);
+    return refined_grid([&](double omega) { return loop.at(omega); }, base, highest, refinement);
 }
 
 Peak SampledLoop::sensitivity_peak() const {
-    const LoopGrid grid = grid_of(kSparseDensity);
-    if (!count_unstable_poles(grid).stable()) return {std::numeric_limits<double>::infinity(), 0};
-    return raised(find_interior_sensitivity_peak([&](double omega) { return at(omega); }, grid), grid).S;
+    const LoopGrid grid = refined_at_low_peak(*this, make_loop_grid(*this, kGridStep, kSparseDensity));
+    if (!count_unstable_poles(*this, grid).stable()) return {std::numeric_limits<double>::infinity(), 0};
+    return find_sensitivity_peak(*this, grid);
 }
 
 bool SampledLoop::keeps(double limit) const {
-    const LoopGrid grid = grid_of(kSparseDensity, limit);
+    const LoopGrid grid = refined_at_low_peak(*this, make_loop_grid(*this, {kGridStep, limit}, kSparseDensity), limit);
     if (std::ranges::any_of(grid.point, [=](const LoopPoint& point) { return magnitude(point.S) > limit; }))
         return false;
-    const Peaks peaks = raised(find_interior_sensitivity_peak([&](double omega) { return at(omega); }, grid), grid);
-    return peaks.S.value <= limit && count_unstable_poles(grid).stable();
-}
-
-Peaks SampledLoop::raised(Peaks peaks, const LoopGrid& grid) const {
-    const LoopPoint zero = at_zero();
-    const auto raise = [](Peak& peak, double value) {
-        if (value >= peak.value) peak = {value, 0};
-    };
-    raise(peaks.S, std::abs(zero.S));
-    raise(peaks.T, std::abs(zero.T));
-    raise(peaks.CS, std::abs(zero.CS));
-    raise_by_turns([&](double omega) { return at(omega); }, turn(1), grid, peaks);
-    return peaks;
-}
-
-Margins SampledLoop::margins(const LoopGrid& grid) const {
-    Margins margins = find_interior_margins([&](double omega) { return open_loop(omega); }, grid, turn(1));
-    // At both ends L is real.
-    note_real_crossing(margins, grid.point.back().L.real(), grid.omega.back());
-    if (finite_at_zero()) note_real_crossing(margins, open_loop(0).real(), 0);
-    return margins;
+    return find_sensitivity_peak(*this, grid).value <= limit && count_unstable_poles(*this, grid).stable();
 }
 
 namespace {
@@ -221,7 +185,9 @@ public:
     }
 
     /// Of z and of the dead time from one to the other, rad.
-    double turn(const Value& left, const Value& right) const { return loop_.turn(right.omega - left.omega); }
+    double turn(const Value& left, const Value& right) const {
+        return loop_.turning_time() * (right.omega - left.omega);
+    }
 
 private:
     const SampledLoop& loop_;
@@ -255,21 +221,21 @@ bool follow(const Characteristic& q, Winding& winding, const Characteristic::Val
 
 }  // namespace
 
-StabilityCount SampledLoop::count_unstable_poles() const {
-    return count_unstable_poles(grid_from(kGridStep, kGridDensity));
+StabilityCount count_unstable_poles(const SampledLoop& loop) {
+    return count_unstable_poles(loop, make_loop_grid(loop));
 }
 
-StabilityCount SampledLoop::count_unstable_poles(const LoopGrid& along) const {
-    const Characteristic q(*this);
+StabilityCount count_unstable_poles(const SampledLoop& loop, const LoopGrid& along) {
+    const Characteristic q(loop);
     auto left = q.at(along.omega.front(), along.point.front().L);
     // q is real at both ends: what its argument lacks there to a multiple of pi belongs to the turn.
     const double start = std::arg(left.q), beyond = start - std::numbers::pi * std::round(start / std::numbers::pi);
     Winding winding(left.q);
     StabilityCount count;
-    for (const Complex pole : plant_.poles()) count.unstable_poles += !(magnitude(pole) < kMaxPole);
+    for (const Complex pole : loop.plant().poles()) count.unstable_poles += !(magnitude(pole) < kMaxPole);
     if (count.unstable_poles > 0) return count;
-    if (finite_at_zero()) {
-        const Complex L = open_loop(0);
+    if (loop.finite_at_zero()) {
+        const Complex L = loop.open_loop(0);
         count.on_the_boundary = magnitude(1.0 + L) <= kMaxAxisDistance * (1 + magnitude(L));
     }
     for (std::size_t i = 1; i < along.omega.size() && !count.on_the_boundary; ++i) {

@@ -10,11 +10,8 @@
 #include <complex>
 
 #include "engine/controller/sampled/sampled_pid.h"
-#include "engine/loop/frequency_grid.h"
-#include "engine/loop/margins.h"
 #include "engine/loop/peaks.h"
 #include "engine/loop/sampled/held_plant.h"
-#include "engine/loop/stability.h"
 
 namespace tunewright {
 
@@ -33,33 +30,30 @@ public:
     LoopPoint at(double omega) const;  ///< 0 < omega <= pi/Ts; at 0 without integrators in plant and controller
     std::complex<double> open_loop(double omega) const;
 
-    /// Closed-loop poles on and outside the unit circle, by the argument principle along it.
-    StabilityCount count_unstable_poles() const;
-    StabilityCount count_unstable_poles(const LoopGrid& grid) const;  ///< the same along the loop's own grid
+    LoopGrid ends() const;  ///< S = 0 at 0 with an integrator
+    /// Of z and the dead time.
+    double turning_time() const { return law_.Ts * (plant_.whole_samples() + 1) + plant_.rest(); }
+    bool finite_at_zero() const;
 
-    LoopGrid grid() const;
-    Peaks peaks(const LoopGrid& grid) const;  ///< of a stable loop
     /// Of |S| alone, to 1e-9, at a third of the cost; infinite where the loop is unstable.
     Peak sensitivity_peak() const;
     /// Whether the loop is stable with Ms <= `limit`, which is above 1; at a tenth of the cost.
     bool keeps(double limit) const;
-    Margins margins(const LoopGrid& grid) const;  ///< of a stable loop; the delay margin is that of L's phase
 
     const HeldPlant& plant() const { return plant_; }
     const SampledPid& law() const { return law_; }
     double highest_frequency() const;  ///< pi/Ts
-    /// rad by which z and the dead time turn over so many rad/time.
-    double turn(double omega) const { return omega * (law_.Ts * (plant_.whole_samples() + 1) + plant_.rest()); }
 
 private:
-    bool finite_at_zero() const;
-    LoopGrid grid_from(const Refinement& refinement, int density) const;
-    LoopGrid grid_of(int density, double enough_below = 0) const;
-    Peaks raised(Peaks interior, const LoopGrid& grid) const;  // by turns of the dead time and the limit at 0
-    LoopPoint at_zero() const;                                 // the limit, S = 0 with an integrator
-
     HeldPlant plant_;
     SampledPid law_;
 };
+
+/// As that of a Loop, up to pi/Ts.
+LoopGrid make_loop_grid(const SampledLoop& loop, const Refinement& refinement = 0.15, int density = 24);
+
+/// Closed-loop poles on and outside the unit circle, by the argument principle along it.
+StabilityCount count_unstable_poles(const SampledLoop& loop);
+StabilityCount count_unstable_poles(const SampledLoop& loop, const LoopGrid& grid);  ///< along a grid of its own
 
 }  // namespace tunewright

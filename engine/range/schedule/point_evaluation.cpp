@@ -20,7 +20,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 void add_setting(PointEvaluation& look, const PointDesign& place, const robust::DesignPoint& x, double log_own_IAE,
                  double above) {
-    const robust::RobustnessLimits& limits = place.problem().limits;
+    const PeakLimits& limits = place.problem().limits;
     for (const auto& peak : place.sweep().peaks(x, above)) {
         look.excess = std::max(look.excess, peak.value);
         if (peak.kind == robust::ConstraintKind::S) look.Ms = std::max(look.Ms, limits.Ms * std::exp(peak.value));

@@ -90,13 +90,7 @@ double PointDesign::log_cost_ratio(const DesignPoint& x, double tolerance) const
     return log_cost_ratio(evaluated(x, tolerance));
 }
 
-double PointDesign::excess(const DesignPoint& x) const {
-    if (model_.measured) return robust::excess_on_points(problem_, x);
-    double worst = -1;
-    for (std::size_t i = 0; i < problem_.plants(); ++i)
-        worst = std::max(worst, robust::excess_on(problem_.plant_at(i), problem_, x, {.step = 0.06, .density = 53}));
-    return worst;
-}
+double PointDesign::excess(const DesignPoint& x) const { return robust::worst_excess(problem_, x); }
 
 bool PointDesign::add_worst_inside(const DesignPoint& x, const std::stop_token& stop) {
     if (!model_.family) return false;

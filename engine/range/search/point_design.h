@@ -16,7 +16,7 @@ namespace tunewright::range {
 struct DesignRules {
     bool pid = true;
     robust::FilterRule filter;
-    robust::RobustnessLimits limits;
+    PeakLimits limits;
     double sign = 1;          ///< of Kp
     bool integrated = false;  ///< Ti/Kp in place of the IAE, also where a response could be computed
 };

@@ -124,23 +124,16 @@ ExactStep LimitedLoop::step(Region region, double h) const {
     return Propagator(states(), e.F, e.G, e.b, h).level(0);
 }
 
-LimitedRest find_rest(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& in,
-                      const ActuatorLimits& limits) {
-    LimitedRest rest;
-    rest.linear = steady_state(plant, controller, in);
-    if (!rest.linear.exists) return rest;
-    const double u = rest.linear.u, slack = kRestLimitTolerance * std::abs(u);
-    if (u <= limits.max + slack && u >= limits.min - slack) {
-        rest.exists = rest.within = true;
-        rest.y = rest.linear.y;
-        rest.u = std::clamp(u, limits.min, limits.max);
-        return rest;
-    }
-    if (plant.integrators() > 0 || plant.unstable_poles() > 0) return rest;
-    rest.exists = true;
-    rest.u = u > limits.max ? limits.max : limits.min;
-    rest.y = plant.integrators() < 0 ? 0 : plant.low_frequency_gain() * (rest.u + in.d);
-    return rest;
+SteadyState within_limits(const SteadyState& linear, const LinearPlant& plant, const ActuatorLimits& limits, double d) {
+    SteadyState rest = linear;
+    if (!linear.exists) return rest;
+    rest.u = std::clamp(linear.u, limits.min, limits.max);
+    if (std::abs(rest.u - linear.u) <= kRestLimitTolerance * std::abs(linear.u)) return rest;
+    if (plant.integrators() > 0 || plant.unstable_poles() > 0) return {};
+    return {.exists = true,
+            .y = plant.integrators() < 0 ? 0 : plant.low_frequency_gain() * (rest.u + d),
+            .u = rest.u,
+            .at_limit = true};
 }
 
 }  // namespace tunewright

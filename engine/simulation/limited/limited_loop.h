@@ -58,15 +58,8 @@ private:
     Equations below_, inside_, above_;
 };
 
-/// Where the loop comes to rest within its limits, or at one of them. It has no rest where a limit holds an integrating
-/// or unstable plant.
-struct LimitedRest {
-    bool exists = false, within = false;  ///< within: by the control law, not at a limit
-    double y = 0, u = 0;
-    SteadyState linear;
-};
-
-LimitedRest find_rest(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& in,
-                      const ActuatorLimits& limits);
+/// Where a loop that would rest there without limits comes to rest within them, or at one of them: there it has no rest
+/// on an integrating or unstable plant. `d`: the load.
+SteadyState within_limits(const SteadyState& linear, const LinearPlant& plant, const ActuatorLimits& limits, double d);
 
 }  // namespace tunewright

@@ -79,7 +79,7 @@ public:
           in_(in),
           limits_(limits),
           options_(options),
-          rest_(find_rest(plant, controller, in, limits)),
+          rest_(within_limits(steady_state(plant, controller, in), plant, limits, in.d)),
           beyond_(beyond_bounds(plant, controller, in, limits, rest_.y)),
           history_(response_.nodes, in.d),
           echoes_(echoes_that_count(std::abs(loop_.system().N), options.tolerance, kRetardedEchoes)),
@@ -158,8 +158,8 @@ private:
 
     /// To infinity, once the loop stays within the limits: what the integral's state has yet to change.
     std::optional<double> remaining_error_integral() const {
-        if (!rest_.within || !rest_.linear.error_integral || region_ != Region::inside) return std::nullopt;
-        return *rest_.linear.error_integral - error_integral_in_states(loop_.system(), filter_, now_.x);
+        if (!rest_.error_integral || region_ != Region::inside) return std::nullopt;
+        return *rest_.error_integral - error_integral_in_states(loop_.system(), filter_, now_.x);
     }
 
     StepResponse ended(bool by_rule) {
@@ -346,7 +346,7 @@ private:
     StepInputs in_;
     ActuatorLimits limits_;
     const ResponseOptions& options_;
-    LimitedRest rest_;
+    SteadyState rest_;
     double beyond_;
     StepResponse response_;
     InputHistory history_;

@@ -10,13 +10,16 @@
 
 namespace tunewright {
 
-/// Of the loop without limits: 0 = F x + G v + H r, v = M x + N v + R r + d.
 struct SteadyState {
-    bool exists = false;  ///< false where these equations have no single solution; the rest is 0 then
+    bool exists = false;  ///< else the rest is 0
     double y = 0, u = 0;
-    std::optional<double> error_integral;  ///< integral of r - y from rest at 0 to infinity; with integral action only
+    /// Integral of r - y from rest at 0 to infinity; with integral action only, and not where u rests at a limit.
+    std::optional<double> error_integral = {};
+    bool at_limit = false;
 };
 
+/// Of the loop without limits: 0 = F x + G v + H r, v = M x + N v + R r + d. It does not exist where these equations
+/// have no single solution.
 SteadyState steady_state(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& inputs);
 
 /// The same; with integral action in closed form, from y = r and the plant's gain at rest, for runs by the thousand.

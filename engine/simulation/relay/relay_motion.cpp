@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/numerics/matrix/linear_algebra.h"
 #include "engine/numerics/sign_change.h"
 
 namespace tunewright {
@@ -49,24 +48,13 @@ std::optional<double> Quintic::extremum() const {
 }
 
 RelayMotion::RelayMotion(const LinearPlant& plant, double direction)
-    : n_(plant.realisation().n),
-      integrators_(plant.integrators()),
-      A_(plant.realisation().A),
-      B_(plant.realisation().B),
-      C_(plant.realisation().C),
-      D_(direction * plant.realisation().D),
-      levels_(Index(kLevels)) {
-    for (double& c : C_) c *= direction;
-    CA_ = row_times(C_, A_);
-    CAA_ = row_times(CA_, A_);
-    CB_ = dot(C_, B_);
-    CAB_ = dot(CA_, B_);
+    : HeldMotion(plant, direction, false), integrators_(plant.integrators()), levels_(Index(kLevels)) {
     double fastest = 0;
     for (const auto pole : plant.poles()) {
         const double size = std::abs(pole);
         fastest = std::max(fastest, size);
         const bool decays = pole.real() < -kMaxRelativeRealPart * size;
-        const double ends = decays ? (kDecay + 3.0 * n_) / -pole.real() : std::numeric_limits<double>::infinity();
+        const double ends = decays ? (kDecay + 3.0 * states()) / -pole.real() : std::numeric_limits<double>::infinity();
         if (decays) decay_time_ = std::max(decay_time_, ends);
         if (pole.real() > kMaxRelativeRealPart * size) growth_rate_ = std::max(growth_rate_, pole.real());
         modes_.push_back({size, ends});
@@ -77,55 +65,10 @@ RelayMotion::RelayMotion(const LinearPlant& plant, double direction)
         shortest_ = plant.dead_time() / kStepsPerRadian;
 }
 
-HeldStep RelayMotion::step(double h) const {
-    const int m = n_ + 1;
-    std::vector<double> augmented(Index(m * m), 0.0);
-    for (int i = 0; i < n_; ++i) {
-        for (int j = 0; j < n_; ++j) augmented[Index(i * m + j)] = A_[Index(i * n_ + j)] * h;
-        augmented[Index(i * m + n_)] = B_[Index(i)] * h;
-    }
-    const std::vector<double> exponential = matrix_exponential(augmented, m);
-    HeldStep out{h, std::vector<double>(Index(n_ * n_)), std::vector<double>(Index(n_))};
-    for (int i = 0; i < n_; ++i) {
-        for (int j = 0; j < n_; ++j) out.Phi[Index(i * n_ + j)] = exponential[Index(i * m + j)];
-        out.Gamma[Index(i)] = exponential[Index(i * m + n_)];
-    }
-    return out;
-}
-
 const HeldStep& RelayMotion::level(int k) {
     auto& slot = levels_[Index(k)];
     if (!slot) slot = step(std::ldexp(shortest_, k));
     return *slot;
-}
-
-void RelayMotion::advance(const HeldStep& step, double v, std::vector<double>& x) const {
-    constexpr int kOnStack = 24;
-    std::array<double, kOnStack> small;
-    std::vector<double> large;
-    double* next = small.data();
-    if (n_ > kOnStack) {
-        large.resize(Index(n_));
-        next = large.data();
-    }
-    const double* row = step.Phi.data();
-    for (int i = 0; i < n_; ++i, row += n_) {
-        double sum = step.Gamma[Index(i)] * v;
-        for (int j = 0; j < n_; ++j) sum += row[j] * x[Index(j)];
-        next[i] = sum;
-    }
-    std::copy(next, next + n_, x.begin());
-}
-
-OutputMotion RelayMotion::output(const std::vector<double>& x, double v) const {
-    return {dot(C_, x) + D_ * v, dot(CA_, x) + CB_ * v, dot(CAA_, x) + CAB_ * v};
-}
-
-std::vector<double> RelayMotion::rate(const std::vector<double>& x, double v) const {
-    std::vector<double> out(Index(n_), 0.0);
-    multiply(A_, x, out);
-    for (int i = 0; i < n_; ++i) out[Index(i)] += B_[Index(i)] * v;
-    return out;
 }
 
 bool RelayMotion::bounded() const {

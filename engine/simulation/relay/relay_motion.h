@@ -5,14 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "engine/plant/linear/linear_plant.h"
+#include "engine/simulation/run/held_motion.h"
 
 namespace tunewright {
-
-/// An output with its first two derivatives in time.
-struct OutputMotion {
-    double y = 0, slope = 0, curvature = 0;
-};
 
 /// The quintic through value, slope and curvature at both ends of a step of length h. On steps of a tenth of a radian
 /// of the fastest mode its error is 2e-11 of that mode's amplitude.
@@ -33,29 +28,15 @@ private:
     std::array<double, 6> c_{};
 };
 
-/// x(h) = Phi x + Gamma v for v constant over the step.
-struct HeldStep {
-    double h = 0;
-    std::vector<double> Phi;    ///< n x n, row by row
-    std::vector<double> Gamma;  ///< n
-};
-
-/// x' = A x + B v, y = direction (C x + D v). Steps are matrix exponentials: no discretisation error.
-class RelayMotion {
+/// Its steps as a relay needs them: as long as the modes that are still alive allow.
+class RelayMotion : public HeldMotion {
 public:
     /// `direction` is 1 or -1.
     RelayMotion(const LinearPlant& plant, double direction);
 
-    int states() const { return n_; }
     int integrators() const { return integrators_; }
-    double direct_term() const { return D_; }
-    HeldStep step(double h) const;
     /// The step of length shortest() 2^k, 0 <= k < 60, computed once.
     const HeldStep& level(int k);
-    void advance(const HeldStep& step, double v, std::vector<double>& x) const;
-    OutputMotion output(const std::vector<double>& x, double v) const;
-    std::vector<double> rate(const std::vector<double>& x, double v) const;  ///< A x + B v
-    const std::vector<double>& C() const { return C_; }
 
     double shortest() const { return shortest_; }
     /// The step that the modes still alive `elapsed` after the last change of v allow; `quiet` says that none is.
@@ -73,9 +54,7 @@ private:
         double ends = 0;  ///< when it has decayed; infinite if it does not
     };
 
-    int n_, integrators_;
-    std::vector<double> A_, B_, C_, CA_, CAA_;
-    double D_, CB_ = 0, CAB_ = 0;
+    int integrators_;
     double shortest_ = 1, decay_time_ = 0, growth_rate_ = 0;
     std::vector<Mode> modes_;
     std::vector<std::optional<HeldStep>> levels_;

@@ -10,30 +10,23 @@
 #include "engine/simulation/linear/response_recorder.h"
 #include "engine/simulation/nonlinear/nonlinear_loop.h"
 #include "engine/simulation/nonlinear/plant_run.h"
+#include "engine/simulation/run/held_motion.h"
 #include "engine/simulation/run/loop_sizes.h"
 #include "engine/simulation/run/stopping_rule.h"
-#include "engine/simulation/sampled/held_motion.h"
 
 namespace tunewright {
 namespace {
 
 using Index = std::size_t;
 
-constexpr int kMaxHalvings = 12;       // of a piece, before a node is set whatever the cubic says
-constexpr Index kMaxNodes = 1000000;   // from there on no piece is halved any more
-constexpr double kProbeShare = 0.309;  // of a piece: where swings that the middle meets at the same place are not
-constexpr double kRestLimitTolerance = 1e-9;  // of u at rest: nearer to a limit it is within
-constexpr double kInstantTolerance = 1e-9;    // of a sample: nearer instants are one
-constexpr int kRestSamples = 10;              // beyond the dead time: the least that a response must have rested for
+constexpr int kMaxHalvings = 12;            // of a piece, before a node is set whatever the cubic says
+constexpr Index kMaxNodes = 1000000;        // from there on no piece is halved any more
+constexpr double kProbeShare = 0.309;       // of a piece: where swings that the middle meets at the same place are not
+constexpr double kInstantTolerance = 1e-9;  // of a sample: nearer instants are one
+constexpr int kRestSamples = 10;            // beyond the dead time: the least that a response must have rested for
 
-/// Where the linear loop rests.
-struct Rest {
-    bool exists = false;
-    double y = 0, u = 0;
-    bool at_limit = false;
-};
-
-Rest rest_of(const LinearPlant& plant, const ParallelPid& gains, const StepInputs& in) {
+/// Where the loop rests without the limits of the program.
+SteadyState rest_of(const LinearPlant& plant, const ParallelPid& gains, const StepInputs& in) {
     const double gain = plant.low_frequency_gain();
     const int integrators = plant.integrators();
     if (integrators < 0) return {gains.Ki == 0 || in.r == 0, 0, gains.Ki == 0 ? gains.Kp * gains.b * in.r : -in.d};
@@ -44,20 +37,11 @@ Rest rest_of(const LinearPlant& plant, const ParallelPid& gains, const StepInput
     return {std::isfinite(y), y, u0 - gains.Kp * y};
 }
 
-/// The same with the program's limits: beyond one of them the plant rests where the limit leaves it.
-Rest rest_within(const LinearPlant& plant, const Rest& linear, const std::optional<ActuatorLimits>& limits, double d) {
-    if (!limits || !linear.exists) return linear;
-    const double u = std::clamp(linear.u, limits->min, limits->max);
-    if (std::abs(u - linear.u) <= kRestLimitTolerance * std::abs(linear.u)) return linear;
-    if (plant.integrators() > 0 || plant.unstable_poles() > 0) return {};
-    return {true, plant.integrators() < 0 ? 0 : plant.low_frequency_gain() * (u + d), u, true};
-}
-
 /// A piece of a sample period within which the plant's input and the output's value are constant.
 struct Piece {
-    double from = 0;          // time into the period
-    HeldMotion motion, look;  // the latter to kProbeShare of it
-    bool arrived;             // u_{k-d} drives the plant here; before it u_{k-d-1}
+    double from = 0;                     // time into the period
+    std::vector<HeldStep> whole, probe;  // halved from one to the next; the latter to kProbeShare of it
+    bool arrived;                        // u_{k-d} drives the plant here; before it u_{k-d-1}
     bool given;  // u_{k-o} is the output here, o the computation delay's whole samples; before it u_{k-o-1}
 };
 
@@ -68,33 +52,39 @@ public:
     StepResponse result();
 
 private:
-    std::vector<Piece> pieces(const LinearPlant& plant) const;
+    std::vector<Piece> pieces() const;
     double input(int k, bool arrived) const { return past(k - to_plant_.whole - (arrived ? 0 : 1)); }
     double output(int k, bool given) const { return past(k - computed_.whole - (given ? 0 : 1)); }
     double past(int k) const { return k < 0 ? 0 : u_[static_cast<Index>(k)]; }
     void sample(int k);
     void run_period(int k);
     bool ends_by(double t) const { return t >= end_ - kInstantTolerance * law_.Ts; }
-    Piece cut(const Piece& piece, double h) const;
+    Piece piece(double from, double h, bool arrived, bool given) const {
+        return {from, {motion_.step(h)}, {motion_.step(kProbeShare * h)}, arrived, given};
+    }
+    const HeldStep& halved(std::vector<HeldStep>& steps, int level) const {
+        while (static_cast<int>(steps.size()) <= level) steps.push_back(motion_.step(0.5 * steps.back().h));
+        return steps[static_cast<Index>(level)];
+    }
     bool escaped() const {
         return !(largest_u_ <= kMaxResponseRatio * sizes_.u && largest_y_ <= kMaxResponseRatio * sizes_.y);
     }
     void run_piece(Piece& piece, int level, double t, double t_end, double v, double u);
-    void add_node(double t, double v, double u);
-    bool swings(Piece& piece, int level, HeldState start, const ResponseNode& left, const HeldOutput& end, double v);
+    void add_node(double t, const OutputMotion& now, double u);
+    bool swings(Piece& piece, int level, std::vector<double> x, const ResponseNode& left, const OutputMotion& end,
+                double v);
     void note(double t);
 
-    const LinearPlant& plant_;
     const SampledPid law_;
     const StepInputs in_;
     const SampledOptions options_;
     const double end_;  // the horizon
     PidProgram program_;
     SampledDelay to_plant_, computed_, load_;
-    Rest rest_;
-    HeldReader reader_;
+    SteadyState rest_;
+    HeldMotion motion_;
     std::vector<Piece> pieces_;
-    HeldState state_;
+    std::vector<double> x_;  // of the plant, and the integral of y
     std::vector<double> u_;
     double largest_y_ = 0, largest_u_ = 0;
     LoopSizes sizes_;
@@ -106,8 +96,7 @@ private:
 
 SampledRun::SampledRun(const LinearPlant& plant, const SampledPid& law, const ProgramLimits& limits,
                        const StepInputs& inputs, const SampledOptions& options)
-    : plant_(plant),
-      law_(law),
+    : law_(law),
       in_(inputs),
       options_(options),
       end_(options.horizon.value_or(std::numeric_limits<double>::infinity())),
@@ -115,48 +104,41 @@ SampledRun::SampledRun(const LinearPlant& plant, const SampledPid& law, const Pr
       to_plant_(in_samples(plant.dead_time() + law.computation_delay, law.Ts)),
       computed_(in_samples(law.computation_delay, law.Ts)),
       load_(in_samples(plant.dead_time(), law.Ts)),
-      rest_(rest_within(plant, rest_of(plant, law.gains, inputs), limits.output, inputs.d)),
-      reader_(plant),
-      pieces_(pieces(plant)),
+      rest_(rest_of(plant, law.gains, inputs)),
+      motion_(plant, 1, true),
+      pieces_(pieces()),
+      x_(static_cast<Index>(motion_.states()), 0.0),
       sizes_(loop_sizes(own_gain(plant, law.gains), law.gains, inputs)),
       rule_(options.settled, (to_plant_.whole + kRestSamples) * law.Ts) {
-    state_.x.assign(static_cast<Index>(plant.realisation().n), 0.0);
+    if (limits.output) rest_ = within_limits(rest_, plant, *limits.output, inputs.d);
     for (const auto pole : plant.poles()) fastest_swing_ = std::max(fastest_swing_, pole.imag());
     sizes_.y = std::max(sizes_.y, std::abs(rest_.y));
     sizes_.u = std::max(sizes_.u, std::abs(rest_.u));
 }
 
-std::vector<Piece> SampledRun::pieces(const LinearPlant& plant) const {
+std::vector<Piece> SampledRun::pieces() const {
     std::vector<double> borders{0, to_plant_.rest, computed_.rest, in_.d != 0 ? load_.rest : 0, law_.Ts};
     std::sort(borders.begin(), borders.end());
     borders.erase(std::unique(borders.begin(), borders.end()), borders.end());
     std::vector<Piece> made;
-    for (Index i = 0; i + 1 < borders.size(); ++i) {
-        const double h = borders[i + 1] - borders[i];
-        made.push_back({borders[i], HeldMotion(plant, h), HeldMotion(plant, kProbeShare * h),
-                        borders[i] >= to_plant_.rest, borders[i] >= computed_.rest});
-    }
+    for (Index i = 0; i + 1 < borders.size(); ++i)
+        made.push_back(
+            piece(borders[i], borders[i + 1] - borders[i], borders[i] >= to_plant_.rest, borders[i] >= computed_.rest));
     return made;
 }
 
-// The beginning of a piece, of length h.
-Piece SampledRun::cut(const Piece& piece, double h) const {
-    return {piece.from, HeldMotion(plant_, h), HeldMotion(plant_, kProbeShare * h), piece.arrived, piece.given};
-}
-
-void SampledRun::add_node(double t, double v, double u) {
-    const HeldOutput now = reader_.at(state_.x, v);
-    response_.nodes.push_back({t, now.y, now.slope, u, 0, in_.r * t - state_.y_integral});
+void SampledRun::add_node(double t, const OutputMotion& now, double u) {
+    response_.nodes.push_back({t, now.y, now.slope, u, 0, in_.r * t - x_.back()});
     largest_y_ = std::max(largest_y_, std::abs(now.y));
     largest_u_ = std::max(largest_u_, std::abs(u));
 }
 
 // Whole swings between a piece's ends and its middle are seen in neither.
-bool SampledRun::swings(Piece& piece, int level, HeldState start, const ResponseNode& left, const HeldOutput& end,
-                        double v) {
-    const double h = std::ldexp(piece.motion.length(), -level), s = kProbeShare, r = 1 - s;
-    piece.look.advance(start, v, level);
-    const double y = reader_.at(start.x, v).y;
+bool SampledRun::swings(Piece& piece, int level, std::vector<double> x, const ResponseNode& left,
+                        const OutputMotion& end, double v) {
+    const double h = halved(piece.whole, level).h, s = kProbeShare, r = 1 - s;
+    motion_.advance(halved(piece.probe, level), v, x);
+    const double y = motion_.value(x, v);
     const double cubic =
         r * r * (1 + 2 * s) * left.y + s * s * (1 + 2 * r) * end.y + h * s * r * (r * left.y_slope - s * end.slope);
     return std::abs(cubic - y) > options_.tolerance * std::max(largest_y_, std::abs(y));
@@ -165,24 +147,25 @@ bool SampledRun::swings(Piece& piece, int level, HeldState start, const Response
 // From the last node over 2^-level of the piece: a node at its end, and more within where a cubic would not do.
 void SampledRun::run_piece(Piece& piece, int level, double t, double t_end, double v, double u) {
     const ResponseNode left = response_.nodes.back();
-    const HeldState start = state_;
-    const double h = std::ldexp(piece.motion.length(), -level);
-    piece.motion.advance(state_, v, level + 1);
-    const double y_middle = reader_.at(state_.x, v).y;
-    piece.motion.advance(state_, v, level + 1);
-    const HeldOutput end = reader_.at(state_.x, v);
+    const std::vector<double> start = x_;
+    const HeldStep& half = halved(piece.whole, level + 1);
+    const double h = 2 * half.h;
+    motion_.advance(half, v, x_);
+    const double y_middle = motion_.value(x_, v);
+    motion_.advance(half, v, x_);
+    const OutputMotion end = motion_.output(x_, v);
     const double cubic = 0.5 * (left.y + end.y) + 0.125 * h * (left.y_slope - end.slope);
     const double scale = std::max(largest_y_, std::abs(y_middle));
     const bool bent = std::abs(cubic - y_middle) > options_.tolerance * scale ||
                       (h * fastest_swing_ > std::numbers::pi && swings(piece, level, start, left, end, v));
     if (bent && level < kMaxHalvings && response_.nodes.size() < kMaxNodes) {
-        state_ = start;
+        x_ = start;
         const double t_middle = 0.5 * (t + t_end);
         run_piece(piece, level + 1, t, t_middle, v, u);
         run_piece(piece, level + 1, t_middle, t_end, v, u);
         return;
     }
-    add_node(t_end, v, u);
+    add_node(t_end, end, u);
 }
 
 void SampledRun::run_period(int k) {
@@ -194,11 +177,11 @@ void SampledRun::run_period(int k) {
         const bool loaded = k > load_.whole || (k == load_.whole && piece.from >= load_.rest);
         const double v = input(k, piece.arrived) + (loaded ? in_.d : 0), u = output(k, piece.given);
         const bool jumps = v != last_v_ || response_.nodes.empty() || u != response_.nodes.back().u;
-        if (jumps) add_node(t, v, u);
+        if (jumps) add_node(t, motion_.output(x_, v), u);
         last_v_ = v;
         if (ends_by(t_end)) {
             if (t_end == end_) return run_piece(piece, 0, t, end_, v, u);
-            Piece last = cut(piece, end_ - t);
+            Piece last = this->piece(piece.from, end_ - t, piece.arrived, piece.given);
             return run_piece(last, 0, t, end_, v, u);
         }
         run_piece(piece, 0, t, t_end, v, u);
@@ -208,7 +191,7 @@ void SampledRun::run_period(int k) {
 void SampledRun::sample(int k) {
     // Taken just before anything changes at t_k: what arrives at that very instant is not seen yet.
     const double v = input(k, false) + (k > load_.whole ? in_.d : 0);
-    u_.push_back(program_.step(in_.r, reader_.at(state_.x, v).y));
+    u_.push_back(program_.step(in_.r, motion_.value(x_, v)));
 }
 
 void SampledRun::note(double t) {

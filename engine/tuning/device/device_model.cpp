@@ -6,6 +6,7 @@
 
 #include "engine/controller/product/formula.h"
 #include "engine/controller/product/to_controller.h"
+#include "engine/loop/sampled/held_plant.h"
 #include "engine/number_text.h"
 #include "engine/tuning/device/typed_grid.h"
 #include "engine/tuning/device/typed_ranges.h"

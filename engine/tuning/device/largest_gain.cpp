@@ -70,7 +70,8 @@ double last_of(const Forbidden& f) {
 }  // namespace
 
 GainLimiter::GainLimiter(const LinearPlant& plant, const Law& law)
-    : built_(plant, law.Ts, law.computation_delay), omega_(frequencies_of(plant, law)) {
+    : plant_(&plant), omega_(frequencies_of(plant, law)) {
+    if (law.Ts > 0) held_.emplace(plant, law.Ts, law.computation_delay);
     // Twice as dense as the first loop's own grid, which knows nothing of the loops to come.
     std::vector<double> dense;
     for (std::size_t i = 0; i < omega_.size(); ++i) {
@@ -78,14 +79,14 @@ GainLimiter::GainLimiter(const LinearPlant& plant, const Law& law)
         dense.push_back(omega_[i]);
     }
     omega_ = std::move(dense);
-    for (const double omega : omega_) P_.push_back(built_.at(omega));
+    for (const double omega : omega_) P_.push_back(P(omega));
 }
 
 std::vector<GainLimiter::Interval> GainLimiter::forbidden(const std::function<std::complex<double>(double)>& unit,
                                                           const PeakLimits& limits) const {
     const auto at = [&](double omega) {
         const std::complex<double> C = unit(omega);
-        return forbidden_at(built_.at(omega) * C, C, limits);
+        return forbidden_at(P(omega) * C, C, limits);
     };
     std::vector<Interval> all;
     std::vector<double> first(omega_.size()), last(omega_.size());

@@ -13,6 +13,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/loop/sampled/held_plant.h"
 #include "engine/tuning/device/device_loop.h"
 
 namespace tunewright::device {
@@ -32,10 +33,13 @@ public:
     std::vector<Interval> forbidden(const std::function<std::complex<double>(double)>& unit,
                                     const PeakLimits& limits) const;
 
-    const LinearPlant& plant() const { return built_.plant(); }
+    const LinearPlant& plant() const { return *plant_; }
 
 private:
-    DevicePlant built_;
+    std::complex<double> P(double omega) const { return held_ ? held_->at(omega) : plant_->at({0, omega}); }
+
+    const LinearPlant* plant_;
+    std::optional<HeldPlant> held_;  // behind the controller's hold
     std::vector<double> omega_;
     std::vector<std::complex<double>> P_;
 };

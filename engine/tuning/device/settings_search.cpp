@@ -120,10 +120,8 @@ Settings Search::confirmed(double Ti, double Td) {
         if (!std::isfinite(found.load_IAE)) return found;
         double excess = -kInfinity;
         const Law built = law(std::abs(found.gain), found.Ti, found.Td);
-        for (const LinearPlant* plant : plants_) {
-            if (!is_stable(*plant, built)) return {0, Ti, Td, kInfinity};
-            excess = std::max(excess, peaks_of(*plant, built).excess(limits_));
-        }
+        for (const LinearPlant* plant : plants_) excess = std::max(excess, excess_on(*plant, built, limits_));
+        if (excess == kInfinity) return {0, Ti, Td, kInfinity};
         if (excess <= limits::kMaxRelativeExcessSearched) return found;
         limits = within(limits, 2 * excess);
     }

@@ -110,9 +110,7 @@ std::optional<Fitted> Grid::held(const product::Settings& settings) const {
     auto fitted = fit(device_, settings);
     if (!fitted) return std::nullopt;
     for (const LinearPlant* plant : plants_)
-        if (!is_stable(*plant, fitted->law) ||
-            peaks_of(*plant, fitted->law).excess(limits_) > limits::kMaxRelativeExcessSearched)
-            return std::nullopt;
+        if (excess_on(*plant, fitted->law, limits_) > limits::kMaxRelativeExcessSearched) return std::nullopt;
     return std::move(*fitted);
 }
 

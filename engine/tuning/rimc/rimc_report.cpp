@@ -22,13 +22,13 @@ Responses traces_of(const StepResponse& setpoint, const StepResponse& load, cons
 FullController evaluated(const ImcController& controller, const LinearPlant& plant, const EvaluateOptions& options) {
     FullController full;
     const ImcLoop loop(plant, controller);
-    if (!loop.stable()) {
-        full.robustness = unstable_robustness({.unstable_poles = 1});
+    if (const StabilityCount count = count_unstable_poles(loop); !count.stable()) {
+        full.robustness = unstable_robustness(count);
         full.load = no_performance("The closed loop is not stable.").load;
         return full;
     }
-    const LoopGrid grid = loop.grid();
-    full.robustness = robustness_of(loop.peaks(grid), loop.margins(grid));
+    const LoopGrid grid = make_loop_grid(loop);
+    full.robustness = robustness_of(loop, grid);
     ResponseOptions how;
     how.settled = kSettledForFigures;
     how.horizon = options.horizon;

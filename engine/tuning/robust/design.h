@@ -11,7 +11,7 @@
 #include "engine/controller/pid.h"
 #include "engine/plant/frequency_response.h"
 #include "engine/plant/linear/linear_plant.h"
-#include "engine/tuning/limits.h"
+#include "engine/tuning/peak_limits.h"
 
 namespace tunewright::robust {
 
@@ -27,12 +27,6 @@ enum class SearchKind { fast, nelder_mead, grid };
 struct FilterRule {
     std::optional<double> Tf;
     std::optional<double> Tf_over_Td;
-};
-
-struct RobustnessLimits {
-    double Ms = limits::kDefaultMs, Mt = limits::kDefaultMt;
-    std::optional<double> Mks;
-    bool m_circle = false;  ///< one circle around the circles of Ms and Mt in their place
 };
 
 /// Logarithms of |Kp|, Ti, Td. PI uses the first two.
@@ -62,7 +56,7 @@ struct DesignProblem {
     bool pid = true;
     double sign = 1;  ///< of Kp
     FilterRule filter;
-    RobustnessLimits limits;
+    PeakLimits limits;
     Objective objective = Objective::load_iae;
     double rho = 0.5;         ///< weight of the load in `weighted`
     double load_optimum = 1;  ///< IAE of the load-optimal design, for `weighted`

@@ -4,11 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/loop/measured_loop.h"
-#include "engine/loop/peaks.h"
-#include "engine/loop/stability.h"
 #include "engine/loop/worst_case.h"
-#include "engine/tuning/limits.h"
+#include "engine/tuning/robust/problem_loops.h"
 
 namespace tunewright::robust {
 namespace {
@@ -17,12 +14,6 @@ Error both_signs() {
     return {ErrorKind::no_feasible_controller, "",
             "The plants need gains of both signs, which no controller has. Narrow the uncertainty; for a recorded "
             "test: the record leaves even the sign of the plant's gain open, so repeat the test with a larger step."};
-}
-
-double excess_of(const Peaks& peaks, const RobustnessLimits& limits) {
-    double worst = std::max(peaks.S.value / limits.Ms, peaks.T.value / limits.Mt);
-    if (limits.Mks) worst = std::max(worst, peaks.CS.value / *limits.Mks);
-    return worst - 1;
 }
 
 }  // namespace
@@ -42,15 +33,19 @@ Expected<std::vector<LinearPlant>> other_members(const TuningProblem& tuning, do
 double excess_on(const LinearPlant& plant, const DesignProblem& problem, const DesignPoint& x,
                  const GridFineness& fineness) {
     const auto loop = Loop::make(plant, to_parallel(controller_at(problem, x)));
-    if (!loop || !count_unstable_poles(*loop).stable()) return std::numeric_limits<double>::infinity();
+    if (!is_stable(loop)) return std::numeric_limits<double>::infinity();
     return excess_of(find_peaks(*loop, make_loop_grid(*loop, fineness.step, fineness.density)), problem.limits);
 }
 
-double excess_on_points(const DesignProblem& problem, const DesignPoint& x) {
-    const auto loop = MeasuredLoop::make(*problem.measured, to_parallel(controller_at(problem, x)));
-    if (!loop || loop->band_too_short() || !loop->count_unstable_poles().stable())
-        return std::numeric_limits<double>::infinity();
-    return excess_of(loop->peaks(), problem.limits);
+double worst_excess(const DesignProblem& problem, const DesignPoint& x) {
+    double worst = -1;
+    if (problem.measured != nullptr) {
+        const auto peaks = stable_peaks(MeasuredLoop::make(*problem.measured, to_parallel(controller_at(problem, x))));
+        return peaks ? excess_of(*peaks, problem.limits) : std::numeric_limits<double>::infinity();
+    }
+    for (std::size_t i = 0; i < problem.plants(); ++i)
+        worst = std::max(worst, excess_on(problem.plant_at(i), problem, x, {.step = 0.06, .density = 53}));
+    return worst;
 }
 
 std::vector<LinearPlant> worst_inside(const PlantFamily& family, const DesignProblem& problem, const DesignPoint& x,

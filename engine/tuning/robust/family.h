@@ -24,8 +24,8 @@ struct GridFineness {
 double excess_on(const LinearPlant& plant, const DesignProblem& problem, const DesignPoint& x,
                  const GridFineness& fineness);
 
-/// The same on the measured points of the problem.
-double excess_on_points(const DesignProblem& problem, const DesignPoint& x);
+/// The largest on the problem's plants, on a grid that no search sees, or on its measured points.
+double worst_excess(const DesignProblem& problem, const DesignPoint& x);
 
 /// For each region of the family the plant inside on which the design at x exceeds a limit most, where that is by more
 /// than 5e-5: from 128 points and the ends the worst is followed (find_worst_case). Empty: the limits hold.

@@ -5,12 +5,10 @@
 #include <utility>
 #include <vector>
 
-#include "engine/loop/measured_loop.h"
-#include "engine/loop/peaks.h"
-#include "engine/loop/stability.h"
 #include "engine/number_text.h"
 #include "engine/numerics/optimise/direct_search.h"
 #include "engine/tuning/limits.h"
+#include "engine/tuning/robust/problem_loops.h"
 #include "engine/tuning/robust/sqp.h"
 #include "engine/tuning/robust/starts.h"
 #include "engine/tuning/robust/sweep/sweep.h"
@@ -23,26 +21,16 @@ constexpr double kPeakTolerance = 1e-5;                     // of ln M: a hundre
 constexpr double kLongestTi = 200, kShortestPeakTd = 1e-3;  // times the period over 2 pi at the reference frequency
 constexpr double kUnstableLogPeak = 20;                     // ln of the larger peak, where the loop is unstable
 
-double larger_measured_peak(const MeasuredPlant& plant, const ParallelPid& gains) {
-    const auto loop = MeasuredLoop::make(plant, gains);
-    if (!loop || loop->band_too_short() || !loop->count_unstable_poles().stable()) return kUnstableLogPeak;
-    const Peaks peaks = loop->peaks();
-    return std::log(std::max(peaks.S.value, peaks.T.value));
-}
-
 /// ln of the larger of Ms and Mt, on the grid that the loop itself chooses: far from any limit a search's fixed grid
 /// may be left behind.
 double larger_peak(const DesignProblem& problem, const DesignPoint& x) {
-    const ParallelPid gains = to_parallel(controller_at(problem, x));
-    if (problem.measured) return larger_measured_peak(*problem.measured, gains);
     double largest = 0;
-    for (std::size_t i = 0; i < problem.plants(); ++i) {
-        const auto loop = Loop::make(problem.plant_at(i), gains);
-        if (!loop || !count_unstable_poles(*loop).stable()) return kUnstableLogPeak;
-        const Peaks peaks = find_peaks(*loop, make_loop_grid(*loop));
-        largest = std::max({largest, peaks.S.value, peaks.T.value});
-    }
-    return std::log(largest);
+    const bool stable = holds_on_every_loop(problem, to_parallel(controller_at(problem, x)), [&](const auto& loop) {
+        const auto peaks = stable_peaks(loop);
+        if (peaks) largest = std::max({largest, peaks->S.value, peaks->T.value});
+        return peaks.has_value();
+    });
+    return stable ? std::log(largest) : kUnstableLogPeak;
 }
 
 constexpr double kMinExcess = 0.01, kFirstExcess = 0.5, kMaxExcess = 40;  // of peaks over 1, for a start
@@ -51,7 +39,7 @@ constexpr double kCloseStart = 1.05;  // over the least excess at which a scan s
 
 /// A stable loop whose peaks exceed 1 by no more than `excess`; empty if a scan sees none.
 std::optional<DesignPoint> stable_within(DesignProblem problem, double reference, double excess, Stability wanted) {
-    problem.limits = RobustnessLimits{.Ms = 1 + excess, .Mt = 1 + excess, .Mks = std::nullopt, .m_circle = false};
+    problem.limits = PeakLimits{.Ms = 1 + excess, .Mt = 1 + excess, .Mks = std::nullopt, .m_circle = false};
     return first_stable(Sweep(problem, reference), {.Ti_points = 13, .Td_points = 11}, wanted);
 }
 

@@ -339,12 +339,9 @@ std::function<double(double)> filter_time(const TuningProblem& tuning, const Rob
 }
 
 /// Of each region the plant inside on which the built loop exceeds a limit most, where it does.
-std::vector<LinearPlant> worst_on_device(const PlantFamily& family, const device::Law& law,
-                                         const device::PeakLimits& limits, const RunControl& control) {
-    const PlantCost excess = [&](const LinearPlant& plant) {
-        return device::is_stable(plant, law) ? device::peaks_of(plant, law).excess(limits)
-                                             : std::numeric_limits<double>::infinity();
-    };
+std::vector<LinearPlant> worst_on_device(const PlantFamily& family, const device::Law& law, const PeakLimits& limits,
+                                         const RunControl& control) {
+    const PlantCost excess = [&](const LinearPlant& plant) { return device::excess_on(plant, law, limits); };
     std::vector<LinearPlant> found;
     for (const PlantRegion& region : family.regions) {
         if (region.dimension() == 0) continue;

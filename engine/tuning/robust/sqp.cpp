@@ -4,11 +4,10 @@
 #include <cmath>
 #include <utility>
 
-#include "engine/loop/measured_loop.h"
-#include "engine/loop/stability.h"
 #include "engine/numerics/optimise/quadratic_program.h"
 #include "engine/numerics/optimise/sqp.h"
 #include "engine/tuning/limits.h"
+#include "engine/tuning/robust/problem_loops.h"
 
 namespace tunewright::robust {
 namespace {
@@ -87,16 +86,8 @@ const ActivePeak* same_peak(const std::vector<ActivePeak>& peaks, const ActivePe
 }
 
 bool is_stable(const DesignProblem& problem, const DesignPoint& x) {
-    const ParallelPid gains = to_parallel(controller_at(problem, x));
-    if (problem.measured) {
-        const auto loop = MeasuredLoop::make(*problem.measured, gains);
-        return loop && !loop->band_too_short() && loop->count_unstable_poles().stable();
-    }
-    for (std::size_t i = 0; i < problem.plants(); ++i) {
-        const auto loop = Loop::make(problem.plant_at(i), gains);
-        if (!loop || !count_unstable_poles(*loop).stable()) return false;
-    }
-    return true;
+    return holds_on_every_loop(problem, to_parallel(controller_at(problem, x)),
+                               [](const auto& loop) { return tunewright::is_stable(loop); });
 }
 
 namespace {

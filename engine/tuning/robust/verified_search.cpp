@@ -17,15 +17,6 @@ namespace tunewright::robust {
 
 namespace {
 
-/// The largest relative excess over a limit, on a grid that the search never saw.
-double measured_excess(const DesignProblem& problem, const DesignPoint& x) {
-    if (problem.measured) return excess_on_points(problem, x);
-    double worst = -1;
-    for (std::size_t i = 0; i < problem.plants(); ++i)
-        worst = std::max(worst, excess_on(problem.plant_at(i), problem, x, {.step = 0.06, .density = 53}));
-    return worst;
-}
-
 DesignProblem tightened(DesignProblem problem, double relative) {
     problem.limits.Ms = 1 + (problem.limits.Ms - 1) * (1 - relative);
     problem.limits.Mt = 1 + (problem.limits.Mt - 1) * (1 - relative);
@@ -168,7 +159,7 @@ Expected<DesignResult> checked_search(SearchKind kind, const Sweep& sweep, Desig
     }
     double tighter = 0;
     for (int round = 0; round < kRounds; ++round) {
-        const double excess = measured_excess(problem, found->x);
+        const double excess = worst_excess(problem, found->x);
         if (excess <= limits::kMaxRelativeExcessFound) return *found;
         if (!std::isfinite(excess) || round + 1 == kRounds) break;
         tighter += 1.5 * excess * problem.limits.Ms / (problem.limits.Ms - 1) + kMinTightening;

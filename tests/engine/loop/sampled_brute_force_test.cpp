@@ -69,8 +69,8 @@ TEST(SampledBruteForce, PeaksAreThoseOfTheSamplesAfterAPulse) {
         SCOPED_TRACE(c.name);
         const LinearPlant plant = *LinearPlant::make(c.plant);
         const SampledLoop loop(plant, c.law);
-        EXPECT_TRUE(loop.count_unstable_poles().stable());
-        const Peaks peaks = loop.peaks(loop.grid());
+        EXPECT_TRUE(count_unstable_poles(loop).stable());
+        const Peaks peaks = find_peaks(loop, make_peak_grid(loop));
         const BrutePeaks brute = peaks_of(c.pulse);
         EXPECT_LT(relative(peaks.S.value, brute.S), 1e-7) << peaks.S.value << ' ' << brute.S;
         EXPECT_LT(relative(peaks.T.value, brute.T), 1e-7) << peaks.T.value << ' ' << brute.T;
@@ -117,7 +117,7 @@ TEST(SampledBruteForce, FindsTheHighestRippleOfTheControllersOutput) {
     const SampledLoop loop(plant, law);
     const auto pulse = pulse_response_of(OwnLoop(OwnPlant({1}, {1, 1}), 0.51, law), 6000, 18);
     ASSERT_TRUE(pulse);
-    EXPECT_LT(relative(loop.peaks(loop.grid()).CS.value, peaks_of(*pulse).CS), 1e-7);
+    EXPECT_LT(relative(find_peaks(loop, make_peak_grid(loop)).CS.value, peaks_of(*pulse).CS), 1e-7);
 }
 
 TEST(SampledLoop, AtRestItFollowsTheSetPointExactlyWithAnIntegrator) {
@@ -125,13 +125,13 @@ TEST(SampledLoop, AtRestItFollowsTheSetPointExactlyWithAnIntegrator) {
     const LinearPlant lag = *LinearPlant::make(Fopdt{.K = 2, .T = 1, .L = 0.4}),
                       integrator = *LinearPlant::make(Ipdt{.K = 0.3, .L = 0.4});
     const SampledLoop loop(lag, law);
-    const Peaks peaks = loop.peaks(loop.grid());
+    const Peaks peaks = find_peaks(loop, make_peak_grid(loop));
     EXPECT_EQ(peaks.T.value, 1);
     EXPECT_EQ(peaks.T.omega, 0);
     EXPECT_EQ(peaks.CS.value, 0.5);  // 1/K: the move of u for a move of y by one
     const SampledPid proportional{.gains = {.Kp = 0.5}, .Ts = 0.3};
     const SampledLoop by_plant(integrator, proportional);
-    EXPECT_EQ(by_plant.peaks(by_plant.grid()).T.value, 1);
+    EXPECT_EQ(find_peaks(by_plant, make_peak_grid(by_plant)).T.value, 1);
 }
 
 // A hold delays everything by Ts/2, to first order. If the dead time is reduced by that, the error of the trapezoidal
@@ -158,7 +158,7 @@ TEST(SampledLoop, TendsToTheContinuousLoopByTheOrderOfItsRules) {
             law.derivative = DerivativeRule::filtered_trapezoidal;
         }
         const SampledLoop sampled(seen, law);
-        const Peaks peaks = sampled.peaks(sampled.grid());
+        const Peaks peaks = find_peaks(sampled, make_peak_grid(sampled));
         const StepResponse response = simulate_sampled(seen, law, {}, {0, 1}, {});
         return Errors{peaks.S.value - exact.S.value, peaks.T.value - exact.T.value,
                       integral_of_absolute_error(response.nodes, 0, response.error_integral_final) - IAE};

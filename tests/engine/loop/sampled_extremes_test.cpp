@@ -48,7 +48,7 @@ DeviceLoop evaluated(const Plant& plant, const SampledPid& law, const ProgramLim
 
 StabilityCount count(const Plant& plant, const SampledPid& law) {
     const LinearPlant linear = *LinearPlant::make(plant);
-    return SampledLoop(linear, law).count_unstable_poles();
+    return count_unstable_poles(SampledLoop(linear, law));
 }
 
 TEST(SampledExtremes, ADeadTimeBeyondCountingIsRefusedWithTheSampleTime) {

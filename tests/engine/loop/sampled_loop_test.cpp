@@ -42,8 +42,8 @@ TEST(SampledLoop, TendsToTheContinuousLoopAsTheSampleTimeFalls) {
     const double Ms = find_peaks(loop, make_peak_grid(loop)).S.value;
     const auto sampled = [&](double Ts) {
         const SampledLoop s(plant, {.gains = gains, .Ts = Ts});
-        EXPECT_TRUE(s.count_unstable_poles().stable());
-        return s.peaks(s.grid()).S.value;
+        EXPECT_TRUE(count_unstable_poles(s).stable());
+        return find_peaks(s, make_peak_grid(s)).S.value;
     };
     const double e1 = sampled(2e-3) - Ms, e2 = sampled(1e-3) - Ms;
     EXPECT_NEAR(e1 / e2, 2, 0.05);  // of first order
@@ -88,9 +88,9 @@ TEST_P(OfRandomPlants, ALimitIsKeptWhereThePeakIsBelowIt) {
         if (!design) continue;
         for (const double share : {0.02, 0.1, 0.3, 0.7, 1.5}) {
             const SampledLoop loop(design->plant, {.gains = design->gains, .Ts = share / design->S.omega});
-            const LoopGrid grid = loop.grid();
-            const bool stable = loop.count_unstable_poles(grid).stable();
-            const double Ms = stable ? loop.peaks(grid).S.value : INFINITY;
+            const LoopGrid grid = make_peak_grid(loop);
+            const bool stable = count_unstable_poles(loop, grid).stable();
+            const double Ms = stable ? find_peaks(loop, grid).S.value : INFINITY;
             for (const double limit : {0.9 * Ms, 0.999 * Ms, 1.001 * Ms, 1.1 * Ms, 1.5 * Ms, 1.5}) {
                 if (!(limit > 1) || !std::isfinite(limit)) continue;
                 EXPECT_EQ(loop.keeps(limit), Ms <= limit) << seed << ' ' << share << " Ms " << Ms << ' ' << limit;
@@ -128,7 +128,7 @@ TEST(SampledLoop, AHumpBesideAnAntiresonanceBreaksALimit) {
     int stable = 0;
     for (const double Ts : {0.003, 0.006, 0.01, 0.02, 0.03, 0.04}) {
         const SampledLoop loop(plant, {.gains = gains, .Ts = Ts});
-        if (!loop.count_unstable_poles().stable()) continue;
+        if (!count_unstable_poles(loop).stable()) continue;
         ++stable;
         const double Ms = densely_scanned_Ms(loop);
         EXPECT_NEAR(loop.sensitivity_peak().value / Ms, 1, 1e-4) << Ts;
@@ -167,13 +167,13 @@ TEST(SampledLoop, LosesStabilityWhereItsGainMarginSays) {
     for (const double Ts : {0.05, 0.2, 0.45, 1.1}) {
         ParallelPid gains = to_parallel({.Kp = 0.5, .Ti = 1.0});
         const SampledLoop s(plant, {.gains = gains, .Ts = Ts});
-        const Margins m = s.margins(s.grid());
+        const Margins m = find_margins(s, make_peak_grid(s));
         for (const double share : {0.999, 1.001}) {
             ParallelPid more = gains;
             more.Kp *= share * m.gain_margin;
             more.Ki *= share * m.gain_margin;
             const SampledLoop at(plant, {.gains = more, .Ts = Ts});
-            EXPECT_EQ(at.count_unstable_poles().unstable_poles, share < 1 ? 0 : 2) << Ts << ' ' << m.gain_margin;
+            EXPECT_EQ(count_unstable_poles(at).unstable_poles, share < 1 ? 0 : 2) << Ts << ' ' << m.gain_margin;
         }
     }
 }

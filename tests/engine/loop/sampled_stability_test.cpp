@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "engine/loop/margins.h"
 #include "engine/loop/sampled/sampled_loop.h"
 #include "tests/engine/loop/sampled_cases.h"
 
@@ -77,7 +78,7 @@ TEST(SampledStability, CountsTheEigenvaluesOutsideTheCircle) {
         const Eigen::VectorXcd values = eigenvalues(loop);
         if (distance(values) < 1e-6) continue;
         ++compared;
-        const StabilityCount count = SampledLoop(loop.plant, loop.law).count_unstable_poles();
+        const StabilityCount count = count_unstable_poles(SampledLoop(loop.plant, loop.law));
         EXPECT_EQ(count.unstable_poles, outside(values));
         EXPECT_FALSE(count.on_the_boundary);
         stable += count.stable();
@@ -94,7 +95,7 @@ TEST(SampledStability, CountsThemBehindAHundredSamplesToo) {
         const RandomLoop loop = random_loop(i, 100);
         const Eigen::VectorXcd values = eigenvalues(loop);
         if (distance(values) < 1e-6) continue;
-        EXPECT_EQ(SampledLoop(loop.plant, loop.law).count_unstable_poles().unstable_poles, outside(values)) << i;
+        EXPECT_EQ(count_unstable_poles(SampledLoop(loop.plant, loop.law)).unstable_poles, outside(values)) << i;
         many += outside(values) > 20;
     }
     EXPECT_GT(many, 10);
@@ -103,7 +104,7 @@ TEST(SampledStability, CountsThemBehindAHundredSamplesToo) {
 /// With all gains scaled by a factor the loop is stable between the gain margins and not stable beyond each of them.
 void check_gain_margins(const RandomLoop& loop) {
     const SampledLoop sampled(loop.plant, loop.law);
-    const Margins margins = sampled.margins(sampled.grid());
+    const Margins margins = find_margins(sampled, make_peak_grid(sampled));
     const auto unstable = [&](double factor) { return outside(eigenvalues(loop, factor)) > 0; };
     const double high = std::isfinite(margins.gain_margin) ? margins.gain_margin : 1e4;
     if (std::isfinite(margins.gain_margin)) {
@@ -170,7 +171,7 @@ TEST(SampledStability, PhaseAndDelayMarginsAreThoseOfThePulsesSpectrum) {
         }
         const LinearPlant plant = *LinearPlant::make(c->plant);
         const SampledLoop loop(plant, c->law);
-        const Margins margins = loop.margins(loop.grid());
+        const Margins margins = find_margins(loop, make_peak_grid(loop));
         if (!std::isfinite(phase)) {
             EXPECT_FALSE(std::isfinite(margins.phase_margin));
             continue;

@@ -22,10 +22,8 @@ double described(const char* method, const std::string& option) {
 TEST(RobustnessLimits, WhatIsNotAskedForIsTheTablesDefault) {
     EXPECT_EQ(RobustOptions{}.Ms, limits::kDefaultMs);
     EXPECT_EQ(RobustOptions{}.Mt, limits::kDefaultMt);
-    EXPECT_EQ(robust::RobustnessLimits{}.Ms, limits::kDefaultMs);
-    EXPECT_EQ(robust::RobustnessLimits{}.Mt, limits::kDefaultMt);
-    EXPECT_EQ(device::PeakLimits{}.Ms, limits::kDefaultMs);
-    EXPECT_EQ(device::PeakLimits{}.Mt, limits::kDefaultMt);
+    EXPECT_EQ(PeakLimits{}.Ms, limits::kDefaultMs);
+    EXPECT_EQ(PeakLimits{}.Mt, limits::kDefaultMt);
     EXPECT_EQ(FrontierOptions{}.take, limits::kDefaultMs);
     EXPECT_EQ(described("robust", "Ms"), limits::kDefaultMs);
     EXPECT_EQ(described("robust", "Mt"), limits::kDefaultMt);

@@ -91,7 +91,7 @@ std::vector<double> frequencies(const DesignProblem& problem, const LinearPlant&
 }
 
 /// ln of the ratio at a frequency, from L and C.
-double constraint_value(ConstraintKind kind, Complex L, Complex C, const RobustnessLimits& limits, double centre,
+double constraint_value(ConstraintKind kind, Complex L, Complex C, const PeakLimits& limits, double centre,
                         double radius) {
     switch (kind) {
         case ConstraintKind::S: return -std::log(limits.Ms * magnitude(1.0 + L));
@@ -286,7 +286,7 @@ void Sweep::add_limits(const Curve& curve, const LoopGains& c, double threshold,
 
 /// Squared ratios to the limits at every frequency of the grid.
 void Sweep::fill_levels(Curve& curve, const LoopGains& c) const {
-    const RobustnessLimits& limits = problem_.limits;
+    const PeakLimits& limits = problem_.limits;
     const InverseLimits inverse{.S = 1 / (limits.Ms * limits.Ms),
                                 .T = 1 / (limits.Mt * limits.Mt),
                                 .CS = limits.Mks ? 1 / (*limits.Mks * *limits.Mks) : 0};
@@ -384,7 +384,7 @@ void Sweep::fill_open_loop(Curve& curve, const LoopGains& c) const {
 
 /// Adds the intervals of |Kp| that the circles forbid on one plant.
 void Sweep::forbid(Curve& curve, std::vector<GainGap>& forbidden) const {
-    const RobustnessLimits& limits = problem_.limits;
+    const PeakLimits& limits = problem_.limits;
     const double Mt2 = limits.Mt * limits.Mt;
     const Circle of_S{.centre = -1, .radius = 1 / limits.Ms},
         of_T{.centre = -Mt2 / (Mt2 - 1), .radius = limits.Mt / (Mt2 - 1)};

@@ -1,4 +1,4 @@
-// Options of a method as JSON: read, written and described from their OptionDescriptions, whatever their shape.
+// Options of a method as JSON: a codec for each, made from its OptionDescription, whatever its shape.
 #pragma once
 
 #include <string>
@@ -20,8 +20,7 @@ void read_options(const Json& value, const std::vector<OptionDescription>& descr
 /// The fault of an unknown option: "x is not an option of simc; did you mean ...?"
 std::string unknown_option(const std::string& name, const std::string& owner, const std::vector<std::string>& names);
 
-/// Puts a value at its path: "reduction/method" opens an object, "bounds/Kp/1" an array, whose earlier elements are
-/// null until they are set.
+/// Puts a value at its path: "reduction/method" opens an object, "bounds/Kp/1" an array.
 void place_option(Json& object, const std::string& path, const OptionValue& value);
 
 /// The options of a method as a JSON Schema: an object that allows no other members.

@@ -31,11 +31,7 @@ constexpr double kSmallestNumber = 1e-30;
 std::string broken_rule(double value, const NumberRule& rule) {
     if (std::abs(value) > kLargestNumber) return "at most 1e30 in size";
     if (value != 0 && std::abs(value) < kSmallestNumber) return "0 or at least 1e-30 in size; choose another unit";
-    const bool low =
-        (rule.minimum && value < *rule.minimum) || (rule.exclusive_minimum && value <= *rule.exclusive_minimum);
-    const bool high =
-        (rule.maximum && value > *rule.maximum) || (rule.exclusive_maximum && value >= *rule.exclusive_maximum);
-    if (low || high) {
+    if (!rule.between(value)) {
         std::string text;
         if (rule.minimum) text = ">= " + full_digits(*rule.minimum);
         if (rule.exclusive_minimum) text = "> " + full_digits(*rule.exclusive_minimum);
@@ -95,8 +91,7 @@ Codec<double> engine_ruled(const NumberRule& rule) {
     return codec;
 }
 
-Codec<int> integer(int minimum, int maximum) {
-    const NumberRule rule{.minimum = minimum, .maximum = maximum};
+Codec<int> integer(const NumberRule& rule) {
     return {[rule](const Json& value, int& target, Reader& reader) {
                 const auto read = read_number(value, rule, reader);
                 if (!read) return;

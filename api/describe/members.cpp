@@ -30,8 +30,6 @@ struct Members::Member {
     std::string initial;  ///< the default as JSON text; empty: none
 
     bool asked() const { return codec->reads() && !answer_only; }
-    void* in(void* object) const { return static_cast<char*>(object) + offset; }
-    const void* in(const void* object) const { return static_cast<const char*>(object) + offset; }
 };
 
 Members::Members(std::string_view name, std::string_view sentence) : name_(name), sentence_(sentence) {}
@@ -83,7 +81,7 @@ bool Members::read(const Json& value, void* object, Reader& reader) const {
                 reader.fault_at(member.name, member.name + " is missing; " + why_required(member.sentence));
         } else if (member.asked()) {
             const Reader::At place(reader, member.name);
-            member.codec->read(*at, member.in(object), reader);
+            member.codec->read(*at, member_at(object, member.offset), reader);
         }
     }
     return true;
@@ -109,7 +107,7 @@ void Members::write(const void* object, Writer& out) const {
     }
     std::vector<const Member*> undefined;
     for (const Member& member : members_) {
-        const void* value = member.in(object);
+        const void* value = member_at(object, member.offset);
         if (!member.codec->writes() || member.codec->skip(value)) continue;
         out.key(member.name);
         member.codec->write(value, out);
@@ -123,7 +121,7 @@ void Members::write_reasons(const void* object, const std::vector<const Member*>
     out.key("why_null");
     out.begin_object();
     for (const Member* member : undefined) {
-        const std::string why = member->codec->why(member->in(object));
+        const std::string why = member->codec->why(member_at(object, member->offset));
         out.key(member->name);
         out.text(why.empty() ? otherwise_ : why);
     }

@@ -244,10 +244,7 @@ Codec<std::map<std::string, double>> numbers_by_name(std::string keys) {
     return {{},
             [](const std::map<std::string, double>& values, Writer& out) {
                 out.begin_object();
-                for (const auto& [name, value] : values) {
-                    out.key(name);
-                    out.number(value);
-                }
+                for (const auto& [name, value] : values) out.key(name).number(value);
                 out.end_object();
             },
             [keys](SchemaBook&) {

@@ -101,10 +101,7 @@ void Members::check_name(const std::string& given, Reader& reader) const {
 
 void Members::write(const void* object, Writer& out) const {
     out.begin_object();
-    if (!tag_field_.empty()) {
-        out.key(tag_field_);
-        out.text(tag_value_);
-    }
+    if (!tag_field_.empty()) out.key(tag_field_).text(tag_value_);
     std::vector<const Member*> undefined;
     for (const Member& member : members_) {
         const void* value = member_at(object, member.offset);
@@ -118,12 +115,10 @@ void Members::write(const void* object, Writer& out) const {
 }
 
 void Members::write_reasons(const void* object, const std::vector<const Member*>& undefined, Writer& out) const {
-    out.key("why_null");
-    out.begin_object();
+    out.key("why_null").begin_object();
     for (const Member* member : undefined) {
         const std::string why = member->codec->why(member_at(object, member->offset));
-        out.key(member->name);
-        out.text(why.empty() ? otherwise_ : why);
+        out.key(member->name).text(why.empty() ? otherwise_ : why);
     }
     out.end_object();
 }

@@ -130,10 +130,7 @@ const Description<OperatingPoint>& operating_point_contract() {
              "states", {},
              [](const OperatingPoint& point, Writer& out) {
                  out.begin_object();
-                 for (const NamedValue& state : point.states) {
-                     out.key(state.name);
-                     out.number(state.value);
-                 }
+                 for (const NamedValue& state : point.states) out.key(state.name).number(state.value);
                  out.end_object();
              },
              [](SchemaBook&) {
@@ -312,8 +309,7 @@ void add_ranking(Description<Answer>& d, Callable<const TuningResult&(const Answ
             "rank_limits", {},
             [of](const Answer& answer, Writer& out) {
                 out.begin_object();
-                out.key("Ms");
-                out.number(*of(answer).rank_Ms);
+                out.key("Ms").number(*of(answer).rank_Ms);
                 out.end_object();
             },
             [](SchemaBook&) {

@@ -149,7 +149,8 @@ void read_fields(const Json& value, const std::vector<OptionDescription>& descri
         if (place.path.empty() && name == "method") continue;
         if (const OptionDescription* option = named(described, name)) {
             const Reader::At at(reader, name);
-            read_option(member, *option, place.below(name).path, place.options, reader);
+            OptionPlace below = place.below(name);
+            codec_of(*option).read(member, below, reader);
         } else {
             reader.fault_at(name, unknown_option(name, owner, names_of(described)));
         }
@@ -261,10 +262,13 @@ std::string unknown_option(const std::string& name, const std::string& owner, co
                             : "its options are " + listed(names, "and") + ".");
 }
 
-void read_option(const Json& value, const OptionDescription& option, const std::string& path, MethodOptions& target,
-                 Reader& reader) {
-    OptionPlace place{target, path};
-    codec_of(option).read(value, place, reader);
+Codec<MethodOptions> option_codec(const OptionDescription& option) {
+    return {[&option, read = codec_of(option).read](const Json& value, MethodOptions& target, Reader& reader) {
+                OptionPlace place{target, option.name};
+                read(value, place, reader);
+            },
+            {},
+            described_schema(option)};
 }
 
 void read_options(const Json& value, const std::vector<OptionDescription>& described, const std::string& owner,

@@ -9,9 +9,8 @@
 
 namespace tunewright::api {
 
-/// Reads the value of one option and stores it at `path`; faults at the reader's place.
-void read_option(const Json& value, const OptionDescription& option, const std::string& path, MethodOptions& target,
-                 Reader& reader);
+/// Reads and describes an option, which is stored under its name. `option` must outlive the codec.
+Codec<MethodOptions> option_codec(const OptionDescription& option);
 
 /// Reads every member of the object `value` except "method". `owner` is the name in the fault of an unknown member.
 void read_options(const Json& value, const std::vector<OptionDescription>& described, const std::string& owner,

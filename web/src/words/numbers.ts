@@ -3,8 +3,8 @@
 export const DASH = "–";
 const MINUS = "−";
 
-/** As figure_text() of the service: `digits` significant digits; powers of ten outside 0.001 to 99999. Trailing zeros stay: they show the accuracy of
-    the figure. */
+/** As figure_text() of the service: `digits` significant digits; powers of ten outside 0.001 to 99999. Trailing zeros
+    stay: they show the accuracy of the figure. */
 export function formatNumber(value: number | null | undefined, digits = 3): string {
   if (typeof value !== "number" || !Number.isFinite(value)) return DASH;
   if (value === 0) return "0";

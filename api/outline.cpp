@@ -51,20 +51,17 @@ void write_settings(const TuningEntry& best, Writer& out) {
     controller_contract().write(best.evaluation->controller, out);
     if (!best.on_device || best.on_device->fitted.typed.empty()) return;
     const device::Fitted& fitted = best.on_device->fitted;
-    out.key("to_type");
-    out.begin_object();
+    out.key("to_type").begin_object();
     for (const product::Setting& setting : fitted.typed) {
         const product::Parameter* parameter = product::parameter_named(*fitted.product, setting.name);
         const std::string unit(parameter == nullptr ? "" : parameter->unit);
-        out.key(setting.name);
-        out.text(product::typed_text(*fitted.product, setting) + (unit.empty() ? "" : " " + unit));
+        out.key(setting.name).text(product::typed_text(*fitted.product, setting) + (unit.empty() ? "" : " " + unit));
     }
     out.end_object();
 }
 
 void write_best(const TuningEntry& best, Writer& out) {
-    out.key("method");
-    out.text(best.method);
+    out.key("method").text(best.method);
     write_settings(best, out);
     write_figures(best, out);
     if (best.evaluation->region) write_figure("worst_Ms", best.evaluation->region->worst_Ms, out);
@@ -87,23 +84,15 @@ Outline::Outline(const JobRequest& request) {
 std::string Outline::of(const TuningResult& result) const {
     Writer out;
     out.begin_object();
-    out.key("plant");
-    out.raw(result.model ? short_plant(plant_contract(), result.model->plant) : plant_);
-    if (result.model) {
-        out.key("record");
-        out.boolean(true);
-    }
-    if (!units_.empty()) {
-        out.key("units");
-        out.raw(units_);
-    }
-    out.key("entries");
-    out.integer(std::ranges::count_if(result.controllers, [](const TuningEntry& entry) { return !is_todays(entry); }));
+    out.key("plant").raw(result.model ? short_plant(plant_contract(), result.model->plant) : plant_);
+    if (result.model) out.key("record").boolean(true);
+    if (!units_.empty()) out.key("units").raw(units_);
+    out.key("entries").integer(
+        std::ranges::count_if(result.controllers, [](const TuningEntry& entry) { return !is_todays(entry); }));
     if (const TuningEntry* best = first_ranked(result)) write_best(*best, out);
     const auto today = std::ranges::find_if(result.controllers, is_todays);
     if (today != result.controllers.end() && today->evaluation) {
-        out.key("today");
-        out.begin_object();
+        out.key("today").begin_object();
         write_figures(*today, out);
         out.end_object();
     }

@@ -44,20 +44,15 @@ std::string outline_of(const RangeContent& content, const std::optional<Units>& 
         out.key("units");
         units_contract().write(*units, out);
     }
-    out.key("method");
-    out.text("range");
+    out.key("method").text("range");
     const auto& worst = content.schedule ? content.worst.schedule : content.worst.one;
     const auto largest = std::ranges::find(worst, range::Quantity::Ms, &range::WorstPoint::quantity);
     out.key("Ms");
     largest != worst.end() && largest->value ? out.number(*largest->value) : out.null();
-    out.key("range");
-    out.begin_object();
-    out.key("scheduling");
-    out.text(content.result.scheduling.name);
-    out.key("points");
-    out.integer(static_cast<long long>(content.result.points.size()));
-    out.key("rows");
-    out.integer(content.schedule ? static_cast<long long>(content.schedule->schedule.rows.size()) : 0);
+    out.key("range").begin_object();
+    out.key("scheduling").text(content.result.scheduling.name);
+    out.key("points").integer(static_cast<long long>(content.result.points.size()));
+    out.key("rows").integer(content.schedule ? static_cast<long long>(content.schedule->schedule.rows.size()) : 0);
     out.end_object();
     out.end_object();
     return out.take();

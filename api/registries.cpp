@@ -100,8 +100,7 @@ std::string controllers_json() {
     static const std::string text = [] {
         Writer out;
         out.begin_object();
-        out.key("controllers");
-        out.begin_array();
+        out.key("controllers").begin_array();
         for (const Product& product : product::catalogue()) product_summary_contract().write(product, out);
         out.end_array();
         out.end_object();

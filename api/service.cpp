@@ -247,12 +247,9 @@ JobOutcome run_job(const StoredRequest& stored, const RunControl& control) {
 std::string progress_json(const Progress& progress) {
     Writer out;
     out.begin_object();
-    out.key("fraction");
-    out.number(progress.fraction);
-    out.key("stage");
-    out.text(progress.stage);
-    out.key("message");
-    out.text(progress.message);
+    out.key("fraction").number(progress.fraction);
+    out.key("stage").text(progress.stage);
+    out.key("message").text(progress.message);
     out.key("best");
     if (progress.best) {
         out.begin_object();
@@ -260,8 +257,7 @@ std::string progress_json(const Progress& progress) {
         controller_contract().write(progress.best->controller, out);
         for (const auto& [name, figure] :
              {std::pair{"load_IAE", progress.best->load_IAE}, {"Ms", progress.best->Ms}, {"Mt", progress.best->Mt}}) {
-            out.key(name);
-            out.number(figure);
+            out.key(name).number(figure);
         }
         out.end_object();
     } else {

@@ -96,17 +96,10 @@ Loops::Loops(const LoopOptions& options) {
     tail.begin_object();
     if (!tune_.empty()) {
         if (!tune_.contains("method")) tune_["method"] = MethodRequest{}.method;
-        tail.key("tune");
-        tail.raw(Json::array({tune_}).dump());
+        tail.key("tune").raw(Json::array({tune_}).dump());
     }
-    if (!implement_.empty()) {
-        tail.key("implement");
-        tail.raw(implement_.dump());
-    }
-    if (!timeout_.is_null()) {
-        tail.key("timeout_s");
-        tail.raw(timeout_.dump());
-    }
+    if (!implement_.empty()) tail.key("implement").raw(implement_.dump());
+    if (!timeout_.is_null()) tail.key("timeout_s").raw(timeout_.dump());
     tail.end_object();
     tail_ = tail.take().substr(1);
 }
@@ -134,30 +127,17 @@ std::optional<Problem> Loops::check_options() const {
 std::string Loops::request(std::string_view name, const std::array<double, 3>& plant, const Json& today) const {
     Writer out;
     out.begin_object();
-    if (!name.empty()) {
-        out.key("name");
-        out.text(name);
-    }
+    if (!name.empty()) out.key("name").text(name);
     if (!time_unit_.empty()) {
-        out.key("units");
-        out.begin_object();
-        out.key("time");
-        out.text(time_unit_);
+        out.key("units").begin_object();
+        out.key("time").text(time_unit_);
         out.end_object();
     }
-    out.key("plant");
-    out.begin_object();
-    out.key("type");
-    out.text("fopdt");
-    for (std::size_t i = 0; i < plant.size(); ++i) {
-        out.key(kTitles[i + kGain]);
-        out.number(plant[i]);
-    }
+    out.key("plant").begin_object();
+    out.key("type").text("fopdt");
+    for (std::size_t i = 0; i < plant.size(); ++i) out.key(kTitles[i + kGain]).number(plant[i]);
     out.end_object();
-    if (!today.is_null()) {
-        out.key("baseline");
-        out.raw(today.dump());
-    }
+    if (!today.is_null()) out.key("baseline").raw(today.dump());
     std::string text = out.take();
     if (tail_.size() > 1) text += ',';
     return text += tail_;

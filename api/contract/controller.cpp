@@ -305,9 +305,9 @@ const Description<Equivalents>& equivalents_contract() {
                 "why_null", {},
                 [](const Equivalents& value, Writer& out) {
                     out.begin_object();
-                    out.key("series");
-                    out.text(value.why_no_series.empty() ? "The series form of this controller does not exist."
-                                                         : value.why_no_series);
+                    out.key("series").text(value.why_no_series.empty()
+                                               ? "The series form of this controller does not exist."
+                                               : value.why_no_series);
                     out.end_object();
                 },
                 [](SchemaBook&) {

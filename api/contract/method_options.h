@@ -1,4 +1,4 @@
-// Options of a method as JSON: read, written and described from their OptionDescriptions, whatever their shape.
+// Options of a method as JSON: a codec for each, made from its OptionDescription, whatever its shape.
 #pragma once
 
 #include <string>
@@ -9,9 +9,8 @@
 
 namespace tunewright::api {
 
-/// Reads the value of one option and stores it at `path`; faults at the reader's place.
-void read_option(const Json& value, const OptionDescription& option, const std::string& path, MethodOptions& target,
-                 Reader& reader);
+/// Reads and describes an option, which is stored under its name. `option` must outlive the codec.
+Codec<MethodOptions> option_codec(const OptionDescription& option);
 
 /// Reads every member of the object `value` except "method". `owner` is the name in the fault of an unknown member.
 void read_options(const Json& value, const std::vector<OptionDescription>& described, const std::string& owner,
@@ -20,8 +19,7 @@ void read_options(const Json& value, const std::vector<OptionDescription>& descr
 /// The fault of an unknown option: "x is not an option of simc; did you mean ...?"
 std::string unknown_option(const std::string& name, const std::string& owner, const std::vector<std::string>& names);
 
-/// Puts a value at its path: "reduction/method" opens an object, "bounds/Kp/1" an array, whose earlier elements are
-/// null until they are set.
+/// Puts a value at its path: "reduction/method" opens an object, "bounds/Kp/1" an array.
 void place_option(Json& object, const std::string& path, const OptionValue& value);
 
 /// The options of a method as a JSON Schema: an object that allows no other members.

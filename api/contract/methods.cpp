@@ -35,7 +35,7 @@ const OptionDescription* taking(const std::string& name, const Json& value, cons
             if (named == nullptr) named = &option;
             Reader trial = reader;
             MethodOptions ignored;
-            read_option(value, option, name, ignored, trial);
+            option_codec(option).read(value, ignored, trial);
             if (trial.clean_since(reader.count())) return &option;
         }
     }
@@ -54,7 +54,7 @@ void read_options_of_all(const Json& value, MethodOptions& target, Reader& reade
             reader.fault(unknown_option(name, "any method", names_of_all()));
             continue;
         }
-        read_option(member, suits ? *suits : *named, name, target, reader);
+        option_codec(suits ? *suits : *named).read(member, target, reader);
     }
 }
 

@@ -431,8 +431,7 @@ const Description<EvaluateOptions>& evaluate_options_contract() {
                 },
                 [](const EvaluateOptions& options, Writer& out) {
                     out.begin_object();
-                    out.key("Ms");
-                    out.number(options.rank_Ms.value_or(limits::kDefaultMaxRankedMs));
+                    out.key("Ms").number(options.rank_Ms.value_or(limits::kDefaultMaxRankedMs));
                     out.end_object();
                 },
                 [](SchemaBook&) {

@@ -31,11 +31,7 @@ constexpr double kSmallestNumber = 1e-30;
 std::string broken_rule(double value, const NumberRule& rule) {
     if (std::abs(value) > kLargestNumber) return "at most 1e30 in size";
     if (value != 0 && std::abs(value) < kSmallestNumber) return "0 or at least 1e-30 in size; choose another unit";
-    const bool low =
-        (rule.minimum && value < *rule.minimum) || (rule.exclusive_minimum && value <= *rule.exclusive_minimum);
-    const bool high =
-        (rule.maximum && value > *rule.maximum) || (rule.exclusive_maximum && value >= *rule.exclusive_maximum);
-    if (low || high) {
+    if (!rule.between(value)) {
         std::string text;
         if (rule.minimum) text = ">= " + full_digits(*rule.minimum);
         if (rule.exclusive_minimum) text = "> " + full_digits(*rule.exclusive_minimum);
@@ -95,8 +91,7 @@ Codec<double> engine_ruled(const NumberRule& rule) {
     return codec;
 }
 
-Codec<int> integer(int minimum, int maximum) {
-    const NumberRule rule{.minimum = minimum, .maximum = maximum};
+Codec<int> integer(const NumberRule& rule) {
     return {[rule](const Json& value, int& target, Reader& reader) {
                 const auto read = read_number(value, rule, reader);
                 if (!read) return;
@@ -249,10 +244,7 @@ Codec<std::map<std::string, double>> numbers_by_name(std::string keys) {
     return {{},
             [](const std::map<std::string, double>& values, Writer& out) {
                 out.begin_object();
-                for (const auto& [name, value] : values) {
-                    out.key(name);
-                    out.number(value);
-                }
+                for (const auto& [name, value] : values) out.key(name).number(value);
                 out.end_object();
             },
             [keys](SchemaBook&) {

@@ -13,6 +13,7 @@
 #include "api/json/writer.h"
 #include "engine/callable.h"
 #include "engine/figure.h"
+#include "engine/member.h"
 
 namespace tunewright::api {
 
@@ -35,14 +36,7 @@ struct Codec {
     Callable<std::string(const T&)> why = {};
 };
 
-/// The range of a number. Every number is finite and at most 1e30 in absolute value, so that products of a few stay
-/// finite.
-struct NumberRule {
-    std::optional<double> minimum = {}, exclusive_minimum = {}, maximum = {}, exclusive_maximum = {};
-    bool not_zero = false;
-    std::string cure = {};  ///< a sentence that is added if the rule is broken
-};
-
+/// The largest absolute value of a number, so that products of a few stay finite.
 constexpr double kLargestNumber = 1e30;
 
 /// Reads a number or reports why it is not valid, rule included. These sentences are only here.
@@ -56,7 +50,9 @@ Codec<double> number(const NumberRule& rule = {});
 
 /// A number whose rule the engine checks, with its own sentence: the schema shows the rule, reading accepts any number.
 Codec<double> engine_ruled(const NumberRule& rule);
-Codec<int> integer(int minimum, int maximum);
+/// The rule has limits, which an int can hold.
+Codec<int> integer(const NumberRule& rule);
+inline Codec<int> integer(int minimum, int maximum) { return integer({.minimum = minimum, .maximum = maximum}); }
 Codec<bool> boolean();
 Codec<std::string> text(std::size_t longest);
 
@@ -143,22 +139,16 @@ struct ChoiceWords {
 
 /// Words of the contract for the values of an enumeration; if a value has several, the first is written.
 template <class E>
-Codec<E> choice(const std::vector<std::pair<std::string, E>>& words) {
+Codec<E> choice(const Words<E>& words) {
     ChoiceWords known;
-    std::vector<E> meanings;
-    for (const auto& [word, meaning] : words) {
-        known.names.push_back(word);
-        meanings.push_back(meaning);
-    }
+    for (const auto& [word, meaning] : words) known.names.push_back(word);
     Codec<E> codec;
-    codec.read = [known, meanings](const Json& value, E& target, Reader& reader) {
-        if (const auto at = known.read(value, reader)) target = meanings[*at];
+    codec.read = [known, words](const Json& value, E& target, Reader& reader) {
+        if (const auto at = known.read(value, reader)) target = words[*at].second;
     };
-    codec.write = [known, meanings](const E& value, Writer& out) {
-        for (std::size_t i = 0; i < meanings.size(); ++i) {
-            if (meanings[i] == value) return out.text(known.names[i]);
-        }
-        out.null();
+    codec.write = [words](const E& value, Writer& out) {
+        const std::string word = word_of(words, value);
+        word.empty() ? out.null() : out.text(word);
     };
     codec.schema = known.schema();
     return codec;

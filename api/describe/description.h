@@ -30,10 +30,8 @@ public:
     requires std::is_base_of_v<Owner, T> Description& field(std::string_view name, M Owner::*member, Codec<M> codec,
                                                             std::string_view sentence,
                                                             const FieldOptions& options = {}) {
-        const M* place = &(initial().*member);
-        members_.add(name, sentence, options,
-                     reinterpret_cast<const char*>(place) - reinterpret_cast<const char*>(&initial()),
-                     codec_of(std::move(codec)), place);
+        members_.add(name, sentence, options, offset_of(initial(), member), codec_of(std::move(codec)),
+                     &(initial().*member));
         return *this;
     }
 

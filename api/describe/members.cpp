@@ -30,8 +30,6 @@ struct Members::Member {
     std::string initial;  ///< the default as JSON text; empty: none
 
     bool asked() const { return codec->reads() && !answer_only; }
-    void* in(void* object) const { return static_cast<char*>(object) + offset; }
-    const void* in(const void* object) const { return static_cast<const char*>(object) + offset; }
 };
 
 Members::Members(std::string_view name, std::string_view sentence) : name_(name), sentence_(sentence) {}
@@ -83,7 +81,7 @@ bool Members::read(const Json& value, void* object, Reader& reader) const {
                 reader.fault_at(member.name, member.name + " is missing; " + why_required(member.sentence));
         } else if (member.asked()) {
             const Reader::At place(reader, member.name);
-            member.codec->read(*at, member.in(object), reader);
+            member.codec->read(*at, member_at(object, member.offset), reader);
         }
     }
     return true;
@@ -103,13 +101,10 @@ void Members::check_name(const std::string& given, Reader& reader) const {
 
 void Members::write(const void* object, Writer& out) const {
     out.begin_object();
-    if (!tag_field_.empty()) {
-        out.key(tag_field_);
-        out.text(tag_value_);
-    }
+    if (!tag_field_.empty()) out.key(tag_field_).text(tag_value_);
     std::vector<const Member*> undefined;
     for (const Member& member : members_) {
-        const void* value = member.in(object);
+        const void* value = member_at(object, member.offset);
         if (!member.codec->writes() || member.codec->skip(value)) continue;
         out.key(member.name);
         member.codec->write(value, out);
@@ -120,12 +115,10 @@ void Members::write(const void* object, Writer& out) const {
 }
 
 void Members::write_reasons(const void* object, const std::vector<const Member*>& undefined, Writer& out) const {
-    out.key("why_null");
-    out.begin_object();
+    out.key("why_null").begin_object();
     for (const Member* member : undefined) {
-        const std::string why = member->codec->why(member->in(object));
-        out.key(member->name);
-        out.text(why.empty() ? otherwise_ : why);
+        const std::string why = member->codec->why(member_at(object, member->offset));
+        out.key(member->name).text(why.empty() ? otherwise_ : why);
     }
     out.end_object();
 }

@@ -44,79 +44,103 @@ void write_canonical(const Json& value, Writer& out) {
 
 Problem not_json(std::string detail) { return {400, "not-json", "The body is not JSON", std::move(detail), {}, {}}; }
 
-std::string compact(std::string_view text) {
-    std::string out;
-    out.reserve(text.size());
-    bool inside = false;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        const char c = text[i];
-        if (inside) {
-            out += c;
-            if (c == '\\') out += text[++i];
-            if (c == '"') inside = false;
-        } else if (c != ' ' && c != '\t' && c != '\n' && c != '\r') {
-            out += c;
-            inside = c == '"';
-        }
-    }
-    return out;
-}
-
 namespace {
 
-/// The end of the string that begins at `at`.
-std::size_t after_string(std::string_view json, std::size_t at) {
-    for (++at; json[at] != '"'; ++at)
-        if (json[at] == '\\') ++at;
-    return at + 1;
+constexpr bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
+constexpr bool opens(char c) { return c == '{' || c == '['; }
+constexpr bool closes(char c) { return c == '}' || c == ']'; }
+constexpr bool ends_word(char c) { return opens(c) || closes(c) || c == ',' || c == ':' || c == '"' || is_blank(c); }
+
+/// The end of the token that begins at `at`; undefined, but within the text, if it is not JSON.
+std::size_t after_token(std::string_view json, std::size_t at) {
+    if (json[at] == '"') {
+        for (bool escaped = true; escaped;) {
+            at = json.find('"', at + 1);
+            if (at == json.npos) return json.size();
+            escaped = (at - 1 - json.find_last_not_of('\\', at - 1)) % 2 == 1;
+        }
+        return at + 1;
+    }
+    if (ends_word(json[at])) return at + 1;
+    while (at < json.size() && !ends_word(json[at])) ++at;
+    return at;
+}
+
+std::size_t after_value(std::string_view json, std::size_t at) {
+    int depth = 0;
+    while (at < json.size()) {
+        depth += opens(json[at]) ? 1 : closes(json[at]) ? -1 : 0;
+        at = after_token(json, at);
+        if (depth <= 0) break;
+    }
+    return at;
 }
 
 /// True if the bracket at `at` encloses another one. The next bracket of any kind decides.
 bool encloses(std::string_view json, std::size_t at) {
-    for (++at; at < json.size();) {
-        const char c = json[at];
-        if (c == '"') {
-            at = after_string(json, at);
-            continue;
-        }
-        if (c == '{' || c == '[') return true;
-        if (c == '}' || c == ']') return false;
-        ++at;
-    }
-    return false;
+    do at = after_token(json, at);
+    while (at < json.size() && !opens(json[at]) && !closes(json[at]));
+    return at < json.size() && opens(json[at]);
 }
 
 }  // namespace
+
+std::string compact(std::string_view text) {
+    std::string out;
+    out.reserve(text.size());
+    std::size_t passed = 0;
+    for (std::size_t at = 0, end = 0; at < text.size(); at = end) {
+        end = after_token(text, at);
+        if (!is_blank(text[at])) continue;
+        out.append(text, passed, at - passed);
+        passed = end;
+    }
+    return out.append(text, passed);
+}
 
 std::string indented(std::string_view text) {
     const std::string json = compact(text);
     std::string out;
     std::vector<bool> parted;  // for each open bracket: one line for each member
     const auto new_line = [&] { out.append("\n").append(2 * parted.size(), ' '); };
-    for (std::size_t at = 0; at < json.size();) {
+    for (std::size_t at = 0, end = 0; at < json.size(); at = end) {
         const char c = json[at];
-        if (c == '"') {
-            const std::size_t end = after_string(json, at);
-            out.append(json, at, end - at);
-            at = end;
-            continue;
-        }
-        const bool closes = c == '}' || c == ']';
-        if (closes && !parted.empty()) {
+        end = after_token(json, at);
+        if (closes(c) && !parted.empty()) {
             const bool lines = parted.back();
             parted.pop_back();
             if (lines) new_line();
         }
-        out += c;
-        if (c == '{' || c == '[') {
+        out.append(json, at, end - at);
+        if (opens(c)) {
             parted.push_back(encloses(json, at));
             if (parted.back()) new_line();
         }
         if (c == ':') out += ' ';
         if (c == ',') parted.empty() || !parted.back() ? void(out += ' ') : new_line();
-        ++at;
     }
     return out + "\n";
+}
+
+std::string without_members(std::string_view json, std::initializer_list<std::string_view> names) {
+    std::string out;
+    out.reserve(json.size());
+    std::size_t passed = 0;  // the end of the part that is in `out` or left out
+    for (std::size_t at = 0, end = 0; at < json.size(); at = end) {
+        end = after_token(json, at);
+        const bool leaves = json[at] == '"' && end < json.size() && json[end] == ':' &&
+                            std::ranges::find(names, json.substr(at + 1, end - at - 2)) != names.end();
+        if (!leaves) continue;
+        out.append(json, passed, at - passed);
+        end = after_value(json, end + 1);
+        // One of the commas on both sides is left out too.
+        if (end < json.size() && json[end] == ',')
+            ++end;
+        else if (!out.empty() && out.back() == ',')
+            out.pop_back();
+        passed = end;
+    }
+    return out.append(json, std::min(passed, json.size()));
 }
 
 std::string canonical(const Json& value) {
@@ -385,94 +409,6 @@ std::variant<Json, Problem> parse(std::string_view text) {
         builder.fault(rapidjson::kParseErrorDocumentRootNotSingular, stream.Tell());
     if (builder.problem()) return *builder.problem();
     return builder.take();
-}
-
-namespace {
-
-/// Walks over text that is known to be JSON without white space between its tokens. The output for other text is
-/// undefined.
-class Walk {
-public:
-    Walk(std::string_view json, std::initializer_list<std::string_view> names) : json_(json), names_(names) {}
-
-    std::string run() {
-        out_.reserve(json_.size());
-        value(true);
-        return std::move(out_);
-    }
-
-private:
-    bool at(char c) const { return at_ < json_.size() && json_[at_] == c; }
-
-    /// Copies the token from `from` to here, or leaves it out.
-    void pass(std::size_t from, bool kept) {
-        if (kept) out_ += json_.substr(from, at_ - from);
-    }
-
-    std::string_view quoted() {
-        const std::size_t from = at_++;
-        while (at_ < json_.size() && json_[at_] != '"') at_ += json_[at_] == '\\' ? 2 : 1;
-        at_ = std::min(at_ + 1, json_.size());
-        return json_.substr(from, at_ - from);
-    }
-
-    void value(bool kept) {
-        if (at('{')) return object(kept);
-        if (at('[')) return array(kept);
-        at_ = std::min(at_, json_.size());
-        const std::size_t from = at_;
-        if (at('"')) {
-            quoted();
-        } else {
-            at_ = std::min(json_.find_first_of(",]}", at_), json_.size());
-        }
-        pass(from, kept);
-    }
-
-    void object(bool kept) {
-        at_++;
-        if (kept) out_ += '{';
-        bool first = true;
-        while (at_ < json_.size() && !at('}')) {
-            if (at(',')) at_++;
-            if (!at('"')) break;
-            const std::string_view name = quoted();
-            if (!at(':')) break;
-            at_++;
-            const bool stays = kept && std::ranges::find(names_, name.substr(1, name.size() - 2)) == names_.end();
-            if (stays) out_.append(first ? "" : ",").append(name).append(":");
-            first = first && !stays;
-            value(stays);
-        }
-        at_++;
-        if (kept) out_ += '}';
-    }
-
-    void array(bool kept) {
-        const std::size_t from = at_++;
-        pass(from, kept);
-        while (at_ < json_.size() && !at(']')) {
-            const std::size_t comma = at_;
-            if (at(',')) at_++;
-            pass(comma, kept);
-            const std::size_t before = at_;
-            value(kept);
-            if (at_ == before) break;
-        }
-        at_++;
-        if (kept) out_ += ']';
-    }
-
-    std::string_view json_;
-    std::initializer_list<std::string_view> names_;
-    std::size_t at_ = 0;
-    std::string out_;
-};
-
-}  // namespace
-
-std::string without_members(std::string_view json, std::initializer_list<std::string_view> names) {
-    return Walk(json, names).run();
 }
 
 }  // namespace tunewright::api

@@ -96,10 +96,8 @@ static void write_record(const RecordSamples& samples, Writer& out) {
         out.key(name);
         excerpt ? out.numbers(values) : out.trace(values);
     };
-    out.key("record");
-    out.begin_object();
-    out.key("samples");
-    out.integer(static_cast<long long>(samples.samples));
+    out.key("record").begin_object();
+    out.key("samples").integer(static_cast<long long>(samples.samples));
     out.key("t");
     excerpt ? out.numbers(samples.t) : out.times(samples.t);
     write("u", samples.u);
@@ -111,16 +109,10 @@ static void write_record(const RecordSamples& samples, Writer& out) {
 }
 
 static void write_cure(const Cure& cure, Writer& out) {
-    out.key("cure");
-    out.begin_object();
-    out.key("text");
-    out.text(cure.text);
-    out.key("options");
-    out.begin_object();
-    for (const auto& [name, value] : cure.options) {
-        out.key(name);
-        out.number(value);
-    }
+    out.key("cure").begin_object();
+    out.key("text").text(cure.text);
+    out.key("options").begin_object();
+    for (const auto& [name, value] : cure.options) out.key(name).number(value);
     out.end_object();
     out.end_object();
 }
@@ -128,27 +120,17 @@ static void write_cure(const Cure& cure, Writer& out) {
 std::string to_json(const Problem& problem) {
     Writer out;
     out.begin_object();
-    out.key("type");
-    out.text(problem.type);
-    out.key("title");
-    out.text(problem.title);
-    out.key("status");
-    out.integer(problem.status);
-    out.key("detail");
-    out.text(problem.detail);
-    if (!problem.instance.empty()) {
-        out.key("instance");
-        out.text(problem.instance);
-    }
+    out.key("type").text(problem.type);
+    out.key("title").text(problem.title);
+    out.key("status").integer(problem.status);
+    out.key("detail").text(problem.detail);
+    if (!problem.instance.empty()) out.key("instance").text(problem.instance);
     if (!problem.errors.empty()) {
-        out.key("errors");
-        out.begin_array();
+        out.key("errors").begin_array();
         for (const FieldError& error : problem.errors) {
             out.begin_object();
-            out.key("pointer");
-            out.text(error.pointer);
-            out.key("detail");
-            out.text(error.detail);
+            out.key("pointer").text(error.pointer);
+            out.key("detail").text(error.detail);
             out.end_object();
         }
         out.end_array();

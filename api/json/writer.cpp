@@ -128,10 +128,11 @@ void Writer::quoted(std::string_view value) {
     out_ += '"';
 }
 
-void Writer::key(std::string_view name) {
+Writer& Writer::key(std::string_view name) {
     comma();
     quoted(name);
     out_ += ':';
+    return *this;
 }
 
 void Writer::text(std::string_view value) {

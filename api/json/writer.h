@@ -17,8 +17,8 @@ public:
     void begin_array() { open('['); }
     void end_array() { out_ += ']'; }
 
-    void key(std::string_view name);
-    void text(std::string_view value);  ///< UTF-8
+    Writer& key(std::string_view name);  ///< of the value that follows: out.key("Ms").number(1.4)
+    void text(std::string_view value);   ///< UTF-8
     void boolean(bool value);
     void integer(long long value);
     void null();

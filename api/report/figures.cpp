@@ -20,8 +20,6 @@ std::string true_minus(std::string text) {
 
 std::string number_text(double value, int digits) { return true_minus(tunewright::text(value, digits)); }
 
-std::string tick_text(double value) { return true_minus(tunewright::text(std::abs(value) < 1e-300 ? 0 : value, 6)); }
-
 Html figure(const JsonLocation& place, int digits) {
     const Json& value = place.value();
     if (value.is_number())

@@ -15,8 +15,6 @@ namespace tunewright::api {
 
 /// The number with this number of significant digits and a true minus sign: "1.385".
 std::string number_text(double value, int digits = 4);
-/// The number of a tick: the shortest exact text.
-std::string tick_text(double value);
 
 /// A number as <span data-at="/controllers/0/...">1.385</span>; a dash and its reason if it is null.
 Html figure(const JsonLocation& place, int digits = 4);

@@ -15,6 +15,7 @@ namespace {
 constexpr double kWidth = 340, kHeight = 210;                      // px of the viewBox
 constexpr double kLeft = 46, kRight = 10, kTop = 8, kBottom = 34;  // margins around the frame
 constexpr double kTickLength = 4;
+constexpr int kTickDigits = 6;  // as many as a tick may need
 
 struct Style {
     const char *colour, *width, *dashes;
@@ -104,12 +105,12 @@ Html axes(const Plot& plot, const Axis& x, const Axis& y) {
     for (const double tick : ticks_of(x, 6)) {
         const double at = x.at(tick);
         out += line(at, y.from, at, y.to, "#e3e8ed") + line(at, y.from, at, y.from + kTickLength, "#566270");
-        out += label(at, y.from + 14, tick_text(tick), "middle");
+        out += label(at, y.from + 14, number_text(tick, kTickDigits), "middle");
     }
     for (const double tick : ticks_of(y, 5)) {
         const double at = y.at(tick);
         out += line(x.from, at, x.to, at, "#e3e8ed") + line(x.from - kTickLength, at, x.from, at, "#566270");
-        out += label(x.from - 6, at + 3.5, tick_text(tick), "end");
+        out += label(x.from - 6, at + 3.5, number_text(tick, kTickDigits), "end");
     }
     out += empty_element("rect", {{"x", px(x.from)},
                                   {"y", px(y.to)},
@@ -197,7 +198,7 @@ std::vector<double> ticks(double low, double high, int count) {
     std::vector<double> out;
     if (!(step > 0) || !std::isfinite(step)) return out;
     for (double n = std::ceil(low / step - 1e-9); n * step <= high + 1e-9 * step && out.size() < 50; ++n)
-        out.push_back(n * step);
+        out.push_back(n * step + 0.0);  // no -0
     return out;
 }
 

@@ -48,12 +48,9 @@ void write_notes(const std::vector<product::Note>& notes, Writer& out) {
     out.begin_array();
     for (const product::Note& note : notes) {
         out.begin_object();
-        out.key("code");
-        out.text(note.code);
-        out.key("detail");
-        out.text(note.detail);
-        out.key("deviation");
-        out.boolean(product::tells_deviation(note));
+        out.key("code").text(note.code);
+        out.key("detail").text(note.detail);
+        out.key("deviation").boolean(product::tells_deviation(note));
         out.end_object();
     }
     out.end_array();
@@ -100,8 +97,7 @@ const Description<SettingsAnswer>& settings_answer_contract() {
                     for (const product::Setting& setting : a.settings) {
                         const product::Parameter* parameter = product::parameter_named(*a.product, setting.name);
                         if (parameter == nullptr || parameter->unit.empty()) continue;
-                        out.key(setting.name);
-                        out.text(std::string(parameter->unit));
+                        out.key(setting.name).text(std::string(parameter->unit));
                     }
                     out.end_object();
                 },
@@ -110,10 +106,8 @@ const Description<SettingsAnswer>& settings_answer_contract() {
                 "as_typed", {},
                 [](const Answer& a, Writer& out) {
                     out.begin_object();
-                    for (const product::Setting& setting : a.typed) {
-                        out.key(setting.name);
-                        out.text(product::typed_text(*a.product, setting));
-                    }
+                    for (const product::Setting& setting : a.typed)
+                        out.key(setting.name).text(product::typed_text(*a.product, setting));
                     out.end_object();
                 },
                 texts_by_name, "As typed, in the product's resolution.")

@@ -94,8 +94,7 @@ void write_choices(const Parameter& parameter, Writer& out) {
         write_value(option.value, out);
         for (const auto& [name, weight] : {std::pair{"b", option.b}, {"c", option.c}}) {
             if (!weight) continue;
-            out.key(name);
-            out.number(*weight);
+            out.key(name).number(*weight);
         }
         out.end_object();
     }

@@ -42,18 +42,12 @@ TestRecord record_in(const range::PlaceTest& place) {
 void write_test_record(const range::PlaceTest& place, Writer& out) {
     const TestRecord record = record_in(place);
     out.begin_object();
-    out.key("kind");
-    out.text(record.kind);
-    out.key("t");
-    out.times(*record.t);
-    out.key("u");
-    out.trace(*record.u);
-    out.key("y");
-    out.trace(*record.y);
-    out.key("u0");
-    out.integer(0);
-    out.key("y0");
-    out.integer(0);
+    out.key("kind").text(record.kind);
+    out.key("t").times(*record.t);
+    out.key("u").trace(*record.u);
+    out.key("y").trace(*record.y);
+    out.key("u0").integer(0);
+    out.key("y0").integer(0);
     out.end_object();
 }
 
@@ -125,12 +119,9 @@ const Description<RangeExperiments>& range_experiments_answer_contract() {
              "scheduling", {},
              [](const A& a, Writer& out) {
                  out.begin_object();
-                 out.key("name");
-                 out.text(a.branch->scheduling_name());
-                 out.key("from");
-                 out.number(a.branch->low());
-                 out.key("to");
-                 out.number(a.branch->high());
+                 out.key("name").text(a.branch->scheduling_name());
+                 out.key("from").number(a.branch->low());
+                 out.key("to").number(a.branch->high());
                  out.end_object();
              },
              [](SchemaBook&) {

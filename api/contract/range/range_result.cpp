@@ -169,16 +169,10 @@ Json scheduling_schema(SchemaBook&) {
 
 void write_scheduling(const RangeContent& content, Writer& out) {
     out.begin_object();
-    out.key("name");
-    out.text(content.result.scheduling.name);
-    if (!content.result.scheduling.unit.empty()) {
-        out.key("unit");
-        out.text(content.result.scheduling.unit);
-    }
-    out.key("from");
-    out.number(content.result.low);
-    out.key("to");
-    out.number(content.result.high);
+    out.key("name").text(content.result.scheduling.name);
+    if (!content.result.scheduling.unit.empty()) out.key("unit").text(content.result.scheduling.unit);
+    out.key("from").number(content.result.low);
+    out.key("to").number(content.result.high);
     out.end_object();
 }
 

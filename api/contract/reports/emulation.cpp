@@ -171,10 +171,8 @@ void add_criterion(Description<EmulationReport>& d) {
             "weights", {},
             [](const R& report, Writer& out) {
                 out.begin_object();
-                out.key("wy");
-                out.number(report.wy);
-                out.key("wu");
-                out.number(report.wu);
+                out.key("wy").number(report.wy);
+                out.key("wu").number(report.wu);
                 out.end_object();
             },
             [](SchemaBook&) {
@@ -205,8 +203,7 @@ const Description<EmulationReport>& emulation_contract() {
                 "target", {},
                 [](const R& report, Writer& out) {
                     out.begin_object();
-                    out.key("beta");
-                    out.begin_array();
+                    out.key("beta").begin_array();
                     for (const double beta : report.beta) out.number(beta);
                     out.end_array();
                     out.end_object();

@@ -65,15 +65,9 @@ const Description<FrontierRequest>& frontier_request_contract() {
         Description<R> d("FrontierRequest", "A plant, and the range of limits for its robust optima.");
         add_labels(d);
         d.field("plant", &R::plant, maybe(plant_model_or_text()), "The plant.", {.required = true});
-        const Json options = options_schema(frontier_options().descriptions())["properties"];
-        for (const OptionDescription& option : frontier_options().descriptions()) {
-            if (option.name == "take") continue;
-            const auto read = [&option](const Json& value, R& request, Reader& reader) {
-                read_option(value, option, option.name, request.options, reader);
-            };
-            const auto schema = [shown = options[option.name]](SchemaBook&) { return shown; };
-            d.field(option.name, read, {}, schema, option.sentence);
-        }
+        for (const OptionDescription& option : frontier_options().descriptions())
+            if (option.name != "take")
+                d.field(option.name, &R::options, option_codec(option), option.sentence, {.no_default = true});
         d.check([](const Json&, R& request, Reader& reader) { request.subject = subject_of(*request.plant, reader); })
             .example({{"plant", {{"type", "fopdt"}, {"K", 2}, {"T", 10}, {"L", 3}}},
                       {"Ms", {{"from", 1.1}, {"to", 2.5}, {"points", 30}}}});

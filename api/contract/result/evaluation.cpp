@@ -18,8 +18,7 @@ void write_figure(const Figure& figure, Writer& out) { figure ? out.number(*figu
 void write_tolerates(const Robustness& robustness, Writer& out) {
     const Tolerates& tolerates = robustness.tolerates;
     out.begin_object();
-    out.key("gain");
-    out.begin_array();
+    out.key("gain").begin_array();
     write_figure(tolerates.gain_low, out);
     write_figure(tolerates.gain_high, out);
     out.end_array();
@@ -27,8 +26,7 @@ void write_tolerates(const Robustness& robustness, Writer& out) {
     write_figure(tolerates.extra_dead_time, out);
     const bool gain = !tolerates.gain_low || !tolerates.gain_high, dead_time = !tolerates.extra_dead_time;
     if (gain || dead_time) {
-        out.key("why_null");
-        out.begin_object();
+        out.key("why_null").begin_object();
         if (gain) {
             out.key("gain");
             write_why(tolerates.gain_high ? tolerates.gain_low : tolerates.gain_high, out);
@@ -106,12 +104,9 @@ const Description<Trace>& trace_contract() {
 
 void write_loop_gain(const FrequencyTraces& traces, Writer& out) {
     out.begin_object();
-    out.key("re");
-    out.trace(traces.L_re);
-    out.key("im");
-    out.trace(traces.L_im);
-    out.key("phase_deg");
-    out.trace(traces.L_phase_deg);
+    out.key("re").trace(traces.L_re);
+    out.key("im").trace(traces.L_im);
+    out.key("phase_deg").trace(traces.L_phase_deg);
     out.end_object();
 }
 

@@ -130,10 +130,7 @@ const Description<OperatingPoint>& operating_point_contract() {
              "states", {},
              [](const OperatingPoint& point, Writer& out) {
                  out.begin_object();
-                 for (const NamedValue& state : point.states) {
-                     out.key(state.name);
-                     out.number(state.value);
-                 }
+                 for (const NamedValue& state : point.states) out.key(state.name).number(state.value);
                  out.end_object();
              },
              [](SchemaBook&) {
@@ -298,8 +295,7 @@ void add_choice(Description<Answer>& d, Of of) {
          "rank_limits", {},
          [of](const Answer& answer, Writer& out) {
              out.begin_object();
-             out.key("Ms");
-             out.number(*of(answer).rank_Ms);
+             out.key("Ms").number(*of(answer).rank_Ms);
              out.end_object();
          },
          [](SchemaBook&) {

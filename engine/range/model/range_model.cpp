@@ -19,17 +19,6 @@ constexpr int kResponsePoints = 160;
 constexpr double kBelowCorners = 1e-2;  // times the slowest corner: where the static gain shows
 constexpr double kMaxDelayTurns = 4;    // of a dead time, in turns: what lies above forbids no gain any more
 
-struct Neighbours {
-    std::size_t left = 0;
-    double share = 0;  ///< 0 at the left one, 1 at the right one
-};
-
-Neighbours neighbours(const std::vector<double>& places, double place) {
-    const auto after = std::upper_bound(places.begin() + 1, places.end() - 1, place);
-    const auto left = std::size_t(after - places.begin()) - 1;
-    return {left, std::clamp((place - places[left]) / (places[left + 1] - places[left]), 0.0, 1.0)};
-}
-
 std::string point_name(std::size_t k) { return "points/" + std::to_string(k); }
 
 Error at_point(std::size_t k, const std::string& field, std::string message, ErrorKind kind) {
@@ -51,7 +40,19 @@ std::optional<Error> fault_of_points(const std::vector<RangePoint>& points) {
 
 /// What all models of points share: the points themselves, checked and factored.
 class PointsModel : public RangeModel {
+public:
+    Expected<PointModel> at(double place) const final {
+        const auto after = std::upper_bound(points_.begin() + 1, points_.end() - 1, place);
+        const auto left = std::size_t(after - points_.begin()) - 1;
+        const double share = std::clamp((place - points_[left]) / (points_[left + 1] - points_[left]), 0.0, 1.0);
+        if (share == 0 || share == 1) return models_[share == 0 ? left : left + 1];
+        return between(left, share, place);
+    }
+
 protected:
+    /// The plant at `place`, `share` in (0, 1) of the way from the point `left` to the next.
+    virtual Expected<PointModel> between(std::size_t left, double share, double place) const = 0;
+
     std::optional<Error> take(const std::vector<RangePoint>& points) {
         if (auto fault = fault_of_points(points)) return fault;
         given_ = points;
@@ -168,19 +169,16 @@ public:
         return std::nullopt;
     }
 
-    Expected<PointModel> at(double place) const override {
-        const auto [left, share] = neighbours(points_, place);
-        if (share == 0) return models_[left];
-        if (share == 1) return models_[left + 1];
+    Expected<PointModel> between(std::size_t left, double share, double place) const override {
         const PlantFamily &one = given_[left].family, &other = given_[left + 1].family;
         const Plant plant = plant_between(one.nominal(), other.nominal(), share);
         auto nominal = LinearPlant::make(plant);
         if (!nominal) return nominal.error();
         PointModel model{.at = place, .nominal = std::move(*nominal), .members = {}, .measured = {}};
         for (const auto& [a, b] : pairs_[left]) {
-            LogRatios between(a.size());
-            for (std::size_t i = 0; i < a.size(); ++i) between[i] = a[i] + share * (b[i] - a[i]);
-            auto linear = LinearPlant::make(moved_by(plant, between));
+            LogRatios ratios(a.size());
+            for (std::size_t i = 0; i < a.size(); ++i) ratios[i] = a[i] + share * (b[i] - a[i]);
+            auto linear = LinearPlant::make(moved_by(plant, ratios));
             if (linear) model.members.push_back(std::move(*linear));
         }
         return model;
@@ -251,10 +249,7 @@ public:
         return std::nullopt;
     }
 
-    Expected<PointModel> at(double place) const override {
-        const auto [left, share] = neighbours(points_, place);
-        if (share == 0) return models_[left];
-        if (share == 1) return models_[left + 1];
+    Expected<PointModel> between(std::size_t left, double share, double place) const override {
         FrequencyResponse response{.omega = omega_,
                                    .re = {},
                                    .im = {},

@@ -212,7 +212,7 @@ Expected<TunedController> tune_by_degradation(const TuningProblem& problem, cons
 
 template <class T>
 void add_profile(OptionSet<T>& set) {
-    set.flag(
+    set.field(
         &T::profile, "profile",
         "Also return the trade-off of this rule on the model over Ms from 1.4 to 2 and over the levels of Table 2.");
     set.draws("profile");
@@ -239,16 +239,16 @@ OptionSet<ArrietaMsOptions> Ms_options() {
 OptionSet<ArrietaDegradationOptions> degradation_options() {
     using O = ArrietaDegradationOptions;
     OptionSet<O> set;
-    set.number(
-        &O::degradation, "degradation",
-        "How much of the combined performance may be given up for robustness: 0 is the tuning without a limit on "
-        "Ms, 0.25 low, 0.35 medium-low, 0.45 medium-high, 0.55 high. Others are solved for on the model.",
-        {.minimum = 0, .maximum = 1});
+    set.field(&O::degradation, "degradation",
+              "How much of the combined performance may be given up for robustness: 0 is the tuning without a limit on "
+              "Ms, 0.25 low, 0.35 medium-low, 0.45 medium-high, 0.55 high. Others are solved for on the model.",
+              {.minimum = 0, .maximum = 1});
     set.slider("degradation");
-    set.flag(&O::exact, "exact",
-             "true: solve on the model for the Ms from 1.4 to 2 whose degradation is the one asked for, also at the "
-             "levels of Table 2 (which are up to 0.02 off for L/T up to 1.5 and 0.1 off at 2); false: the table alone. "
-             "Left out: the table at its levels, solved in between.");
+    set.field(
+        &O::exact, "exact",
+        "true: solve on the model for the Ms from 1.4 to 2 whose degradation is the one asked for, also at the "
+        "levels of Table 2 (which are up to 0.02 off for L/T up to 1.5 and 0.1 off at 2); false: the table alone. "
+        "Left out: the table at its levels, solved in between.");
     add_profile(set);
     return set;
 }

@@ -11,43 +11,41 @@ const NumberOption kPositiveTime{.unit = "time", .exclusive_minimum = 0};
 OptionSet<TargetOptions> target() {
     using O = TargetOptions;
     OptionSet<O> set;
-    set.number(&O::gamma, "gamma", "gamma y' + y = set point.", kPositiveTime);
-    set.number(&O::tau_cl, "tau_cl", "tau_cl^2 y'' + 2 xi tau_cl y' + y = set point.", kPositiveTime);
-    set.number(&O::xi, "xi", "Damping ratio. Default: 1.", {.exclusive_minimum = 0});
-    set.complex_list(
-        &O::poles, "poles", "As many as the relative degree, complex ones in conjugate pairs.",
-        {.name = "pole", .sentence = "A number or [re, im], in the open left half-plane.", .unit = "1/time"},
-        kMaxElements);
+    set.field(&O::gamma, "gamma", "gamma y' + y = set point.", kPositiveTime);
+    set.field(&O::tau_cl, "tau_cl", "tau_cl^2 y'' + 2 xi tau_cl y' + y = set point.", kPositiveTime);
+    set.field(&O::xi, "xi", "Damping ratio. Default: 1.", {.exclusive_minimum = 0});
+    set.list(&O::poles, "poles", "As many as the relative degree, complex ones in conjugate pairs.",
+             described_option(OptionType::complex, "pole", "A number or [re, im], in the open left half-plane.",
+                              {.unit = "1/time"}),
+             kMaxElements);
     return set;
 }
 
 OptionSet<ScenarioOptions> scenario() {
     using O = ScenarioOptions;
     OptionSet<O> set;
-    set.number(&O::setpoint_step, "setpoint_step", "From this plant's steady state.", {.unit = "y", .required = true});
-    set.numbers_by_name(&O::initial, "initial",
-                        "States at t = 0 by name, absolute; the others are at their steady values.");
-    set.numbers_by_name(
-        &O::parameters, "parameters",
-        "Other values of the plant's parameters by name: an uncertain plant is one more scenario, known "
-        "to its nonlinear controller.");
+    set.field(&O::setpoint_step, "setpoint_step", "From this plant's steady state.", {.unit = "y", .required = true});
+    set.field(&O::initial, "initial", "States at t = 0 by name, absolute; the others are at their steady values.");
+    set.field(&O::parameters, "parameters",
+              "Other values of the plant's parameters by name: an uncertain plant is one more scenario, known "
+              "to its nonlinear controller.");
     return set;
 }
 
 OptionSet<WeightOptions> weights() {
     OptionSet<WeightOptions> set;
-    set.number(&WeightOptions::wy, "wy", "Default: wu over the square of the linearisation's static gain.",
-               {.unit = "u^2/y^2", .minimum = 0});
-    set.number(&WeightOptions::wu, "wu", "Weight of the input's difference.", {.minimum = 0});
+    set.field(&WeightOptions::wy, "wy", "Default: wu over the square of the linearisation's static gain.",
+              {.unit = "u^2/y^2", .minimum = 0});
+    set.field(&WeightOptions::wu, "wu", "Weight of the input's difference.", {.minimum = 0});
     return set;
 }
 
 OptionSet<BoundOptions> bounds() {
     using O = BoundOptions;
     OptionSet<O> set;
-    set.range(&O::Kp, "Kp", "[low, high], low < high for negative gains too.", {.unit = "u/y"});
-    set.range(&O::Ti, "Ti", "[low, high], above 0.", kPositiveTime);
-    set.range(&O::Td, "Td", "[low, high], from 0.", {.unit = "time", .minimum = 0});
+    set.field(&O::Kp, "Kp", "[low, high], low < high for negative gains too.", {.unit = "u/y"});
+    set.field(&O::Ti, "Ti", "[low, high], above 0.", kPositiveTime);
+    set.field(&O::Td, "Td", "[low, high], from 0.", {.unit = "time", .minimum = 0});
     return set;
 }
 
@@ -55,27 +53,26 @@ OptionSet<BoundsFromOptions> bounds_from() {
     using O = BoundsFromOptions;
     OptionSet<O> set;
     const NumberRange alpha = O{}.alpha;
-    set.text_list(
-        &O::methods, "methods",
-        "Ids of methods. imc works on the linearisation and on a model identified from a simulated step test, "
-        "ziegler_nichols_ultimate on a simulated relay test or the linearisation's ultimate point, all others "
-        "on the linearisation. Default: these two.",
-        {.name = "method", .sentence = "Id of a method."}, kMaxElements);
-    set.range(&O::alpha, "alpha",
+    set.list(&O::methods, "methods",
+             "Ids of methods. imc works on the linearisation and on a model identified from a simulated step test, "
+             "ziegler_nichols_ultimate on a simulated relay test or the linearisation's ultimate point, all others "
+             "on the linearisation. Default: these two.",
+             described_option(OptionType::text, "method", "Id of a method."), kMaxElements);
+    set.field(&O::alpha, "alpha",
               "Factors of the smallest and of the largest of their values, Kp by size (Eq. 3): at least 0 and below 1, "
               "and above 1. Default: [" +
                   text(alpha.low) + ", " + text(alpha.high) + "].",
               {.minimum = 0});
-    set.number(&O::lambda, "lambda", "Of imc. Default: the target's time constant.", kPositiveTime);
-    set.number(&O::test_step, "test_step",
-               "Step of the input in that test, not 0. Default: 2 % of the input's range, or of its nominal value.",
-               {.unit = "u"});
-    set.number(&O::relay_amplitude, "relay_amplitude", "Of the relay test. Default: 5 % of them.",
-               {.unit = "u", .exclusive_minimum = 0});
-    set.number(&O::relay_hysteresis, "relay_hysteresis",
-               "Hysteresis of the simulated relay test. Default: 0 with a dead time, else a tenth of what the relay "
-               "moves y by in the long run.",
-               {.unit = "y", .minimum = 0});
+    set.field(&O::lambda, "lambda", "Of imc. Default: the target's time constant.", kPositiveTime);
+    set.field(&O::test_step, "test_step",
+              "Step of the input in that test, not 0. Default: 2 % of the input's range, or of its nominal value.",
+              {.unit = "u"});
+    set.field(&O::relay_amplitude, "relay_amplitude", "Of the relay test. Default: 5 % of them.",
+              {.unit = "u", .exclusive_minimum = 0});
+    set.field(&O::relay_hysteresis, "relay_hysteresis",
+              "Hysteresis of the simulated relay test. Default: 0 with a dead time, else a tenth of what the relay "
+              "moves y by in the long run.",
+              {.unit = "y", .minimum = 0});
     return set;
 }
 
@@ -93,23 +90,21 @@ OptionSet<EmulationOptions> described_options() {
                "full: the PID's own run on the plant (Eq. 2); remark6: its error taken from the nonlinear controller's "
                "run, u compared alone.",
                Words<Formulation>{{"full", Formulation::full}, {"remark6", Formulation::remark6}});
-    set.object_list(
-        &O::scenarios, "scenarios",
-        "Runs that J is averaged over. Default: one step that takes 5 % more of the input, or of its range.",
-        {.name = "scenario", .sentence = "A run from t = 0."}, scenario(), kMaxElements);
-    set.number(&O::horizon, "horizon",
-               "Where J's integral ends. Default: eight times the target's slowest time after the dead time.",
-               kPositiveTime);
+    set.list(&O::scenarios, "scenarios",
+             "Runs that J is averaged over. Default: one step that takes 5 % more of the input, or of its range.",
+             described_option(OptionType::object, "scenario", "A run from t = 0."), kMaxElements, scenario());
+    set.field(&O::horizon, "horizon",
+              "Where J's integral ends. Default: eight times the target's slowest time after the dead time.",
+              kPositiveTime);
     set.object(&O::weights, "weights", "J = mean of int wy (y_nl - y)^2 + wu (u_nl - u)^2 dt.", weights());
     set.object(&O::bounds, "bounds", "Where the optimum is searched. Those left out come from bounds_from.", bounds());
     set.object(&O::bounds_from, "bounds_from",
                "The first level: which classical settings are tried beside, and how bounds follow from them.",
                bounds_from());
-    set.number_or_range(
-        &O::Tf, "Tf",
-        "Filter time of a PID's derivative part, or [low, high] to choose it too (Remark 5). Default: a "
-        "tenth of the target's time.",
-        kPositiveTime);
+    set.field(&O::Tf, "Tf",
+              "Filter time of a PID's derivative part, or [low, high] to choose it too (Remark 5). Default: a "
+              "tenth of the target's time.",
+              kPositiveTime);
     set.choice(&O::derivative_on, "derivative_on",
                "measurement: of y alone; error: of set point minus y, with the kick of its step.",
                Words<DerivativeOn>{{"measurement", DerivativeOn::measurement}, {"error", DerivativeOn::error}});

@@ -9,14 +9,159 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
 
-#include "engine/tuning/method/option_list.h"
+#include "engine/callable.h"
 #include "engine/tuning/method/options.h"
 
 namespace tunewright {
+
+/// Evenly between the limits of the number; about its value where it has only a lower limit.
+OptionSlider slider_within(const OptionDescription& number);
+
+/// Logarithmic, a factor in either direction.
+OptionSlider slider_about_value();
+
+namespace detail {
+
+/// The value that stands in a member; null where it is an empty optional.
+template <class M>
+const M* content(const M& member) {
+    return &member;
+}
+template <class M>
+const M* content(const std::optional<M>& member) {
+    return member ? &*member : nullptr;
+}
+template <class M>
+using Content = std::remove_cvref_t<decltype(*content(std::declval<const M&>()))>;
+
+/// The type of the option that a member of this type holds.
+template <class M>
+constexpr OptionType option_type() {
+    if (std::is_same_v<M, int>) return OptionType::integer;
+    if (std::is_same_v<M, bool>) return OptionType::boolean;
+    if (std::is_same_v<M, NumberRange>) return OptionType::range;
+    if (std::is_same_v<M, std::variant<double, NumberRange>>) return OptionType::number_or_range;
+    return std::is_same_v<M, std::map<std::string, double>> ? OptionType::numbers_by_name : OptionType::number;
+}
+
+/// Fills the member with what is given at `path`; false: nothing is.
+bool take(const MethodOptions& given, const std::string& path, double& member);
+bool take(const MethodOptions& given, const std::string& path, int& member);
+bool take(const MethodOptions& given, const std::string& path, bool& member);
+bool take(const MethodOptions& given, const std::string& path, std::string& member);
+bool take(const MethodOptions& given, const std::string& path, std::complex<double>& member);
+bool take(const MethodOptions& given, const std::string& path, NumberRange& member);
+bool take(const MethodOptions& given, const std::string& path, std::variant<double, NumberRange>& member);
+bool take(const MethodOptions& given, const std::string& path, std::map<std::string, double>& member);
+template <class M>
+bool take(const MethodOptions& given, const std::string& path, std::optional<M>& member) {
+    M content{};
+    if (!take(given, path, content)) return false;
+    member = std::move(content);
+    return true;
+}
+
+/// What a request gives for a member that holds a number or a truth value; nothing for others.
+template <class M>
+std::optional<OptionValue> as_given(const M& member) {
+    const auto* value = content(member);
+    if (value == nullptr) return std::nullopt;
+    if constexpr (std::is_same_v<Content<M>, bool>)
+        return *value;
+    else if constexpr (std::is_arithmetic_v<Content<M>>)
+        return static_cast<double>(*value);
+    else
+        return std::nullopt;
+}
+
+}  // namespace detail
+
+/// Described options whatever struct they fill: what OptionSet offers for each struct, compiled once for all.
+class OptionList {
+public:
+    const std::vector<OptionDescription>& descriptions() const { return descriptions_; }
+
+    /// The description at this path ("Ms", "filter/Tf"), which there must be; good until the next option.
+    OptionDescription& described(std::string_view path);
+
+    /// Fills the struct at `value`, of the type that the members are of, where `given` says something.
+    void read(const MethodOptions& given, const std::string& prefix, void* value) const;
+    /// What a request gives for the struct at `value` so that it differs from the one at `other`.
+    MethodOptions given_for(const void* value, const void* other) const;
+
+    /// The next option, in a member of type M; `take` fills it, and `as_given` says what a request gives for it.
+    template <class M, class Take, class AsGiven>
+    void add(OptionDescription option, std::ptrdiff_t offset, Take take, AsGiven as_given) {
+        bindings_.push_back(
+            {describe(std::move(option)).name, offset,
+             [take](const MethodOptions& given, const std::string& path, void* member) {
+                 take(given, path, *static_cast<M*>(member));
+             },
+             [as_given](const std::string& path, const void* member, const void* other, MethodOptions& given) {
+                 const auto value = as_given(*static_cast<const M*>(member));
+                 if (value && value != as_given(*static_cast<const M*>(other))) given.set(path, *value);
+             }});
+    }
+    template <class M>
+    void add(OptionDescription option, std::ptrdiff_t offset) {
+        add<M>(
+            std::move(option), offset,
+            [](const MethodOptions& given, const std::string& path, M& member) { detail::take(given, path, member); },
+            [](const M& member) { return detail::as_given(member); });
+    }
+
+    /// The next option, a list; `take` fills an element.
+    template <class E, class Take>
+    void add_list(std::string_view name, std::string_view sentence, OptionDescription element, int max,
+                  std::ptrdiff_t offset, Take take) {
+        OptionDescription option = described_option(OptionType::list, name, sentence);
+        option.fields = {std::move(element)};
+        option.max = max;
+        add<std::vector<E>>(
+            std::move(option), offset,
+            [take](const MethodOptions& given, const std::string& path, std::vector<E>& member) {
+                const std::size_t size = given.size(path);
+                for (std::size_t i = 0; i < size; ++i)
+                    take(given, path + "/" + std::to_string(i), member.emplace_back());
+            },
+            [](const std::vector<E>&) { return std::optional<OptionValue>(); });
+    }
+
+    /// The options of a set for a member that is a struct or may be one; `below` stands between `name` and their names.
+    template <class M, class Set>
+    void add_part(const std::string& name, const std::string& below, std::ptrdiff_t offset, const Set& set) {
+        bindings_.push_back(
+            {name, offset,
+             [set, below](const MethodOptions& given, const std::string& path, void* member) {
+                 if (!std::is_same_v<M, detail::Content<M>> && given.names(path).empty()) return;
+                 *static_cast<M*>(member) = set.read(given, path + below);
+             },
+             [set, below](const std::string& path, const void* member, const void* other, MethodOptions& given) {
+                 const auto *part = detail::content(*static_cast<const M*>(member)),
+                            *compared = detail::content(*static_cast<const M*>(other));
+                 if (part == nullptr) return;
+                 const MethodOptions inner = set.given_for(*part, compared ? *compared : set.defaults());
+                 for (const auto& [own, value] : inner.values()) given.set(path + below + own, value);
+             }});
+    }
+    OptionDescription& describe(OptionDescription option) { return descriptions_.emplace_back(std::move(option)); }
+
+private:
+    struct Binding {
+        std::string name;
+        std::ptrdiff_t offset;
+        Callable<void(const MethodOptions&, const std::string& path, void* member)> read;
+        Callable<void(const std::string& path, const void* member, const void* other, MethodOptions&)> write;
+    };
+
+    std::vector<OptionDescription> descriptions_;
+    std::vector<Binding> bindings_;
+};
 
 /// The members of `T` (default-constructed: every option left out) under their names. A member of type
 /// std::optional has no default of its own: its sentence says what is taken instead.
@@ -41,70 +186,65 @@ public:
     MethodOptions given_for(const T& value) const { return given_for(value, defaults_); }
     MethodOptions given_for(const T& value, const T& other) const { return list_.given_for(&value, &other); }
 
-    /// A double or int, or one of these that may be left out.
+    /// A number, a truth value, a NumberRange (low < high), either a number or a range, numbers under names that the
+    /// request chooses, or one of these that may be left out.
     template <class M>
-    OptionSet& number(M T::*member, std::string_view name, std::string_view sentence, const NumberOption& how = {}) {
-        list_.number(at(member), name, sentence, how);
-        return *this;
-    }
-
-    /// A bool, or one that may be left out.
-    template <class M>
-    OptionSet& flag(M T::*member, std::string_view name, std::string_view sentence) {
-        list_.flag(at(member), name, sentence);
+    OptionSet& field(M T::*member, std::string_view name, std::string_view sentence, const NumberOption& how = {}) {
+        list_.add<M>(described_option(detail::option_type<detail::Content<M>>(), name, sentence, how,
+                                      detail::as_given(defaults_.*member)),
+                     offset_of(defaults_, member));
         return *this;
     }
 
     template <class E>
-    OptionSet& choice(E T::*member, std::string_view name, std::string_view sentence, Words<E> words) {
-        list_.choice(at(member), name, sentence, std::move(words));
+    OptionSet& choice(E T::*member, std::string_view name, std::string_view sentence, const Words<E>& words) {
+        const auto as_given = [words](const E& value) { return std::optional<OptionValue>(word_of(words, value)); };
+        OptionDescription option =
+            described_option(OptionType::choice, name, sentence, {}, as_given(defaults_.*member));
+        for (const auto& [word, value] : words) option.choices.push_back(word);
+        const auto take = [words](const MethodOptions& given, const std::string& path, E& target) {
+            const auto chosen = given.text(path);
+            for (const auto& [word, value] : words)
+                if (chosen == word) target = value;
+        };
+        list_.add<E>(std::move(option), offset_of(defaults_, member), take, as_given);
         return *this;
     }
 
     /// A number, or `word`, for which the member is empty.
     OptionSet& number_or_word(std::optional<double> T::*member, std::string_view name, std::string_view sentence,
                               std::string_view word, const NumberOption& how = {}) {
-        list_.number_or_word(at(member), name, sentence, word, how);
+        OptionDescription option =
+            described_option(OptionType::number_or_word, name, sentence, how, detail::as_given(defaults_.*member));
+        option.choices = {std::string(word)};
+        list_.add<std::optional<double>>(
+            std::move(option), offset_of(defaults_, member),
+            [](const MethodOptions& given, const std::string& path, std::optional<double>& target) {
+                if (given.has(path)) target = given.number(path);
+            },
+            [word = std::string(word)](const std::optional<double>& number) {
+                return std::optional(number ? OptionValue(*number) : OptionValue(word));
+            });
         return *this;
     }
 
-    /// [low, high], low < high.
-    template <class M>
-    OptionSet& range(M T::*member, std::string_view name, std::string_view sentence, const NumberOption& how = {}) {
-        list_.range(at(member), name, sentence, how);
-        return *this;
-    }
-
-    OptionSet& number_or_range(std::optional<std::variant<double, NumberRange>> T::*member, std::string_view name,
-                               std::string_view sentence, const NumberOption& how = {}) {
-        list_.number_or_range(at(member), name, sentence, how);
-        return *this;
-    }
-
-    /// Numbers under names that the request chooses.
-    OptionSet& numbers_by_name(std::map<std::string, double> T::*member, std::string_view name,
-                               std::string_view sentence) {
-        list_.numbers_by_name(at(member), name, sentence);
-        return *this;
-    }
-
-    /// Numbers or pairs [re, im], at most `max`; `element` describes one.
-    OptionSet& complex_list(std::vector<std::complex<double>> T::*member, std::string_view name,
-                            std::string_view sentence, const OptionDescription& element, int max) {
-        list_.complex_list(at(member), name, sentence, element, max);
-        return *this;
-    }
-
-    OptionSet& text_list(std::vector<std::string> T::*member, std::string_view name, std::string_view sentence,
-                         const OptionDescription& element, int max) {
-        list_.text_list(at(member), name, sentence, element, max);
-        return *this;
-    }
-
+    /// At most `max` numbers or pairs [re, im], or texts; `element` describes one.
     template <class E>
-    OptionSet& object_list(std::vector<E> T::*member, std::string_view name, std::string_view sentence,
-                           const OptionDescription& element, const OptionSet<E>& set, int max) {
-        list_.object_list(at(member), name, sentence, element, set, max);
+    OptionSet& list(std::vector<E> T::*member, std::string_view name, std::string_view sentence,
+                    OptionDescription element, int max) {
+        list_.add_list<E>(
+            name, sentence, std::move(element), max, offset_of(defaults_, member),
+            [](const MethodOptions& given, const std::string& path, E& one) { detail::take(given, path, one); });
+        return *this;
+    }
+    /// At most `max` structs.
+    template <class E>
+    OptionSet& list(std::vector<E> T::*member, std::string_view name, std::string_view sentence,
+                    OptionDescription element, int max, const OptionSet<E>& set) {
+        element.fields = set.descriptions();
+        list_.add_list<E>(
+            name, sentence, std::move(element), max, offset_of(defaults_, member),
+            [set](const MethodOptions& given, const std::string& path, E& one) { one = set.read(given, path + "/"); });
         return *this;
     }
 
@@ -112,15 +252,19 @@ public:
     /// given.
     template <class M>
     OptionSet& object(M T::*member, std::string_view name, std::string_view sentence,
-                      const OptionSet<typename detail::Content<M>::type>& set, int at_most_fields = 0) {
-        list_.object(at(member), name, sentence, set, at_most_fields);
+                      const OptionSet<detail::Content<M>>& set, int at_most_fields = 0) {
+        OptionDescription& option = list_.describe(described_option(OptionType::object, name, sentence));
+        option.fields = set.descriptions();
+        option.at_most_fields = at_most_fields;
+        list_.add_part<M>(option.name, "/", offset_of(defaults_, member), set);
         return *this;
     }
 
     /// A struct whose options stand among this one's, as several methods share them.
     template <class E>
     OptionSet& embed(E T::*member, const OptionSet<E>& set) {
-        list_.embed(at(member), set);
+        for (const OptionDescription& option : set.descriptions()) list_.describe(option);
+        list_.add_part<E>("", "", offset_of(defaults_, member), set);
         return *this;
     }
 
@@ -151,14 +295,6 @@ public:
     }
 
 private:
-    template <class M>
-    detail::Member<M> at(M T::*member) const {
-        const M& preset = defaults_.*member;
-        return {static_cast<std::size_t>(reinterpret_cast<const char*>(&preset) -
-                                         reinterpret_cast<const char*>(&defaults_)),
-                preset};
-    }
-
     T defaults_;
     OptionList list_;
 };

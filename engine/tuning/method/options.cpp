@@ -21,9 +21,7 @@ std::string shown(const OptionValue& value) {
 }
 
 std::optional<std::string> number_misfit(const OptionDescription& option, double value) {
-    const bool above = (!option.minimum || value >= *option.minimum) &&
-                       (!option.exclusive_minimum || value > *option.exclusive_minimum);
-    if (above && (!option.maximum || value <= *option.maximum)) return std::nullopt;
+    if (option.between(value)) return std::nullopt;
     std::string range;
     if (option.minimum) range += " at least " + text(*option.minimum);
     if (option.exclusive_minimum) range += " above " + text(*option.exclusive_minimum);
@@ -103,6 +101,24 @@ std::optional<std::string> misfit(const std::vector<OptionDescription>& options,
     }
     if (slash == std::string::npos) return value_misfit(*option, value);
     return part_misfit(*option, path.substr(slash + 1), value);
+}
+
+OptionDescription described_option(OptionType type, std::string_view name, std::string_view sentence,
+                                   const NumberOption& how, std::optional<OptionValue> preset) {
+    OptionDescription option;
+    option.name = name;
+    option.type = type;
+    option.sentence = sentence;
+    option.unit = how.unit;
+    option.minimum = how.minimum;
+    option.exclusive_minimum = how.exclusive_minimum;
+    option.maximum = how.maximum;
+    option.required = how.required;
+    if (preset && !how.required)
+        option.default_value = std::move(preset);
+    else if (how.fallback)
+        option.default_value = *how.fallback;
+    return option;
 }
 
 const OptionDescription* named(const std::vector<OptionDescription>& options, const std::string& name) {

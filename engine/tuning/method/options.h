@@ -5,8 +5,11 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
+
+#include "engine/member.h"
 
 namespace tunewright {
 
@@ -42,25 +45,37 @@ struct OptionSlider {
     DesignFigure reached = DesignFigure::none;   ///< what the design came to, which may be another value
 };
 
-struct OptionDescription {
+using OptionValue = std::variant<bool, double, std::string>;
+
+/// The rule is that of a number, or of each number in the option.
+struct OptionDescription : NumberRule {
     std::string name;  ///< e.g. "Ms"
     OptionType type = OptionType::number;
     std::string sentence;   ///< what it does
     std::string unit = {};  ///< "", "time", "u/y", ...
-    std::optional<std::variant<bool, double, std::string>> default_value = {};
-    std::optional<double> minimum = {}, exclusive_minimum = {}, maximum = {};  ///< of a number
-    std::vector<std::string> choices = {};                                     ///< words of a choice
-    std::vector<OptionDescription> fields = {};                                ///< of an object; of a list: one
-    int at_most_fields = 0;        ///< of an object: 0, any number may be given
-    bool required = false;         ///< of an object's field
-    int max = 100;                 ///< of a list: elements, of numbers_by_name: names; at least one
-    bool main = false;             ///< decides what comes out: a form shows it at once, the others on request
+    std::optional<OptionValue> default_value = {};
+    std::vector<std::string> choices = {};       ///< words of a choice
+    std::vector<OptionDescription> fields = {};  ///< of an object; of a list: one
+    int at_most_fields = 0;                      ///< of an object: 0, any number may be given
+    bool required = false;                       ///< of an object's field
+    int max = 100;                               ///< of a list: elements, of numbers_by_name: names; at least one
+    bool main = false;   ///< decides what comes out: a form shows it at once, the others on request
     std::string in_place_of = {};  ///< another option, which follows from this one: they are not given together
-    bool draws = false;            ///< adds what a page draws to the report; a page asks for it by itself
+    bool draws = false;  ///< adds what a page draws to the report; a page asks for it by itself
     std::optional<OptionSlider> slider = {};  ///< of a number that makes sense to be moved
 };
 
-using OptionValue = std::variant<bool, double, std::string>;
+/// What a number must keep, and its unit ("time", "u/y", ...).
+struct NumberOption {
+    std::string_view unit = {};
+    std::optional<double> minimum = {}, exclusive_minimum = {}, maximum = {};
+    bool required = false;
+    std::optional<double> fallback = {};  ///< what an empty member stands for, where that is one number
+};
+
+/// An option with a default of `preset`, unless it is required, else of the number's fallback.
+OptionDescription described_option(OptionType type, std::string_view name, std::string_view sentence,
+                                   const NumberOption& how = {}, std::optional<OptionValue> preset = {});
 
 struct NumberRange {
     double low = 0, high = 0;

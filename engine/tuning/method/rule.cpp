@@ -35,18 +35,18 @@ OptionSet<ReductionOptions> reduction_options(const std::string& of_auto) {
                "squared, absolute, or absolute times time. auto: " +
                    of_auto,
                words);
-    set.number(&ReductionOptions::horizon, "horizon",
-               "Of min_ise, min_iae and min_itae: where the integral ends, with the gain fitted too. Default: settled, "
-               "with the plant's static gain.",
-               {.unit = "time", .exclusive_minimum = 0});
+    set.field(&ReductionOptions::horizon, "horizon",
+              "Of min_ise, min_iae and min_itae: where the integral ends, with the gain fitted too. Default: settled, "
+              "with the plant's static gain.",
+              {.unit = "time", .exclusive_minimum = 0});
     return set;
 }
 
 OptionSet<FilterOptions> filter_options(const FilterOptions& defaults) {
     OptionSet<FilterOptions> set(defaults);
-    set.number(&FilterOptions::Tf_over_Td, "Tf_over_Td", "Filter time over derivative time; 0 for no filter.",
-               {.minimum = 0, .maximum = 1});
-    set.number(&FilterOptions::Tf, "Tf", "Filter time, fixed.", {.unit = "time", .exclusive_minimum = 0});
+    set.field(&FilterOptions::Tf_over_Td, "Tf_over_Td", "Filter time over derivative time; 0 for no filter.",
+              {.minimum = 0, .maximum = 1});
+    set.field(&FilterOptions::Tf, "Tf", "Filter time, fixed.", {.unit = "time", .exclusive_minimum = 0});
     return set;
 }
 

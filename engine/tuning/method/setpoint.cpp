@@ -153,20 +153,13 @@ std::vector<Warning> choose_setpoint(const LinearPlant& plant, const SetpointOpt
 }
 
 OptionDescription setpoint_option(const std::string& by_default, bool moved) {
-    OptionDescription weight{.name = "weight",
-                             .type = OptionType::number,
-                             .sentence = "Set-point weight b of the proportional part.",
-                             .minimum = 0,
-                             .maximum = 1};
-    OptionDescription overshoot{
-        .name = "overshoot",
-        .type = OptionType::number,
-        .sentence =
-            "Largest overshoot of a set-point step: the b with the least IAE that keeps it, else b "
-            "and a set-point filter together.",
-        .unit = "%",
-        .minimum = 0,
-        .maximum = 100};
+    OptionDescription weight = described_option(
+        OptionType::number, "weight", "Set-point weight b of the proportional part.", {.minimum = 0, .maximum = 1});
+    OptionDescription overshoot = described_option(
+        OptionType::number, "overshoot",
+        "Largest overshoot of a set-point step: the b with the least IAE that keeps it, else b and a set-point filter "
+        "together.",
+        {.unit = "%", .minimum = 0, .maximum = 100});
     if (moved) {
         OptionSlider slider{.to = 1, .step = 0.01, .label = "Set-point weight b", .low = "soft", .high = "sharp"};
         slider.group = kSetpointOption;
@@ -176,18 +169,17 @@ OptionDescription setpoint_option(const std::string& by_default, bool moved) {
         slider.reached = DesignFigure::overshoot_percent;
         overshoot.slider = slider;
     }
-    OptionDescription best{.name = "best",
-                           .type = OptionType::choice,
-                           .sentence = "iae: the b with the least IAE of a set-point step.",
-                           .choices = {"iae"}};
-    std::string sentence =
-        "What the set point does: weight, overshoot or best. It leaves the loop and its response to loads alone. ";
-    sentence += "Default: " + by_default + ".";
-    return {.name = kSetpointOption,
-            .type = OptionType::object,
-            .sentence = sentence,
-            .fields = {weight, overshoot, best},
-            .at_most_fields = 1};
+    OptionDescription best =
+        described_option(OptionType::choice, "best", "iae: the b with the least IAE of a set-point step.");
+    best.choices = {"iae"};
+    OptionDescription setpoint = described_option(
+        OptionType::object, kSetpointOption,
+        "What the set point does: weight, overshoot or best. It leaves the loop and its response to loads alone. "
+        "Default: " +
+            by_default + ".");
+    setpoint.fields = {std::move(weight), std::move(overshoot), std::move(best)};
+    setpoint.at_most_fields = 1;
+    return setpoint;
 }
 
 SetpointOptions setpoint_options(const MethodOptions& given) {

@@ -36,9 +36,9 @@ OptionSet<UltimateOptions> ultimate_options() {
                "Where Ku and Pu come from: model (computed from the plant, dead time exact) or relay (the describing "
                "function's of a recorded relay test).",
                Words<UltimateSource>{{"model", UltimateSource::model}, {"relay", UltimateSource::relay}});
-    set.number(&UltimateOptions::Ku, "Ku",
-               "Ultimate gain by hand, with Pu: the proportional gain at which the loop oscillates.", {.unit = "u/y"});
-    set.number(&UltimateOptions::Pu, "Pu", "Period of that oscillation.", {.unit = "time", .exclusive_minimum = 0});
+    set.field(&UltimateOptions::Ku, "Ku",
+              "Ultimate gain by hand, with Pu: the proportional gain at which the loop oscillates.", {.unit = "u/y"});
+    set.field(&UltimateOptions::Pu, "Pu", "Period of that oscillation.", {.unit = "time", .exclusive_minimum = 0});
     return set;
 }
 

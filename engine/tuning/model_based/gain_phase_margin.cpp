@@ -60,10 +60,10 @@ TuningMethod gain_phase_margin_method() {
     method.validity = "margins are met within some percent where L/T is below about 2";
     OptionSet<GainPhaseMarginOptions> options;
     add_controller(options, {ControllerKind::PI, ControllerKind::PID});
-    options.number(&GainPhaseMarginOptions::gain_margin, "gain_margin", "Gain margin wanted.",
-                   {.exclusive_minimum = 1, .maximum = 20});
-    options.number(&GainPhaseMarginOptions::phase_margin_deg, "phase_margin_deg", "Phase margin wanted, in degrees.",
-                   {.unit = "deg", .exclusive_minimum = 0, .maximum = 89});
+    options.field(&GainPhaseMarginOptions::gain_margin, "gain_margin", "Gain margin wanted.",
+                  {.exclusive_minimum = 1, .maximum = 20});
+    options.field(&GainPhaseMarginOptions::phase_margin_deg, "phase_margin_deg", "Phase margin wanted, in degrees.",
+                  {.unit = "deg", .exclusive_minimum = 0, .maximum = 89});
     options.slider("gain_margin").slider("phase_margin_deg");
     add_reduction(options, "half_rule; tangent (first order: PI) where that does not apply.");
     add_filter(options, "of the derivative part of the ideal form, Td s/(1 + s Tf).");

@@ -145,12 +145,12 @@ TuningMethod imc_method() {
     method.needs = "fopdt or stable sopdt, also oscillatory (others are reduced)";
     method.validity = "lambda above about 0.25 L; loads are slow to be taken back where a lag is long";
     OptionSet<ImcOptions> options;
-    options.number(&ImcOptions::lambda, "lambda",
-                   "Time constant of the closed loop's filter 1/(lambda s + 1)^n: larger is slower and more robust. "
-                   "Default: the larger of the dead time and a tenth of the lags.",
-                   {.unit = "time", .exclusive_minimum = 0});
-    options.number(&ImcOptions::filter_order, "filter_order", "n of that filter, 1 or 2. Default: the model's order.",
-                   {.minimum = 1, .maximum = 2});
+    options.field(&ImcOptions::lambda, "lambda",
+                  "Time constant of the closed loop's filter 1/(lambda s + 1)^n: larger is slower and more robust. "
+                  "Default: the larger of the dead time and a tenth of the lags.",
+                  {.unit = "time", .exclusive_minimum = 0});
+    options.field(&ImcOptions::filter_order, "filter_order", "n of that filter, 1 or 2. Default: the model's order.",
+                  {.minimum = 1, .maximum = 2});
     options.choice(&ImcOptions::expansion, "expansion",
                    "maclaurin: the first three terms of the controller's series, dead time exact; pade: the dead time "
                    "replaced by a fraction first (1/1 on a first-order model, 1 - L s on a second-order one).",

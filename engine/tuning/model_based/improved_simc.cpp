@@ -58,11 +58,10 @@ TuningMethod improved_simc_method() {
     method.validity = "tau_c >= L for PI, >= L/2 for PID";
     OptionSet<ImprovedSimcOptions> options;
     add_controller(options, {ControllerKind::PI, ControllerKind::PID});
-    options.number(
-        &ImprovedSimcOptions::tau_c, "tau_c",
-        "Desired closed-loop time constant: larger is slower and more robust. Default: the model's dead time "
-        "L for PI, L/2 for PID.",
-        {.unit = "time", .exclusive_minimum = 0});
+    options.field(&ImprovedSimcOptions::tau_c, "tau_c",
+                  "Desired closed-loop time constant: larger is slower and more robust. Default: the model's dead time "
+                  "L for PI, L/2 for PID.",
+                  {.unit = "time", .exclusive_minimum = 0});
     options.main({"tau_c"}).slider("tau_c");
     add_reduction(options, "half_rule, as in SIMC; tangent where that does not apply.");
     add_filter(options, "of the derivative part of the ideal form, Td s/(1 + s Tf).");

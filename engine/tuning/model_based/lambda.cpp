@@ -81,7 +81,7 @@ TuningMethod lambda_method() {
         "above L";
     OptionSet<LambdaOptions> options;
     add_controller(options, {ControllerKind::PI, ControllerKind::PID});
-    options.number(
+    options.field(
         &LambdaOptions::lambda, "lambda",
         "Desired closed-loop time constant. Default: the larger of T and L; sqrt(10) L for an integrating plant.",
         {.unit = "time", .exclusive_minimum = 0});

@@ -87,11 +87,10 @@ TuningMethod simc_method() {
     method.validity = "tau_c >= L; PID where the second lag exceeds the effective dead time";
     OptionSet<SimcOptions> options;
     add_controller(options, {ControllerKind::PI, ControllerKind::PID});
-    options.number(
-        &SimcOptions::tau_c, "tau_c",
-        "Desired closed-loop time constant: larger is slower and more robust. Default: the model's dead time "
-        "L (tight but robust, Ms about 1.6).",
-        {.unit = "time", .exclusive_minimum = 0});
+    options.field(&SimcOptions::tau_c, "tau_c",
+                  "Desired closed-loop time constant: larger is slower and more robust. Default: the model's dead time "
+                  "L (tight but robust, Ms about 1.6).",
+                  {.unit = "time", .exclusive_minimum = 0});
     options.main({"tau_c"}).slider("tau_c");
     add_reduction(options, "half_rule, as in the source; tangent (first order: PI) where that does not apply.");
     add_filter(options, "of the derivative part of the ideal form, Td s/(1 + s Tf).");

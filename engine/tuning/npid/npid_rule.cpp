@@ -125,9 +125,9 @@ TuningMethod described(const Rule& rule, Solve* solve) {
     method.needs = "stable fopdt with L > 0 (others are reduced); with optimise any linear plant";
     method.validity = "L/T from 0.01 to 3, set-point steps of the size delta_r; 0.9 to 1 is open in the source";
     OptionSet<NpidOptions> options;
-    options.flag(&NpidOptions::optimise, "optimise",
-                 std::string("Search the settings of least ") + rule.index +
-                     " after a set-point step on this very plant instead of taking the rule's: any linear plant.");
+    options.field(&NpidOptions::optimise, "optimise",
+                  std::string("Search the settings of least ") + rule.index +
+                      " after a set-point step on this very plant instead of taking the rule's: any linear plant.");
     add_reduction(options, "min_iae, as the source's fit of the step response; half_rule where that does not apply.");
     add_filter(options, "of the derivative, Td s/(1 + s Tf); none by default, as in the source.");
     method.bind(options, solve);

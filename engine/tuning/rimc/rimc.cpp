@@ -163,27 +163,27 @@ OptionSet<RimcOptions> described_options() {
     using O = RimcOptions;
     using enum RimcApproximation;
     OptionSet<O> set;
-    set.number(&O::lambda, "lambda",
-               "Time constant of the closed loop: larger is slower and more robust. Default, if none of Ms, "
-               "disturbance_peak and dead_time_error is given: the model's T.",
-               {.unit = "time", .exclusive_minimum = 0});
-    set.number(&O::Ms, "Ms", "In place of lambda: the largest |S| of the loop with the model.",
-               {.exclusive_minimum = 1, .maximum = 10});
-    set.number(&O::disturbance_peak, "disturbance_peak",
-               "In place of lambda: the largest deviation of y after a unit load step on the model.", {.unit = "y/u"});
-    set.number(&O::dead_time_error, "dead_time_error",
-               "In place of lambda: an error of the model's dead time that the loop shall stand, by the small-gain "
-               "condition of Eq. 29 (sufficient only): the smallest lambda above which it holds.",
-               {.unit = "time", .exclusive_minimum = 0});
-    set.number(&O::Tf_over_Td, "Tf_over_Td", "Time of the derivative's filter over Td; 0 for none.",
-               {.minimum = 0, .maximum = 1, .fallback = RimcFilter{}.Tf_over_Td});
+    set.field(&O::lambda, "lambda",
+              "Time constant of the closed loop: larger is slower and more robust. Default, if none of Ms, "
+              "disturbance_peak and dead_time_error is given: the model's T.",
+              {.unit = "time", .exclusive_minimum = 0});
+    set.field(&O::Ms, "Ms", "In place of lambda: the largest |S| of the loop with the model.",
+              {.exclusive_minimum = 1, .maximum = 10});
+    set.field(&O::disturbance_peak, "disturbance_peak",
+              "In place of lambda: the largest deviation of y after a unit load step on the model.", {.unit = "y/u"});
+    set.field(&O::dead_time_error, "dead_time_error",
+              "In place of lambda: an error of the model's dead time that the loop shall stand, by the small-gain "
+              "condition of Eq. 29 (sufficient only): the smallest lambda above which it holds.",
+              {.unit = "time", .exclusive_minimum = 0});
+    set.field(&O::Tf_over_Td, "Tf_over_Td", "Time of the derivative's filter over Td; 0 for none.",
+              {.minimum = 0, .maximum = 1, .fallback = RimcFilter{}.Tf_over_Td});
     set.choice(&O::approximation, "approximation",
                "How the controller of Eq. 23 becomes a PID: maclaurin, the first three terms of its series; "
                "linear_fractional: (a0 + a1 s + a2 s^2)/(s (1 + b1 s)) with the first four, which is the same PID with "
                "the filter time b1.",
                Words<RimcApproximation>{{"maclaurin", maclaurin}, {"linear_fractional", linear_fractional}});
-    set.flag(&O::curve, "curve",
-             "Also return the load response's peak and Ms over lambda/T for this plant (Fig. 2 of the source).");
+    set.field(&O::curve, "curve",
+              "Also return the load response's peak and Ms over lambda/T for this plant (Fig. 2 of the source).");
     set.main({"lambda", "Ms"}).in_place_of("lambda", {"Ms", "disturbance_peak", "dead_time_error"}).draws("curve");
     add_reduction(set, "half_rule; tangent where that does not apply.");
     return set;

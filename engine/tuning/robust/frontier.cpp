@@ -105,20 +105,20 @@ const OptionSet<FrontierOptions>& frontier_options() {
         constexpr int kMaxPoints = 200;
         OptionSet<FrontierRange> range;
         range
-            .number(&FrontierRange::from, "from", "Lowest limit on Ms.",
-                    {.exclusive_minimum = 1, .maximum = limits::kMaxMs})
-            .number(&FrontierRange::to, "to", "Highest limit on Ms.",
-                    {.exclusive_minimum = 1, .maximum = limits::kMaxMs})
-            .number(&FrontierRange::points, "points", "How many limits, evenly spaced.",
-                    {.minimum = 2, .maximum = kMaxPoints});
+            .field(&FrontierRange::from, "from", "Lowest limit on Ms.",
+                   {.exclusive_minimum = 1, .maximum = limits::kMaxMs})
+            .field(&FrontierRange::to, "to", "Highest limit on Ms.",
+                   {.exclusive_minimum = 1, .maximum = limits::kMaxMs})
+            .field(&FrontierRange::points, "points", "How many limits, evenly spaced.",
+                   {.minimum = 2, .maximum = kMaxPoints});
         using O = FrontierOptions;
         OptionSet<O> set;
         add_controller(set, {ControllerKind::PID, ControllerKind::PI});
         set.object(&O::Ms, "Ms", "The limits on Ms.", range)
             .number_or_word(&O::Mt, "Mt", "Limit on Mt at every point; tied: the same as on Ms.", "tied",
                             {.exclusive_minimum = 1, .maximum = limits::kMaxMs})
-            .number(&O::take, "take", "The method's own controller is the point whose limit is nearest to this.",
-                    {.exclusive_minimum = 1, .maximum = limits::kMaxMs})
+            .field(&O::take, "take", "The method's own controller is the point whose limit is nearest to this.",
+                   {.exclusive_minimum = 1, .maximum = limits::kMaxMs})
             .object(&O::filter, "filter", "Second-order measurement filter, as in robust.", robust::filter_options(), 1)
             .main({"Ms", "Mt"});
         return set;

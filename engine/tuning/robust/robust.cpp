@@ -107,9 +107,9 @@ std::optional<Error> without_optimum(const DesignProblem& problem) {
 OptionSet<RobustFilterOptions> filter_options() {
     using O = RobustFilterOptions;
     OptionSet<O> set;
-    set.number(&O::Tf, "Tf", "Filter time constant, fixed.", {.unit = "time", .exclusive_minimum = 0});
-    set.number(&O::Tf_over_Td, "Tf_over_Td", "Filter time constant as a fraction of Td.",
-               {.exclusive_minimum = 0, .maximum = 10});
+    set.field(&O::Tf, "Tf", "Filter time constant, fixed.", {.unit = "time", .exclusive_minimum = 0});
+    set.field(&O::Tf_over_Td, "Tf_over_Td", "Filter time constant as a fraction of Td.",
+              {.exclusive_minimum = 0, .maximum = 10});
     return set;
 }
 
@@ -230,11 +230,11 @@ OptionSet<RobustOptions> described_options(const RobustOptions& defaults) {
     using enum Objective;
     OptionSet<O> set(defaults);
     add_controller(set, {ControllerKind::PID, ControllerKind::PI});
-    set.number(&O::Ms, "Ms", "Largest allowed sensitivity max |S|.",
-               {.exclusive_minimum = 1, .maximum = limits::kMaxMs});
-    set.number(&O::Mt, "Mt", "Largest allowed complementary sensitivity max |T|.",
-               {.exclusive_minimum = 1, .maximum = limits::kMaxMt});
-    set.number(&O::Mks, "Mks", "Largest allowed max |C S|: how strongly u may react.", {.exclusive_minimum = 0});
+    set.field(&O::Ms, "Ms", "Largest allowed sensitivity max |S|.",
+              {.exclusive_minimum = 1, .maximum = limits::kMaxMs});
+    set.field(&O::Mt, "Mt", "Largest allowed complementary sensitivity max |T|.",
+              {.exclusive_minimum = 1, .maximum = limits::kMaxMt});
+    set.field(&O::Mks, "Mks", "Largest allowed max |C S|: how strongly u may react.", {.exclusive_minimum = 0});
     set.choice(&O::constraint, "constraint",
                "circles: the Ms and the Mt circle. m_circle: the smallest circle around both.",
                Words<Constraint>{{"circles", Constraint::circles}, {"m_circle", Constraint::m_circle}});
@@ -244,12 +244,12 @@ OptionSet<RobustOptions> described_options(const RobustOptions& defaults) {
         "is load_ie.",
         Words<Objective>{
             {"load_iae", load_iae}, {"load_ie", load_ie}, {"setpoint_iae", setpoint_iae}, {"weighted", weighted}});
-    set.number(&O::rho, "rho", "Weight of the load in the weighted objective; the set point has 1 - rho.",
-               {.minimum = 0, .maximum = 1});
+    set.field(&O::rho, "rho", "Weight of the load in the weighted objective; the set point has 1 - rho.",
+              {.minimum = 0, .maximum = 1});
     set.choice(&O::search, "search", "fast: scan and quadratic programming. nelder_mead, grid: the paper's searches.",
                Words<SearchKind>{
                    {"fast", SearchKind::fast}, {"nelder_mead", SearchKind::nelder_mead}, {"grid", SearchKind::grid}});
-    set.flag(&O::surface, "surface", "Also return the least cost over the (Ti, Td) plane.");
+    set.field(&O::surface, "surface", "Also return the least cost over the (Ti, Td) plane.");
     set.object(&O::filter, "filter",
                "Second-order measurement filter. PID default: Tf = " + text(limits::kDefaultTf_over_Td) +
                    " Td with a dead time, a right-half-plane zero or "

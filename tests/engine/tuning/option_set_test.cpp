@@ -28,20 +28,21 @@ struct Outer {
 
 OptionSet<Inner> inner_set() {
     OptionSet<Inner> set;
-    set.number(&Inner::ratio, "ratio", "Ratio.").number(&Inner::fixed, "fixed", "Fixed.");
+    set.field(&Inner::ratio, "ratio", "Ratio.").field(&Inner::fixed, "fixed", "Fixed.");
     return set;
 }
 
 OptionSet<Outer> outer_set() {
     OptionSet<Outer> set;
-    set.number(&Outer::size, "size", "Size.", {.unit = "time", .exclusive_minimum = 0})
-        .number(&Outer::target, "target", "Target.")
-        .number(&Outer::order, "order", "Order.")
-        .flag(&Outer::wide, "wide", "Wide.")
+    set.field(&Outer::size, "size", "Size.", {.unit = "time", .exclusive_minimum = 0})
+        .field(&Outer::target, "target", "Target.")
+        .field(&Outer::order, "order", "Order.")
+        .field(&Outer::wide, "wide", "Wide.")
         .choice(&Outer::colour, "colour", "Colour.", Words<Colour>{{"red", Colour::red}, {"green", Colour::green}})
         .number_or_word(&Outer::limit, "limit", "Limit.", "free")
         .object(&Outer::inner, "inner", "Inner.", inner_set(), 1)
-        .object_list(&Outer::parts, "parts", "Parts.", {.name = "part", .sentence = "A part."}, inner_set(), 3);
+        .list(&Outer::parts, "parts", "Parts.", described_option(OptionType::object, "part", "A part."), 3,
+              inner_set());
     return set;
 }
 
@@ -118,16 +119,16 @@ struct Whole {
 
 OptionSet<Whole> whole_set() {
     OptionSet<Shared> shared;
-    shared.number(&Shared::ratio, "ratio", "Ratio.")
+    shared.field(&Shared::ratio, "ratio", "Ratio.")
         .choice(&Shared::colour, "colour", "Colour.", Words<Colour>{{"red", Colour::red}, {"green", Colour::green}});
     OptionSet<Whole> set;
-    set.number(&Whole::first, "first", "First.")
+    set.field(&Whole::first, "first", "First.")
         .embed(&Whole::shared, shared)
-        .range(&Whole::span, "span", "Span.", {.unit = "time", .minimum = 0})
-        .numbers_by_name(&Whole::start, "start", "Start.")
-        .number(&Whole::asked, "asked", "Asked.", {.required = true})
-        .number(&Whole::Tf, "Tf", "Filter.", {.fallback = 0.5})
-        .number_or_range(&Whole::either, "either", "Either.");
+        .field(&Whole::span, "span", "Span.", {.unit = "time", .minimum = 0})
+        .field(&Whole::start, "start", "Start.")
+        .field(&Whole::asked, "asked", "Asked.", {.required = true})
+        .field(&Whole::Tf, "Tf", "Filter.", {.fallback = 0.5})
+        .field(&Whole::either, "either", "Either.");
     return set;
 }
 

@@ -1,10 +1,12 @@
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import path from "node:path";
 import test from "node:test";
 import type { Entry } from "../../../web/src/api/types.ts";
 import { figureGroups } from "../../../web/src/words/figures.ts";
 import type { FigureRow } from "../../../web/src/words/figures.ts";
 import { comparisonColumns } from "../../../web/src/words/comparison.ts";
-import { formatNumber, formatSetting, formatShare, unitNames, withMinus } from "../../../web/src/words/numbers.ts";
+import { formatNumber, formatSetting, formatShare, product, quotient, unitNames, withMinus } from "../../../web/src/words/numbers.ts";
 import { settingsOf, settingsText } from "../../../web/src/views/cards/settings_card.ts";
 import type { Setting } from "../../../web/src/views/cards/settings_card.ts";
 
@@ -65,13 +67,21 @@ test("shares are never all for less than all, and sentences of the service get a
   assert.equal(withMinus("u falls to -1.2 (-3 %) in long-term use"), "u falls to −1.2 (−3 %) in long-term use");
 });
 
-test("numbers have three digits, a true minus, and a dash where there is none", () => {
-  assert.equal(formatNumber(1.4), "1.40");
-  assert.equal(formatNumber(-0.012345), "−0.0123");
-  assert.equal(formatNumber(1234.5), "1230");
-  assert.equal(formatNumber(1.5e-6), "1.50e−6");
-  assert.equal(formatNumber(123456), "1.23e5");
-  assert.equal(formatNumber(0), "0");
+test("figures and units are spelled as by the service", () => {
+  const file = path.join(process.env["TUNEWRIGHT_ROOT"]!, "tests/data/texts/texts.json");
+  const { figures, units } = JSON.parse(readFileSync(file, "utf8")) as {
+    figures: { value: number; digits: number; text: string }[];
+    units: { top: string; bottom: string; quotient: string; product: string }[];
+  };
+  assert.ok(figures.length > 0 && units.length > 0);
+  for (const row of figures) assert.equal(formatNumber(row.value, row.digits), row.text.replaceAll("-", "−"));
+  for (const row of units) {
+    assert.equal(quotient(row.top, row.bottom), row.quotient);
+    assert.equal(product(row.top, row.bottom), row.product);
+  }
+});
+
+test("numbers have a dash where there is none", () => {
   assert.equal(formatNumber(null), "–");
   assert.equal(formatNumber(NaN), "–");
   assert.equal(formatSetting(2.5), "2.5");

@@ -3,19 +3,18 @@
 export const DASH = "–";
 const MINUS = "−";
 
-/** `digits` significant digits; powers of ten outside 0.001 to 99999. Trailing zeros stay: they show the accuracy of
-    the figure. */
+/** As figure_text() of the service: `digits` significant digits; powers of ten outside 0.001 to 99999. Trailing zeros
+    stay: they show the accuracy of the figure. */
 export function formatNumber(value: number | null | undefined, digits = 3): string {
   if (typeof value !== "number" || !Number.isFinite(value)) return DASH;
   if (value === 0) return "0";
-  const size = Math.abs(value);
+  const fixed = value.toPrecision(digits);
+  const size = Math.abs(Number(fixed));
   if (size < 1e-3 || size >= 1e5) {
     const [mantissa = "", exponent = ""] = value.toExponential(digits - 1).split("e");
     return `${mantissa}e${exponent.replace("+", "")}`.replaceAll("-", MINUS);
   }
-  const fixed = value.toPrecision(digits);
-  const plain = fixed.includes("e") ? String(Math.round(Number(fixed))) : fixed;
-  return plain.replaceAll("-", MINUS);
+  return (fixed.includes("e") ? String(Number(fixed)) : fixed).replaceAll("-", MINUS);
 }
 
 /** A smaller share is rounding. */

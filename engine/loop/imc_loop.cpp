@@ -13,15 +13,15 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr double kMaxRelativeChange =
-    0.4;  // |D2 - D1| relative to the smaller: below it the argument cannot be mistaken
+    0.4;  // |D2 - D1| relative to the smaller: below it the change of the argument is unambiguous
 constexpr int kMaxHalvings = 40;
 constexpr double kMaxAxisDistance = 1e-9;  // |D|: closer to 0 counts as on the axis
-constexpr double kTurnsResolved = 60;      // periods of the longer dead time that are followed one by one
+constexpr double kTurnsResolved = 60;      // periods of the longer dead time that are resolved
 constexpr int kPointsPerDecade = 24;
 
 constexpr double kBelowCorners = 1e-3, kAboveCorners = 1e2;  // of the outermost corners
-constexpr double kGridStep = 0.05;                           // of S between neighbours
-constexpr double kMinPeakRatio = 1 + 1e-12;  // a limit must exceed a peak by more than rounding to stand for it
+constexpr double kGridStep = 0.05;                           // change of S between neighbours
+constexpr double kMinPeakRatio = 1 + 1e-12;  // a limit must exceed a peak by more than rounding to count as the peak
 
 using Function = std::function<Complex(double)>;
 
@@ -50,12 +50,13 @@ Complex ImcLoop::characteristic(double omega) const {
 bool ImcLoop::stable() const {
     const Function D = [this](double omega) { return characteristic(omega); };
     const Complex start = D(0);
-    if (!(start.real() > kMaxAxisDistance)) return false;  // an odd number of turns: P(0) and the model differ in sign
+    if (!(start.real() > kMaxAxisDistance))
+        return false;  // an odd number of turns: the gains of P(0) and the model differ in sign
     const double ratio = std::pow(10.0, 1.0 / kPointsPerDecade);
     double angle = 0, omega = lowest_corner() * kBelowCorners;
     Complex last = D(omega);
     angle += std::arg(last / start);
-    // P, G and Q have fallen below their corners from here on: D stays near 1.
+    // From here on P, G and Q decrease, so D stays near 1.
     const double end = kAboveCorners * highest_corner();
     while (omega < end) {
         const Complex next = D(omega * ratio);

@@ -1,8 +1,8 @@
-// A plant with the full revised IMC controller over frequency. Written by plant, model and Q, never by C itself:
+// A plant with the full revised IMC controller over frequency. Computed from plant, model and Q, without C itself:
 //
 //   D = 1 + (P - G) Q,   S = (1 - G Q)/D,   T = P Q/D,   C S = Q/D.
 //
-// On the model itself D = 1: T is the design's own.
+// If the plant equals the model, D = 1 and T is that of the design.
 #pragma once
 
 #include <functional>
@@ -22,12 +22,12 @@ public:
     LoopPoint at(double omega) const;
     std::complex<double> characteristic(double omega) const;  ///< D
 
-    /// Plant and Q being stable, the loop is where D does not encircle 0: the change of its argument from 0 to
-    /// infinity, step by step, until it cannot be mistaken.
+    /// Plant and Q are stable, so the loop is stable if D does not encircle 0: its argument is followed from 0 to
+    /// infinity in steps that are short enough to be unambiguous.
     bool stable() const;
 
     LoopGrid grid() const;
-    Peaks peaks(const LoopGrid& grid) const;  ///< of a stable loop, both ends included
+    Peaks peaks(const LoopGrid& grid) const;  ///< For a stable loop, both ends included.
     Margins margins(const LoopGrid& grid) const;
 
 private:

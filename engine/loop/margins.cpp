@@ -19,24 +19,24 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kPi = std::numbers::pi;
 constexpr double kLogFrequencyTolerance = 1e-13;  // of ln omega
-constexpr double kMaxModulusRatioBetween = 1.05;  // |L| may be larger by it between neighbours than at both
+constexpr double kMaxModulusRatioBetween = 1.05;  // of |L| between neighbours, relative to the larger of both
 constexpr double kMaxSingleCrossingTurn =
-    1;                             // rad of the dead time between neighbours: L may cross the axis more than once
-constexpr double kStride = 0.25;   // rad of the dead time from one look at L to the next
-constexpr int kMaxStrides = 1000;  // a turn is 26: lags turn L as well
+    1;  // rad of the dead time between neighbours: beyond it L may cross the axis more than once
+constexpr double kStride = 0.25;   // rad of the dead time between two evaluations of L
+constexpr int kMaxStrides = 1000;  // a turn of the dead time has 26; the lags turn L as well
 
-constexpr double kFirstGain = 1.02, kGainRatio = 1.15, kLastGain = 1e3;  // of 1/K: where an unstable plant is tried
-constexpr std::array<double, 3> kStartGains = {0.2, 0.01, 1e-4};  // of 1/K: the first that leaves the loop stable
+constexpr double kFirstGain = 1.02, kGainRatio = 1.15, kLastGain = 1e3;  // of 1/K, tried for an unstable plant
+constexpr std::array<double, 3> kStartGains = {0.2, 0.01, 1e-4};  // multiples of 1/K: the first stable one is used
 constexpr double kMaxTurn = 0.25;                                 // rad of d between two frequencies that are evaluated
-constexpr int kMaxParts = 200;              // between two points of the grid, for a d far beyond the loop's time scale
-constexpr double kMinModulusOfT = 0.5;      // below it no turn of the dead time can bring |T| |e^(-jwd) - 1| to 1
-constexpr double kEdgeTolerance = 1e-13;    // relative, of the frequency at which |T| passes 1/2
-constexpr double kMinShareOfMaximum = 0.9;  // of the largest value so far: a grid point below it is no peak's top
-constexpr double kMinRelevantShare = 0.45;  // of the largest value so far: 2 |T| cannot come near it
+constexpr int kMaxParts = 200;  // between two points of the grid, for a d much longer than the loop's time scale
+constexpr double kMinModulusOfT = 0.5;      // |T|: below it |T| |e^(-jwd) - 1| cannot reach 1
+constexpr double kEdgeTolerance = 1e-13;    // relative tolerance of the frequency at which |T| passes 1/2
+constexpr double kMinShareOfMaximum = 0.9;  // of the largest value so far: a lower grid point is not the top of a peak
+constexpr double kMinRelevantShare = 0.45;  // of the largest value so far: at lower values 2 |T| cannot reach it
 
 using OpenLoop = std::function<std::complex<double>(double)>;
 
-/// The frequency at which L crosses the real axis, between two at which it is known.
+/// The frequency at which L crosses the real axis, between two frequencies that enclose it.
 double real_crossing(const OpenLoop& open_loop, double left, double right, std::complex<double> a,
                      std::complex<double> b) {
     const auto imaginary = [&](double omega) {
@@ -46,15 +46,15 @@ double real_crossing(const OpenLoop& open_loop, double left, double right, std::
     return log_root(imaginary, left, right, a.imag() / magnitude(a), b.imag() / magnitude(b), kLogFrequencyTolerance);
 }
 
-/// The frequency at which |L| = 1, between two such frequencies.
+/// The frequency at which |L| = 1, between two frequencies that enclose it.
 double unit_crossing(const OpenLoop& open_loop, double left, double right, std::complex<double> a,
                      std::complex<double> b) {
     const auto log_gain = [&](double omega) { return std::log(magnitude(open_loop(omega))); };
     return log_root(log_gain, left, right, std::log(magnitude(a)), std::log(magnitude(b)), kLogFrequencyTolerance);
 }
 
-/// The first frequency on the way at which L is negative: where |L| falls, or rises, all the way from 1 or from a top
-/// on, no later one is as near to -1.
+/// Notes the first frequency in this direction at which L is negative. Later ones are not closer to -1, because |L|
+/// falls, or rises, monotonically from 1 or from a maximum on.
 void note_first_crossing(Margins& margins, const OpenLoop& open_loop, double delay, double from, double to) {
     const double stride = std::copysign(kStride / delay, to - from);
     auto a = open_loop(from);
@@ -72,8 +72,8 @@ void note_first_crossing(Margins& margins, const OpenLoop& open_loop, double del
     }
 }
 
-/// Between the grid's points i - 1 and i, where the dead time turns L often: of all crossings those nearest to -1. They
-/// lie beside |L| = 1, else beside the place where |L| is largest.
+/// Between the grid's points i - 1 and i, where the dead time turns L often: notes the crossings nearest to -1. They
+/// lie next to |L| = 1, or else next to the maximum of |L|.
 void note_crossings_of_turns(Margins& margins, const OpenLoop& open_loop, const LoopGrid& grid, std::size_t i,
                              double delay) {
     const auto gain = [&](std::size_t k) { return magnitude(grid.point[k].L); };
@@ -93,7 +93,7 @@ void note_crossings_of_turns(Margins& margins, const OpenLoop& open_loop, const 
 }
 
 void note_unit_crossing(Margins& margins, std::complex<double> L, double omega) {
-    double lag = std::arg(L) + kPi;  // from -1 counter-clockwise to L: what a further lag uses up, in [0, 2 pi)
+    double lag = std::arg(L) + kPi;  // angle from -1 counter-clockwise to L, which a further lag reduces, in [0, 2 pi)
     if (lag >= 2 * kPi) lag -= 2 * kPi;
     const double distance = std::min(lag, 2 * kPi - lag);
     if (distance < margins.phase_margin) {
@@ -110,7 +110,7 @@ void note_limits(Margins& margins, const Loop& loop) {
     const double q = loop.signed_high_frequency_gain();
     if (q == 0) return;
     if (loop.plant().dead_time() > 0) {
-        note_real_crossing(margins, -std::abs(q), kInfinity);  // every direction is reached again and again
+        note_real_crossing(margins, -std::abs(q), kInfinity);  // every direction occurs infinitely often
     } else {
         note_real_crossing(margins, q, kInfinity);
         if (std::abs(q) > 1) margins.delay_margin = 0;
@@ -138,7 +138,7 @@ Margins find_interior_margins(const OpenLoop& open_loop, const LoopGrid& grid, d
         const auto a = grid.point[i - 1].L, b = grid.point[i].L;
         const double left = grid.omega[i - 1], right = grid.omega[i];
         if (!std::isfinite(magnitude(a)) || !std::isfinite(magnitude(b))) continue;
-        // A crossing nearer to 0 than one that is known says nothing new.
+        // A crossing nearer to 0 than a known one does not change the margins.
         const bool counts =
             kMaxModulusRatioBetween * std::max(magnitude(a), magnitude(b)) > std::min(1.0, 1 / margins.gain_margin);
         if (counts && delay * (right - left) > kMaxSingleCrossingTurn) {
@@ -195,7 +195,7 @@ std::optional<UltimatePoint> ultimate_point(const LinearPlant& plant) {
         }
         return std::nullopt;
     }
-    // An integrating plant has no gain of its own to compare with: its slope over the time it needs is one.
+    // An integrating plant has no static gain as a unit: the unit is the gain whose slope over the plant's time is one.
     const double time = plant.integrators() > 0 ? plant.dead_time() + plant.lag_sum() : 1;
     if (!(time > 0)) return std::nullopt;
     for (const double factor : kStartGains) {
@@ -206,7 +206,7 @@ std::optional<UltimatePoint> ultimate_point(const LinearPlant& plant) {
 
 namespace {
 
-/// 1/d at one frequency: 0 where |T| is too small to matter.
+/// 1/d at one frequency: 0 if |T| is too small to matter.
 double inverse_tolerance(double omega, double gain) {
     return gain < kMinModulusOfT ? 0 : omega / (2 * std::asin(0.5 / gain));
 }

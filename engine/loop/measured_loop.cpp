@@ -12,8 +12,8 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kMaxStepOfS = 0.06;        // between neighbours, of S
-constexpr double kMaxFrequencyRatio = 1.2;  // of neighbouring frequencies
+constexpr double kMaxStepOfS = 0.06;        // change of S between neighbours
+constexpr double kMaxFrequencyRatio = 1.2;  // ratio of neighbouring frequencies
 constexpr std::size_t kMaxPoints = 20000;
 constexpr double kClosestNeighbours = 1e-6;  // relative distance below which no point is added
 constexpr double kMaxAxisDistance = 1e-9;    // |1 + L|: closer to 0 counts as on the axis
@@ -54,13 +54,14 @@ LoopPoint MeasuredLoop::at(double omega) const {
 std::optional<std::string> MeasuredLoop::band_too_short() const {
     const double end = std::abs(at(plant_->high()).L);
     if (end <= kLargestEnd) return std::nullopt;
-    return "The measured band ends at omega " + text(plant_->high()) + ", where |L| still is " + text(end) +
-           "; to judge the loop it must reach frequencies where |L| is below " + text(kLargestEnd) +
+    return "The measured band ends at omega " + text(plant_->high()) + ", where |L| is still " + text(end) +
+           "; it must reach frequencies at which |L| is below " + text(kLargestEnd) +
            ". Measure higher frequencies, or lower the gain.";
 }
 
 StabilityCount MeasuredLoop::count_unstable_poles() const {
-    // From omega = 0+ to infinity 1 + L turns by pi (N/2 + p - Z): N integrators, p unstable poles of L, Z of the loop.
+    // From omega = 0+ to infinity 1 + L turns by pi (N/2 + p - Z): N integrators, p unstable poles of L, Z unstable
+    // poles of the loop.
     const int N = plant_->integrators() + (gains_.Ki != 0 ? 1 : 0);
     const double low_gain = plant_->static_sign() * (gains_.Ki != 0 ? gains_.Ki : gains_.Kp);
     Complex before = 1.0 + at(omega_.front()).L;

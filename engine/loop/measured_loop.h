@@ -1,4 +1,4 @@
-// A controller around a plant that is known at measured frequencies alone.
+// A controller with a plant that is known only at measured frequencies.
 #pragma once
 
 #include <vector>
@@ -10,8 +10,8 @@
 
 namespace tunewright {
 
-/// Everything is computed within the measured band. Above it |L| is taken to fall, so that its end value, at worst
-/// phase, bounds what follows; below it the plant is taken to be its static gain with its integrators.
+/// Everything is computed within the measured band. Above it |L| is assumed to decrease, so that its end value, at the
+/// worst phase, is a bound; below it the plant is assumed to be its static gain with its integrators.
 class MeasuredLoop {
 public:
     /// Errors: those of check_controller.
@@ -19,20 +19,20 @@ public:
 
     LoopPoint at(double omega) const;
 
-    /// Why the band does not hold all that matters, in words: |L| at its end above kLargestEnd. Empty: it does.
+    /// The reason why the band is too short, in words: |L| at its end is above kLargestEnd. Empty: it is long enough.
     std::optional<std::string> band_too_short() const;
     static constexpr double kLargestEnd = 0.5;
 
-    /// Nyquist's criterion with the plant's unstable poles and integrators; meaningful where the band is not too short.
+    /// Nyquist's criterion with the plant's unstable poles and integrators; valid if the band is not too short.
     StabilityCount count_unstable_poles() const;
 
-    /// Within the band; both ends may hold the maximum.
+    /// Within the band; the maximum may be at either end.
     Peaks peaks() const;
     Margins margins() const;
 
     /// The band's points, with more between them where L turns fast.
     const std::vector<double>& omega() const { return omega_; }
-    LoopGrid grid() const;  ///< the loop at these
+    LoopGrid grid() const;  ///< the loop at these frequencies
 
 private:
     MeasuredLoop(const MeasuredPlant& plant, const ParallelPid& gains);

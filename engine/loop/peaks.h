@@ -9,7 +9,7 @@ namespace tunewright {
 
 struct Peak {
     double value = 0;  ///< sup over 0 <= omega <= infinity; infinite for |C S| of a derivative without filter
-    double omega = 0;  ///< where; 0 or infinity if the supremum is a limit
+    double omega = 0;  ///< frequency of the maximum; 0 or infinity if the supremum is a limit
 };
 
 struct Peaks {
@@ -17,24 +17,24 @@ struct Peaks {
 };
 
 /// Peaks of a stable loop, refined between grid points to a relative error below 1e-9 where the grid is resolved;
-/// beyond it (dead time turning faster than any grid) the envelope's maximum is searched turn by turn.
+/// beyond it (the dead time turns L faster than any grid resolves) the envelope's maximum is searched turn by turn.
 Peaks find_peaks(const Loop& loop, const LoopGrid& grid);
 
-/// That of |S| alone, at a third of the cost.
+/// The peak of |S| alone, at a third of the cost.
 Peak find_sensitivity_peak(const Loop& loop, const LoopGrid& grid);
 
-/// Peaks of any stable loop among and between the grid's points, without what lies beyond them.
+/// Peaks of any stable loop at and between the grid's points, without the limits beyond them.
 Peaks find_interior_peaks(const std::function<LoopPoint(double)>& at, const LoopGrid& grid);
 
-/// That of |S| alone; those of |T| and |C S| are infinite, so that nothing raises them.
+/// The peak of |S| alone; those of |T| and |C S| are set to infinity, so that nothing raises them.
 Peaks find_interior_sensitivity_peak(const std::function<LoopPoint(double)>& at, const LoopGrid& grid);
 
 /// Where S moves little between neighbours of the grid, the dead time may still turn L between them, and C S with it:
-/// |1 + L| is at least |1 - |L||, and near its values at both ends where the turn is short. Looks there, up to
-/// `resolved_to`, where that lets a peak be higher. `time`: rad of turning for one rad/time.
+/// |1 + L| is at least |1 - |L||, and for a short turn it is close to its values at both ends. Evaluates the loop
+/// there, up to `resolved_to`, if these bounds allow a higher peak. `time`: rad of turning for one rad/time.
 void raise_by_turns(const std::function<LoopPoint(double)>& at, double time, const LoopGrid& grid, Peaks& peaks);
 
-/// A grid fine enough for `find_peaks` also where all of |S| - 1 is small.
+/// A grid that is fine enough for `find_peaks` even if all of |S| - 1 is small.
 LoopGrid make_peak_grid(const Loop& loop);
 
 }  // namespace tunewright

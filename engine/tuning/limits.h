@@ -1,5 +1,5 @@
-// The limits that a design keeps unless the request names others, and how exactly a limit is held at each step: by the
-// search, by the design that is returned, in a ranking, in what a verdict states. Nothing else defines any of them.
+// The default limits of a design, and the tolerance with which a limit is checked at each step: in the search, for the
+// returned design, in a ranking, in a verdict. All of them are defined only here.
 #pragma once
 
 namespace tunewright::limits {
@@ -9,26 +9,26 @@ namespace tunewright::limits {
 /// Largest peaks of |S| and |T|. Åström and Hägglund, Advanced PID Control (2006), section 4.6: reasonable Ms lie
 /// between 1.2 and 2; Garpinger and Hägglund design for 1.4.
 inline constexpr double kDefaultMs = 1.4, kDefaultMt = kDefaultMs;
-/// The largest limit on Ms or Mt that may be asked for: beyond it the loop hardly differs from an unstable one.
+/// The largest limit on Ms or Mt in a request: a loop with a larger peak is nearly unstable.
 inline constexpr double kMaxMs = 4, kMaxMt = kMaxMs;
-/// Time constant of the filter of a PID over Td (N = 10), where the plant bounds the gain.
+/// Time constant of the filter of a PID over Td (N = 10), if the plant bounds the gain.
 inline constexpr double kDefaultTf_over_Td = 0.1;
 /// Largest overshoot of a set-point step, percent.
 inline constexpr double kDefaultMaxOvershootPercent = 5;
 
 // ---- largest relative excess over a limit that counts as holding it, from the tightest to the widest
 
-/// Search, on the frequencies that it knows: far below what the next step tells apart, far above rounding.
+/// Search: on its own frequencies; much smaller than the next tolerance, much larger than rounding.
 inline constexpr double kMaxRelativeExcessSearched = 1e-6;
-/// Verify: the returned design, on its own plants and on frequencies that the search never saw. Peaks that the search
-/// has interpolated differ from those by less.
+/// Verify: the returned design, on its own plants and on frequencies that the search did not use. The interpolated
+/// peaks of the search have a smaller error.
 inline constexpr double kMaxRelativeExcessVerified = 2e-5;
-/// Judge: the same design on plants between its own, of a confidence region or of a range. A plant beyond it joins
-/// those that the design is made for.
+/// Judge: the same design on plants between its own, in a confidence region or a range. A plant that exceeds the limit
+/// by more is added to those of the design.
 inline constexpr double kMaxRelativeExcessJudged = 5e-5;
 /// Rank: entries of a comparison, whose peaks have been computed to about 1e-5.
 inline constexpr double kMaxRelativeExcessRanked = 1e-4;
-/// Show: a peak that prints as the limit with three digits is as good as it.
+/// Show: a peak that prints as the limit with three digits counts as within it.
 inline constexpr double kMaxRelativeExcessShown = 2e-3;
 /// Show the worst of several plants, which is found by a search.
 inline constexpr double kMaxRelativeExcessShownOfWorst = 1e-2;
@@ -38,6 +38,6 @@ static_assert(kMaxRelativeExcessSearched < kMaxRelativeExcessVerified &&
                   kMaxRelativeExcessJudged < kMaxRelativeExcessRanked &&
                   kMaxRelativeExcessRanked < kMaxRelativeExcessShown &&
                   kMaxRelativeExcessShown < kMaxRelativeExcessShownOfWorst,
-              "what one step accepts no later one calls exceeded");
+              "a later step must not reject what an earlier one accepts");
 
 }  // namespace tunewright::limits

@@ -43,7 +43,7 @@ TEST(Implement, FaultsNameThePlaceAndTheCure) {
     EXPECT_THAT(refusal(implement(R"("sample_time": 1, "derivative": "fir")"), "/implement/derivative"),
                 HasSubstr("backward or filtered"));
     EXPECT_THAT(refusal(product("klipper") + R"(, "units": {"time": "fortnight"})", "/units/time"),
-                HasSubstr("no unit of time"));
+                HasSubstr("not a known unit of time"));
 }
 
 TEST(Implement, SettingsThatAreNoneOfTheProductAreRefusedByName) {

@@ -1,5 +1,5 @@
-// A linear plant under a controller that computes once every sample time, over frequency: what the program's samples
-// see, 0 <= omega <= pi/Ts.
+// A linear plant with a controller that computes once every sample time, over frequency: the loop of the program's
+// samples, 0 <= omega <= pi/Ts.
 //
 //   L = P(z) C(z), S = 1/(1 + L), T = L/(1 + L), C S at z = e^(j omega Ts), P the plant behind its hold (held_plant.h),
 //   C = -u/y of the program with r = 0, its filter included.
@@ -26,29 +26,29 @@ inline std::complex<double> pulse_response(const SampledPid& law, double omega) 
 
 class SampledLoop {
 public:
-    /// The plant must outlive this. `law.Ts` > 0, gains finite.
+    /// The plant must outlive this object. `law.Ts` > 0, gains finite.
     SampledLoop(const LinearPlant& plant, const SampledPid& law)
         : plant_(plant, law.Ts, law.computation_delay), law_(law) {}
 
     LoopPoint at(double omega) const;  ///< 0 < omega <= pi/Ts; at 0 without integrators in plant and controller
     std::complex<double> open_loop(double omega) const;
 
-    /// Closed-loop poles on and outside the unit circle, by the argument principle along it.
+    /// Closed-loop poles on and outside the unit circle, counted by the argument principle along it.
     StabilityCount count_unstable_poles() const;
     StabilityCount count_unstable_poles(const LoopGrid& grid) const;  ///< the same along the loop's own grid
 
     LoopGrid grid() const;
-    Peaks peaks(const LoopGrid& grid) const;  ///< of a stable loop
-    /// Of |S| alone, to 1e-9, at a third of the cost; infinite where the loop is unstable.
+    Peaks peaks(const LoopGrid& grid) const;  ///< for a stable loop
+    /// The peak of |S| alone, to 1e-9, at a third of the cost; infinite if the loop is unstable.
     Peak sensitivity_peak() const;
-    /// Whether the loop is stable with Ms <= `limit`, which is above 1; at a tenth of the cost.
+    /// True if the loop is stable with Ms <= `limit`, which is above 1; at a tenth of the cost.
     bool keeps(double limit) const;
-    Margins margins(const LoopGrid& grid) const;  ///< of a stable loop; the delay margin is that of L's phase
+    Margins margins(const LoopGrid& grid) const;  ///< for a stable loop; the delay margin is that of the phase of L
 
     const HeldPlant& plant() const { return plant_; }
     const SampledPid& law() const { return law_; }
     double highest_frequency() const;  ///< pi/Ts
-    /// rad by which z and the dead time turn over so many rad/time.
+    /// rad by which z and the dead time turn over an interval of `omega` rad/time.
     double turn(double omega) const { return omega * (law_.Ts * (plant_.whole_samples() + 1) + plant_.rest()); }
 
 private:

@@ -9,7 +9,7 @@ std::optional<double> above(std::optional<double> value, double floor) {
     return value && *value > floor ? value : std::nullopt;
 }
 
-/// Of the loop that runs; of the ideal one where nothing else is known.
+/// The peak of the implemented loop if it is known, else of the ideal one.
 std::optional<PlacedPeak> running(const Figure& runs, const Figure& ideal, bool on_device) {
     if (runs) return PlacedPeak{*runs, on_device ? PeakLoop::on_device : PeakLoop::ideal};
     if (ideal) return PlacedPeak{*ideal};
@@ -21,7 +21,7 @@ std::optional<PlacedPeak> running(const Figure& runs, const Figure& ideal, bool 
 std::string words_of(PeakLoop loop) {
     switch (loop) {
         case PeakLoop::ideal: return "";
-        case PeakLoop::on_device: return " on your controller as it is built";
+        case PeakLoop::on_device: return " on your controller";
         case PeakLoop::worst_plant: return " on the worst plant";
         case PeakLoop::ideal_on_worst_plant: return " of the ideal loop on the worst plant";
     }

@@ -1,4 +1,5 @@
-// How a linear plant moves while its input is held: exact steps of any fixed length, halved as often as wanted.
+// The motion of a linear plant while its input is held: exact steps of any fixed length, and any number of halvings of
+// it.
 #pragma once
 
 #include <vector>
@@ -8,13 +9,13 @@
 
 namespace tunewright {
 
-/// Plant states and the integral of y. The dead time is the caller's: v is what arrives.
+/// Plant states and the integral of y. The caller handles the dead time: v is the delayed input.
 struct HeldState {
     std::vector<double> x;
     double y_integral = 0;
 };
 
-/// Over one length h, with v constant: x(h) = e^(A h) x + psi(h) B v, and the integral of y = C x + D v.
+/// Motion over the length h with constant v: x(h) = e^(A h) x + psi(h) B v, and the integral of y = C x + D v.
 class HeldMotion {
 public:
     HeldMotion(const LinearPlant& plant, double h);
@@ -26,7 +27,7 @@ public:
 private:
     struct Step {
         double h = 0;
-        std::vector<double> Phi, Gamma;  // of the states and the integral of y together, (n + 1) x (n + 1) and n + 1
+        std::vector<double> Phi, Gamma;  // for the states and the integral of y together, (n + 1) x (n + 1) and n + 1
     };
     Step step(double h) const;
 

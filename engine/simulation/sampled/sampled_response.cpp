@@ -19,14 +19,16 @@ namespace {
 
 using Index = std::size_t;
 
-constexpr int kMaxHalvings = 12;       // of a piece, before a node is set whatever the cubic says
-constexpr Index kMaxNodes = 1000000;   // from there on no piece is halved any more
-constexpr double kProbeShare = 0.309;  // of a piece: where swings that the middle meets at the same place are not
-constexpr double kRestLimitTolerance = 1e-9;  // of u at rest: nearer to a limit it is within
-constexpr double kInstantTolerance = 1e-9;    // of a sample: nearer instants are one
-constexpr int kRestSamples = 10;              // beyond the dead time: the least that a response must have rested for
+constexpr int kMaxHalvings = 12;       // of a piece, before a node is added without a further check
+constexpr Index kMaxNodes = 1000000;   // beyond it no piece is halved any more
+constexpr double kProbeShare = 0.309;  // of a piece: a second check point, for oscillations that are equal at the
+                                       // midpoint
+constexpr double kRestLimitTolerance = 1e-9;  // of u at rest: closer to a limit it counts as within
+constexpr double kInstantTolerance = 1e-9;    // of a sample: closer times are equal
+constexpr int kRestSamples = 10;              // in addition to the dead time: the least time that a response must have
+                                              // rested
 
-/// Where the linear loop rests.
+/// The rest of the linear loop.
 struct Rest {
     bool exists = false;
     double y = 0, u = 0;
@@ -44,7 +46,7 @@ Rest rest_of(const LinearPlant& plant, const ParallelPid& gains, const StepInput
     return {std::isfinite(y), y, u0 - gains.Kp * y};
 }
 
-/// The same with the program's limits: beyond one of them the plant rests where the limit leaves it.
+/// The same with the program's limits: beyond one of them the plant rests at the value that the limit gives.
 Rest rest_within(const LinearPlant& plant, const Rest& linear, const std::optional<ActuatorLimits>& limits, double d) {
     if (!limits || !linear.exists) return linear;
     const double u = std::clamp(linear.u, limits->min, limits->max);
@@ -53,12 +55,12 @@ Rest rest_within(const LinearPlant& plant, const Rest& linear, const std::option
     return {true, plant.integrators() < 0 ? 0 : plant.low_frequency_gain() * (u + d), u, true};
 }
 
-/// A piece of a sample period within which the plant's input and the output's value are constant.
+/// A part of a sample period within which the plant's input and the output's value are constant.
 struct Piece {
-    double from = 0;          // time into the period
-    HeldMotion motion, look;  // the latter to kProbeShare of it
-    bool arrived;             // u_{k-d} drives the plant here; before it u_{k-d-1}
-    bool given;  // u_{k-o} is the output here, o the computation delay's whole samples; before it u_{k-o-1}
+    double from = 0;          // start within the period
+    HeldMotion motion, look;  // the latter up to kProbeShare of it
+    bool arrived;             // true: the plant's input is u_{k-d}; false: u_{k-d-1}
+    bool given;               // true: the output is u_{k-o}, o whole samples of the computation delay; false: u_{k-o-1}
 };
 
 class SampledRun {
@@ -99,7 +101,7 @@ private:
     double largest_y_ = 0, largest_u_ = 0;
     LoopSizes sizes_;
     double last_v_ = 0;
-    double fastest_swing_ = 0;  // rad/time, of the plant's poles
+    double fastest_swing_ = 0;  // rad/time, the fastest of the plant's poles
     StoppingRule rule_;
     StepResponse response_;
 };
@@ -139,7 +141,7 @@ std::vector<Piece> SampledRun::pieces(const LinearPlant& plant) const {
     return made;
 }
 
-// The beginning of a piece, of length h.
+// The first part, of length h, of a piece.
 Piece SampledRun::cut(const Piece& piece, double h) const {
     return {piece.from, HeldMotion(plant_, h), HeldMotion(plant_, kProbeShare * h), piece.arrived, piece.given};
 }
@@ -151,7 +153,7 @@ void SampledRun::add_node(double t, double v, double u) {
     largest_u_ = std::max(largest_u_, std::abs(u));
 }
 
-// Whole swings between a piece's ends and its middle are seen in neither.
+// True if whole oscillations may lie between a piece's ends and its midpoint, where the check would not notice them.
 bool SampledRun::swings(Piece& piece, int level, HeldState start, const ResponseNode& left, const HeldOutput& end,
                         double v) {
     const double h = std::ldexp(piece.motion.length(), -level), s = kProbeShare, r = 1 - s;
@@ -162,7 +164,8 @@ bool SampledRun::swings(Piece& piece, int level, HeldState start, const Response
     return std::abs(cubic - y) > options_.tolerance * std::max(largest_y_, std::abs(y));
 }
 
-// From the last node over 2^-level of the piece: a node at its end, and more within where a cubic would not do.
+// Runs from the last node over 2^-level of the piece: a node at its end, and more inside if a cubic is not accurate
+// enough.
 void SampledRun::run_piece(Piece& piece, int level, double t, double t_end, double v, double u) {
     const ResponseNode left = response_.nodes.back();
     const HeldState start = state_;
@@ -188,7 +191,7 @@ void SampledRun::run_piece(Piece& piece, int level, double t, double t_end, doub
 void SampledRun::run_period(int k) {
     for (Index i = 0; i < pieces_.size(); ++i) {
         Piece& piece = pieces_[i];
-        // The very numbers from which the next piece, and the next period, begin.
+        // Exactly the same numbers as those with which the next piece, and the next period, begin.
         const double t = k * law_.Ts + piece.from;
         const double t_end = i + 1 < pieces_.size() ? k * law_.Ts + pieces_[i + 1].from : (k + 1) * law_.Ts;
         const bool loaded = k > load_.whole || (k == load_.whole && piece.from >= load_.rest);
@@ -206,7 +209,7 @@ void SampledRun::run_period(int k) {
 }
 
 void SampledRun::sample(int k) {
-    // Taken just before anything changes at t_k: what arrives at that very instant is not seen yet.
+    // Read just before anything changes at t_k: an input that arrives at that very time is not included.
     const double v = input(k, false) + (k > load_.whole ? in_.d : 0);
     u_.push_back(program_.step(in_.r, reader_.at(state_.x, v).y));
 }
@@ -219,7 +222,7 @@ void SampledRun::note(double t) {
 
 StepResponse SampledRun::result() {
     response_.settles = false;
-    // One period at least: whoever reads a response that was stopped at once finds its beginning.
+    // At least one period, so that a response that is stopped at once has a beginning.
     for (int k = 0; k < options_.max_samples && (k == 0 || !options_.stop.stop_requested()); ++k) {
         sample(k);
         run_period(k);
@@ -246,10 +249,11 @@ StepResponse simulate_sampled(const LinearPlant& plant, const SampledPid& law, c
 
 namespace {
 
-constexpr double kTolerance = 1e-8;       // of the integrator's steps
-constexpr double kBend = 1e-9;            // of the largest |y|: by so much a jump of its slope would move y over a step
-constexpr double kTimeTolerance = 1e-12;  // relative: times nearer than that are one
-constexpr int kMinRestSamples = 3;        // the least that a response must have rested for, beyond its dead time
+constexpr double kTolerance = 1e-8;       // of the steps of the integration
+constexpr double kBend = 1e-9;            // of the largest |y|: the change of y over a step by a jump of its slope
+constexpr double kTimeTolerance = 1e-12;  // relative: closer times are equal
+constexpr int kMinRestSamples = 3;        // the least time that a response must have rested, in addition to its dead
+                                          // time
 
 struct Given {
     double t = 0, u = 0;
@@ -288,14 +292,15 @@ private:
     NonlinearOptions recording_;
     ResponseRecorder recorder_;
     StoppingRule rule_;
-    std::deque<Given> outputs_;         // computed, not given out yet
+    std::deque<Given> outputs_;         // computed, but not yet effective
     double u_ = 0;                      // given out
-    double y_quiet_ = 0, u_quiet_ = 0;  // near which y and u have stayed since they last moved
+    double y_quiet_ = 0, u_quiet_ = 0;  // y and u have stayed near these values since they last moved
     double size_y_ = 0, size_u_ = 0;
-    double min_size_u_;  // of the loop, whatever the first samples are
+    double min_size_u_;  // of the loop, independent of the first samples
 };
 
-// What arrives behind the dead time bends y at once where the plant's relative degree is one.
+// True if the input that arrives after the dead time changes the slope of y at once: the plant's relative degree is
+// one.
 bool NonlinearRun::slope_jumped(const StepPolynomial& y) const {
     const auto& nodes = response_.loop.nodes;
     return !nodes.empty() && std::abs(y.slope(0) - nodes.back().y_slope) * y.h > kBend * size_y_;
@@ -324,7 +329,7 @@ bool NonlinearRun::run_to(double t) {
     return advance(t);
 }
 
-// With integral action y comes to rest at r; without it, and at a limit, where it stays.
+// With integral action y comes to rest at r; without it, or at a limit, wherever it stays.
 void NonlinearRun::note(double t) {
     const double y = plant_.y();
     size_y_ = std::max({size_y_, std::abs(y), std::abs(in_.r)});

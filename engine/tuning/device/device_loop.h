@@ -1,4 +1,4 @@
-// A loop as it is built, continuous or sampled, seen in one way: what a search over its settings asks of it.
+// An implemented loop, continuous or sampled, with one interface for a search over its settings.
 #pragma once
 
 #include <complex>
@@ -14,16 +14,16 @@ namespace tunewright::device {
 
 struct PeakLimits {
     double Ms = limits::kDefaultMs, Mt = limits::kDefaultMt;  ///< > 1
-    std::optional<double> Mks;                                ///< of max |C S|
+    std::optional<double> Mks;                                ///< limit on max |C S|
 };
 
-/// A controller with what its program adds; without `Ts` (0) it is the continuous law of the gains.
+/// A controller with its program's rules; with `Ts` = 0 it is the continuous law of the gains.
 using Law = SampledPid;
 
-/// One plant behind the controller's hold, or without one where Ts is 0.
+/// One plant with the controller's hold, or without one if Ts is 0.
 class DevicePlant {
 public:
-    /// `plant` must outlive this.
+    /// `plant` must outlive this object.
     DevicePlant(const LinearPlant& plant, double Ts, double computation_delay);
 
     const LinearPlant& plant() const { return *plant_; }
@@ -36,10 +36,10 @@ private:
     std::optional<HeldPlant> held_;
 };
 
-/// C at omega of the law, by its sampled or its continuous formula.
+/// C at omega, by the law's sampled or continuous formula.
 std::complex<double> response_of(const Law& law, double omega);
 
-/// Where the loop is looked at: frequencies from far below to far above its corners, or to pi/Ts.
+/// The frequencies at which the loop is evaluated: from far below to far above its corners, or up to pi/Ts.
 std::vector<double> frequencies_of(const LinearPlant& plant, const Law& law);
 
 bool is_stable(const LinearPlant& plant, const Law& law);
@@ -52,7 +52,7 @@ struct PeakValues {
 };
 PeakValues peaks_of(const LinearPlant& plant, const Law& law);
 
-/// The integral of |y| after a unit load step; infinite where the loop does not settle.
+/// The integral of |y| after a unit load step; infinite if the loop does not settle.
 double load_iae_of(const LinearPlant& plant, const Law& law);
 
 }  // namespace tunewright::device

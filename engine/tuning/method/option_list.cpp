@@ -27,7 +27,7 @@ OptionSlider slider_about_value() {
 OptionSlider slider_within(const OptionDescription& number) {
     const auto low = number.minimum ? number.minimum : number.exclusive_minimum;
     if (!low || !number.maximum) return slider_about_value();
-    constexpr double kInside = 0.01;  // of the range: an end that the option may not have
+    constexpr double kInside = 0.01;  // of the range: distance from an excluded limit
     const double inside = number.exclusive_minimum ? kInside * (*number.maximum - *low) : 0;
     return {.from = *low + inside, .to = *number.maximum};
 }

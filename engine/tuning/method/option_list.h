@@ -1,5 +1,5 @@
-// Described options whatever struct they fill: what option_set.h offers for each struct, compiled once for all. A
-// member is known by its distance from the start of its struct, so that methods share the code for members of one type.
+// Described options of any struct: the common part of option_set.h, compiled once. A member is identified by its offset
+// in its struct, so that methods share the code for members of the same type.
 #pragma once
 
 #include <complex>
@@ -18,15 +18,15 @@
 
 namespace tunewright {
 
-/// What a number must keep, and its unit ("time", "u/y", ...).
+/// The limits of a number, and its unit ("time", "u/y", ...).
 struct NumberOption {
     std::string_view unit = {};
     std::optional<double> minimum = {}, exclusive_minimum = {}, maximum = {};
     bool required = false;
-    std::optional<double> fallback = {};  ///< what an empty member stands for, where that is one number
+    std::optional<double> fallback = {};  ///< the meaning of an empty member, if it is one number
 };
 
-/// Evenly between the limits of the number; about its value where it has only a lower limit.
+/// Evenly between the limits of the number; around its value if it has only a lower limit.
 OptionSlider slider_within(const OptionDescription& number);
 
 /// Logarithmic, a factor in either direction.
@@ -36,7 +36,7 @@ OptionSlider slider_about_value();
 template <class E>
 using Words = std::vector<std::pair<std::string, E>>;
 
-/// The first word of a value; "" where it has none.
+/// The first word of a value; "" if it has none.
 template <class E>
 std::string word_of(const Words<E>& words, const E& value) {
     for (const auto& [word, known] : words)
@@ -55,7 +55,7 @@ struct Content<std::optional<M>> {
     using type = M;
 };
 
-/// The value that stands in a member; null where it is an empty optional.
+/// The value of a member; null for an empty optional.
 template <class M>
 const M* content(const M& member) {
     return &member;
@@ -65,7 +65,7 @@ const M* content(const std::optional<M>& member) {
     return member ? &*member : nullptr;
 }
 
-/// A member of a struct: bytes from the struct's start, and what the defaults hold there.
+/// A member of a struct: its offset in bytes, and its value in the defaults.
 template <class M>
 struct Member {
     std::size_t offset;
@@ -81,12 +81,12 @@ public:
 
     const std::vector<OptionDescription>& descriptions() const { return descriptions_; }
 
-    /// The description at this path ("Ms", "filter/Tf"), which there must be; good until the next option.
+    /// The description at this path ("Ms", "filter/Tf"), which must exist; valid until the next option is added.
     OptionDescription& described(std::string_view path);
 
-    /// Fills the struct at `value`, of the type that the members are of, where `given` says something.
+    /// Sets the struct at `value`, of the members' type, from `given`.
     void read(const MethodOptions& given, const std::string& prefix, void* value) const;
-    /// What a request gives for the struct at `value` so that it differs from the one at `other`.
+    /// The options with which a request gets the struct at `value` instead of the one at `other`.
     MethodOptions given_for(const void* value, const void* other) const;
 
     template <class M>
@@ -183,11 +183,11 @@ private:
         std::string name;
         std::size_t offset;
         Callable<void(const MethodOptions&, const std::string& path, void* member)> read;
-        /// Empty: given_for() leaves the member out.
+        /// Empty: given_for() omits the member.
         Callable<void(const std::string& name, const void* member, const void* other, MethodOptions&)> write = {};
     };
 
-    /// The new description, for what else it says; good until the next one.
+    /// Adds a description and returns it for further settings; valid until the next one.
     OptionDescription& describe(OptionType type, std::string_view name, std::string_view sentence,
                                 const NumberOption& how = {});
     void describe_number(OptionType type, std::string_view name, std::string_view sentence, const NumberOption& how,
@@ -196,7 +196,7 @@ private:
     void describe_as(const std::vector<OptionDescription>& others);
     void add(Binding binding);
 
-    /// `take` gives the member's content where the request has it; `as_value`, if any, is the way back.
+    /// `take` reads the member from the request; `as_value`, if given, is the inverse.
     template <class M, class Take, class AsValue = std::nullptr_t>
     void bind(std::size_t offset, std::string_view name, Take take, AsValue as_value = {}) {
         Binding binding{std::string(name), offset,
@@ -214,7 +214,7 @@ private:
         add(std::move(binding));
     }
 
-    /// `below` stands between this name and those of the set.
+    /// `below` separates this name from those of the set.
     template <class M, class Set>
     void bind_part(std::size_t offset, std::string_view name, const std::string& below, const Set& set) {
         constexpr bool kMayBeEmpty = !std::is_same_v<M, typename detail::Content<M>::type>;

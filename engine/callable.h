@@ -1,5 +1,5 @@
-// A function of a known signature with what it captured. Descriptions of options hold hundreds of
-// these, each of a type of its own; they cost a third of the compile time of std::function.
+// A function of a known signature with its captures. Descriptions of options hold hundreds of these, each of a type of
+// its own; they cost a third of the compile time of std::function.
 #pragma once
 
 #include <memory>
@@ -7,7 +7,8 @@
 
 namespace tunewright {
 
-/// What a callable captured, shared by its copies. Never inlined: they are copied where descriptions are put together.
+/// The captures of a callable, shared by its copies. Never inlined: they are copied where descriptions are put
+/// together.
 class Captured {
 public:
     Captured() = default;
@@ -40,7 +41,7 @@ void destroy_captured(const void* state) {
 template <class Signature>
 class Callable;
 
-/// Default-constructed it is empty, and false.
+/// A default-constructed one is empty and converts to false.
 template <class R, class... A>
 class Callable<R(A...)> {
 public:

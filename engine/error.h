@@ -1,4 +1,4 @@
-// What went wrong, as a value: a kind for programs, a place and a sentence for people.
+// An error as a value: a kind for programs, a place and a sentence for people.
 #pragma once
 
 #include <map>
@@ -6,17 +6,17 @@
 
 namespace tunewright {
 
-/// Named for what the caller can do next, not for where it happened.
+/// Kinds are named for what the caller can do next, not for where the error happened.
 enum class ErrorKind {
     invalid_argument,        ///< a value that was given is wrong: `where` names it
     unsupported,             ///< a valid request that this method or plant cannot serve: choose another
     not_identifiable,        ///< the record does not determine a model
-    unstable_plant,          ///< no controller of the asked kind stabilises the plant
+    unstable_plant,          ///< no controller of the requested kind stabilises the plant
     no_feasible_controller,  ///< no controller meets the limits: relax them (the sentence says how far)
-    unbounded_optimum,       ///< the optimum runs away: fix a filter or limit Mks
+    unbounded_optimum,       ///< the optimum is unbounded: fix a filter or limit Mks
     not_representable,       ///< a product cannot be this controller: take the nearest, or tune under its limits
-    cancelled,               ///< somebody asked to stop
-    timeout,                 ///< the time allowed is over
+    cancelled,               ///< the caller asked to stop
+    timeout,                 ///< the time allowed has run out
     numerical_failure,       ///< the computation could not be finished to its accuracy
 };
 
@@ -41,7 +41,8 @@ struct Error {
     ErrorKind kind = ErrorKind::numerical_failure;
     std::string where;    ///< path inside the request, slash separated, e.g. "plant/L"; empty if none
     std::string message;  ///< one or two sentences: name, value, rule, cure
-    std::map<std::string, double> cure = {};  ///< options of the method, by name, with which it works; empty: unknown
+    std::map<std::string, double> cure =
+        {};  ///< options of the method, by name, with which it would work; empty: unknown
 };
 
 }  // namespace tunewright

@@ -1,4 +1,4 @@
-// A quantity, or the sentence that says why there is none.
+// A quantity, or the sentence that says why it has no value.
 #pragma once
 
 #include <cmath>
@@ -8,11 +8,12 @@
 
 namespace tunewright {
 
-/// Reads like a std::optional. An empty one that states no reason gets the one that its description has for all.
+/// Reads like a std::optional. One that is empty and states no reason has the reason that the figure's description
+/// gives for all.
 template <class T>
 struct OrReason {
     std::optional<T> value = {};
-    std::string why = {};  ///< of an empty one: a sentence
+    std::string why = {};  ///< the reason, as a sentence, if there is no value
 
     OrReason() = default;
     OrReason(T content) : value(std::move(content)) {}                 // NOLINT(google-explicit-constructor)
@@ -33,7 +34,7 @@ using Figure = OrReason<double>;
 
 inline Figure no_figure(std::string reason) { return {std::nullopt, std::move(reason)}; }
 
-/// A finite value, or the reason.
+/// The value if it is finite, else the reason.
 inline Figure finite_or(double value, std::string reason) {
     return std::isfinite(value) ? Figure(value) : no_figure(std::move(reason));
 }

@@ -51,8 +51,8 @@ std::optional<Error> option_fault(const Plan& plan) {
                      "The nonlinear form has no filter of the measurement. Choose none or derivative."};
     if (!plan.position && !plan.integral)
         return Error{ErrorKind::unsupported, "form",
-                     "form is velocity and the controller has no integral action: after a limit nothing would bring u "
-                     "back to its level. Choose position."};
+                     "form is velocity and the controller has no integral action: after a limit, u would not return to "
+                     "its level. Choose position."};
     return std::nullopt;
 }
 
@@ -69,7 +69,7 @@ Expected<Program> pid_algorithm(const SampledPid& pid, const CodeOptions& option
 
 namespace {
 
-/// Those of a row that the program has, in this order.
+/// The settings that a row gives and the program has, in this order.
 struct FollowedSetting {
     const char* name;
     double ScheduleRow::*member;
@@ -82,7 +82,7 @@ Expr variable_of(VariableRole role, const char* name) {
     return Expr(Expression{Type::real, VariableReference{role, name}});
 }
 
-/// Puts the settings that the program has in front of its body.
+/// Puts the computation of the scheduled settings in front of the program's body.
 class Following {
 public:
     Following(Program& program, const Schedule& schedule) : program_(program), schedule_(schedule) {
@@ -97,18 +97,18 @@ public:
     }
 
 private:
-    /// Behind the measurement, before what belongs to manual.
+    /// Declares the input after the measurement and before the inputs of manual mode.
     Expr declare_input() {
         const Expr input = program_.declare({.role = VariableRole::input,
                                              .name = kSchedulingInput,
-                                             .comment = "the scheduling variable, as the rows have it"});
+                                             .comment = "the scheduling variable, in the unit of the rows"});
         auto& all = program_.variables;
         const auto after = std::ranges::find(all, std::string("measurement"), &Declaration::name) + 1;
         std::rotate(after, all.end() - 1, all.end());
         return input;
     }
 
-    /// What was a setting of the user's is memory of the program's now.
+    /// A setting of the user's becomes a state of the program.
     void take_over(const FollowedSetting& setting) {
         for (Declaration& known : program_.variables)
             if (known.name == setting.name && known.role == VariableRole::parameter) {
@@ -152,7 +152,7 @@ private:
         body_.insert(body_.end(), first.begin(), first.end());
         if (schedule_.rows.size() < 2) return;
         const Expr share = program_.declare(
-            {.role = VariableRole::local, .name = "share", .comment = "how far on the way to the next row: 0 to 1"});
+            {.role = VariableRole::local, .name = "share", .comment = "fraction of the way to the next row: 0 to 1"});
         for (std::size_t k = 0; k + 1 < schedule_.rows.size(); ++k) {
             const double from = schedule_.rows[k].at, to = schedule_.rows[k + 1].at;
             Block part{assign(share, (at_ - from) / (to - from)), when(share > 1, {assign(share, 1.0)})};
@@ -179,7 +179,7 @@ private:
 std::string how(const Schedule& schedule) {
     switch (schedule.interpolation) {
         case Interpolation::steps:
-            return "a row's settings hold from its place on; a row is left " + text(0.5 * schedule.hysteresis) +
+            return "a row's settings hold from its value on; a row is left " + text(0.5 * schedule.hysteresis) +
                    " beyond its border";
         case Interpolation::linear_in_gains: return "between rows Kp, 1/Ti, Td, Tf and b are linear";
         case Interpolation::linear_in_times: return "between rows Kp, Ti, Td, Tf and b are linear";
@@ -187,7 +187,7 @@ std::string how(const Schedule& schedule) {
     return {};
 }
 
-/// What the program cannot follow: it has one action, and a filter or none.
+/// The error of rows that the program cannot follow: it has one action, and either a filter or none.
 std::optional<Error> row_fault(const Schedule& schedule) {
     const auto same = [&](auto property) {
         return std::ranges::all_of(
@@ -205,8 +205,8 @@ std::optional<Error> row_fault(const Schedule& schedule) {
 std::string schedule_note(const Schedule& schedule, const std::string& named) {
     std::string note = "Schedule: each call computes its settings from the input " + std::string(kSchedulingInput) +
                        ", " + named + "; " + how(schedule) +
-                       ", below the first and above the last row their settings hold. u does not jump because "
-                       "settings move. Rows, times in s:";
+                       ", below the first and above the last row their settings hold. A change of settings does not "
+                       "make u jump. Rows, times in s:";
     for (const ScheduleRow& row : schedule.rows)
         note += " at " + text(row.at, 6) + " Kp " + text(std::abs(row.Kp), 6) + ", Ti " + text(row.Ti, 6) + ", Td " +
                 text(row.Td, 6) + ", Tf " + text(row.Tf, 6) + ", b " + text(row.b, 4) + ";";
@@ -228,8 +228,8 @@ Expected<Program> scheduled_algorithm(const Schedule& schedule, const SampledPid
                                       const std::string& named) {
     if (law.velocity)
         return Error{ErrorKind::unsupported, "form",
-                     "The velocity form has no integral part that could take over what settings lose when they move. "
-                     "Choose the form position."};
+                     "The velocity form has no integral part, which bumpless changes of settings need. Choose the form "
+                     "position."};
     if (const auto fault = row_fault(schedule)) return *fault;
     SampledPid leading = law;
     leading.gains = to_parallel(controller_of(leading_row(schedule)));

@@ -20,7 +20,7 @@ void Builder::add_gains() {
 }
 
 void Builder::add_first_call() {
-    add(remark("The first call: the states are those of a loop in which nothing has moved yet."));
+    add(remark("The first call: the states are those of a loop at rest."));
     add(when(restart_, {assign(started_, truth(false))}));
     Block start{assign(setpoint_last_, setpoint_), assign(y_f_, measurement_),
                 when(at_rest_, {assign(setpoint_last_, y0_), assign(y_f_, y0_)})};
@@ -67,14 +67,16 @@ void Builder::add_change_of_settings() {
         changed = either(changed, gain_d_ != gain_d_last_);
         sum = sum + gain_d_ * slope_;
     }
-    const Expr pd_now = local("pd_now", "what pd_last is with the new settings");
-    add(remark("Settings have changed: the integral part takes over what the other parts of the last u lose."));
+    const Expr pd_now = local("pd_now", "pd_last with the new settings");
+    add(
+        remark("Settings have changed: the integral part changes by as much as the other parts of the last u, in the "
+               "other direction."));
     add(when(changed, {assign(pd_now, sum), assign(integral_, integral_ + pd_last_ - pd_now)}));
 }
 
 void Builder::add_signals() {
     if (plan_.filters_setpoint()) {
-        add(remark("The set point's filter: what follows sees its output."));
+        add(remark("The set point's filter: the rest uses its output."));
         const Expr filtered = local("setpoint_f", "filtered set point");
         add(assign(filtered, (Tr_ * setpoint_last_ + Ts_ * setpoint_) / (Tr_ + Ts_)));
         setpoint_ = filtered;
@@ -107,7 +109,7 @@ void Builder::add_filter() {
 }
 
 void Builder::add_slope() {
-    add(remark("What the derivative acts on, and its slope."));
+    add(remark("The input of the derivative, and its slope."));
     lead_ = local("lead", "c r - y_f");
     add(assign(lead_, c_ * setpoint_ - y_f_));
     const auto step = [&] { return lead_ - lead_last_; };
@@ -138,19 +140,19 @@ void Builder::add_slope() {
 
 void Builder::add_terms() {
     const bool position = plan_.position;
-    add(remark(position ? "The parts of u." : "What the parts of u gain."));
-    proportional_ = local("proportional", position ? "proportional part" : "what the proportional part gains");
+    add(remark(position ? "The parts of u." : "The increments of the parts of u."));
+    proportional_ = local("proportional", position ? "proportional part" : "increment of the proportional part");
     add(assign(proportional_,
                position ? law_part(setpoint_, y_f_) : law_part(setpoint_ - setpoint_last_, y_f_ - y_f_last_)));
     if (plan_.derivative) {
-        derivative_ = local("derivative", position ? "derivative part" : "what the derivative part gains");
+        derivative_ = local("derivative", position ? "derivative part" : "increment of the derivative part");
         add(assign(derivative_, gain_d_ * (position ? slope_ : slope_ - slope_last_)));
     }
     if (!plan_.integral) return;
-    increment_ = local("increment", "what the integral part gains");
+    increment_ = local("increment", "increment of the integral part");
     Expr share = error_;
     if (plan_.options.delta_r) {
-        share = local("fed", "what the integral is fed with");
+        share = local("fed", "input of the integral");
         add(assign(share, fed(error_)));
     }
     switch (plan_.pid.integral) {
@@ -162,9 +164,9 @@ void Builder::add_terms() {
 }
 
 void Builder::add_bounds() {
-    low_ = local("low", "least u of this call");
+    low_ = local("low", "smallest u of this call");
     high_ = local("high", "largest u of this call");
-    add(remark("How far u may go in this call."));
+    add(remark("The range of u in this call."));
     add(assign(low_, u_min_));
     add(assign(high_, u_max_));
     Block rate{assign(low_, u_last_ - rate_limit_ * Ts_), assign(high_, u_last_ + rate_limit_ * Ts_)};
@@ -173,11 +175,11 @@ void Builder::add_bounds() {
     add(when(rate_limit_ > 0, std::move(rate)));
 }
 
-// Without integral action u has its level from the operating point, so that the first call obeys the law at once.
+// Without integral action the level of u is that of the operating point, so that the first call obeys the law at once.
 void Builder::add_output() {
     const Expr first = both(inverse(started_), inverse(at_rest_));
     add(remark(plan_.integral
-                   ? "In manual, and in a first call that is not at rest, u is given and the rest follows it."
+                   ? "In manual, and in a first call that is not at rest, u is given and the states follow it."
                    : "In manual u is given, and the level from which automatic goes on follows it."));
     add(when(plan_.integral ? either(manual_, first) : manual_, held(),
              plan_.position ? position_output() : velocity_output()));
@@ -187,7 +189,8 @@ Block Builder::held() {
     Block block{assign(u_, plan_.integral ? bias_ : manual_output_)};
     if (plan_.integral) block.push_back(when(manual_, {assign(u_, manual_output_)}));
     bound(block, u_, u_min_, u_max_);
-    // The derivative part stays out: at rest it is 0 but for the noise of one sample, which nothing would take back.
+    // The derivative part is left out: at rest it consists only of the noise of one sample, and nothing would remove
+    // that later.
     if (plan_.position) block.push_back(assign(integral_, u_ - proportional_));
     if (!plan_.position && plan_.derivative) block.push_back(assign(slope_last_, 0.0));
     return block;
@@ -205,7 +208,7 @@ Block Builder::position_output() {
     }
     const Expr raw = local("raw", "u of the law alone");
     if (!plan_.tracks) {
-        const Expr wound = local("wound", "true: the integral part would go further beyond", Type::boolean);
+        const Expr wound = local("wound", "true: the integral part would move further beyond the limit", Type::boolean);
         block.push_back(assign(raw, sum(integral_ + increment_)));
         block.push_back(assign(wound, either(both(raw > high_, increment_ > 0), both(raw < low_, increment_ < 0))));
         block.push_back(when(inverse(wound), {assign(integral_, integral_ + increment_)}));
@@ -213,7 +216,7 @@ Block Builder::position_output() {
         bound(block, u_, low_, high_);
         return block;
     }
-    const Expr tracking = local("tracking", "share of what is missing that the integral part follows");
+    const Expr tracking = local("tracking", "share of the missing u by which the integral part moves");
     block.push_back(assign(integral_, integral_ + increment_));
     block.push_back(assign(raw, sum(integral_)));
     block.push_back(assign(u_, raw));
@@ -250,21 +253,21 @@ void Builder::declare_settings() {
     Kp_ = setting("Kp", s.Kp, "proportional gain");
     if (s.ideal && plan_.integral) Ti_ = setting("Ti", s.Ti, "integral time in s; 0: no integral action");
     if (s.ideal && plan_.derivative) Td_ = setting("Td", s.Td, "derivative time in s");
-    if (!s.ideal && plan_.integral) Ki_ = setting("Ki", s.Ki, "integral gain, a second");
-    if (!s.ideal && plan_.derivative) Kd_ = setting("Kd", s.Kd, "derivative gain, times s");
+    if (!s.ideal && plan_.integral) Ki_ = setting("Ki", s.Ki, "integral gain, per second");
+    if (!s.ideal && plan_.derivative) Kd_ = setting("Kd", s.Kd, "derivative gain, in s");
     b_ = setting("b", plan_.pid.gains.b, "weight of the set point in the proportional part");
     direct_ = setting("direct", s.direct ? 1 : 0, "false: reverse, u falls when y rises", Type::boolean);
     u_min_ = setting("u_min", plan_.options.u_min.value_or(-kNoLimit), "least u");
     u_max_ = setting("u_max", plan_.options.u_max.value_or(kNoLimit), "largest u");
-    rate_limit_ = setting("rate_limit", plan_.options.rate_limit, "most that u moves in a second; 0: any");
+    rate_limit_ = setting("rate_limit", plan_.options.rate_limit, "largest change of u per second; 0: no limit");
     if (plan_.tracks) {
         const double otherwise = tracking_time(plan_.pid.gains).value_or(plan_.pid.Ts);
         Tt_ = setting("Tt", plan_.options.tracking_time.value_or(otherwise), "tracking time of the anti-windup in s");
     }
     bias_ = setting("bias", plan_.options.bias, "u at the operating point");
     y0_ = setting("y0", plan_.options.y0, "y at the operating point");
-    at_rest_ = setting("at_rest", 0, "true: the first call finds the loop at rest in y0 and bias", Type::boolean);
-    restart_ = setting("restart", 0, "true: this call is the first one again", Type::boolean);
+    at_rest_ = setting("at_rest", 0, "true: in the first call the loop is at rest at y0 and bias", Type::boolean);
+    restart_ = setting("restart", 0, "true: this call starts again as the first one", Type::boolean);
     declare_fixed_settings();
 }
 
@@ -278,18 +281,18 @@ void Builder::declare_fixed_settings() {
         Tf_ = setting("Tf", plan_.pid.gains.filter.Tf, "time constant of the derivative's filter in s");
     if (plan_.derivative) c_ = setting("c", plan_.pid.gains.c, "weight of the set point in the derivative part");
     if (plan_.options.delta_r)
-        delta_r_ = setting("delta_r", *plan_.options.delta_r, "error of which the integral sees 61 %");
+        delta_r_ = setting("delta_r", *plan_.options.delta_r, "error at which the integral acts on 61 % of it");
 }
 
 void Builder::declare_states() {
     started_ = state("started", "false before the first call", Type::boolean);
     if (plan_.position)
-        integral_ = state("integral", plan_.integral ? "the integral part, a term in u" : "what u is without error");
+        integral_ = state("integral", plan_.integral ? "the integral part, a term in u" : "u without error");
     y_f_ = state("y_f", plan_.smooths() ? "filtered measurement" : "measurement");
     if (plan_.smooths_twice()) filter_rate_ = state("filter_rate", "slope of y_f");
     setpoint_last_ = state("setpoint_last", plan_.filters_setpoint() ? "filtered set point of the last call"
                                                                      : "set point of the last call");
-    if (plan_.keeps_error) fed_last_ = state("fed_last", "what the integral was last fed with");
+    if (plan_.keeps_error) fed_last_ = state("fed_last", "last input of the integral");
     if (plan_.derivative) declare_history();
     u_last_ = state("u_last", "output of the last call");
     if (!plan_.position) return;
@@ -300,11 +303,11 @@ void Builder::declare_states() {
 }
 
 void Builder::declare_history() {
-    slope_ = state("slope", "slope of c r - y_f, as the rule has it");
-    if (!plan_.position) slope_last_ = state("slope_last", "slope that the last u contains; 0 in manual");
+    slope_ = state("slope", "slope of c r - y_f, by the rule");
+    if (!plan_.position) slope_last_ = state("slope_last", "slope in the last u; 0 in manual");
     if (plan_.rule == DerivativeRule::slope) {
         history_ = state("history", "c r - y_f of the last calls, in a ring", Type::real, plan_.pid.slope_samples);
-        place_ = state("place", "the oldest of them", Type::integer);
+        place_ = state("place", "index of the oldest value in the ring", Type::integer);
         return;
     }
     lead_last_ = state("lead_last", "c r - y_f of the last call");

@@ -63,7 +63,7 @@ private:
     void add_memory();
 
     Expr law_part(const Expr& r, const Expr& y) const { return gain_ * (b_ * r - y); }
-    // What the integral is fed with in place of e.
+    // The input of the integral in place of e.
     Expr fed(const Expr& e) const {
         return plan_.options.delta_r ? e * exponential(-(e * e) / (2 * delta_r_ * delta_r_)) : e;
     }
@@ -80,7 +80,7 @@ private:
     Expr manual_output_ = input("manual_output", Type::real, "the operator's u");
     Expr u_ = program_.declare({.role = VariableRole::output, .name = "u", .comment = "the controller's output"});
 
-    // Set by the declaring functions as far as the plan needs them.
+    // Set by the declaring functions, if the plan needs them.
     Expr Kp_ = 0, Ti_ = 0, Td_ = 0, Ki_ = 0, Kd_ = 0, b_ = 0, direct_ = 0, u_min_ = 0, u_max_ = 0, rate_limit_ = 0;
     Expr Tr_ = 0, Tt_ = 0, bias_ = 0, y0_ = 0, at_rest_ = 0, restart_ = 0, Ts_ = 0, Tf_ = 0, c_ = 0, delta_r_ = 0;
     Expr started_ = 0, integral_ = 0, y_f_ = 0, filter_rate_ = 0, setpoint_last_ = 0, fed_last_ = 0, u_last_ = 0;

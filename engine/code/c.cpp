@@ -69,13 +69,13 @@ std::string initial(const Declaration& variable) {
 void add_struct(const Program& program, std::string& out) {
     out += "typedef struct {\n    /* Settings. */\n";
     for (const Declaration& variable : of_role(program, VariableRole::parameter)) out += field(variable);
-    out += "\n    /* Memory; nothing to write to. */\n";
+    out += "\n    /* Memory; do not write to it. */\n";
     for (const Declaration& variable : of_role(program, VariableRole::state)) out += field(variable);
     out += "} tunewright_pid;\n\n";
 }
 
 void add_init(const Program& program, std::string& out) {
-    out += "/* The settings as they were tuned, and a first call to come. */\n";
+    out += "/* Sets the tuned settings; the next call is the first one. */\n";
     out += "static inline void tunewright_pid_init(tunewright_pid *pid)\n{\n";
     for (const VariableRole role : {VariableRole::parameter, VariableRole::state})
         for (const Declaration& variable : of_role(program, role)) out += initial(variable);
@@ -96,15 +96,15 @@ void add_step(const Program& program, std::string& out) {
 
 bool uses_exponential(const std::string& text) { return text.find("exp(") != text.npos; }
 
-/// The same text may come twice. Another one with the same names must not be passed over in silence, for its loop would
-/// then run with the first one's settings.
+/// The same text may be included twice. Another program with the same names must not be ignored silently: its loop
+/// would then run with the first one's settings.
 std::string open_guard(const std::string& functions) {
     std::uint64_t sum = 0xcbf29ce484222325;  // FNV-1a, 64 bits (Fowler, Noll and Vo, 1991)
     for (const unsigned char byte : functions) sum = (sum ^ byte) * 0x100000001b3;
     const std::string own = fmt::format("TUNEWRIGHT_PID_{:016X}", sum);
     return "#ifndef " + own + "\n#define " + own + "\n#ifdef TUNEWRIGHT_PID_H\n" +
-           "#error \"Two programs of Tunewright in one source: include each in a source of its own, or keep one and "
-           "set the other loop's numbers after tunewright_pid_init.\"\n#endif\n#define TUNEWRIGHT_PID_H\n\n";
+           "#error \"Two programs of Tunewright in one source: include each in its own source, or keep one and set the "
+           "other loop's settings after tunewright_pid_init.\"\n#endif\n#define TUNEWRIGHT_PID_H\n\n";
 }
 
 std::string c_argument(const Declaration& input) {

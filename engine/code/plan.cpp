@@ -23,7 +23,7 @@ std::string integral_note(const Plan& plan) {
         case IntegralRule::trapezoidal: out += "Ki Ts (" + e + "[k] + " + e + "[k-1])/2 (trapezoidal rule)"; break;
     }
     out += plan.settings.ideal ? ", Ki = Kp/Ti." : ".";
-    if (plan.options.delta_r) out += " phi = e exp(-e^2/(2 delta_r^2)), so that it sees little of a large error.";
+    if (plan.options.delta_r) out += " phi = e exp(-e^2/(2 delta_r^2)), which is small for a large error.";
     return out;
 }
 
@@ -46,57 +46,56 @@ std::string derivative_note(const Plan& plan) {
 std::string law_note(const Plan& plan) {
     const std::string form =
         plan.position ? "Law: u = Kp (b r - y_f) + I + D, with the set point r and e = r - y_f. "
-                      : "Law, in its velocity form: each call adds to the last u what has been gained by Kp (b "
-                        "r - y_f) + I + D, with the set point r and e = r - y_f. ";
+                      : "Law, in its velocity form: each call adds to the last u the increment of Kp (b r - y_f) + I + "
+                        "D, with the set point r and e = r - y_f. ";
     const std::string set = plan.filters_setpoint()
                                 ? "r is the set point behind a filter of first order, 1/(1 + s Tr), by backward Euler. "
                                 : "";
     return form + set + measurement_note(plan) + " " + integral_note(plan) + " " + derivative_note(plan) +
-           " Times are in seconds. The gains are positive; direct turns the action round.";
+           " Times are in seconds. The gains are positive; direct reverses the action.";
 }
 
 std::string limit_note(const Plan& plan) {
     std::string out =
         "Limits: u stays from u_min to u_max, and in automatic it moves by at most rate_limit in a second "
-        "(0: freely).";
+        "(0: no limit).";
     if (!plan.options.u_min || !plan.options.u_max)
         out += " Not both limits were given: set u_min and u_max to the ends of your actuator before you use it.";
     return out;
 }
 
 std::string windup_note(const Plan& plan) {
-    if (!plan.position) return "Anti-windup: none is needed. The next u starts from the limited one.";
-    if (!plan.integral) return "Anti-windup: none is needed without integral action.";
+    if (!plan.position) return "Anti-windup: not needed. The next u starts from the limited one.";
+    if (!plan.integral) return "Anti-windup: not needed without integral action.";
     if (plan.tracks)
-        return "Anti-windup by back-calculation: where a limit holds u, the integral part moves by Ts/Tt of what u "
-               "lacks, at most by all of it. Tt is " +
-               std::string(plan.options.tracking_time                  ? "as asked for."
+        return "Anti-windup by back-calculation: while a limit holds u, the integral part moves by Ts/Tt of the "
+               "difference between limited and unlimited u, at most by all of it. Tt is " +
+               std::string(plan.options.tracking_time                  ? "as requested."
                            : !tracking_time(plan.pid.gains)            ? "one sample time."
                            : plan.derivative && plan.pid.gains.Kp != 0 ? "sqrt(Ti Td)."
                                                                        : "Ti.");
-    return "Anti-windup by clamping: while a limit holds u, the integral part stands still where it would go further "
-           "beyond.";
+    return "Anti-windup by clamping: while a limit holds u, the integral part does not move further beyond it.";
 }
 
 std::string manual_note(const Plan& plan) {
-    std::string out = "Manual: u is manual_output within u_min and u_max, whatever rate_limit. ";
+    std::string out = "Manual: u is manual_output, limited by u_min and u_max but not by rate_limit. ";
     out +=
-        !plan.position ? "Automatic goes on from the last u, so that the switch does not jump."
+        !plan.position ? "Automatic continues from the last u, so that u does not jump."
         : plan.integral
-            ? "The integral part follows, so that the switch to automatic does not jump."
-            : "The level of u follows, so that the switch to automatic does not jump; it stays where the switch left "
-              "it until a restart.";
+            ? "The integral part follows, so that u does not jump at the switch to automatic."
+            : "The level of u follows, so that u does not jump at the switch to automatic; it keeps that value until a "
+              "restart.";
     if (plan.derivative)
         out +=
-            " D stays out of that, for its noise of one call would stay in u; it acts from the first call in automatic "
-            "on.";
+            " D is left out of it, because the noise of one call would stay in u; D acts from the first call in "
+            "automatic on.";
     return out;
 }
 
 std::string change_note(const Plan& plan) {
     if (plan.follows_schedule)
         return "Changes: the limits may be changed between two calls, and u obeys them at once. Change Ts and c only "
-               "with a restart, in manual at the present u; the other settings are the schedule's.";
+               "with a restart, in manual at the present u; the schedule sets the others.";
     std::string names = plan.settings.ideal ? "Kp" : "Kp";
     if (plan.integral) names += plan.settings.ideal ? ", Ti" : ", Ki";
     if (plan.derivative) names += plan.settings.ideal ? ", Td" : ", Kd";
@@ -111,13 +110,12 @@ std::string change_note(const Plan& plan) {
 }
 
 std::string start_note(const Plan& plan) {
-    std::string out = "First call: the states are set from the first measurement, so that nothing kicks. ";
+    std::string out = "First call: the states are set from the first measurement, so that u has no kick. ";
     out += plan.integral ? "u begins at manual_output in manual, at bias in automatic. "
                          : "u is bias + Kp (b (r - y0) - (y - y0)). ";
     return out +
-           "With at_rest the loop is taken to have rested at y = r = y0, u = bias until then: from there on u is the "
-           "law "
-           "in deviations from y0 and bias.";
+           "With at_rest the loop is assumed to have been at rest at y = r = y0, u = bias until then: u is the law in "
+           "deviations from y0 and bias.";
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What a controller's program has to compute, decided once from the law and the options, and what its reader is told.
+// The plan of a controller's program, decided once from the law and the options, and its description for the reader.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace tunewright::code {
 
-/// The rule in force: without a filter of the derivative the filtered rules are the difference.
+/// The rule in use: without a filter of the derivative the filtered rules become the difference.
 inline DerivativeRule effective_rule(const SampledPid& pid) {
     const bool filtered = pid.derivative == DerivativeRule::filtered_backward ||
                           pid.derivative == DerivativeRule::filtered_forward ||
@@ -20,7 +20,7 @@ inline DerivativeRule effective_rule(const SampledPid& pid) {
 struct Plan {
     const SampledPid& pid;
     const CodeOptions& options;
-    bool follows_schedule = false;  ///< its settings are the schedule's, and not the user's to change
+    bool follows_schedule = false;  ///< a schedule sets the settings; the user must not change them
     Settings settings = settings_of(pid.gains);
     FilterType filter = pid.gains.filter.type;
     bool integral = pid.gains.Ki != 0;
@@ -39,8 +39,8 @@ struct Plan {
     }
 };
 
-/// What the reader is told above the program, in paragraphs that hold for every language: the law with its rules,
-/// limits and anti-windup, manual, changes at run time, the first call. Names are those of the program's variables.
+/// The description above the program, in paragraphs that hold for every language: the law with its rules, limits and
+/// anti-windup, manual, changes at run time, the first call. Names are those of the program's variables.
 std::vector<std::string> notes(const Plan& plan);
 
 }  // namespace tunewright::code

@@ -9,7 +9,8 @@
 namespace tunewright::code {
 namespace {
 
-// The tighter an operation binds the higher. Logical operands are always in parentheses: languages order them apart.
+// Operator precedence: higher binds tighter. Logical operands are always in parentheses, because languages order them
+// differently.
 int binding(Operation operation) {
     switch (operation) {
         case Operation::logical_or:
@@ -40,7 +41,7 @@ std::string operand(const Expr& expression, Operation outer, bool right, const D
     const Operated* inner = operated(expression);
     if (inner == nullptr || inner->operation == Operation::exponential) return inside;
     const int of_inner = binding(inner->operation), of_outer = binding(outer);
-    if (is_logical(outer) && !right && inner->operation == outer) return inside;  // a or b or c
+    if (is_logical(outer) && !right && inner->operation == outer) return inside;  // a or b or c needs no parentheses
     const bool bare = !is_logical(outer) && inner->operation != Operation::negate &&
                       (right ? of_inner > of_outer : of_inner >= of_outer);
     return bare ? inside : "(" + inside + ")";
@@ -131,7 +132,7 @@ std::string real_literal(double value, char exponent) {
     std::string out = shortest.substr(0, e);
     if (out.find('.') == out.npos) out += ".0";
     if (e == shortest.npos) return out;
-    // "e-05", "e+30": the sign of a positive exponent and its leading zeros say nothing.
+    // "e-05", "e+30": a positive exponent needs no sign, and leading zeros are removed.
     std::string power = shortest.substr(e + 1);
     const bool negative = power.front() == '-';
     power.erase(0, power.find_first_not_of("+-0"));
@@ -171,10 +172,10 @@ std::string print(const Program& program, Language language, const Provenance& p
 
 namespace {
 
-constexpr std::size_t kWidth = 96;          // of a line, marks of comments not counted
-constexpr std::size_t kLongestValue = 300;  // characters of what the user has written
+constexpr std::size_t kWidth = 96;          // characters of a line, without comment marks
+constexpr std::size_t kLongestValue = 300;  // characters of a text that the user has written
 
-// One printable ASCII character for each; signs that units have are spelled.
+// Replaces each character by one printable ASCII character; signs that occur in units are spelled out.
 std::string ascii(const std::string& text) {
     std::string out;
     for (std::size_t i = 0; i < text.size(); ++i) {
@@ -192,7 +193,7 @@ std::string ascii(const std::string& text) {
     return out;
 }
 
-// No pair of characters that opens or ends a comment, or is one character in old C.
+// Removes pairs of characters that open or close a comment, or that are trigraphs of old C.
 std::string safe(const std::string& text) {
     static constexpr const char* kPairs[] = {"*/", "/*", "(*", "*)", "??", "//"};
     std::string out;
@@ -206,7 +207,7 @@ std::string safe(const std::string& text) {
     return out;
 }
 
-// Words of `text`, in lines that begin with so many blanks from the second on.
+// Wraps the words of `text` into lines; from the second line on they begin with `hanging` blanks.
 void wrap(const std::string& text, std::size_t hanging, std::vector<std::string>& lines) {
     std::string line;
     std::size_t start = 0;
@@ -248,7 +249,7 @@ std::vector<std::string> head_lines(const Program& program, const Provenance& pr
     wrap("Settings      " + settings_line(program), kColumn, lines);
     for (const std::string& note : program.notes) {
         lines.emplace_back();
-        wrap(safe(note), 0, lines);  // that of a schedule has its variable and unit in the user's words
+        wrap(safe(note), 0, lines);  // the note of a schedule has the user's words for its variable and unit
     }
     lines.emplace_back();
     lines.insert(lines.end(), call.begin(), call.end());

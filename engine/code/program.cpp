@@ -30,7 +30,7 @@ Expr logical(Operation operation, const Expr& a, const Expr& b) {
     return operated(Type::boolean, operation, {a, b});
 }
 
-// Structured Text does not tell upper from lower case.
+// Structured Text does not distinguish upper and lower case.
 bool same_name(const std::string& a, const std::string& b) {
     return std::equal(a.begin(), a.end(), b.begin(), b.end(),
                       [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
@@ -46,7 +46,7 @@ Expr whole(int value) { return Expr(Expression{Type::integer, Literal{static_cas
 
 Expr element(const Expr& array, const Expr& index) {
     const auto* place = std::get_if<VariableReference>(&array->what);
-    require(place != nullptr && index->type == Type::integer, "an element has an array and a whole number");
+    require(place != nullptr && index->type == Type::integer, "an element needs an array and a whole number");
     return Expr(Expression{array->type, VariableReference{place->role, place->name, {index}}});
 }
 
@@ -79,25 +79,28 @@ Expr exponential(const Expr& a) {
 Statement assign(const Expr& target, const Expr& value) {
     const auto* place = std::get_if<VariableReference>(&target->what);
     require(place != nullptr && place->role != VariableRole::input && place->role != VariableRole::parameter,
-            "only states, locals and the output are assigned");
-    require(target->type == value->type, "an assignment keeps the type");
+            "only states, locals and the output can be assigned");
+    require(target->type == value->type, "an assignment must keep the type");
     return {Assignment{target, value}};
 }
 
 Statement when(const Expr& condition, Block then, Block otherwise) {
-    require(condition->type == Type::boolean && !then.empty(), "a decision has a condition and a first branch");
+    require(condition->type == Type::boolean && !then.empty(), "a decision needs a condition and a first branch");
     return {Decision{condition, std::move(then), std::move(otherwise)}};
 }
 
 Statement repeat(const Expr& index, int count, Block body) {
-    require(index->type == Type::integer && count > 0, "a repetition counts whole numbers");
+    require(index->type == Type::integer && count > 0, "a repetition must count whole numbers");
     return {Repetition{index, count, std::move(body)}};
 }
 
 Statement remark(std::string text) { return {Remark{std::move(text)}}; }
 
 Expr Program::declare(Declaration declaration) {
-    for (const Declaration& known : variables) require(!same_name(known.name, declaration.name), "a name is taken");
+    for (const Declaration& known : variables)
+        require(!same_name(known.name, declaration.name),
+                "the name is already "
+                "used");
     Expr variable(Expression{declaration.type, VariableReference{declaration.role, declaration.name}});
     variables.push_back(std::move(declaration));
     return variable;

@@ -1,7 +1,8 @@
 // A controller's program before it is written in a language: declarations, and statements over typed expressions.
 //
-// There are assignments, decisions, a counted loop and remarks; numbers, variables, elements of arrays, + - * /,
-// comparisons, and, or, not, exp. That is what Structured Text, C and Python have in common, with one meaning.
+// Statements: assignments, decisions, a counted loop and remarks. Expressions: numbers, variables, elements of arrays,
+// + - * /, comparisons, and, or, not, exp. These are the constructs that Structured Text, C and Python share with the
+// same meaning.
 //
 //     Program program;
 //     const Expr x = program.declare({.role = VariableRole::state, .name = "x", .comment = "the sum"});
@@ -17,22 +18,22 @@ namespace tunewright::code {
 
 enum class Type { real, boolean, integer };
 
-/// Whose a variable is, and how long it lives.
+/// Who writes a variable, and how long it lives.
 enum class VariableRole {
     input,      ///< given with each call
     parameter,  ///< a setting: has an initial value, the user may write it between two calls
-    state,      ///< kept from call to call, nobody else's business
-    local,      ///< of one call; assigned before it is read
-    output,     ///< what a call answers; the program has one
+    state,      ///< kept from call to call, private
+    local,      ///< valid within one call; assigned before it is read
+    output,     ///< the result of a call; the program has one
 };
 
 struct Declaration {
     VariableRole role = VariableRole::local;
     Type type = Type::real;
     std::string name = {};
-    std::string comment = {};  ///< a phrase for the reader, one line
-    double initial = 0;        ///< of parameters and states; 0 is false
-    int length = 0;            ///< > 0: an array with so many elements, from 0
+    std::string comment = {};  ///< one line for the reader
+    double initial = 0;        ///< of parameters and states; for Booleans 0 is false
+    int length = 0;            ///< > 0: an array of that many elements, indexed from 0
 };
 
 enum class Operation {
@@ -46,15 +47,15 @@ enum class Operation {
     not_equal,
     logical_and,
     logical_or,
-    negate,  ///< of one operand, as are the next two
+    negate,  ///< this and the next two have one operand
     logical_not,
     exponential,
 };
 
 struct Expression;
 
-/// A value that an expression has. Operators make larger ones; operands of the wrong type throw std::logic_error, for
-/// they are a fault of the program that builds.
+/// A typed expression. Operators combine expressions; operands of the wrong type throw std::logic_error, because they
+/// are an error in the code that builds the program.
 class Expr {
 public:
     Expr(double number);  // NOLINT(google-explicit-constructor)
@@ -125,7 +126,7 @@ struct Repetition {
     Block body;
 };
 
-/// Stands above the statements that it explains.
+/// A comment above the statements that it explains.
 struct Remark {
     std::string text;
 };
@@ -144,7 +145,7 @@ struct Program {
     std::vector<Declaration> variables;
     Block body;
 
-    /// The variable as an expression. Throws std::logic_error for a name that is taken, whatever its case.
+    /// The variable as an expression. Throws std::logic_error for a name that is already used; case does not count.
     Expr declare(Declaration declaration);
 };
 

@@ -57,7 +57,7 @@ std::string arguments(const Program& program) {
     std::string out = "self";
     for (const Declaration& variable : of_role(program, VariableRole::input)) {
         out += ", " + variable.name;
-        // Whoever knows no manual leaves it out.
+        // The caller may omit manual.
         if (variable.name == "manual") out += "=False";
         if (variable.name == "manual_output") out += "=0.0";
     }
@@ -83,7 +83,7 @@ std::string print_python(const Program& program, const Provenance& provenance) {
     out += body.find("math.") == body.npos ? "\n\n" : "\nimport math\n\n\n";
     out += "class TunewrightPid:\n    \"\"\"A sampled PID controller.\"\"\"\n\n    def __init__(self):\n";
     for (const Declaration& variable : of_role(program, VariableRole::parameter)) out += attribute(variable);
-    out += "\n        # Memory; nothing to write to.\n";
+    out += "\n        # Memory; do not write to it.\n";
     for (const Declaration& variable : of_role(program, VariableRole::state)) out += attribute(variable);
     out += "\n    def step(" + arguments(program) +
            "):\n        \"\"\"One call every Ts seconds; the answer is u.\"\"\"\n";

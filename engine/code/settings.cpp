@@ -10,9 +10,9 @@
 namespace tunewright::code {
 namespace {
 
-constexpr int kMaxDigits = 17;  // that a double needs
+constexpr int kMaxDigits = 17;  // digits that identify a double
 
-// The shortest decimal near `x` that `gives` accepts; x itself where no decimal is accepted.
+// The shortest decimal near `x` that `gives` accepts; x itself if it accepts none.
 template <class Test>
 double shortest(double x, const Test& gives) {
     for (int digits = 1; digits <= kMaxDigits; ++digits) {
@@ -26,12 +26,12 @@ double shortest_time(double infinite_if_none) {
     return infinite_if_none > 0 ? infinite_if_none : std::numeric_limits<double>::infinity();
 }
 
-// Ti and Td in size, 0 where there is none.
+// Ti and Td without their sign, 0 if there is none.
 double integral_time(const ParallelPid& gains) { return gains.Ki == 0 ? 0 : std::abs(gains.Kp / gains.Ki); }
 double derivative_time(const ParallelPid& gains) { return gains.Kp == 0 ? 0 : std::abs(gains.Kd / gains.Kp); }
 
 double one_two_five_below(double x) {
-    constexpr double kRoundingFactor = 1 + 1e-12;  // 0.2 is 0.2, however it was computed
+    constexpr double kRoundingFactor = 1 + 1e-12;  // tolerates rounding, so that a computed 0.2 counts as 0.2
     const double power = std::floor(std::log10(x * kRoundingFactor));
     for (const char* digit : {"5", "2"}) {
         const double value = std::strtod((std::string(digit) + "e" + text(power)).c_str(), nullptr);

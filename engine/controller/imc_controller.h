@@ -1,4 +1,4 @@
-// The revised IMC controller before it is reduced to a PID: with the model's dead time inside.
+// The revised IMC controller before its reduction to a PID: it contains the model's dead time.
 #pragma once
 
 #include <cmath>
@@ -6,8 +6,8 @@
 
 namespace tunewright {
 
-/// A PID cannot be this controller where theta > 0: figures and responses of the full one (loop/imc_loop.h,
-/// simulation/imc) show what its reduction to a PID costs.
+/// With theta > 0 no PID equals this controller: figures and responses of the full one (loop/imc_loop.h,
+/// simulation/imc) show the loss through the reduction to a PID.
 ///
 /// C = Q/(1 - G Q) on the model G = kp e^(-theta s)/(tau s + 1), with
 ///   Q = (beta s + 1)(tau s + 1)/(kp (lambda s + 1)^2),
@@ -18,11 +18,11 @@ struct ImcController {
     double tau = 0;     ///< > 0; all times are in the plant's unit
     double theta = 0;   ///< >= 0
     double lambda = 0;  ///< > 0: the nominal closed loop's double time constant
-    double beta = 0;    ///< of either sign; Eq. 21 chooses it so that 1 - G Q vanishes at s = -1/tau
+    double beta = 0;    ///< either sign; Eq. 21 chooses it so that 1 - G Q vanishes at s = -1/tau
 
     /// G(s) for any s that is not its pole -1/tau.
     std::complex<double> model(std::complex<double> s) const { return kp * std::exp(-theta * s) / (tau * s + 1.0); }
-    /// From r less y - y_model to u, y_model = G u; proper: Q(infinity) = beta tau/(kp lambda^2).
+    /// Transfer function from r - (y - y_model) to u, y_model = G u; proper: Q(infinity) = beta tau/(kp lambda^2).
     std::complex<double> Q(std::complex<double> s) const {
         return (beta * s + 1.0) * (tau * s + 1.0) / (kp * (lambda * s + 1.0) * (lambda * s + 1.0));
     }

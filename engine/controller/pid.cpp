@@ -9,16 +9,16 @@
 namespace tunewright {
 namespace {
 
-constexpr double kDiscriminantTolerance = 1e-13;  // relative to sum^2: less than that is no distance between two zeros
+constexpr double kDiscriminantTolerance = 1e-13;  // relative to sum^2: below it two zeros count as equal
 constexpr double kMinAsymptoticArgument = 300;    // beyond it the Bessel functions' asymptote is exact enough
-constexpr double kMaxAmplitude = 1e12;            // in delta_r: the gain is below 1e-35 there
+constexpr double kMaxAmplitude = 1e12;            // multiple of delta_r: the gain is below 1e-35 there
 constexpr double kAmplitudeTolerance = 1e-13;     // of the bracket's upper end, at most twice the amplitude
 
-// With `derivative` the series form's filter covers the whole lead (1 + s Td)/(1 + s Tf), the ideal form's only Td s;
-// the measurement filters stand outside the law in both forms, as if Tf were 0 here.
+// Filter time inside the lead. With `derivative` the series form's filter covers the whole lead (1 + s Td)/(1 + s Tf),
+// the ideal form's only Td s; measurement filters are outside the law in both forms, as if Tf were 0 here.
 double lead_filter(const Filter& filter) { return filter.type == FilterType::derivative ? filter.Tf : 0; }
 
-// The ideal form's Kp and Ti over the series form's; 1 without integral action.
+// Ratio of the ideal form's Kp and Ti to the series form's; 1 without integral action.
 double interaction(const SeriesPid& pid) { return 1 + (pid.Td - lead_filter(pid.filter)) / pid.Ti; }
 
 struct Roots {
@@ -109,7 +109,7 @@ Expected<SeriesPid> to_series(const IdealPid& pid) {
     const double sum = pid.Ti + Tf;
     // Equals sum^2 - 4 Ti (Td + Tf), written so that Td = 0 gives a square exactly.
     double discriminant = std::pow(pid.Ti - Tf, 2) - 4 * pid.Ti * pid.Td;
-    // Two equal zeros (Ti = 4 Td, as of equal lags) may miss 0 by rounding.
+    // Two equal zeros (Ti = 4 Td, as for equal lags) may give a small negative value by rounding.
     if (std::abs(discriminant) < kDiscriminantTolerance * sum * sum) discriminant = 0;
     if (!(discriminant >= 0) || pid.Ti == 0) return no_series(pid, Tf);
     const Roots roots = real_roots(sum, pid.Ti * (pid.Td + Tf), discriminant);

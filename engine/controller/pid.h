@@ -1,8 +1,8 @@
-// What controls: the PID law in its ideal form, with set-point weights and filters.
+// Controllers: the PID law in its ideal form, with set-point weights and filters, and its other forms.
 //
 //   u = Kp [ (b r_f - y_f) + (1/Ti) int (r_f - y_f) dt + Td d/dt (c r_f - y_f) ],   r_f = r/(1 + s T)
 //
-// The nonlinear PID differs from it (b = 1, c = 0) only in what its integral is fed with: exp(-e^2/(2 delta_r^2)) e.
+// The nonlinear PID differs from it (b = 1, c = 0) only in the input of its integral: exp(-e^2/(2 delta_r^2)) e.
 //
 // Units: Kp in u per y, Ti, Td, Tf in the plant's time unit.
 #pragma once
@@ -32,8 +32,8 @@ struct Filter {
     bool operator==(const Filter&) const = default;
 };
 
-/// Of u, as deviations from the operating point, in units of u: min < max, min <= 0 <= max; infinite where there is
-/// none.
+/// Limits of u as deviations from the operating point, in units of u: min < max, min <= 0 <= max; infinite without a
+/// limit.
 struct ActuatorLimits {
     double min = 0;
     double max = 0;
@@ -53,7 +53,7 @@ struct IdealPid {
     bool operator==(const IdealPid&) const = default;
 };
 
-/// Kp + Ki/s + Kd s, filter and weights as in the ideal form. Carries Kp = 0 (pure I, I + D) too.
+/// Kp + Ki/s + Kd s, filter and weights as in the ideal form. Kp = 0 (pure I, I + D) is allowed.
 struct ParallelPid {
     double Kp = 0;
     double Ki = 0;
@@ -74,10 +74,10 @@ struct SeriesPid {
     double c = 0;
     Filter filter = {};
     double setpoint_lag = 0;
-    double b_equivalent = 1;  ///< see b_equivalent(); of a series form that was given, 1 until it is asked for
+    double b_equivalent = 1;  ///< see b_equivalent(); 1 for a given series form until it is computed
 };
 
-/// u = Kp [ e + (1/Ti) int exp(-e^2/(2 delta_r^2)) e dt - Td dy/dt ], e = r - y: the integral sees little of a large
+/// u = Kp [ e + (1/Ti) int exp(-e^2/(2 delta_r^2)) e dt - Td dy/dt ], e = r - y: the integral acts little on a large
 /// error. Source: Jin & Son, Studies in Informatics and Control 28 (2019) 157-166, Eqs. 3-5, with the size of the
 /// set-point change held and no derivative of the set-point step.
 struct Npid {
@@ -87,11 +87,11 @@ struct Npid {
     std::optional<double> delta_r = {};  ///< > 0; empty: the size of the set-point step that it is evaluated with
     Filter filter = {};                  ///< none or derivative
 
-    /// The law for small errors, to which everything over frequency refers.
+    /// The law for small errors; all frequency-domain figures refer to it.
     IdealPid linear_part() const { return {.Kp = Kp, .Ti = Ti, .Td = Td, .filter = filter}; }
 };
 
-/// Any controller: as given by the user (`baseline`, `evaluate`), as answered by a method.
+/// Any controller, given by the user (`baseline`, `evaluate`) or found by a method.
 using Controller = std::variant<IdealPid, ParallelPid, SeriesPid, Npid>;
 
 /// Ki = Kp/Ti, Kd = Kp Td; exact.
@@ -104,23 +104,23 @@ Expected<IdealPid> to_ideal(const ParallelPid& pid);
 /// Errors: Ti = 0; Ti + Td = Tf with a derivative filter (no proportional part is left).
 Expected<IdealPid> to_ideal(const SeriesPid& pid);
 
-/// Ti'/Ti of the ideal form: what b = 1 in the series form amounts to. 1 where no ideal form exists.
+/// Ti'/Ti of the ideal form, the weight that corresponds to b = 1 in the series form. 1 if no ideal form exists.
 double b_equivalent(const SeriesPid& pid);
 
-/// Of any form; of the nonlinear PID its linear part. Errors: as above.
+/// The ideal form of any controller; for the nonlinear PID that of its linear part. Errors: as above.
 Expected<IdealPid> to_ideal(const Controller& controller);
 
 /// The series form of the same loop, with the larger root as Ti' (SeriesPid states its law). With a derivative filter
-/// it exists when (Ti + Tf)^2 >= 4 Ti (Td + Tf), else when Ti >= 4 Td; without integral action always. The error says
-/// which rule fails.
+/// it exists when (Ti + Tf)^2 >= 4 Ti (Td + Tf), else when Ti >= 4 Td; without integral action always. The error names
+/// the condition that fails.
 Expected<SeriesPid> to_series(const IdealPid& pid);
 
-/// The gains of any form, which the loop and the simulation work with: exact and total (Ti != 0). Of the nonlinear PID
-/// those of its linear part.
+/// The gains of any form, as loop and simulation use them: exact, for every controller with Ti != 0. For the nonlinear
+/// PID those of its linear part.
 ParallelPid gains(const Controller& controller);
 
-/// What the nonlinear PID's integral is fed with in place of the error e:
-/// phi(e) = exp(-e^2/(2 delta_r^2)) e. Jin & Son (2019), Eqs. 3 and 5. Largest at e = delta_r; phi(e)/e lies in (0, 1].
+/// Input of the nonlinear PID's integral in place of the error e: phi(e) = exp(-e^2/(2 delta_r^2)) e. Jin & Son (2019),
+/// Eqs. 3 and 5. Largest at e = delta_r; phi(e)/e lies in (0, 1].
 struct ErrorScaling {
     double delta_r = 1;  ///< > 0, in units of y
 

@@ -1,4 +1,4 @@
-// What a search reports before it ends.
+// The intermediate result that a search reports.
 #pragma once
 
 #include "engine/controller/pid.h"

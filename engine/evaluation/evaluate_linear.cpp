@@ -21,19 +21,19 @@ namespace tunewright {
 
 namespace {
 
-constexpr double kCountRounding = 1e-9;  // of a count of samples over their number
+constexpr double kCountRounding = 1e-9;  // relative rounding of the ratio of samples
 
-constexpr double kMinEncirclingModulus = 0.5;  // of |L|, with room for what lies between two frequencies
+constexpr double kMinEncirclingModulus = 0.5;  // of |L|, with a margin for values between two frequencies
 constexpr int kMinNodes = 8;
 constexpr double kMaxFurtherNodes = 12;
 
 constexpr double kFinalTolerance = 1e-4;      // interpolation within a step, relative to the local deviation
-constexpr double kNonlinearTolerance = 1e-5;  // of what the integral sees too
+constexpr double kNonlinearTolerance = 1e-5;  // for the integral's nonlinear input as well
 constexpr double kSettledForFigures = 3e-7;
-constexpr int kMaxNonlinearSteps = 20000;  // a stalled integral may need any number
+constexpr int kMaxNonlinearSteps = 20000;  // the integral may stall for any number of steps
 
-/// Of the discretised dead time: a pole that leaves the left half-plane does so where |L| is 1, and must be followed
-/// there.
+/// Nodes of the discretised dead time. A pole leaves the left half-plane where |L| is 1, so the discretisation must be
+/// accurate there.
 int nodes_for(const Loop& loop, const LoopGrid& grid) {
     double highest = 0;
     for (std::size_t i = 0; i < grid.omega.size(); ++i)
@@ -50,7 +50,7 @@ Verification verify(const Loop& loop, const Figure& Ms) {
     return v;
 }
 
-/// The load's error against its integral to infinity, which theory knows.
+/// Compares the integral of the load's error with its exact value.
 void verify_integral(Verification& v, const StepResponse& load, const std::optional<double>& IAE, bool linear) {
     if (!IAE || !load.error_integral_final) return;
     const double exact = *load.error_integral_final;
@@ -79,7 +79,7 @@ MeasuredResponse respond(const LinearPlant& plant, const Loop& loop, std::option
     return measure(run, options, inputs.r);
 }
 
-/// What the limits did, where they did something.
+/// Warns if the limits were reached.
 void warn_of_limits(Evaluation& evaluation, const StepResponse& response, const ActuatorLimits& limits,
                     const char* step) {
     for (const auto& node : response.nodes) {
@@ -109,8 +109,8 @@ void add_performance(Evaluation& evaluation, const LinearPlant& plant, const Loo
     if (!as_promised(of_setpoint) || !as_promised(of_load))
         evaluation.warnings.push_back(
             {"coarse-figures",
-             "Halving the time steps still moves an index by more than is promised, or could not be tried; "
-             "verification says by how much."});
+             "Halving the time steps still changes an index by more than its promised accuracy, or could not be tried; "
+             "verification has the change."});
     if (delta_r) {
         evaluation.nonlinear = nonlinear_figures(loop, *delta_r);
         warn_of_nonlinearity(evaluation, setpoint, load, o);
@@ -123,7 +123,7 @@ void add_performance(Evaluation& evaluation, const LinearPlant& plant, const Loo
         drawn(KnownResponse::of(std::move(of_setpoint.response)), KnownResponse::of(std::move(of_load.response)), o);
 }
 
-/// In percent, rounded down and never to all or to nothing.
+/// In percent, rounded down; never 0 or 100 unless it is exact.
 std::string share(double fraction) {
     if (fraction > 0.999) return "more than 99.9 %";
     if (fraction < 0.001) return "less than 0.1 %";
@@ -134,13 +134,13 @@ void add_region(Evaluation& evaluation, const PlantFamily& family) {
     evaluation.region = region_figures(family, gains(evaluation.controller));
     if (!evaluation.robustness.stable || evaluation.region->worst_Ms) return;
     evaluation.warnings.push_back(
-        {"unstable-in-region", "The loop is stable on the nominal plant but not on every plant that it must serve: " +
-                                   share(evaluation.region->stable_fraction) +
-                                   " of those looked at are stable, and worst_plant is not. Ask for less, or use "
-                                   "robust, which holds its limits on all of them."});
+        {"unstable-in-region",
+         "The loop is stable on the nominal plant but not on all plants: " + share(evaluation.region->stable_fraction) +
+             " of the evaluated plants are stable, worst_plant is not. Lower the limit on Ms, or "
+             "use robust, which holds its limits on all of them."});
 }
 
-/// The frequencies that a reader looks for.
+/// The frequencies that a plot must contain.
 std::vector<double> marked(const Robustness& r) {
     std::vector<double> omega;
     for (const Figure& figure : {r.omega_Ms, r.omega_Mt, r.gain_crossover, r.phase_crossover})
@@ -177,7 +177,7 @@ Expected<Evaluation> evaluate_linear(const AnalysedLinear& subject, const Contro
 namespace {
 
 constexpr const char* kNoTime =
-    "The plant is known by points of its frequency response alone, which have no response over time.";
+    "The plant is known only by points of its frequency response, so its response over time is unknown.";
 
 }  // namespace
 
@@ -203,16 +203,16 @@ Expected<Evaluation> evaluate_measured(const MeasuredPlant& plant, const Control
 
 namespace {
 
-constexpr double kStallLevel = 1.5;  // times delta_r: the integral sees less than a third of the error
+constexpr double kStallLevel = 1.5;  // multiple of delta_r: the integral acts on less than a third of the error
 
 std::string statement_of(const IntegralSector& sector, const NonlinearFigures& figures) {
     if (sector.absolutely_stable())
         return std::string("The ") + (sector.circle_criterion ? "circle" : "Popov") +
-               " criterion holds for the integral's gain in (0, 1]: every error dies out, whatever the step sizes and "
-               "delta_r.";
+               " criterion holds for the integral's gain in (0, 1]: every error decays to 0 for all step sizes and "
+               "every delta_r.";
     if (!sector.stable_without_integral)
-        return "Without integral action the loop is unstable, and large errors leave it nearly without: they may grow. "
-               "Ms and the margins hold for small errors only.";
+        return "Without integral action the loop is unstable, and for large errors the integral hardly acts: they may "
+               "grow. Ms and the margins hold for small errors only.";
     if (figures.limit_cycle_predicted)
         return "Neither criterion holds, and the describing function predicts an oscillation that grows beyond an "
                "amplitude of about " +
@@ -220,20 +220,19 @@ std::string statement_of(const IntegralSector& sector, const NonlinearFigures& f
     if (!sector.stable_for_every_gain)
         return "Neither criterion holds, and with a weak integral the loop is unstable. Ms and the margins hold for "
                "small errors only.";
-    return "Neither the circle nor the Popov criterion holds, which proves nothing; the describing function predicts "
-           "no "
-           "oscillation. Ms and the margins hold for small errors.";
+    return "Neither the circle nor the Popov criterion holds, so stability for large errors is not proven; the "
+           "describing function predicts no oscillation. Ms and the margins hold for small errors.";
 }
 
 void warn_of_stall(Evaluation& evaluation, const char* step, double largest_error, double delta_r) {
     if (largest_error <= kStallLevel * delta_r) return;
     const double share = std::exp(-0.5 * std::pow(largest_error / delta_r, 2));
     evaluation.warnings.push_back(
-        {"integral-stalls", std::string("The ") + step + " step drives the error to " + text(largest_error) +
-                                ", beyond 1.5 delta_r = " + text(kStallLevel * delta_r) + ": the integral sees " +
+        {"integral-stalls", std::string("The ") + step + " step makes the error " + text(largest_error) +
+                                ", beyond 1.5 delta_r = " + text(kStallLevel * delta_r) + ": the integral acts on " +
                                 text(100 * share) +
-                                " % of it there and hardly moves until P and D action have brought it back. A larger "
-                                "delta_r or the linear PID recovers faster."});
+                                " % of it there and hardly changes until P and D action have reduced the error. A "
+                                "larger delta_r or the linear PID recovers faster."});
 }
 
 }  // namespace
@@ -245,7 +244,7 @@ NonlinearFigures nonlinear_figures(const Loop& linear_part, double delta_r) {
     figures.stable_without_integral = sector.stable_without_integral;
     figures.circle_criterion = sector.circle_criterion;
     figures.popov_criterion = sector.popov_criterion;
-    figures.popov_q = Figure(sector.popov_q, "No q meets Popov's condition.");
+    figures.popov_q = Figure(sector.popov_q, "No q satisfies Popov's condition.");
     figures.limit_cycle_predicted = sector.critical_gain.has_value();
     if (sector.critical_gain) {
         figures.limit_cycle_amplitude = ErrorScaling{delta_r}.amplitude_of_gain(*sector.critical_gain);
@@ -260,8 +259,8 @@ NonlinearFigures nonlinear_figures(const Loop& linear_part, double delta_r) {
 void warn_of_linear_part(Evaluation& evaluation) {
     evaluation.warnings.push_back(
         {"linear-part",
-         "Ms, Mt, Mks, the margins, frequency curves and noise figures belong to the linear part of this "
-         "nonlinear PID, which rules where the error is far below delta_r."});
+         "Ms, Mt, Mks, the margins, frequency curves and noise figures belong to the linear part of this nonlinear "
+         "PID, which it follows while the error is much smaller than delta_r."});
 }
 
 void warn_of_nonlinearity(Evaluation& evaluation, const StepResponse& setpoint, const StepResponse& load,

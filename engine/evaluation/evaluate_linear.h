@@ -1,6 +1,5 @@
-// The evaluation of a controller on a linear plant, or on the nominal one of several; and on a plant that is known by
-// points of its frequency response, which has no responses over time. What a nonlinear PID adds to its linear part is
-// here too.
+// The evaluation of a controller on a linear plant, or on the nominal one of several; also on a plant that is known by
+// points of its frequency response, which has no responses over time. The figures of a nonlinear PID are here too.
 
 #pragma once
 
@@ -17,18 +16,18 @@ namespace tunewright {
 Expected<Evaluation> evaluate_linear(const AnalysedLinear& subject, const Controller& controller,
                                      const EvaluateOptions& options);
 
-/// As evaluate(): everything in time is empty.
+/// As evaluate(): every time-domain figure is empty.
 Expected<Evaluation> evaluate_measured(const MeasuredPlant& plant, const Controller& controller,
                                        const EvaluateOptions& options);
 
-/// Of a nonlinear PID in a loop whose linear part is stable: does every error die out?
+/// For a nonlinear PID whose linear part gives a stable loop: does every error decay?
 NonlinearFigures nonlinear_figures(const Loop& linear_part, double delta_r);
 
-/// Adds the warning that figures over frequency are the linear part's.
+/// Adds the warning that frequency-domain figures are those of the linear part.
 void warn_of_linear_part(Evaluation& evaluation);
 
-/// Adds the same warning, and those on how the responses depend on the step sizes, where the integral stalls and what
-/// is not applied.
+/// Adds the same warning, and those on the dependence of responses on the step sizes, on a stalled integral and on
+/// limits that are not applied.
 void warn_of_nonlinearity(Evaluation& evaluation, const StepResponse& setpoint, const StepResponse& load,
                           const EvaluateOptions& options);
 

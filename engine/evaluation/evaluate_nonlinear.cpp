@@ -19,7 +19,7 @@ namespace tunewright {
 namespace {
 
 constexpr int kMaxSteps = 20000;
-constexpr double kUnstableHorizon = 10;                // of the plant's dead time and lags: what an unstable loop shows
+constexpr double kUnstableHorizon = 10;  // multiple of the plant's dead time and lags: the horizon for an unstable loop
 constexpr double kMaxIaeDifference = 0.2;              // relative difference of an IAE
 constexpr double kMaxOvershootDifferencePercent = 10;  // difference of an overshoot, percent of the step
 
@@ -58,7 +58,7 @@ void warn_of_runs(Evaluation& evaluation, const Runs& runs) {
     if (!settles) warn_of_no_rest(evaluation);
 }
 
-/// Warns where the linearisation's figures for these steps are far from the plant's own.
+/// Warns if the linearisation's figures for these steps differ much from the plant's own.
 void warn_of_distance(Evaluation& evaluation) {
     const Performance &own = evaluation.performance, &linear = evaluation.linear->performance;
     std::string differences;
@@ -75,12 +75,12 @@ void warn_of_distance(Evaluation& evaluation) {
     if (differences.empty()) return;
     evaluation.warnings.push_back(
         {"far-from-linear",
-         "For steps of these sizes the plant is far from its linearisation, to which Ms and the "
-         "margins belong: " +
+         "For steps of these sizes the plant differs much from its linearisation, to which Ms and the margins "
+         "belong: " +
              differences + "."});
 }
 
-/// The linearisation's responses go as far as the plant's own, beside which they are read.
+/// The linearisation's responses have the same horizon as the plant's own, for comparison.
 void add_responses(Evaluation& evaluation, Runs runs, const EvaluateOptions& options) {
     if (runs.setpoint.loop.nodes.empty() || runs.load.loop.nodes.empty()) return;
     const auto run_of = [](NonlinearResponse& run) {
@@ -138,7 +138,7 @@ Expected<Evaluation> evaluate_nonlinear(const AnalysedNonlinear& subject, const 
                                 "depends-on-step-size", "integral-stalls"});
     if (stable) {
         add_performance(*evaluation, runs, options);
-        // Limits are not applied to a linear plant under an Npid: what they do would count as the plant's nonlinearity.
+        // Limits are not applied to a linear plant with an Npid: their effect would count as the plant's nonlinearity.
         const bool comparable = !evaluation->nonlinear || !(runs.setpoint.limited || runs.load.limited);
         if (comparable) warn_of_distance(*evaluation);
         if (evaluation->nonlinear) {

@@ -16,7 +16,7 @@ namespace {
 
 using Simulate = std::function<StepResponse(const ProgramLimits&, const StepInputs&, std::optional<double> horizon)>;
 
-/// Resolutions and dead bands keep a loop moving about its rest.
+/// True if the loop comes to rest: resolutions and dead bands keep it moving.
 bool rests(const ProgramLimits& limits) {
     return limits.u_resolution == 0 && limits.y_resolution == 0 && limits.dead_band == 0;
 }
@@ -52,8 +52,8 @@ Expected<DeviceLoop> evaluate_sampled(const AnalysedPlant& subject, const Sample
     const LinearPlant* linear = subject.linear();
     if (linear == nullptr)
         return Error{ErrorKind::unsupported, "implement",
-                     "A loop as it is built needs a model of the plant: points of a frequency response do not say what "
-                     "lies above half the sampling frequency. Identify a model first."};
+                     "An implemented loop needs a model of the plant, because points of a frequency response do not "
+                     "give the response above half the sampling frequency. Identify a model first."};
     if (const auto error = refuse_sampling(*linear, law.Ts, law.computation_delay)) return *error;
     DeviceLoop on_device;
     const SampledLoop loop(*linear, law);
@@ -61,7 +61,7 @@ Expected<DeviceLoop> evaluate_sampled(const AnalysedPlant& subject, const Sample
     const StabilityCount count = count_unstable_poles(loop, grid);
     if (!count.stable()) {
         on_device.robustness = unstable_robustness(count);
-        on_device.performance = no_performance("On the controller as it is built the loop is unstable.");
+        on_device.performance = no_performance("The implemented loop is unstable.");
         return on_device;
     }
     on_device.robustness = robustness_of(loop, grid);

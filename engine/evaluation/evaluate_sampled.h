@@ -1,5 +1,5 @@
-// The evaluation of a loop as it is built: the controller computes once every sample time, with its own rules, and is
-// judged on the samples over frequency and on the continuous y over time.
+// The evaluation of an implemented loop: the controller computes once every sample time, with its own rules. Robustness
+// is that of the samples, performance that of the continuous y.
 #pragma once
 
 #include <optional>
@@ -12,18 +12,18 @@
 
 namespace tunewright {
 
-/// What is known of a loop as it is built.
+/// The figures of an implemented loop.
 struct DeviceLoop {
-    Robustness robustness;  ///< of the samples (loop/sampled/sampled_loop.h); of a nonlinear plant its linearisation's
+    Robustness robustness;  ///< of the samples (sampled_loop.h); for a nonlinear plant of its linearisation
     Performance performance;
     std::optional<Responses> responses;  ///< with points > 0 and a stable loop
     std::vector<Warning> warnings;
 };
 
-/// Steps, horizon, traces and actuator limits as `options` say; noise figures are not computed. With a resolution or a
-/// dead band the loop need not come to rest: without a horizon its indices end where the same loop without them has
-/// settled. Error: unsupported for a plant that is known at points of its frequency response alone, which says nothing
-/// of what lies above pi/Ts; cancelled.
+/// `options` give steps, horizon, traces and actuator limits; noise figures are not computed. With a resolution or a
+/// dead band the loop may never come to rest: without a horizon its indices end where the same loop without them has
+/// settled. Errors: unsupported for a plant that is known only by points of its frequency response, whose response
+/// above pi/Ts is unknown; cancelled.
 Expected<DeviceLoop> evaluate_sampled(const AnalysedPlant& subject, const SampledPid& law, const ProgramLimits& limits,
                                       const EvaluateOptions& options);
 

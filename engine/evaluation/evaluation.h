@@ -1,4 +1,4 @@
-// Everything known about one controller on one plant: robustness, performance, traces; and what is asked for.
+// Everything known about one controller on one plant: robustness, performance, traces; and the options for them.
 #pragma once
 
 #include <memory>
@@ -16,26 +16,26 @@ namespace tunewright {
 
 struct NoiseOptions {
     double std = 0;          ///< standard deviation of the white measurement noise, >= 0
-    double sample_time = 0;  ///< > 0; 0: the loop's own (loop/noise.h)
+    double sample_time = 0;  ///< > 0; 0: the default of the loop (loop/noise.h)
 };
 
 struct EvaluateOptions {
     double setpoint_step = 1;       ///< != 0
     double load_step = 1;           ///< != 0
-    std::optional<double> horizon;  ///< > 0; empty: chosen by the loop, and indices are integrals to infinity
-    int points = 400;               ///< of each trace: 0 (none) or 2 to 20,000
+    std::optional<double> horizon;  ///< > 0; empty: chosen automatically, and indices are integrals to infinity
+    int points = 400;               ///< points of each trace: 0 (none) or 2 to 20,000
     std::optional<ActuatorLimits> actuator;
     std::optional<NoiseOptions> noise;
     std::optional<double> rank_Ms;      ///< entries with Ms above it rank last; empty: as every ranking has it
     std::optional<bool> optimum_at_Ms;  ///< compare with the robust optimum at the same Ms; empty: of several
     bool tradeoff =
         false;  ///< entries have the trade-off between servo and regulation (tuning/arrieta/tradeoff_report.h)
-    std::stop_token stop;  ///< asked between the parts of an evaluation, which is then the error `cancelled`
+    std::stop_token stop;  ///< checked between the parts of an evaluation, which then returns the error `cancelled`
 };
 
-/// Sup over 0 <= omega <= infinity, both ends included. Empty where the loop is not stable or the quantity is infinite.
-/// Ms, Mt and the gain margins are ratios; Mks in u/y, frequencies in rad/time, the phase margin in degrees, the delay
-/// margin in time.
+/// Suprema over 0 <= omega <= infinity, both ends included. Empty if the loop is not stable or the quantity is
+/// infinite. Ms, Mt and the gain margins are ratios; Mks in u/y, frequencies in rad/time, the phase margin in degrees,
+/// the delay margin in time.
 struct Robustness {
     bool stable = false;
     Figure Ms, omega_Ms, Mt, omega_Mt, Mks;
@@ -75,39 +75,39 @@ struct Responses {
     Trace setpoint, load;
     bool settles = true;
     std::shared_ptr<const ResponsePair> course =
-        {};  ///< until all of an answer are drawn together; no part of the answer
+        {};  ///< until the horizon of all entries is known; not part of the answer
 };
 
 struct FrequencyTraces {
     std::vector<double> omega, L_re, L_im, L_phase_deg, S_abs, T_abs, CS_abs;
 };
 
-/// Relative errors of a response's indices: by how much each has moved when every step was last halved, its quadrature
-/// with it (measured_response.h). Empty where the index has no value.
+/// Relative errors of a response's indices: the change in the last halving of the time steps, quadrature included
+/// (measured_response.h). Empty if the index has no value.
 struct IndexErrors {
     std::optional<double> IAE, ISE, ITAE, TV;
 };
 
-/// How the figures were checked; empty where a check does not apply.
+/// Results of the checks of the figures; empty if a check does not apply.
 struct Verification {
     IndexErrors setpoint_errors, load_errors;
-    std::optional<double> iae_step_halving;     ///< that of the load IAE
-    std::optional<bool> load_error_keeps_sign;  ///< then its IAE is exactly |d| Ti/|Kp|; with integral action only
+    std::optional<double> iae_step_halving;     ///< relative change of the load IAE in that halving
+    std::optional<bool> load_error_keeps_sign;  ///< true: the IAE is exactly |d| Ti/|Kp|; only with integral action
     std::optional<double> ie_identity;          ///< |int y dt - d Ti/Kp| / (d Ti/|Kp|)
     std::optional<double> ms_grid_difference;   ///< relative difference of Ms on an independent grid
     std::optional<bool> stability_methods_agree;
 };
 
-/// What is known of the nonlinear PID beyond its linear part. Sector: the integral sees k e with k in (0, 1].
+/// Figures of the nonlinear PID beyond its linear part. Sector: the integral acts on k e with k in (0, 1].
 struct NonlinearFigures {
     double delta_r = 0;
-    bool stable_without_integral = false;             ///< the loop of P and D action, which very large errors leave
-    bool circle_criterion = false;                    ///< holds: every error dies out, whatever its size
-    bool popov_criterion = false;                     ///< the same, less conservative
-    Figure popov_q;                                   ///< of Re (1 + j omega q) G > -1
-    bool limit_cycle_predicted = false;               ///< by the describing function
-    Figure limit_cycle_amplitude, limit_cycle_omega;  ///< of y; errors beyond it may not die out
-    std::string statement;                            ///< all that in a sentence
+    bool stable_without_integral = false;  ///< the loop with P and D action only, the limit for very large errors
+    bool circle_criterion = false;         ///< holds: every error decays, whatever its size
+    bool popov_criterion = false;          ///< the same, less conservative
+    Figure popov_q;                        ///< q in Re (1 + j omega q) G > -1
+    bool limit_cycle_predicted = false;    ///< by the describing function
+    Figure limit_cycle_amplitude, limit_cycle_omega;  ///< amplitude in y; larger errors may not decay
+    std::string statement;                            ///< all these figures as a sentence
 };
 
 struct Equivalents {
@@ -116,7 +116,7 @@ struct Equivalents {
     std::string why_no_series;
 };
 
-/// What a nonlinear plant's linearisation does with the same controller, steps and limits.
+/// The response of a nonlinear plant's linearisation with the same controller, steps and limits.
 struct LinearisedResponse {
     Performance performance;
     std::optional<Responses> responses;
@@ -131,9 +131,9 @@ struct Evaluation {
     std::optional<Responses> responses;        ///< with points > 0 and a stable loop
     std::optional<FrequencyTraces> frequency;  ///< with points > 0
     Verification verification;
-    std::optional<NonlinearFigures> nonlinear;  ///< of an Npid whose linear part is stable
-    std::optional<LinearisedResponse> linear;   ///< of a nonlinear plant
-    std::optional<RegionFigures> region;        ///< of a family of more than one plant
+    std::optional<NonlinearFigures> nonlinear;  ///< for an Npid whose linear part is stable
+    std::optional<LinearisedResponse> linear;   ///< for a nonlinear plant
+    std::optional<RegionFigures> region;        ///< for a family of more than one plant
     std::vector<Warning> warnings;
     double compute_ms = 0;
 };

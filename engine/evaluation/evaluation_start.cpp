@@ -10,7 +10,7 @@
 namespace tunewright {
 namespace {
 
-/// What no Npid may have.
+/// Error of an Npid that no plant could use.
 std::optional<Error> check_npid(const Controller& controller) {
     const auto* npid = std::get_if<Npid>(&controller);
     if (npid == nullptr) return std::nullopt;
@@ -19,13 +19,14 @@ std::optional<Error> check_npid(const Controller& controller) {
     };
     if (!(npid->Ti > 0 && std::isfinite(npid->Ti)))
         return invalid("Ti", "Ti is " + text(npid->Ti) +
-                                 "; the nonlinear form needs a finite Ti > 0. Without integral action it is the form "
+                                 "; the nonlinear form needs a finite Ti > 0. Without integral action, use the form "
                                  "ideal.");
     if (npid->delta_r && !(*npid->delta_r > 0 && std::isfinite(*npid->delta_r)))
         return invalid("delta_r", "delta_r is " + text(*npid->delta_r) +
-                                      "; it must be a finite number > 0. Leave it out for the set-point step's size.");
+                                      "; it must be a finite number > 0. Omit it to use the size of the set-point "
+                                      "step.");
     if (npid->filter.type != FilterType::none && npid->filter.type != FilterType::derivative)
-        return invalid("filter", "The nonlinear form takes the filter none or derivative.");
+        return invalid("filter", "The nonlinear form needs the filter none or derivative.");
     return std::nullopt;
 }
 
@@ -50,7 +51,7 @@ std::optional<Error> check_options(const EvaluateOptions& o) {
 Equivalents equivalents_of(const Controller& controller) {
     Equivalents equivalents;
     equivalents.parallel = gains(controller);
-    // A series controller is its own: through the ideal form it would come back with another b.
+    // A series controller stays as it is: a conversion through the ideal form would change b.
     if (const auto* series = std::get_if<SeriesPid>(&controller)) {
         equivalents.series = *series;
         return equivalents;
@@ -70,11 +71,11 @@ Equivalents equivalents_of(const Controller& controller) {
 }  // namespace
 
 std::optional<Error> refuse_traces(const EvaluateOptions& options, std::size_t controllers) {
-    constexpr std::size_t max = 100'000;  // an answer of some ten megabytes
+    constexpr std::size_t max = 100'000;  // gives an answer of some ten megabytes
     if (options.points <= 0 || static_cast<std::size_t>(options.points) * controllers <= max) return std::nullopt;
     return Error{ErrorKind::invalid_argument, "evaluate/points",
                  "points is " + std::to_string(options.points) + " for each of " + std::to_string(controllers) +
-                     " controllers; an answer has at most " + std::to_string(max) + " altogether. Give at most " +
+                     " controllers; an answer can have at most " + std::to_string(max) + " in total. Give at most " +
                      std::to_string(max / controllers) + ", or ask for fewer controllers."};
 }
 
@@ -126,7 +127,7 @@ void warn_of_limit(Evaluation& evaluation, const std::string& step) {
 
 void warn_of_no_rest(Evaluation& evaluation) {
     evaluation.warnings.push_back(
-        {"does-not-settle", "The response does not settle within the time computed; figures that need it are empty."});
+        {"does-not-settle", "The response does not settle within the simulated time; figures that need it are empty."});
 }
 
 }  // namespace tunewright

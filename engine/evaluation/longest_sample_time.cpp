@@ -17,46 +17,48 @@
 namespace tunewright {
 namespace {
 
-constexpr const char* kNone = "No sample time was found that keeps Ms within 5 % and a longer one that does not.";
+constexpr const char* kNone =
+    "The search did not find two sample times of which the shorter keeps Ms within 5 % and "
+    "the longer does not.";
 
-constexpr double kFirstSample = 0.1;           // of 1/omega_Ms: where the search starts
-constexpr double kShortest = 1e-3;             // of 1/omega_Ms
-constexpr double kLongest = 1e3;               // of 1/omega_Ms: where it ends
-constexpr double kMaxSamplesInDelay = 3e4;     // sample times in the dead time: a loop is looked at once for each
-constexpr double kShorterFactor = 0.6;         // of a sample time: a shorter one that the whole loop must bear too
-constexpr double kLightDamping = 0.5;          // of a pole
-constexpr double kStepFactor = 1.04;           // from one sample time to the next, where they are looked at one by one
-constexpr double kStepFactorNearLimit = 1.01;  // the same where Ms is near its limit,
-constexpr double kMinMsShareNearLimit = 0.98;  // of it
-constexpr double kStepFactorShort = 1.2;       // the same where the program is as good as continuous
-constexpr double kMaxContinuousSwing = 0.2;    // rad of the fastest swing in a sample, and
-constexpr double kMaxContinuousTimeRatio = 0.1;  // of 1/omega_Ms: below both that is so
-constexpr double kMaxSwingStep = 0.15;           // rad of the fastest swing, from one sample time to the next
-constexpr double kMaxUnseenExcess = 5e-3;   // relative, of |S|: what a mode may do that is not followed swing by swing
-constexpr int kMaxLooks = 5000;             // at the whole loop, one after the other: some seconds
-constexpr double kMaxRoughLogError = 4e-3;  // of ln Ms: what a quick look may miss
-constexpr double kSmoothingLag = 15;  // sample times: so long a lag leaves no edge where the dead time is whole samples
-constexpr double kMaxTurn = 1.5;    // rad of omega_Ms in a sample: beyond, the peak near it is not the loop's any more
-constexpr double kScanFrom = 0.1;   // of a guess: where the peak is followed from
-constexpr double kScanNext = 1.03;  // from one sample time to the next there
-constexpr int kMaxWholeLoopEvaluations = 16;  // of the whole loop, at dead times of whole samples
-constexpr double kTimeTolerance = 1e-9;       // relative: sample times that differ by less are one
-constexpr double kTolerance = 5e-5;           // of a sample time that is a guess
-constexpr double kExactTolerance = 1e-6;      // of one that is none, and of the Ms there
-constexpr double kNearbyFactor = 1.03;        // from one sample time to the next, where a guess was inexact
+constexpr double kFirstSample = 0.1;             // multiple of 1/omega_Ms: the start of the search
+constexpr double kShortest = 1e-3;               // of 1/omega_Ms
+constexpr double kLongest = 1e3;                 // multiple of 1/omega_Ms: the end of the search
+constexpr double kMaxSamplesInDelay = 3e4;       // sample times in the dead time: the loop is evaluated once for each
+constexpr double kShorterFactor = 0.6;           // factor to a shorter sample time that the loop must tolerate too
+constexpr double kLightDamping = 0.5;            // damping of a pole
+constexpr double kStepFactor = 1.04;             // ratio of successive sample times that are tried one by one
+constexpr double kStepFactorNearLimit = 1.01;    // the same near the limit of Ms,
+constexpr double kMinMsShareNearLimit = 0.98;    // of it
+constexpr double kStepFactorShort = 1.2;         // the same while sampling hardly matters
+constexpr double kMaxContinuousSwing = 0.2;      // rad of the fastest oscillation in a sample, and
+constexpr double kMaxContinuousTimeRatio = 0.1;  // multiple of 1/omega_Ms: below both, sampling hardly matters
+constexpr double kMaxSwingStep = 0.15;           // rad of the fastest oscillation between successive sample times
+constexpr double kMaxUnseenExcess = 5e-3;        // relative change of |S| by a mode whose oscillation is not followed
+constexpr int kMaxLooks = 5000;                  // evaluations of the whole loop, one after the other: some seconds
+constexpr double kMaxRoughLogError = 4e-3;       // error of ln Ms in the quick evaluation
+constexpr double kSmoothingLag = 15;             // sample times: with a longer lag Ms has no edges
+constexpr double kMaxTurn = 1.5;              // rad of omega_Ms in a sample: beyond it a peak nearby is not the loop's
+constexpr double kScanFrom = 0.1;             // fraction of the guess: the peak is followed from there
+constexpr double kScanNext = 1.03;            // ratio of successive sample times there
+constexpr int kMaxWholeLoopEvaluations = 16;  // evaluations of the whole loop at dead times of whole samples
+constexpr double kTimeTolerance = 1e-9;       // relative: sample times closer than this are equal
+constexpr double kTolerance = 5e-5;           // relative tolerance of a guessed sample time
+constexpr double kExactTolerance = 1e-6;      // relative tolerance of a confirmed one, and of its Ms
+constexpr double kNearbyFactor = 1.03;        // ratio of successive sample times near an inexact guess
 constexpr int kMaxNearby = 10;
-constexpr double kMaxWholeLoopDifference = 1e-3;  // relative: how far the whole loop's Ms may be from that of the guess
+constexpr double kMaxWholeLoopDifference = 1e-3;  // relative: Ms of the whole loop against the guess
 
-/// |S| at the top of its hill near where it was last, as the sample time changes. Another hill that takes over is not
-/// seen.
+/// The peak of |S| nearest to its last frequency, followed as the sample time changes. It does not notice another peak
+/// that becomes higher.
 class TrackedPeak {
 public:
     TrackedPeak(const LinearPlant& plant, const ParallelPid& gains, double omega)
         : plant_(plant), gains_(gains), omega_(omega) {}
 
-    /// By a parabola through three points in ln omega: quick, and mostly good to 1e-3.
+    /// By a parabola through three points in ln omega: quick, error mostly below 1e-3.
     double roughly(double Ts) { return walk(sampled(Ts)); }
-    /// To rounding.
+    /// Accurate to rounding.
     double exactly(double Ts) {
         const SampledLoop loop = sampled(Ts);
         walk(loop);
@@ -95,14 +97,14 @@ private:
     double omega_;
 };
 
-/// A lightly damped mode of the plant: it is sampled well and badly in turns as the sample time grows.
+/// A lightly damped mode of the plant: its effect on the sampled loop rises and falls as the sample time grows.
 struct Mode {
     double swing = 0;  ///< imaginary part of its pole, rad/time
     double decay = 0;  ///< minus the real part, 1/time
-    double share = 0;  ///< |residue of P(s)/s at the pole| without the dead time: its part of the step response
+    double share = 0;  ///< |residue of P(s)/s at the pole| without the dead time: its amplitude in the step response
 
-    /// A bound of what the pair adds to the pulse response on the unit circle: each pole adds
-    /// share (z0 - 1)/(z - z0), z0 = e^((-decay + j swing) Ts).
+    /// Upper bound of the pair's contribution to the pulse response on the unit circle: each pole adds share (z0 -
+    /// 1)/(z - z0), z0 = e^((-decay + j swing) Ts).
     double gain(double Ts) const {
         return decay > 0 ? 4 * share / -std::expm1(-decay * Ts) : std::numeric_limits<double>::infinity();
     }
@@ -121,7 +123,7 @@ std::vector<Mode> light_modes(const LinearPlant& plant) {
             else
                 residue /= pole - other;
         }
-        const double share = std::abs(residue);  // infinite for a double pole, which is then followed
+        const double share = std::abs(residue);  // infinite for a double pole, which is therefore followed
         modes.push_back({pole.imag(), -pole.real(), std::isnan(share) ? HUGE_VAL : share});
     }
     return modes;
@@ -133,16 +135,17 @@ double noise_gain_peak(const LinearPlant& plant, const ParallelPid& gains) {
     return loop ? find_peaks(*loop, make_peak_grid(*loop)).CS.value : HUGE_VAL;
 }
 
-/// Without a lag much longer than the sample time, what arrives within a sample counts nearly in full or not at all at
-/// its end: the delay that the samples see falls from L + Ts to L where the dead time comes to fewer whole samples.
+/// Ms as a function of Ts has edges without a lag much longer than the sample time. Then an input that arrives within a
+/// sample counts nearly in full or not at all at its end: the effective delay falls from L + Ts to L when the dead time
+/// becomes one whole sample shorter.
 bool has_edges(const LinearPlant& plant, double Ts) {
     if (plant.dead_time() == 0 || plant.integrators() > 0) return false;
     return std::ranges::none_of(plant.poles(),
                                 [=](std::complex<double> pole) { return std::abs(pole) * kSmoothingLag * Ts < 1; });
 }
 
-/// The longest sample time in (Ts, next] that goes a whole number of times into the dead time, at which Ms has
-/// its edges and is largest; else `next`.
+/// The longest sample time in (Ts, next] that divides the dead time into whole samples, where Ms has its edges and is
+/// largest; else `next`.
 double at_edge(const LinearPlant& plant, double Ts, double next) {
     const double L = plant.dead_time();
     if (L == 0) return next;
@@ -175,10 +178,10 @@ private:
     double shortest() const { return std::max(kShortest / omega_Ms_, plant_.dead_time() / kMaxSamplesInDelay); }
     double longest() const { return kLongest / omega_Ms_; }
 
-    /// Of |S| over the limit.
+    /// ln of |S| over the limit.
     double excess(double S) const { return std::log(S / limit_); }
 
-    /// Where the continuous loop's peak comes to the limit.
+    /// The sample time at which the continuous loop's peak reaches the limit.
     std::optional<double> guess(TrackedPeak& peak) const {
         const auto roughly = [&](double Ts) { return excess(peak.roughly(Ts)); };
         double high = kFirstSample / omega_Ms_, f_high = roughly(high);
@@ -189,7 +192,7 @@ private:
         return std::abs(left) <= kMaxWholeLoopDifference ? Ts : exactly_reached(peak, Ts, left);
     }
 
-    /// The same near Ts, where the peak exceeds the limit by `f`.
+    /// The same near Ts, where the peak exceeds the limit by `f` (in ln).
     std::optional<double> exactly_reached(TrackedPeak& peak, double Ts, double f) const {
         const auto exactly = [&](double h) { return excess(peak.exactly(h)); };
         for (int i = 0; i < kMaxNearby; ++i) {
@@ -201,7 +204,7 @@ private:
         return std::nullopt;
     }
 
-    /// The first sample time below a guess at which the peak comes to the limit, edge by edge.
+    /// The first sample time below a guess at which the peak reaches the limit, edge by edge.
     double first_reached(double guess) const {
         TrackedPeak peak(plant_, gains_, omega_Ms_);
         const auto exactly = [&](double Ts) {
@@ -213,7 +216,7 @@ private:
             const double high = std::min(at_edge(plant_, low, kScanNext * low), guess), f_high = exactly(high);
             if (f_high > 0 && f_low <= 0)
                 return root_between(exactly, low, high, f_low, f_high, kExactTolerance * high);
-            // Behind an edge Ms may rise a little more before it falls.
+            // After an edge Ms may rise a little before it falls.
             if (before > 0 && f_low >= f_before && f_low >= f_high &&
                 may_exceed(0, {before, f_before}, {low, f_low}, {high, f_high})) {
                 const Maximum top = log_maximum(exactly, before, {low, f_low}, high);
@@ -228,7 +231,7 @@ private:
         return guess;
     }
 
-    /// True if the whole loop bears the sample times below at which the dead time is whole samples.
+    /// True if the whole loop tolerates the shorter sample times at which the dead time is a whole number of samples.
     bool bears_edges(double below, double from) const {
         double Ts = from;
         for (int i = 0; i < kMaxWholeLoopEvaluations; ++i) {
@@ -241,8 +244,7 @@ private:
         return true;
     }
 
-    /// Where nothing resonates the continuous loop's own peak decides, nearly: a guess from it alone, which the whole
-    /// loop confirms.
+    /// Without a resonance the continuous loop's peak nearly decides: it gives a guess that the whole loop confirms.
     std::optional<double> by_peak() {
         TrackedPeak peak(plant_, gains_, omega_Ms_);
         auto Ts = guess(peak);
@@ -251,10 +253,9 @@ private:
         if (edges) Ts = std::max(first_reached(*Ts), shortest());
         low_ = std::max(kShorterFactor * *Ts, shortest());
         bool borne = bears(*low_) && (!edges || bears_edges(*Ts, *low_));
-        // The guess's own peak is at the limit: the whole loop is no better.
+        // The guess's own peak is at the limit, so the whole loop gives no longer sample time.
         if (borne && loop(*Ts).keeps(limit_ * (1 + kMaxWholeLoopDifference))) return Ts;
-        // Another peak of the loop has become the higher one: what is looked for lies not far below, but where edges
-        // let it come and go.
+        // Another peak of the loop has become the higher one: the solution is not far below, but edges may hide it.
         if (edges) low_.reset();
         while (low_ && *low_ > shortest()) {
             const double lower = std::max(kShorterFactor * *low_, shortest());
@@ -266,7 +267,7 @@ private:
         return std::nullopt;
     }
 
-    /// The first sample time, from short ones on, that the whole loop does not bear.
+    /// The first sample time, searched upwards from short ones, that the whole loop does not tolerate.
     Figure by_steps() const {
         double low = low_.value_or(shortest());
         if (!bears(low)) return no_figure(kNone);
@@ -274,8 +275,7 @@ private:
             if (stop_.stop_requested()) return no_figure("The search was stopped.");
             if (looks == kMaxLooks)
                 return no_figure(
-                    "The plant oscillates so much faster than the loop that the sample times up to the "
-                    "longest one were not all looked at: up to " +
+                    "The plant oscillates much faster than the loop, so not all sample times could be tried: up to " +
                     text(low) + " Ms stays within 5 %.");
             const bool near = !loop(low).keeps(limit_ * kMinMsShareNearLimit);
             const double high = next(low, near);
@@ -285,7 +285,7 @@ private:
         return no_figure(kNone);
     }
 
-    /// The swing of the fastest mode that can move Ms at this sample time, rad/time; 0 if none can.
+    /// The angular frequency of the fastest mode that can move Ms at this sample time, rad/time; 0 if none can.
     double fastest_swing(double Ts) const {
         double fastest = 0;
         for (const Mode& mode : modes_)
@@ -293,8 +293,8 @@ private:
         return fastest;
     }
 
-    /// The next sample time to be looked at: near enough that neither a swing of the plant nor the dead time passes
-    /// much of its way from sample to sample in between, and nearer where Ms is near its limit.
+    /// The next sample time to try: close enough that neither an oscillation of the plant nor the dead time changes
+    /// much from sample to sample in between, and closer where Ms is near its limit.
     double next(double Ts, bool near) const {
         const double swing = fastest_swing(Ts);
         const bool as_continuous = Ts * swing < kMaxContinuousSwing && Ts * omega_Ms_ < kMaxContinuousTimeRatio;
@@ -303,11 +303,12 @@ private:
         return at_edge(plant_, Ts, further);
     }
 
-    /// Where the whole loop's Ms comes to the limit: the quick looks have seen it below at `low`, above at `high`.
+    /// The sample time at which the whole loop's Ms reaches the limit: the quick evaluations found it below at `low`
+    /// and above at `high`.
     double between(double low, double high) const {
         const auto whole = [this](double Ts) { return excess(loop(Ts).sensitivity_peak().value); };
         double f_low = whole(low);
-        // They look less closely than the whole loop's peak is sought: it has the last word.
+        // The quick evaluations are less accurate than the whole loop's peak, which decides.
         for (; f_low > kExactTolerance && low > shortest(); f_low = whole(low)) {
             high = low;
             low = std::max(low / kStepFactor, shortest());
@@ -322,7 +323,7 @@ private:
                 if (std::abs(whole(Ts)) <= kExactTolerance) return Ts;
             }
         }
-        // They agree with Ms but for its last digits.
+        // They agree with Ms except for its last digits.
         const double f_high = std::clamp(excess(above.value), 0.0, 1.0);
         return root_between(whole, low, high, std::min(f_low, 0.0), f_high, kExactTolerance * high);
     }
@@ -333,7 +334,7 @@ private:
     std::stop_token stop_;
     std::vector<Mode> modes_;
     double Mks_;
-    std::optional<double> low_;  // where the steps start
+    std::optional<double> low_;  // start of the steps
 };
 
 }  // namespace

@@ -9,8 +9,8 @@ namespace tunewright {
 namespace {
 
 constexpr int kMaxRefinements = 5;
-constexpr double kHalvedSteps = 1.0 / 16;  // of a tolerance, where the error is of order 4
-constexpr double kMaxTailShare = 1e-6;     // of the integral of t |e|, left after the run's end
+constexpr double kHalvedSteps = 1.0 / 16;  // factor of the tolerance that halves the steps of a method of order 4
+constexpr double kMaxTailShare = 1e-6;     // of the integral of t |e|, remaining after the run's end
 constexpr std::size_t kMaxNodes = 1000000;
 constexpr double kMoreNodes = 1.4;
 constexpr int kMaxTightenings = 3;
@@ -35,7 +35,7 @@ bool within_promise(const IndexErrors& errors) {
            errors.ITAE.value_or(0) <= kPromisedItae && errors.TV.value_or(0) <= kPromisedTv;
 }
 
-/// The same instants and those halfway between them.
+/// The same instants and those halfway between.
 StepSchedule halved(const StepSchedule& schedule) {
     StepSchedule finer{.h0 = schedule.h0 / 2, .level = {}, .to_horizon = 2 * schedule.to_horizon};
     finer.level.reserve(2 * schedule.level.size());
@@ -43,8 +43,8 @@ StepSchedule halved(const StepSchedule& schedule) {
     return finer;
 }
 
-/// On the halved schedule; without one with tolerances that fall until there are more steps indeed: lengths that go by
-/// powers of two may meet a smaller one as they are.
+/// Repeats the run on the halved schedule. Without a schedule it lowers the tolerance until the run really has more
+/// steps, because step lengths in powers of two may meet a lower tolerance unchanged.
 StepResponse refined(const Simulate& simulate, ResponseOptions& options, const StepResponse& response) {
     if (response.schedule.level.empty() && response.schedule.to_horizon == 0) {
         StepResponse finer;

@@ -9,9 +9,9 @@
 namespace tunewright {
 namespace {
 
-constexpr double kMaxRelativeRestError = 1e-9;  // of the largest y: an error at rest below it is none
+constexpr double kMaxRelativeRestError = 1e-9;  // of the largest y: a smaller error at rest counts as 0
 
-/// The indices of one kind of performance, or the reason why there are none. `cut`: the run ended before its horizon.
+/// The indices of one kind of performance, or the reason for their absence. `cut`: the run ended before its horizon.
 template <class Figures>
 void store(Figures& p, const Indices& indices, bool cut) {
     p.TV = cut ? no_figure(indices.why_no_error) : Figure(indices.TV);
@@ -26,16 +26,16 @@ void store(Figures& p, const Indices& indices, bool cut) {
 
 }  // namespace
 
-// Where the error comes to rest decides.
+// The value at which the error comes to rest decides.
 const char* why_no_integral(const StepResponse& response, double target, bool to_infinity) {
     if (!response.settles)
-        return to_infinity ? "The response does not settle within the steps allowed; give a horizon."
-                           : "The response needs more steps up to the horizon than are allowed; give a shorter one.";
+        return to_infinity ? "The response does not settle within the allowed number of steps; give a horizon."
+                           : "The response needs more than the allowed number of steps; give a shorter horizon.";
     if (!to_infinity) return nullptr;
     double scale = std::abs(target);
     for (const auto& node : response.nodes) scale = std::max(scale, std::abs(node.y));
     if (std::abs(target - response.y_final) > kMaxRelativeRestError * scale)
-        return "The error does not go to 0 (no integral action, or u rests at its limit), so its integral is infinite; "
+        return "The error does not go to 0 (no integral action, or u stays at its limit), so its integral is infinite; "
                "give a "
                "horizon.";
     return nullptr;
@@ -88,7 +88,7 @@ LoadPerformance load_figures(const StepResponse& response, bool to_infinity, con
     const Extremes extremes = extremes_of_y(nodes);
     p.peak = std::abs(extremes.max) >= std::abs(extremes.min) ? extremes.max : extremes.min;
     p.recovery_time = Figure(last_outside(nodes, 0, kSettlingBand * std::abs(*p.peak)),
-                             "The response does not come back within 2 % of its peak.");
+                             "The response does not return to within 2 % of its peak.");
     return p;
 }
 

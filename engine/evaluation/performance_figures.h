@@ -1,4 +1,4 @@
-// The time-domain figures from simulated responses, and the traces that show them.
+// Time-domain figures of simulated responses, and their traces for plots.
 #pragma once
 
 #include <optional>
@@ -14,29 +14,28 @@ namespace tunewright {
 /// response. Some sentences state it in percent: tests/house/defaults_test.py lists them.
 inline constexpr double kSettlingBand = 0.02;
 
-/// What is integrated over a response.
+/// Integrals over a response.
 struct Indices {
     std::optional<ErrorIntegrals> error;
-    const char* why_no_error = nullptr;  ///< where the error's integrals have no value
+    const char* why_no_error = nullptr;  ///< the reason if the error's integrals have no value
     double TV = 0;
 };
-/// `target` is what y is to reach. `to_infinity`: integrals run to infinity (the response settled), else to the last
-/// node.
+/// `target`: final value of y. `to_infinity`: integrals run to infinity (the response settled), else to the last node.
 Indices indices_of(const StepResponse& response, double target, bool to_infinity);
 
-/// `indices`: the response's own, where they are known already.
+/// `indices`: the response's own, if they are already known.
 SetpointPerformance setpoint_figures(const StepResponse& response, double step, bool to_infinity,
                                      const std::optional<Indices>& indices = {});
 LoadPerformance load_figures(const StepResponse& response, bool to_infinity,
                              const std::optional<Indices>& indices = {});
 
-/// The loop must be stable; `noise.sample_time` 0 takes the loop's own (loop/noise.h).
+/// The loop must be stable; `noise.sample_time` 0 stands for the default of the loop (loop/noise.h).
 NoisePerformance noise_figures(const Loop& loop, const NoiseOptions& noise);
 
-/// Why the integrals of target - y have no value; null where they have one.
+/// The reason why the integrals of target - y have no value; null if they have one.
 const char* why_no_integral(const StepResponse& response, double target, bool to_infinity);
 
-/// Every figure empty, for one reason.
+/// A performance with every figure empty, for one reason.
 Performance no_performance(const std::string& reason);
 
 /// Long enough for both responses to stay within 1 % of their largest deviation, and a little more; two significant

@@ -13,13 +13,16 @@ namespace tunewright {
 
 namespace {
 
-/// |L| = 1, |L| real and so on.
+/// Stores the margins; the reasons are given for frequencies at which |L| = 1 or L is real.
 void store_margins(Robustness& r, const Margins& m) {
     const std::string no_gain_crossover = "|L| never crosses 1.";
-    r.gain_margin = finite_or(m.gain_margin, "No higher gain loses stability.");
-    r.gain_margin_low = m.gain_margin_low > 0 ? Figure(m.gain_margin_low) : no_figure("No lower gain loses stability.");
+    r.gain_margin = finite_or(m.gain_margin, "No higher gain destabilises the loop.");
+    r.gain_margin_low = m.gain_margin_low > 0 ? Figure(m.gain_margin_low)
+                                              : no_figure(
+                                                    "No lower gain destabilises the "
+                                                    "loop.");
     r.phase_margin_deg = finite_or(m.phase_margin * 180 / std::numbers::pi, no_gain_crossover);
-    r.delay_margin = finite_or(m.delay_margin, "No extra dead time loses stability.");
+    r.delay_margin = finite_or(m.delay_margin, "No extra dead time destabilises the loop.");
     r.gain_crossover = r.phase_margin_deg ? Figure(m.gain_crossover) : no_figure(no_gain_crossover);
     const bool crosses = (r.gain_margin || r.gain_margin_low) && std::isfinite(m.phase_crossover);
     r.phase_crossover = crosses ? Figure(m.phase_crossover)
@@ -85,7 +88,8 @@ RegionCheck check(const PlantRegion& region, const ParallelPid& controller) {
     const bool all_stable = std::isfinite(result.worst.cost);
     for (const auto& z : region.ends()) look(z);
     if (std::isfinite(result.worst.cost)) result.worst = find_worst_case(region, cost, {result.worst.z});
-    // An unstable plant that the samples missed counts as one more, so that 1 always means that none is known.
+    // An unstable plant that the samples missed counts as one more, so that 1 always means that no unstable plant is
+    // known.
     if (all_stable && !std::isfinite(result.worst.cost)) looked_at += 1;
     result.stable_fraction = stable / looked_at;
     return result;
@@ -110,14 +114,14 @@ RegionFigures region_figures(const PlantFamily& family, const ParallelPid& contr
 
 namespace {
 
-constexpr double kMinShownS = 1e-3, kMinShownT = 2e-3;  // beyond them the curves show nothing
-constexpr double kFullDetailModulus = 0.3;   // of |L|: a curve nearer to the origin is looked at less closely, and from
-constexpr double kMinVisibleModulus = 0.02;  // here on its turns are not followed
-constexpr double kTurnUnit = 0.1;            // rad of L that count as much as
-constexpr double kLogModulusUnit = 0.2;      // this change of ln |L| or
-constexpr double kLogFrequencyUnit = 0.15;   // this one of ln omega
+constexpr double kMinShownS = 1e-3, kMinShownT = 2e-3;  // smaller values are not visible in the plots
+constexpr double kFullDetailModulus = 0.3;              // of |L|: closer to the origin the curve needs less detail, and
+constexpr double kMinVisibleModulus = 0.02;             // below this its turns are not followed
+constexpr double kTurnUnit = 0.1;                       // rad of L that weigh as much as
+constexpr double kLogModulusUnit = 0.2;                 // this change of ln |L| or
+constexpr double kLogFrequencyUnit = 0.15;              // this one of ln omega
 
-/// The part of the grid that shows something.
+/// The part of the grid that is visible in the plots.
 LoopGrid visible(const LoopGrid& grid) {
     std::size_t first = 0, last = grid.omega.size() - 1;
     while (first + 2 <= last && magnitude(grid.point[first + 1].S) < kMinShownS) ++first;
@@ -133,13 +137,13 @@ LoopGrid visible(const LoopGrid& grid) {
     return seen;
 }
 
-/// How much of a turn at |L| the eye sees: a chord leaves the arc by |L| turn^2 / 8.
+/// The visible part of a turn at |L|: a chord leaves the arc by |L| turn^2 / 8.
 double seen_at(double gain) {
     return gain < kMinVisibleModulus ? 0 : std::min(1.0, std::sqrt(gain / kFullDetailModulus));
 }
 
-/// How far the curves have come at each frequency, seen by the eye: turning of L, growth of |L|, omega, each in its
-/// measure. `turns`: the phase of L, unwrapped.
+/// Visible length of the curves up to each frequency: turning of L, growth of |L| and omega, each in its unit. `turns`:
+/// the phase of L, unwrapped.
 std::vector<double> progress_along(const LoopGrid& grid, const std::vector<double>& turns) {
     std::vector<double> along{0};
     along.reserve(grid.omega.size());
@@ -154,13 +158,13 @@ std::vector<double> progress_along(const LoopGrid& grid, const std::vector<doubl
     return along;
 }
 
-/// A phase on the turn that is next to `nearby`.
+/// The phase plus the multiple of 2 pi that brings it nearest to `nearby`.
 double on_turn(double phase, double nearby) {
     constexpr double kFullTurn = 2 * std::numbers::pi;
     return phase - kFullTurn * std::floor((phase - nearby) / kFullTurn + 0.5);
 }
 
-/// The phase of L at each frequency, the dead time's turns between neighbours counted.
+/// The unwrapped phase of L at each frequency, including the dead time's turns between neighbours.
 std::vector<double> unwrapped(const LoopGrid& grid, double dead_time) {
     std::vector<double> turns(grid.omega.size());
     double rest = 0;  // the phase without the dead time's own
@@ -172,13 +176,13 @@ std::vector<double> unwrapped(const LoopGrid& grid, double dead_time) {
     return turns;
 }
 
-/// At most `max` frequencies, evenly spread along the curves; `kept` (ascending) are among them.
+/// At most `max` frequencies, evenly spread along the curves, with those of `kept` (ascending) among them.
 std::vector<double> spread(const LoopGrid& grid, const std::vector<double>& along, std::size_t max,
                            const std::vector<double>& kept) {
     const std::size_t count = max > kept.size() + 2 ? max - kept.size() : max;
     std::vector<double> omega;
     omega.reserve(max);
-    std::size_t i = 1, spaced = 0;  // `ratio` is that of the frequencies around `spaced`
+    std::size_t i = 1, spaced = 0;  // `ratio`: ratio of the frequencies around `spaced`
     double ratio = 0;
     for (std::size_t k = 0; k < count; ++k) {
         const double wanted = along.back() * static_cast<double>(k) / static_cast<double>(count - 1);
@@ -232,7 +236,7 @@ FrequencyTraces frequency_traces(const Loop& loop, const LoopGrid& grid, int poi
     for (std::size_t k = 0; k < phase.size(); ++k) {
         const double omega = shown.omega[k];
         while (i + 1 < seen.omega.size() && seen.omega[i] < omega) ++i;
-        // Between neighbours the dead time's turning is known; the rest moves little.
+        // Between neighbours the dead time's turning is known; the other parts change little.
         const double part = (omega - seen.omega[i - 1]) / (seen.omega[i] - seen.omega[i - 1]);
         phase[k] = on_turn(std::arg(shown.point[k].L), turns[i - 1] + part * (turns[i] - turns[i - 1]));
     }

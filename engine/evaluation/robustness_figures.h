@@ -1,4 +1,5 @@
-// What an evaluation says over frequency: peaks and margins, the same over a family of plants, and the loop's curves.
+// Frequency-domain figures of an evaluation: peaks and margins, the same over a family of plants, and the loop's
+// curves.
 
 #pragma once
 
@@ -14,16 +15,17 @@ namespace tunewright {
 /// Of a stable loop, from its peaks and margins on a grid of its own.
 Robustness robustness_of(const AnyLoop& loop, const LoopGrid& grid);
 
-/// Of an unstable loop: every figure is empty and has the reason.
+/// For an unstable loop: every figure is empty and has the reason.
 Robustness unstable_robustness(const StabilityCount& count);
 
-/// How one controller serves every plant of a family. `stable_fraction`: of each region, by 128 points spread uniformly
-/// over its parameters, the mean over the plants of a set; 1 only where no unstable plant was found anywhere.
-/// `worst_Ms`: the largest at those points, at the regions' ends and where a local search from the worst of them leads.
+/// Figures of one controller over all plants of a family. `stable_fraction`: of each region by 128 points spread
+/// uniformly over its parameters, and the mean over the plants of a set; 1 only if no unstable plant was found.
+/// `worst_Ms`: the largest at those points, at the regions' ends and at the result of a local search from the worst of
+/// them.
 RegionFigures region_figures(const PlantFamily& family, const ParallelPid& controller);
 
-/// The loop's curves for drawing: at most `points` frequencies, spread so that between neighbours L turns, grows and
-/// omega rises by as little as that number allows; a dead time's turns are followed until |L| is too small to be seen.
+/// The loop's curves for drawing: at most `points` frequencies, spread so that neighbours differ as little as possible
+/// in the phase of L, in |L| and in omega; a dead time's turns are followed until |L| is too small to be visible.
 /// `kept`, frequencies of peaks and crossovers, are among them. The phase is unwrapped, the dead time's turns counted.
 FrequencyTraces frequency_traces(const Loop& loop, const LoopGrid& grid, int points,
                                  const std::vector<double>& kept = {});

@@ -25,7 +25,7 @@
 namespace tunewright {
 namespace {
 
-/// A change of u in the last samples shows nothing of the response.
+/// A change of u in the last samples gives no information on the response.
 std::optional<Error> refuse_late_step(const CleanRecord& r) {
     constexpr int kMaxTooFewSamples = 3;  // a gain, a lag and a dead time take one sample each
     const auto after = std::count_if(r.t.begin(), r.t.end(), [&](double t) { return t > r.v_time.front(); });
@@ -34,7 +34,8 @@ std::optional<Error> refuse_late_step(const CleanRecord& r) {
         ErrorKind::not_identifiable, "record",
         "u first changes at t = " + text(r.scale.t_origin + r.scale.t_scale * r.v_time.front()) + ", with " +
             std::to_string(after) +
-            " sample(s) after it: the response is not in the record. Record until y has settled after the step."};
+            " sample(s) after it, so the record does not contain the response.  Record until y has settled after the "
+            "step."};
 }
 
 const char* asked_name(ModelChoice model) {
@@ -53,15 +54,15 @@ Error no_response(const CleanRecord& r, double percent, const char* asked) {
     if (asked != nullptr) {
         return {ErrorKind::not_identifiable, "identify/model",
                 std::string("No ") + asked + " model explains y beyond noise and drift (the best reaches a fit of " +
-                    text(std::max(0.0, percent), 3) + " %). Use model auto, or look whether y responds to u at all."};
+                    text(std::max(0.0, percent), 3) + " %). Use model auto, or check whether y responds to u at all."};
     }
-    constexpr double kMovesWithU = 45;  // per cent: more than chance makes of a y that wanders by itself
+    constexpr double kMovesWithU = 45;  // per cent: more than the fit by chance of a y that drifts by itself
     if (percent > kMovesWithU) {
         return {ErrorKind::not_identifiable, "record",
                 "No linear model follows y (the best reaches a fit of " + text(percent, 3) +
-                    " %). Look in the plot whether every move of u moves y, always by as much: beyond a valve's end it "
-                    "moves nothing (give u_limits then), and a load moves y without u. Or give the part of the record "
-                    "that does follow u (`from`, `to`)."};
+                    " %). Check in the plot whether equal moves of u always move y equally. If u goes beyond the end "
+                    "of a valve, give u_limits; a load moves y without u. Or give only the part of the record that "
+                    "follows u (`from`, `to`)."};
     }
     return {ErrorKind::not_identifiable, "record",
             "y does not respond to u beyond what its own noise and drift explain (the best model reaches a fit of " +
@@ -83,17 +84,18 @@ Expected<IdentifiedModel> by_two_points(const CleanRecord& record, const Identif
     return model;
 }
 
-/// What the model is held to where its structure does not fit: the measured response at the oscillation, and the static
-/// gain where the test shows it.
+/// Constraints of a model whose structure does not fit: the measured response at the oscillation, and the static gain
+/// if the test shows it.
 std::vector<FrequencyConstraint> anchors_of(const ModelSearch& search, const RecordedCycle& cycle) {
-    constexpr double kHeldWithin = 3e-4;  // relative: tighter than any fit's own error, loose enough to be solved
+    constexpr double kHeldWithin = 3e-4;  // relative: smaller than any fit's own error, large enough for a
+                                          // well-conditioned solution
     const Fit& fit = search.chosen();
     const double rms = std::sqrt(fit.sse / static_cast<double>(fit.residual.size()));
     const std::complex<double> G = cycle.harmonics.front().G;
     std::vector<FrequencyConstraint> anchors = {
         {cycle.omega(), G, rms / (kHeldWithin * std::abs(G)), cycle.harmonics.front().G_std}};
-    constexpr double kMinBias = 0.01;      // of half a swing of u: less divides noise by noise
-    constexpr double kMaxGainError = 0.3;  // relative error beyond which the structure knows the gain as well
+    constexpr double kMinBias = 0.01;      // of half a swing of u: with less, the ratio consists of noise
+    constexpr double kMaxGainError = 0.3;  // relative error above which the structure determines the gain as well
     const double gain = cycle.static_gain(), sign = cycle.reversed ? -1 : 1;
     const bool shows_gain = cycle.biased() && std::abs(cycle.v_mean - cycle.rest.v) > kMinBias * cycle.v_half &&
                             cycle.drift == 0 && !search.disturbances.slope && !search.disturbances.load &&
@@ -104,24 +106,25 @@ std::vector<FrequencyConstraint> anchors_of(const ModelSearch& search, const Rec
 
 void warn_mismatch(const RecordedCycle& cycle, bool gain_held, double left, std::vector<Warning>& warnings) {
     std::string detail = "The structure does not fit this plant: it leaves " + text(100 * left, 3) +
-                         " % of y's variation beyond noise. The model is held to the response measured at the "
+                         " % of y's variation beyond noise. The model is constrained to the response measured at the "
                          "oscillation";
     detail += gain_held ? " and to the static gain." : ".";
     if (!gain_held) {
         detail +=
             cycle.biased()
-                ? " The static gain is not reliable: a load moves y, or the record does not show well where y rests."
+                ? " The static gain is not reliable: a load moves y, or the record does not show clearly where y is at "
+                  "rest."
                 : " The test has no bias, so the static gain is unknown.";
     }
     warnings.push_back({"structure-mismatch", detail});
 }
 
-/// At the oscillation a lag much longer than its period looks like an integrator: the static gain comes from the
-/// structure alone. Where the model leaves more than noise (`left` of y's variation) or a pattern, the structure is not
-/// the plant's: then what it says far from the oscillation is open.
+/// At the oscillation a lag much longer than its period looks like an integrator, so the static gain depends on the
+/// structure alone. If the model leaves more than noise (`left` of y's variation) or a pattern, the structure is not
+/// that of the plant, and its response far from the oscillation is uncertain.
 void warn_extrapolated_gain(const std::optional<double>& omega, const Fit& fit, double left,
                             std::vector<Warning>& warnings) {
-    constexpr double kMinLagTimesOmega = 2;        // lag times omega from which a lag looks like an integrator
+    constexpr double kMinLagTimesOmega = 2;        // lag times omega above which a lag looks like an integrator
     constexpr double kMaxUnexplainedShare = 0.02;  // of y's variation, beyond noise
     constexpr double kMinCorrelationTime = 2;      // samples of correlation time: white noise has 1
     const Structure structure = fit.form.structure;
@@ -129,31 +132,33 @@ void warn_extrapolated_gain(const std::optional<double>& omega, const Fit& fit, 
     if (is_integrating(structure) || structure == Structure::unstable) {
         if (!another) return;
         warnings.push_back({"gain-from-oscillation",
-                            "The model leaves more than noise, so whether the plant integrates, is unstable or has a "
-                            "static gain K is open: a relay's oscillation says little about it. Make a step test."});
+                            "The model leaves more than noise, so it is uncertain whether the plant integrates, is "
+                            "unstable or has a static gain K: a relay's oscillation contains little information on "
+                            "this. Make a step test."});
         return;
     }
     const double lag = has_quadratic(structure) ? fit.shape.a1() : fit.shape.T();
     if (omega && lag * *omega >= kMinLagTimesOmega) {
         warnings.push_back({"gain-from-oscillation",
-                            "The relay's oscillation shows the plant where its lags times omega are " +
+                            "The relay's oscillation is at a frequency omega at which the lags times omega are " +
                                 text(lag * *omega, 2) +
-                                ": the static gain K is extrapolated by the model's structure. The design rests on "
-                                "what is measured near the oscillation; a step test shows the gain."});
+                                ", so the static gain K is extrapolated by the model's structure. The design is based "
+                                "on the response measured near the oscillation; a step test shows the gain."});
     } else if (another) {
         warnings.push_back({"gain-from-oscillation",
-                            "The model leaves more than noise, and a relay's oscillation shows the plant near one "
-                            "frequency: the static gain K may be off by more than its standard error. A step test "
+                            "The model leaves more than noise, and a relay's oscillation shows the plant only near one "
+                            "frequency: the error of the static gain K may exceed its standard error. A step test "
                             "shows it."});
     }
 }
 
-/// A relay that pushes y on where its plant ends up never switches back: the sign of its feedback is the static gain's.
+/// With the wrong sign of its feedback a relay never switches back: the sign of the feedback is that of the static
+/// gain.
 void warn_sign(const RecordedCycle& cycle, const Fit& fit, std::vector<Warning>& warnings) {
     if (fit.form.structure == Structure::unstable || (fit.linear[0] < 0) == cycle.reversed) return;
     warnings.push_back({"gain-from-oscillation",
-                        "The model's static gain K has the sign with which this relay would not have oscillated: a "
-                        "drift, a load or another structure is in the record. Do not use this model; make a step test.",
+                        "The model's static gain K has a sign with which this relay would not oscillate: the record "
+                        "contains a drift, a load or another structure. Do not use this model; make a step test.",
                         WarningLevel::bad});
 }
 
@@ -174,18 +179,20 @@ RecordKind kind_of(const CleanRecord& record) {
     return record.kind == RecordKind::automatic ? found_kind(record) : record.kind;
 }
 
-/// The quickest lag of a fit, as part of the record's length.
+/// The shortest lag of a fit, as a share of the record's length.
 double quickest_lag(const Fit& fit) {
     if (fit.form.structure == Structure::ipdt) return 1;
     const double lag = has_quadratic(fit.form.structure) ? fit.shape.a2() / fit.shape.a1() : fit.shape.T();
     return fit.form.structure == Structure::third ? std::min(lag, fit.shape.T3()) : lag;
 }
 
-/// The models of a record, its false readings left out. Of a long one, means over blocks are fitted, u as it is: a
-/// block of length h changes what a lag T leaves by (h/T)^2/24, 5e-4 for ten blocks. Quicker plants get shorter ones.
+/// The models of a record without its false readings. For a long one, means over blocks are fitted, with u unchanged: a
+/// block of length h changes the response of a lag T by (h/T)^2/24, 5e-4 for ten blocks. Faster plants get shorter
+/// blocks.
 ModelSearch searched(CleanRecord& record, ModelChoice model, const RunControl& control) {
-    constexpr int kFirstSamples = 20'000, kMaxFitted = 100'000;  // more samples add time, and no digits that count
-    constexpr double kBlocks = 10;                               // in the quickest lag
+    constexpr int kFirstSamples = 20'000, kMaxFitted = 100'000;  // more samples cost time without a significant gain in
+                                                                 // accuracy
+    constexpr double kBlocks = 10;                               // blocks in the shortest lag
     const auto search_of = [&](int max) {
         return search_with_further(block_means(record, max), model, kind_of(record) == RecordKind::relay, control);
     };
@@ -198,7 +205,8 @@ ModelSearch searched(CleanRecord& record, ModelChoice model, const RunControl& c
 
 Expected<IdentifiedModel> by_output_error(const CleanRecord& record, ModelSearch search, const IdentifyOptions& options,
                                           const RunControl& control) {
-    constexpr double kMinUnexplainedShare = 0.004;  // of y's variation: less is not worth another structure
+    constexpr double kMinUnexplainedShare = 0.004;  // of y's variation: a smaller residual is no reason for another
+                                                    // structure
     const RecordKind kind = kind_of(record);
     if (control.stop.stop_requested()) return cancelled();
     if (search.choice.index < 0 || !responds(search.context.record, search.chosen())) {
@@ -212,7 +220,7 @@ Expected<IdentifiedModel> by_output_error(const CleanRecord& record, ModelSearch
                                                  : Expected<RecordedCycle>(Error{ErrorKind::unsupported, "", ""});
     std::vector<Warning> warnings;
     const double left = unexplained_share(search.context, search.chosen());
-    // Where the rows show u late, the phase that they show at the oscillation is late too.
+    // If the rows show u late, the phase at the oscillation is late too.
     const bool unexplained = left > kMinUnexplainedShare && leaves_a_pattern(search.context, search.chosen());
     if (whole && cycle && unexplained && cycle->periods > 1 && !search.context.record.moved_between_rows) {
         const std::vector<FrequencyConstraint> anchors = anchors_of(search, *cycle);
@@ -221,7 +229,7 @@ Expected<IdentifiedModel> by_output_error(const CleanRecord& record, ModelSearch
         warn_mismatch(*cycle, anchors.size() > 1, left, warnings);
     }
     if (options.model != ModelChoice::automatic)
-        search.choice.reason = std::string(name_of(search.chosen().form.structure)) + " was asked for.";
+        search.choice.reason = std::string(name_of(search.chosen().form.structure)) + " was requested.";
 
     std::vector<Warning> last;
     if (kind == RecordKind::relay)
@@ -242,17 +250,17 @@ Expected<IdentifiedModel> by_output_error(const CleanRecord& record, ModelSearch
     return model;
 }
 
-/// What a record is fitted as.
+/// A record with the data of its fit.
 struct Fitted {
     CleanRecord record;
     ModelSearch search;
     std::optional<InputLimits> u_limits;
 };
 
-/// Where u runs beyond ends that are usual for a controller's output and the fit leaves a pattern: with u cut to them,
-/// kept if that leaves a third of the sum of squares or less.
+/// If u exceeds usual limits of a controller's output and the fit leaves a pattern, tries u limited to them; kept if
+/// this reduces the sum of squares to a third or less.
 void try_limits(const Record& record, ModelChoice model, const RunControl& control, Fitted& fitted) {
-    constexpr double kMinVarianceRatio = 3;  // times, so that chance alone never cuts u
+    constexpr double kMinVarianceRatio = 3;  // ratio of sums of squares: large enough that chance never limits u
     if (record.u_limits || fitted.search.choice.index < 0) return;
     if (!leaves_a_pattern(fitted.search.context, fitted.search.chosen())) return;
     for (const InputLimits& limits : plain_limits(record)) {
@@ -279,16 +287,16 @@ Expected<IdentifiedModel> by_fitting(const Record& record, CleanRecord clean, co
     if (fitted.u_limits && !record.u_limits)
         model->data_quality.notes.push_back(
             "u runs beyond " + text((*fitted.u_limits)[0]) + " to " + text((*fitted.u_limits)[1]) +
-            " and y follows it only as far as that: it was logged before its limiter. Give u_limits if these are not "
-            "the ends.");
+            " but y follows it only up to these values: u was logged before its limiter. Give u_limits if the limits "
+            "are different.");
     return model;
 }
 
-/// A record and what was found of a controller in it.
+/// A record and the controller that was found in it.
 struct Looked {
     CleanRecord clean;
     std::optional<LoopRecord> loop;
-    std::optional<double> u_rest;  ///< where a loop rests before its set point moves
+    std::optional<double> u_rest;  ///< input at rest, before the set point moves
 };
 
 Expected<Looked> looked_at(const Record& record) {
@@ -299,7 +307,7 @@ Expected<Looked> looked_at(const Record& record) {
     if (!loop) return loop.error();
     const std::optional<double> rest = *loop ? (*loop)->u_rest : std::nullopt;
     if (rest) {
-        // Its noise moves u from the first row on: that row is no level of rest.
+        // Noise moves u from the first row on: that row is not a level of rest.
         Record rested = record;
         rested.u0 = rest;
         clean = clean_record(rested);
@@ -308,7 +316,7 @@ Expected<Looked> looked_at(const Record& record) {
     return Looked{std::move(*clean), std::move(*loop), rest};
 }
 
-/// The model from the rows in which the controller was in manual; empty where there are none.
+/// The model from the rows in which the controller was in manual; empty if there are none.
 std::optional<IdentifiedModel> by_manual_rows(const Record& record, const Looked& looked,
                                               const IdentifyOptions& options, const RunControl& control) {
     if (options.method == IdentifyMethod::relay_fourier || options.method == IdentifyMethod::two_point)
@@ -319,7 +327,8 @@ std::optional<IdentifiedModel> by_manual_rows(const Record& record, const Looked
     Expected<IdentifiedModel> model = identify(rows_of(record, *manual), options, control);
     if (!model) return std::nullopt;
     model->data_quality.notes.push_back("Only the rows from t = " + text(manual->from) + " to " + text(manual->to) +
-                                        " are used, in which u stands still or steps: in others a controller moves u.");
+                                        " are used, in which u is constant or steps: in the others a controller moves "
+                                        "u.");
     return std::move(*model);
 }
 
@@ -328,8 +337,8 @@ void add_figures(const CleanRecord& record, IdentifiedModel& model) {
     add_ultimate_point(model);
 }
 
-/// The model of a record whose start is as it shows, or as u0 says. A loop that only the model of an open-loop test
-/// gives away is put into `looked`.
+/// The model of a record whose start is as recorded, or given by u0. If only the model of an open-loop test reveals a
+/// loop, the loop is stored in `looked`.
 Expected<IdentifiedModel> model_of(const Record& record, Looked& looked, const IdentifyOptions& options,
                                    const RunControl& control) {
     auto& [clean, loop, rest] = looked;
@@ -360,7 +369,7 @@ Expected<IdentifiedModel> model_of(const Record& record, Looked& looked, const I
     note_further_inputs(record, *model);
     if (!loop && set_point_is_input(clean, record))
         model->data_quality.notes.emplace_back(
-            "Column r is u itself, or a straight line over it: it is taken for a command of u, not for a set point.");
+            "Column r is u itself, or a straight line over it: it is assumed to be a command of u, not a set point.");
     loop ? report_loop(*loop, *model) : doubt_open_loop(clean, *model);
     add_figures(clean, *model);
     return model;
@@ -370,7 +379,7 @@ bool by_fit(IdentifyMethod method) {
     return method == IdentifyMethod::automatic || method == IdentifyMethod::output_error;
 }
 
-/// The model, with its rows in the direction of time that they are taken to have.
+/// The model, with the rows in their assumed direction of time.
 Expected<IdentifiedModel> identified(const Record& record, const IdentifyOptions& options, const RunControl& control) {
     Expected<Looked> looked = looked_at(record);
     if (!looked) return looked.error();

@@ -1,4 +1,4 @@
-// How far a model may be relied on: the one conclusion that verdicts, reports and lists show.
+// The reliability of a model: the single conclusion that verdicts, reports and lists show.
 #pragma once
 
 #include <optional>
@@ -7,22 +7,22 @@
 
 namespace tunewright {
 
-/// Verdict, page, report and terminal show this conclusion and draw none of their own.
+/// Verdict, page, report and terminal show this conclusion and do not draw their own.
 enum class ModelGrade {
-    good,      ///< nothing speaks against it
-    usable,    ///< with care: there are warnings about the record or the model
+    good,      ///< no objection to it
+    usable,    ///< with care: it has warnings about the record or the model
     doubtful,  ///< it does not explain its record, or a warning says that it may be another plant
 };
 
-/// Below this fit, in percent, a model does not explain its record: what is left has 0.3 of y's standard deviation.
+/// Below this fit, in percent, a model does not explain its record: the residual has 0.3 of y's standard deviation.
 inline constexpr double kMinFitPercent = 70;
-/// The same where what is left is no noise (warning structured-residuals), so that no average takes it away.
+/// The same if the residual is not noise (warning structured-residuals), which averaging would not reduce.
 inline constexpr double kMinFitPercentBiased = 90;
 
-/// Standard deviation of what the model leaves of y, divided by y's own: 1 - fit/100.
+/// Standard deviation of the residual over that of y: 1 - fit/100.
 inline double share_left_by(const IdentifiedModel& model) { return 1 - model.fit_percent / 100; }
 
-/// `doubtful`: the model explains less than 70 % of the record's movement; or less than 90 % where what it misses is no
+/// `doubtful`: the model explains less than 70 % of the record's movement; or less than 90 % if the residual is not
 /// noise (warning structured-residuals); or one of its warnings has the level `bad`. `usable`: it has other warnings.
 ModelGrade grade_of(const IdentifiedModel& model);
 
@@ -37,7 +37,7 @@ void grade_candidates(IdentifiedModel& model);
 /// Why a model is doubtful.
 enum class DoubtReason {
     fit,      ///< it explains too little of its record, whatever its warnings
-    warning,  ///< it explains its record; a warning of level `bad` speaks against it
+    warning,  ///< it explains its record, but has a warning of level `bad`
 };
 
 /// Empty for a model that is not doubtful.

@@ -29,28 +29,31 @@ Record counted_down(const Record& record) {
 
 Expected<IdentifiedModel> model_in_time(Expected<IdentifiedModel> newest_first, Expected<IdentifiedModel> countdown,
                                         bool in_loop) {
-    constexpr double kMaxShareOfOther = 0.5;  // of what the other direction leaves
-    const std::string counted = "The times count down from row to row, and the rows were used in their order, at -t: ";
+    constexpr double kMaxShareOfOther = 0.5;  // relative to the residual of the other direction
+    const std::string counted =
+        "The times count down from row to row; the rows were used in their order, at the times "
+        "-t: ";
     if (!countdown) return newest_first;
     const bool may_be_inverse = in_loop || countdown->data_quality.closed_loop;
     if (!newest_first) {
         if (may_be_inverse) return newest_first;
-        add(*countdown, counted + "turned round, as from the newest row to the oldest, they show no plant.",
+        add(*countdown, counted + "in reversed order, from the newest row to the oldest, no plant was found.",
             WarningLevel::warning);
         return countdown;
     }
     const double turned = share_left_by(*newest_first), as_they_stand = share_left_by(*countdown);
     if (turned < kMaxShareOfOther * as_they_stand) return newest_first;
     if (as_they_stand < kMaxShareOfOther * turned && !may_be_inverse) {
-        add(*countdown, counted + "so y follows u, turned round it does not " + fits(*countdown, *newest_first) + ".",
+        add(*countdown,
+            counted + "in this order y follows u, in reversed order it does not " + fits(*countdown, *newest_first) +
+                ".",
             WarningLevel::warning);
         return countdown;
     }
     add(*newest_first,
         "The times fall from row to row, and y follows u in both directions " + fits(*newest_first, *countdown) +
-            ": the rows were taken to run from the newest to the oldest. If the times count down instead, the gain K "
-            "and "
-            "the lags are wrong: give times that rise.",
+            "; the rows were assumed to run from the newest to the oldest. If the times count down instead, the gain K "
+            "and the lags are wrong: give ascending times.",
         WarningLevel::bad);
     return newest_first;
 }

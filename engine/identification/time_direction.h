@@ -1,4 +1,4 @@
-// Times that fall from row to row: a log from the newest row to the oldest, or a clock that counts down to the end.
+// Times that decrease from row to row: a log from the newest row to the oldest, or a clock that counts down.
 #pragma once
 
 #include "engine/expected.h"
@@ -15,16 +15,16 @@ namespace tunewright {
 ///     1,50,40   upwards        1,50,76   downwards
 ///     0,20,40                  0,50,80
 ///
-/// A file from the newest row to the oldest is turned round; a countdown becomes -9 to 0.
+/// For comparison: a file from the newest row to the oldest is reversed instead; a countdown becomes -9 to 0.
 Record counted_down(const Record& record);
 
-/// The model of the direction in which y follows u.
+/// Chooses the model of the direction in which y follows u.
 ///
-/// `newest_first` is that of the rows turned round, `countdown` of
-/// the rows as they stand: the second where it leaves less than half of what the first leaves of y, or the first finds
-/// no plant. Where neither leaves half of what the other does, both may be: then a warning (reversed-time, of level
-/// bad) says so. So may they where a controller moves u (`in_loop`, as the rows turned round show it, or in
-/// `countdown`): its inverse follows u in the other direction; there the rows count as turned round, as a refusal too.
+/// `newest_first` is the model of the reversed rows, `countdown` that of the rows in their order. `countdown` is chosen
+/// if its residual is less than half of the other's, or if `newest_first` found no plant. If neither residual is less
+/// than half of the other, both are possible, and a warning says so (reversed-time, of level bad). Both are also
+/// possible if a controller moves u (`in_loop` in the reversed rows, or in `countdown`), because the inverse of the
+/// controller follows u in the other direction; then `newest_first` is chosen, even if it is an error.
 Expected<IdentifiedModel> model_in_time(Expected<IdentifiedModel> newest_first, Expected<IdentifiedModel> countdown,
                                         bool in_loop);
 

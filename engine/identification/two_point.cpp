@@ -11,7 +11,7 @@
 namespace tunewright {
 namespace {
 
-/// When the moving average of y first passes `level`, from `y0`'s side.
+/// The time at which the moving average of y first passes `level`, coming from the side of `y0`.
 double crossing(const CleanRecord& r, std::size_t first, std::size_t window, double y0, double level) {
     const double side = level > y0 ? 1 : -1;
     double before = y0, t_before = r.t[first];
@@ -38,15 +38,15 @@ Expected<TwoPointModel> two_point(const CleanRecord& r) {
     }
     const auto first = static_cast<std::size_t>(std::lower_bound(r.t.begin(), r.t.end(), levels.time[1]) - r.t.begin());
     const std::size_t after = r.y.size() - first, tenth = after / 10;
-    constexpr std::size_t kMinTenth = 2;         // samples: two means that differ by more than noise
+    constexpr std::size_t kMinTenth = 2;         // samples, for two means whose difference is not only noise
     constexpr double kMaxUnsettledShare = 0.05;  // of the response
-    constexpr double kMinDivisor = 1e-300;       // keeps a division by what may be 0 finite
+    constexpr double kMinDivisor = 1e-300;       // keeps a division by a value near 0 finite
     if (tenth < kMinTenth) return refused("The two-point construction needs 20 samples after the step.");
     const std::span<const double> y(r.y);
     const double end = mean(y.last(tenth)), earlier = mean(y.subspan(r.y.size() - 2 * tenth, tenth));
     const double y0 = r.y_rest ? *r.y_rest : first > 0 ? mean(y.first(first)) : y.front();
     if (std::abs(end - earlier) > kMaxUnsettledShare * std::abs(end - y0)) {
-        return refused("y has not settled: over the last tenth of the record it still moves by " +
+        return refused("y has not settled: in the last tenth of the record it still changes by " +
                        text(100 * std::abs(end - earlier) / std::max(kMinDivisor, std::abs(end - y0)), 2) +
                        " % of the response.");
     }

@@ -1,4 +1,4 @@
-// The textbook construction: a first-order model with dead time from two points of a step response.
+// The textbook construction of a first-order model with dead time from two points of a step response.
 #pragma once
 
 #include "engine/expected.h"
@@ -13,9 +13,9 @@ struct TwoPointModel {
     double K = 0;
 };
 
-/// T = 1.5 (t63 - t28), L = t63 - T, at least 0, with the times from the step on at which y has moved by 28.3 % and
-/// 63.2 % of its response (Smith 1972); K is the move of y, from the mean before the step (or the given y0) to the mean
-/// of the last tenth, over that of u. For the two times y is averaged over a two-hundredth of the samples.
+/// T = 1.5 (t63 - t28), L = t63 - T, at least 0, with the times after the step at which y has reached 28.3 % and 63.2 %
+/// of its response (Smith 1972); K is the change of y, from the mean before the step (or the given y0) to the mean of
+/// the last tenth, divided by the change of u. For the two times y is averaged over a two-hundredth of the samples.
 ///
 /// For y(t) = 1 - e^(-(t - L)/T), t > L, the two times are L + T/3 and L + T: a first-order plant with a dead time is
 /// found exactly, up to the averaging and the spacing of the samples. A step of u by 2 at t = 0 after which y rises by

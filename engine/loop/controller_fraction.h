@@ -1,4 +1,4 @@
-// The controller as a fraction: the formula that a loop is evaluated by, for one frequency or for two at a time.
+// The controller as a fraction: the formula with which a loop is evaluated, for one frequency or for two at a time.
 // `Number`: std::complex<double> or PairComplex.
 #pragma once
 
@@ -8,7 +8,7 @@
 
 namespace tunewright {
 
-/// Of the filtered controller, set-point weights apart.
+/// Fraction of the filtered controller, without set-point weights.
 template <class Number>
 FractionOf<Number> controller_fraction(const ParallelPid& gains, Number s) {
     const double Tf = gains.filter.Tf;

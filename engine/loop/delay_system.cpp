@@ -16,8 +16,8 @@ Eigen::Map<const Vector> mapped(const std::vector<double>& values) {
     return {values.data(), static_cast<Eigen::Index>(values.size())};
 }
 
-/// Writes rows and entries of the growing system; y and its derivative as linear forms in x and v.
-/// Plain loops: with Eigen's maps a system of 4 to 11 states takes up to 7 % longer, up to 16 % without a filter.
+/// Writes rows and entries of the growing system; y and its derivative as linear forms in x and v. It uses plain loops:
+/// with Eigen's maps a system of 4 to 11 states takes up to 7 % longer, up to 16 % without a filter.
 class Builder {
 public:
     Builder(const LinearPlant& plant, const ParallelPid& c) : plant_(plant.realisation()), c_(c) {
@@ -72,7 +72,7 @@ private:
         for (int j = 0; j < plant_.n; ++j) system_.M[index(j)] += factor * plant_.C[index(j)];
         system_.N += factor * plant_.D;
     }
-    /// u += factor * y' with y' = C (A x + B v): the plant has no direct term then.
+    /// u += factor * y' with y' = C (A x + B v): then the plant has no direct term.
     void output_y_slope(double factor) {
         for (int j = 0; j < plant_.n; ++j)
             for (int i = 0; i < plant_.n; ++i)
@@ -120,7 +120,7 @@ private:
         if (system_.integral_state >= 0) F(system_.integral_state, filter_) = -1;
     }
 
-    /// What r did, its filtered value does: r_f' = (r - r_f)/T.
+    /// The filtered set point takes the place of r: r_f' = (r - r_f)/T.
     void filter_setpoint() {
         const int last = system_.setpoint_state;
         for (int i = 0; i < last; ++i) F(i, last) = std::exchange(system_.H[index(i)], 0);

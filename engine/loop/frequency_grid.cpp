@@ -11,20 +11,20 @@ namespace {
 
 constexpr std::size_t kMaxPoints = 20000;
 constexpr double kTurnsResolved = 60;        // periods of e^(-jwL) that are followed one by one
-constexpr std::size_t kUsualGrowth = 2;      // of a grid by refinement: room for it is taken at once
+constexpr std::size_t kUsualGrowth = 2;      // growth of a grid by refinement; memory is reserved for it
 constexpr double kClosestNeighbours = 1e-7;  // relative distance below which no point is added
 
-// Of its chord: half of it is 0.52 at a radian of dead time, and the rest of L turns too.
+// Ratio of half an arc to its chord: 0.52 at a radian of dead time, and more because the rest of L turns too.
 constexpr double kHalfOfArc = 0.55;
 
 constexpr double kBelowCorners = 1e-3, kAboveCorners = 1e2;  // of the outermost corners: L is its asymptote beyond
 constexpr double kAsymptoteBelowCorners = 1e-2,
-                 kAsymptoteAboveCorners = 1e2;  // of the corners: where the asymptotes are read
+                 kAsymptoteAboveCorners = 1e2;  // multiple of the corners at which the asymptotes are evaluated
 constexpr double kMinAsymptoteSlope =
-    0.1;  // slope of |L| in decades a decade: a flatter asymptote gives no reliable crossing
-constexpr double kMaxLogCrossingDistance = 30;  // of ln omega from where the asymptote is read
-constexpr double kLightDamping = 0.3;           // below it a pole or zero shows as a resonance
-constexpr double kMinWidth = 1e-6;              // of a resonance, relative: an undamped one has none
+    0.1;  // slope of |L| in decades per decade: a flatter asymptote gives no reliable crossing
+constexpr double kMaxLogCrossingDistance = 30;  // in ln omega from the frequency at which the asymptote is evaluated
+constexpr double kLightDamping = 0.3;           // damping below which a pole or zero is a resonance
+constexpr double kMinWidth = 1e-6;              // relative width of a resonance: an undamped one has none
 
 using OpenLoop = std::function<std::complex<double>(double)>;
 
@@ -36,7 +36,7 @@ void add_corner(std::vector<double>& corners, double omega) {
     if (std::isfinite(omega) && omega > 0) corners.push_back(omega);
 }
 
-/// Roots of Kd s^2 + Kp s + Ki: where the controller turns from integral to proportional to derivative action.
+/// Roots of Kd s^2 + Kp s + Ki: the frequencies between integral, proportional and derivative action.
 void add_controller_corners(std::vector<double>& corners, const ParallelPid& c) {
     if (c.Kp != 0) add_corner(corners, std::abs(c.Ki / c.Kp));
     if (c.Kd != 0) add_corner(corners, std::abs(c.Kp / c.Kd));
@@ -44,8 +44,8 @@ void add_controller_corners(std::vector<double>& corners, const ParallelPid& c) 
     if (c.filter.type != FilterType::none) add_corner(corners, 1 / c.filter.Tf);
 }
 
-/// Where the low- and high-frequency asymptotes of |L| cross one: a slow loop's crossover can lie far below every
-/// corner.
+/// Frequencies at which the low- and high-frequency asymptotes of |L| cross one: a slow loop's crossover can lie far
+/// below every corner.
 void add_asymptote_crossings(std::vector<double>& corners, const OpenLoop& open_loop, double low, double high,
                              double highest) {
     const auto slope_crossing = [&](double omega, double ratio) {
@@ -76,13 +76,13 @@ Range range_of(const LinearPlant& plant, const ParallelPid& gains, const OpenLoo
     return {std::min(*lower, highest) * kBelowCorners, std::min(*higher * kAboveCorners, highest)};
 }
 
-/// A point of the loop on its way into the grid.
+/// A point of the loop before it is added to the grid.
 struct Candidate {
     Candidate(double omega, const LoopPoint& point) : omega(omega), point(point), square(std::norm(point.S)) {}
 
     double omega;
     LoopPoint point;
-    double square;  // |S|^2: without roots
+    double square;  // |S|^2, to avoid square roots
 };
 
 bool too_far(const Candidate& a, const Candidate& b, const Refinement& r) {
@@ -107,7 +107,7 @@ std::vector<double> base_frequencies(const LinearPlant& plant, const ParallelPid
     for (const double ratio = std::pow(10.0, decades / n); omega.size() < static_cast<std::size_t>(n); next *= ratio)
         omega.push_back(next);
     omega.push_back(range.high);
-    // A lightly damped pole or zero shows between two points of any grid only if one is put there.
+    // A grid contains a lightly damped pole or zero only if a point is put there.
     const auto add_resonance = [&](std::complex<double> root) {
         if (root.imag() <= 0 || std::abs(root.real()) > kLightDamping * std::abs(root)) return;
         const double centre = std::abs(root), width = std::max(std::abs(root.real()), kMinWidth * centre);
@@ -157,7 +157,7 @@ LoopGrid refined_grid(const std::function<LoopPoint(double)>& at, const LoopGrid
     };
     Candidate left(base.omega[0], base.point[0]);
     keep(left);
-    // Between two base points: right ends that wait, halved (in log omega) until neighbours are close.
+    // Between two base points: a stack of right ends. Intervals are halved (in log omega) until neighbours are close.
     std::vector<Candidate> waiting;
     for (std::size_t i = 1; i < base.omega.size(); ++i) {
         Candidate right(base.omega[i], base.point[i]);

@@ -14,7 +14,7 @@ using Complex = std::complex<double>;
 
 constexpr int kMaxHalvings = 40;
 constexpr double kMaxAxisDistance = 1e-9;  // |D|: closer to 0 counts as on the axis
-constexpr double kTurnsResolved = 60;      // periods of the longer dead time that are followed one by one
+constexpr double kTurnsResolved = 60;      // periods of the longer dead time that are resolved
 constexpr int kPointsPerDecade = 24;
 
 constexpr double kBelowCorners = 1e-3, kAboveCorners = 1e2;  // of the outermost corners

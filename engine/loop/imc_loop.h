@@ -1,8 +1,8 @@
-// A plant with the full revised IMC controller over frequency. Written by plant, model and Q, never by C itself:
+// A plant with the full revised IMC controller over frequency. Computed from plant, model and Q, without C itself:
 //
 //   D = 1 + (P - G) Q,   S = (1 - G Q)/D,   T = P Q/D,   C S = Q/D.
 //
-// On the model itself D = 1: T is the design's own.
+// If the plant equals the model, D = 1 and T is that of the design.
 #pragma once
 
 #include <algorithm>

@@ -59,7 +59,7 @@ public:
         return holds_beyond(q);
     }
 
-    /// A q >= 0 for which the grid's points keep the condition, well inside where there is room; empty: none.
+    /// A q >= 0 for which all points of the grid satisfy the condition, with a margin if possible; empty: none.
     std::optional<double> candidate() const {
         double low = 0, high = kInfinity;
         for (const PopovPoint& p : points_) {
@@ -73,7 +73,8 @@ public:
         return low > 0 ? 2 * low : 0;
     }
 
-    /// Where G crosses the negative real axis beyond -1: factors of the integral gain below 1 that make it oscillate.
+    /// The crossings of the negative real axis by G beyond -1: factors below 1 of the integral gain at which the loop
+    /// oscillates.
     void find_critical_gain(IntegralSector& sector) const {
         for (std::size_t i = 1; i < points_.size(); ++i) {
             if ((points_[i].y < 0) == (points_[i - 1].y < 0)) continue;
@@ -87,7 +88,8 @@ public:
     }
 
 private:
-    /// Above the grid G falls, and the bound with it; without dead time the condition itself is followed until then.
+    /// Above the grid G decreases, and so does the bound; without dead time the condition itself is checked up to
+    /// there.
     bool holds_beyond(double q) const {
         double omega = points_.back().omega;
         for (int i = 0; i < kMaxBeyond; ++i, omega *= kStrideBeyond) {
@@ -98,7 +100,8 @@ private:
         return false;
     }
 
-    /// Of |G| and |omega q G| together, where the dead time turns faster than the grid follows.
+    /// Bound of |G| and |omega q G| together, for frequencies at which the dead time turns faster than the grid
+    /// resolves.
     double bound(double omega, double q) const {
         const double loop_gain = std::abs(pd_.open_loop({0, omega}));
         if (loop_gain >= 1) return kInfinity;

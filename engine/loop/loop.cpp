@@ -13,7 +13,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double kMinWellPosedness = 1e-12;  // of 1 + L(infinity): below it the algebraic loop has no accurate solution
+constexpr double kMinWellPosedness = 1e-12;  // |1 + L(infinity)|: below it the algebraic loop has no accurate solution
 
 Error invalid(const std::string& message) { return {ErrorKind::invalid_argument, "controller", message}; }
 
@@ -33,7 +33,7 @@ std::optional<Error> check_controller(const ParallelPid& gains) {
     for (const double value : {gains.Kp, gains.Ki, gains.Kd, gains.b, gains.c, gains.filter.Tf})
         if (!std::isfinite(value)) return invalid("Every controller parameter must be a finite number.");
     if (gains.Kp == 0 && gains.Ki == 0 && gains.Kd == 0)
-        return invalid("All gains are 0: the controller does nothing.");
+        return invalid("All gains are 0, so the controller has no effect. Give a gain that is not 0.");
     if (gains.filter.type != FilterType::none && !(gains.filter.Tf > 0))
         return Error{ErrorKind::invalid_argument, "controller/filter/Tf", "A filter needs Tf > 0."};
     if (gains.c != 0 && gains.Kd != 0 && gains.filter.type != FilterType::derivative)
@@ -95,7 +95,7 @@ LoopPoint Loop::at(double omega) const {
     point.L = quotient(numerator, denominator);
     point.S = sum.under(denominator);
     point.T = sum.under(numerator);
-    // C S = T/P: with P's own fraction, so that it stays finite where C is infinite (omega = 0).
+    // C S = T/P: computed with P's fraction, so that it stays finite where C is infinite (omega = 0).
     point.CS = sum.under(product(p.controller_numerator, p.plant_denominator));
     return point;
 }

@@ -16,7 +16,7 @@
 
 namespace tunewright {
 
-/// The loop's functions at one frequency. Finite also at undamped poles and at 0, since S = D/(D + N).
+/// The loop's transfer functions at one frequency. Finite also at undamped poles and at 0, because S = D/(D + N).
 struct LoopPoint {
     std::complex<double> L, S, T, CS;
 };
@@ -32,18 +32,18 @@ struct LoopGrid {
 /// derivative of r without filter.
 std::optional<Error> check_controller(const ParallelPid& gains);
 
-/// C(s) of the filtered controller, set-point weights apart.
+/// C(s) of the filtered controller, without set-point weights.
 std::complex<double> controller_response(const ParallelPid& gains, std::complex<double> s);
 
 class Loop {
 public:
-    /// Errors: invalid_argument ("controller") where no loop exists: a derivative without filter on a plant of pole
-    /// excess 0, 1 + L(infinity) = 0 without dead time, gains or filter that are not finite, Tf <= 0 with a filter, all
-    /// gains 0.
+    /// Errors: invalid_argument ("controller") if no loop exists: a derivative without filter on a plant of pole excess
+    /// 0, 1 + L(infinity) = 0 without dead time, gains or filter that are not finite, Tf <= 0 with a filter, all gains
+    /// 0.
     static Expected<Loop> make(const LinearPlant& plant, const ParallelPid& gains);
 
     LoopPoint at(double omega) const;
-    /// At many frequencies, several times as quick; the same to 1e-12 of each.
+    /// At many frequencies, several times as fast; each value agrees to 1e-12.
     std::vector<LoopPoint> at(std::span<const double> omega) const;
     /// At 0 and, with a dead time at its worst phase, at infinity; |C S| is left out at 0 where it is infinite.
     LoopGrid ends() const;
@@ -51,7 +51,8 @@ public:
     std::complex<double> controller(std::complex<double> s) const;
     std::complex<double> open_loop(std::complex<double> s) const;
 
-    /// L = numerator e^(-sL)/denominator with both finite everywhere; the characteristic function is their sum.
+    /// L = numerator e^(-sL)/denominator with numerator and denominator finite everywhere; the characteristic function
+    /// is their sum.
     struct Fraction {
         std::complex<double> numerator, denominator;
     };
@@ -74,12 +75,12 @@ private:
         std::complex<double> controller_numerator, controller_denominator, plant_numerator, plant_denominator;
     };
     Parts parts(std::complex<double> s) const;
-    /// At two neighbouring frequencies; false: these are out of the ordinary, and nothing is said.
+    /// Evaluates at two neighbouring frequencies; false if it cannot, and then nothing is written.
     bool pair_at(const double* omega, LoopPoint* to) const;
 
     Loop(const LinearPlant& plant, const ParallelPid& gains) : plant_(&plant), gains_(gains) {}
     int controller_excess() const;                  // degree of denominator minus numerator
-    double controller_leading_coefficient() const;  // of numerator over denominator
+    double controller_leading_coefficient() const;  // ratio of the leading coefficients of numerator and denominator
 
     const LinearPlant* plant_;
     ParallelPid gains_;

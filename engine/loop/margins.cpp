@@ -27,20 +27,20 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kPi = std::numbers::pi;
 constexpr double kLogFrequencyTolerance = 1e-13;  // of ln omega
-constexpr double kMaxModulusRatioBetween = 1.05;  // |L| may be larger by it between neighbours than at both
+constexpr double kMaxModulusRatioBetween = 1.05;  // of |L| between neighbours, relative to the larger of both
 constexpr double kMaxSingleCrossingTurn =
-    1;                             // rad of the dead time between neighbours: L may cross the axis more than once
-constexpr double kStride = 0.25;   // rad of the dead time from one look at L to the next
-constexpr int kMaxStrides = 1000;  // a turn is 26: lags turn L as well
+    1;  // rad of the dead time between neighbours: beyond it L may cross the axis more than once
+constexpr double kStride = 0.25;   // rad of the dead time between two evaluations of L
+constexpr int kMaxStrides = 1000;  // a turn of the dead time has 26; the lags turn L as well
 
-constexpr double kFirstGain = 1.02, kGainRatio = 1.15, kLastGain = 1e3;  // of 1/K: where an unstable plant is tried
-constexpr std::array<double, 3> kStartGains = {0.2, 0.01, 1e-4};  // of 1/K: the first that leaves the loop stable
+constexpr double kFirstGain = 1.02, kGainRatio = 1.15, kLastGain = 1e3;  // of 1/K, tried for an unstable plant
+constexpr std::array<double, 3> kStartGains = {0.2, 0.01, 1e-4};  // multiples of 1/K: the first stable one is used
 constexpr double kMaxTurn = 0.25;                                 // rad of d between two frequencies that are evaluated
-constexpr int kMaxParts = 200;              // between two points of the grid, for a d far beyond the loop's time scale
-constexpr double kMinModulusOfT = 0.5;      // below it no turn of the dead time can bring |T| |e^(-jwd) - 1| to 1
-constexpr double kEdgeTolerance = 1e-13;    // relative, of the frequency at which |T| passes 1/2
-constexpr double kMinShareOfMaximum = 0.9;  // of the largest value so far: a grid point below it is no peak's top
-constexpr double kMinRelevantShare = 0.45;  // of the largest value so far: 2 |T| cannot come near it
+constexpr int kMaxParts = 200;  // between two points of the grid, for a d much longer than the loop's time scale
+constexpr double kMinModulusOfT = 0.5;      // |T|: below it |T| |e^(-jwd) - 1| cannot reach 1
+constexpr double kEdgeTolerance = 1e-13;    // relative tolerance of the frequency at which |T| passes 1/2
+constexpr double kMinShareOfMaximum = 0.9;  // of the largest value so far: a lower grid point is not the top of a peak
+constexpr double kMinRelevantShare = 0.45;  // of the largest value so far: at lower values 2 |T| cannot reach it
 
 /// The frequency at which L crosses the real axis, between two at which it is known.
 double real_crossing(const AnyLoop& loop, double left, double right, std::complex<double> a, std::complex<double> b) {
@@ -128,7 +128,7 @@ Margins find_margins(const AnyLoop& loop, const LoopGrid& grid) {
         const auto a = grid.point[i - 1].L, b = grid.point[i].L;
         const double left = grid.omega[i - 1], right = grid.omega[i];
         if (!std::isfinite(magnitude(a)) || !std::isfinite(magnitude(b))) continue;
-        // A crossing nearer to 0 than one that is known says nothing new.
+        // A crossing nearer to 0 than a known one does not change the margins.
         const bool counts =
             kMaxModulusRatioBetween * std::max(magnitude(a), magnitude(b)) > std::min(1.0, 1 / margins.gain_margin);
         if (counts && loop.turning_time * (right - left) > kMaxSingleCrossingTurn) {
@@ -176,7 +176,7 @@ std::optional<UltimatePoint> ultimate_point(const LinearPlant& plant) {
         }
         return std::nullopt;
     }
-    // An integrating plant has no gain of its own to compare with: its slope over the time it needs is one.
+    // An integrating plant has no static gain as a unit: the unit is the gain whose slope over the plant's time is one.
     const double time = plant.integrators() > 0 ? plant.dead_time() + plant.lag_sum() : 1;
     if (!(time > 0)) return std::nullopt;
     for (const double factor : kStartGains) {
@@ -187,7 +187,7 @@ std::optional<UltimatePoint> ultimate_point(const LinearPlant& plant) {
 
 namespace {
 
-/// 1/d at one frequency: 0 where |T| is too small to matter.
+/// 1/d at one frequency: 0 if |T| is too small to matter.
 double inverse_tolerance(double omega, double gain) {
     return gain < kMinModulusOfT ? 0 : omega / (2 * std::asin(0.5 / gain));
 }

@@ -23,8 +23,8 @@ Expected<MeasuredLoop> MeasuredLoop::make(const MeasuredPlant& plant, const Para
     const double end = std::abs(loop.at(plant.high()).L);
     if (end <= kMaxModulusAtEnd) return loop;
     return Error{ErrorKind::unsupported, "controller",
-                 "The measured band ends at omega " + text(plant.high()) + ", where |L| still is " + text(end) +
-                     "; to judge the loop it must reach frequencies where |L| is below " + text(kMaxModulusAtEnd) +
+                 "The measured band ends at omega " + text(plant.high()) + ", where |L| is still " + text(end) +
+                     "; it must reach frequencies at which |L| is below " + text(kMaxModulusAtEnd) +
                      ". Measure higher frequencies, or lower the gain."};
 }
 

@@ -1,4 +1,4 @@
-// A controller around a plant that is known at measured frequencies alone.
+// A controller with a plant that is known only at measured frequencies.
 #pragma once
 
 #include "engine/loop/frequency_loop.h"
@@ -6,8 +6,8 @@
 
 namespace tunewright {
 
-/// Everything is computed within the measured band. Above it |L| is taken to fall, so that its end value, at worst
-/// phase, bounds what follows; below it the plant is taken to be its static gain with its integrators.
+/// Everything is computed within the measured band. Above it |L| is assumed to decrease, so that its end value, at the
+/// worst phase, is a bound; below it the plant is assumed to be its static gain with its integrators.
 class MeasuredLoop {
 public:
     /// Errors: those of check_controller; unsupported ("controller") where |L| at the band's end is above

@@ -19,17 +19,17 @@ double magnitude_CS(const LoopPoint& p) { return magnitude(p.CS); }
 double magnitude_C(const LoopPoint& p) { return magnitude(p.CS) * magnitude(1.0 + p.L); }
 
 constexpr double kMinShareOfMaximum =
-    0.8;  // of the largest grid value: neighbours on the grid differ by less than that
+    0.8;  // of the largest grid value: a lower point is no candidate, because neighbours on the grid differ by less
 
-constexpr double kLongTurn = 0.3;  // rad of the dead time between neighbours of the grid: more hides a peak
-// rad between two looks there. Where |L| is small, hills along a turn are as wide as those of a sine.
+constexpr double kLongTurn = 0.3;  // rad of the dead time between neighbours of the grid: a longer turn may hide a peak
+// rad between two evaluations there. For small |L| the maxima along a turn are as wide as those of a sine.
 constexpr double kTurnStep = 0.15, kMaxSmallModulus = 0.3, kTurnStepOfSmall = 0.5;
-constexpr double kPlainTurn = 1;                 // rad: up to it both ends say how near L comes to -1 between them
-constexpr double kMaxModulusRiseBetween = 0.01;  // |L| and |C| may be larger by it between neighbours than at both
+constexpr double kPlainTurn = 1;  // rad: for shorter turns both ends bound the distance of L from -1 between them
+constexpr double kMaxModulusRiseBetween = 0.01;  // relative rise of |L| and |C| between neighbours
 
-constexpr double kMinPeakRatio = 1 + 1e-12;  // a limit must exceed a peak by more than rounding to stand for it
+constexpr double kMinPeakRatio = 1 + 1e-12;  // a limit must exceed a peak by more than rounding to count as the peak
 constexpr double kMaxLowRise = 0.3;          // of |S| - 1: below it the usual grid is too coarse for so flat a maximum
-constexpr double kFinestStep = 5e-3, kUsualStep = 0.15;  // of S between neighbours
+constexpr double kFinestStep = 5e-3, kUsualStep = 0.15;  // change of S between neighbours
 
 Peak interior_peak(const AnyLoop& loop, const LoopGrid& grid, Magnitude magnitude) {
     const std::size_t n = grid.omega.size();
@@ -109,9 +109,9 @@ void raise_by_ends(const AnyLoop& loop, Peaks& peaks) {
 /// Between neighbours of the grid, where the dead time turns L so far that a peak can hide.
 struct Stretch {
     double left, right;
-    double S, T, CS;             // what its peaks can be at most, by |L| and |C| at both ends
-    double change_S, change_CS;  // of these bounds from end to end, relative
-    double step;                 // rad between two looks
+    double S, T, CS;             // upper bounds of its peaks, from |L| and |C| at both ends
+    double change_S, change_CS;  // relative change of these bounds from end to end
+    double step;                 // rad between two evaluations
 };
 
 std::vector<Stretch> stretches_of(const LoopGrid& grid, double time) {
@@ -139,8 +139,8 @@ std::vector<Stretch> stretches_of(const LoopGrid& grid, double time) {
     return stretches;
 }
 
-/// Room for what |L| and |C| may be larger within a stretch than at its ends: no more than they change there and in
-/// the stretches beside it.
+/// Adds to the bounds the amount by which |L| and |C| may be larger within an interval than at its ends: their change
+/// there and in the neighbouring intervals.
 void give_room(std::vector<Stretch>& stretches) {
     const auto room = [&](std::size_t i, double Stretch::*change) {
         if (i == 0 || i + 1 == stretches.size()) return kMaxModulusRiseBetween;
@@ -156,7 +156,7 @@ void give_room(std::vector<Stretch>& stretches) {
     }
 }
 
-/// Looks along the stretch, step by step and at the tops of the hills that may be higher.
+/// Evaluates along the interval, step by step and at those local maxima that may exceed the peak so far.
 void look_along(const Stretch& s, double time, const std::function<double(double)>& f, Peak& best) {
     constexpr double kMaxEvaluations = 1e8;
     const int looks = static_cast<int>(std::min(std::ceil(time * (s.right - s.left) / s.step), kMaxEvaluations));

@@ -9,7 +9,7 @@ namespace tunewright {
 
 struct Peak {
     double value = 0;  ///< sup over 0 <= omega <= infinity; infinite for |C S| of a derivative without filter
-    double omega = 0;  ///< where; 0 or infinity if the supremum is a limit
+    double omega = 0;  ///< frequency of the maximum; 0 or infinity if the supremum is a limit
 };
 
 struct Peaks {

@@ -18,15 +18,16 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr int kMaxHalvings = 60;
-constexpr double kMaxAxisDistance = 1e-9;  // |g| relative to its parts: closer to 0 counts as on the axis
+constexpr double kMaxAxisDistance = 1e-9;  // |g| relative to its parts: a smaller value counts as a root on the axis
 
-constexpr double kMaxModulusBelowOne = 0.99;  // of |L|: 1 + L stays in the right half-plane, with room for rounding
-constexpr double kLargestSlope = 1.5;         // of the open loop's turn: it is less than a radian then
-constexpr double kGridStep = 0.5;        // of S between neighbours: coarse, since each step's turn is checked by itself
+constexpr double kMaxModulusBelowOne = 0.99;  // of |L|: 1 + L stays in the right half-plane, with a margin for rounding
+constexpr double kLargestSlope = 1.5;         // of the open loop's turn: below it the turn is less than a radian
+constexpr double kGridStep = 0.5;        // change of S between neighbours: coarse, because each step's turn is checked
+                                         // separately
 constexpr int kGridDensity = 8;          // points a decade, for the same reason
-constexpr int kSpareTurns = 6;           // of the dead time beyond what the states can undo
-constexpr double kMaxTailModulus = 0.3;  // of |L|: beyond the grid the rest of the axis turns 1 + L no further
-constexpr double kMaxFrequencyRatio = 1e18;  // of the loop's own frequency: the search for a small |L| ends
+constexpr int kSpareTurns = 6;           // turns of the dead time beyond those that the states can undo
+constexpr double kMaxTailModulus = 0.3;  // of |L|: below it the rest of the axis does not turn 1 + L any further
+constexpr double kMaxFrequencyRatio = 1e18;  // of the loop's own frequency: end of the search for a small |L|
 
 /// g(jw) = (D + N e^(-jwL))/(jw + a)^n: bounded, never infinite, g -> 1 + L(infinity).
 class Characteristic {
@@ -56,8 +57,7 @@ private:
     int degree_;
 };
 
-/// Follows g between two frequencies, halving the step until its turn is unmistakable. False: g is 0 there, or as good
-/// as that.
+/// Follows g between two frequencies, halving the step until its turn is unambiguous. False: g is 0 there, or nearly 0.
 bool follow(const Characteristic& g, Winding& winding, const Characteristic::Value& left,
             const Characteristic::Value& right, int depth = kMaxHalvings) {
     if (std::min(magnitude(left.g), magnitude(right.g)) <= kMaxAxisDistance * std::max(left.size, right.size))
@@ -71,7 +71,7 @@ bool follow(const Characteristic& g, Winding& winding, const Characteristic::Val
     return follow(g, winding, left, centre, depth - 1) && follow(g, winding, centre, right, depth - 1);
 }
 
-/// Where |L| < 1 from end to end, 1 + L stays in the right half-plane however often the dead time turns it.
+/// If |L| < 1 from end to end, 1 + L stays in the right half-plane whatever the dead time.
 bool follow_dead_time(Winding& winding, const Characteristic::Value& left, const Characteristic::Value& right) {
     if (left.omega == 0 || !left.below_one || !right.below_one) return false;
     const Complex open = quotient(right.open, left.open);
@@ -86,8 +86,8 @@ bool follow_dead_time(Winding& winding, const Characteristic::Value& left, const
 }
 
 /// Every turn of the dead time with |L| > 1 encircles -1 once, and the rational part can undo no more turns than it has
-/// states. Far beyond that the loop is unstable; the number of poles is then an estimate, and nothing need be followed
-/// turn by turn. Else 0.
+/// states. With far more turns the loop is unstable; the number of poles is then an estimate, and the turns need not be
+/// followed one by one. Otherwise the result is 0.
 int turns_outside_unit_circle(const Loop& loop, const LoopGrid& grid) {
     const double L = loop.plant().dead_time();
     for (std::size_t i = grid.omega.size(); L > 0 && i-- > 0;) {
@@ -162,7 +162,7 @@ StabilityCount count_unstable_poles(const Loop& loop) {
             omega = grid.omega[++next];
             continue;
         }
-        // Past the grid |L| must be small (or q) before the rest of the axis is taken in one step.
+        // Beyond the grid |L| (or q) must be small before the rest of the axis is taken in one step.
         const double rest = std::abs(loop.open_loop({0, omega}));
         if (rest < std::max(kMaxTailModulus, 0.5 * (1 + std::abs(q)) * (L > 0 ? 1 : 4)) ||
             omega > kMaxFrequencyRatio * scale)
@@ -175,7 +175,7 @@ StabilityCount count_unstable_poles(const Loop& loop) {
 
 Expected<std::complex<double>> rightmost_pole(const Loop& loop, int nodes) {
     ParallelPid in_loop = loop.gains();
-    in_loop.setpoint_lag = 0;  // outside the loop
+    in_loop.setpoint_lag = 0;  // the set-point filter is outside the loop
     const DelaySystem system = make_delay_system(loop.plant(), in_loop);
     std::vector<std::complex<double>> poles;
     if (system.L > 0) {
@@ -186,7 +186,7 @@ Expected<std::complex<double>> rightmost_pole(const Loop& loop, int nodes) {
     }
     if (poles.empty())
         return Error{ErrorKind::numerical_failure, "",
-                     "The loop has no poles that can be computed: it has no states, or its numbers are out of range."};
+                     "The poles of the loop cannot be computed: it has no states, or its numbers are out of range."};
     return *std::max_element(poles.begin(), poles.end(), [](auto a, auto b) { return a.real() < b.real(); });
 }
 

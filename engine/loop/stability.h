@@ -1,4 +1,4 @@
-// Is the closed loop stable? Decided by the argument principle on the characteristic function, dead time exact.
+// Stability of the closed loop, by the argument principle on the characteristic function, with the exact dead time.
 #pragma once
 
 #include "engine/loop/loop.h"
@@ -13,15 +13,15 @@ struct StabilityCount {
     bool stable() const { return unstable_poles == 0 && !on_the_boundary; }
 };
 
-/// Costs about a hundred evaluations of the loop. Where the dead time turns L outside the unit circle far more often
-/// than the plant's states can undo, the number of unstable poles is an estimate; that it is not 0 is certain.
+/// Costs about a hundred evaluations of the loop. If the dead time turns L outside the unit circle far more often than
+/// the plant's states can undo, the number of unstable poles is an estimate, but it is certainly not 0.
 StabilityCount count_unstable_poles(const Loop& loop);
 
 /// The second, independent method: the rightmost closed-loop pole from a Chebyshev discretisation of the delay operator
-/// (Breda, Maset, Vermiglio 2005) with `nodes` >= 1 points over the dead time, in 1 over time. Poles with |s| L up to
+/// (Breda, Maset, Vermiglio 2005) with `nodes` >= 1 points over the dead time, in rad/time. Poles with |s| L up to
 /// about nodes/2 are accurate; without dead time `nodes` is not used. The cost is that of the eigenvalues of a matrix
-/// as large as the loop's states and the nodes together. Of a complex pair the member that the eigenvalues name first.
-/// Error: numerical_failure for a loop without states or without finite realisation.
+/// as large as the loop's states and the nodes together. Of a complex pair the result is the member with the positive
+/// imaginary part. Error: numerical_failure for a loop without states or without finite realisation.
 Expected<std::complex<double>> rightmost_pole(const Loop& loop, int nodes = 16);
 
 }  // namespace tunewright

@@ -1,5 +1,5 @@
-// How far a curve turns about 0, from points along it: the argument principle's sum, with one arctangent for a stretch
-// of points instead of one for each.
+// The angle by which a curve turns about 0, from points along it: the sum of the argument principle, with one
+// arctangent for several points instead of one for each.
 #pragma once
 
 #include <algorithm>
@@ -16,33 +16,33 @@ public:
 
     explicit Winding(Complex start) : anchor_(start), last_(start) {}
 
-    /// Whether the way between two points is so short that it cannot turn by more than half a radian, unless the curve
-    /// makes a whole turn in between.
+    /// True if the step between two points is so short that it cannot turn by more than half a radian, unless the curve
+    /// makes a full turn in between.
     static bool is_short(Complex from, Complex to) {
         return magnitude(to - from) <= kLargestStep * std::min(magnitude(from), magnitude(to));
     }
 
-    /// To a point that is a short way from the last one.
+    /// Continues to a point that is a short step from the last one.
     void follow(Complex to) {
         const Complex turned = quotient(to, anchor_);
         last_ = to;
-        if (turned.real() > std::abs(turned.imag())) return;  // the next short way stays within half a turn
+        if (turned.real() > std::abs(turned.imag())) return;  // the next short step stays within half a turn
         angle_ += std::arg(turned);
         anchor_ = to;
     }
 
-    /// To any point, by an angle that is known.
+    /// Continues to any point, by a known angle.
     void turn(double angle, Complex to) {
         angle_ = this->angle() + angle;
         anchor_ = last_ = to;
     }
 
-    double angle() const { return angle_ + std::arg(quotient(last_, anchor_)); }  ///< so far, rad
+    double angle() const { return angle_ + std::arg(quotient(last_, anchor_)); }  ///< turned so far, rad
 
 private:
     static constexpr double kLargestStep = 0.4;  // relative to the smaller end
 
-    Complex anchor_, last_;  // up to the anchor the angle has been added up
+    Complex anchor_, last_;  // the angle is added up as far as the anchor
     double angle_ = 0;
 };
 

@@ -15,7 +15,7 @@ using Index = std::size_t;
 
 constexpr double kNegligible = 1e-18;  // of a number: well below rounding
 
-// Blocks are passed by reference alone: how a call hands over a wide one depends on the processor.
+// Blocks are passed only by reference: the calling convention for wide values depends on the processor.
 
 template <class Block>
 constexpr Index kWidth = sizeof(Block) / sizeof(double);
@@ -23,7 +23,8 @@ constexpr Index kWidth = sizeof(Block) / sizeof(double);
 template <class Block, Index kBlocks>
 using Column = std::array<Block, kBlocks>;
 
-/// sum += the columns' combination with these weights, for columns of kBlocks blocks: so many sums stay in registers.
+/// sum += the columns' combination with these weights, for columns of kBlocks blocks: this number of sums stays in
+/// registers.
 template <class Block, Index kBlocks>
 TUNEWRIGHT_INLINED void combine(const double* columns, const double* weights, Index count,
                                 Column<Block, kBlocks>& sum) {
@@ -35,8 +36,7 @@ TUNEWRIGHT_INLINED void combine(const double* columns, const double* weights, In
         }
 }
 
-/// For columns of any length; what is not weighted costs nothing: a chain of lags has more of that than of anything
-/// else.
+/// For columns of any length. Columns with weight 0 are skipped: in a chain of lags most of them are.
 TUNEWRIGHT_INLINED void combine(const double* columns, const double* weights, Index count, Index length, double* sum) {
     for (Index k = 0; k < count; ++k) {
         if (weights[k] == 0) continue;
@@ -84,7 +84,7 @@ TUNEWRIGHT_INLINED void map(const double* columns, Index n, std::span<double> z,
     Column<Block, kBlocks> sum{}, inflow{};
     combine<Block, kBlocks>(columns, z.data(), n, sum);
     combine<Block, kBlocks>(columns + n * kBlocks * kWidth<Block>, inputs.data(), inputs.size(), inflow);
-    // All but the last four numbers are full blocks; of those z may lack some.
+    // All but the last four numbers are full blocks; z may be shorter than those four.
     constexpr Index kFull = kBlocks * kWidth<Block> - 4;
     std::array<double, 4> last;
     for_each_index<kBlocks>([&](auto i) {

@@ -1,4 +1,4 @@
-// A cubic polynomial over a step, and what is asked of it.
+// A cubic polynomial over a step, with its values, integrals and crossings.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ template <class Number>
 using CubicOf = std::array<Number, 4>;
 using Cubic = CubicOf<double>;
 
-/// Value and slope at s. They come by reference: how a call returns a wide register depends on the processor.
+/// Value and slope at s. Returned by reference: the calling convention for a wide register depends on the processor.
 template <class Number>
 TUNEWRIGHT_INLINED void evaluate(const CubicOf<Number>& c, double s, Number& value, Number& slope) {
     value = c[0] + s * (c[1] + s * (c[2] / 2 + s * c[3] * (1.0 / 6)));
@@ -41,7 +41,7 @@ struct Signal {
 template <class Number>
 TUNEWRIGHT_INLINED CubicOf<Number> hermite_taylor(double h, const Number& start, const Number& start_slope,
                                                   const Number& end, const Number& end_slope) {
-    // The one division needs h alone, which is there before the values are.
+    // The only division needs h alone, which is known before the values are.
     const double inverse = 1 / h;
     const Number mean_slope = (end - start) * inverse;
     return {start, start_slope, (6 * mean_slope - (4 * start_slope + 2 * end_slope)) * inverse,

@@ -11,9 +11,9 @@ namespace {
 
 using Index = std::size_t;
 
-constexpr Index kAtOnce = 16;  // so many sums side by side: an addition need not wait for the one before it
+constexpr Index kAtOnce = 16;  // number of sums side by side, so that an addition need not wait for the previous one
 
-/// Number i of a vector counts in sum i modulo kAtOnce, whatever the blocks are.
+/// Number i of a vector is added to sum i modulo kAtOnce, for any block size.
 template <class Block>
 using Sums = std::array<Block, kAtOnce * sizeof(double) / sizeof(Block)>;
 
@@ -22,7 +22,7 @@ TUNEWRIGHT_INLINED void load_block(const double* from, Block& block) {
     std::memcpy(&block, from, sizeof block);
 }
 
-/// Of the blocks' sums and of what is left of the vector beyond them.
+/// The total of the blocks' sums and of the numbers after the last full block.
 template <class Block, class Product>
 TUNEWRIGHT_INLINED double total(const Sums<Block>& sums, Index from, Index n, const Product& product) {
     std::array<double, kAtOnce> sum;

@@ -18,19 +18,20 @@ using Explicit = boost::numeric::odeint::runge_kutta_dopri5<Vector>;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kMinRelativeStep = 16 * kEpsilon;  // step, relative to the time
+constexpr double kMinRelativeStep = 16 * kEpsilon;  // of a step, relative to the time
 constexpr double kFirstStep = 0.02;                 // in units of the fastest time constant
 constexpr double kSafety = 0.9, kMaxGrowth = 5, kMaxShrinking = 0.2;
 constexpr double kExplicitPower = 1.0 / 5, kImplicitPower = 1.0 / 4;
-constexpr double kStateRounding = 20 * kEpsilon;  // of a state: errors below it are none
-constexpr double kMinDivisor = 1e-290;            // stands for 0 where something is divided by it
-constexpr double kLargestSize = 1e280;            // of a state (sizes may be infinite): steps from it are still finite
-constexpr double kMinShift = 1e-6;                // of a state at 0 without a size, for differences
-constexpr double kLaterShare = 1e-3;              // of a step: over it f's derivative in time is taken
-constexpr double kUnknownStep = 1e-3;             // of the way to the stop, where no time constant is known
-constexpr double kMinError = 1e-12;               // in tolerances: an exact step grows no more than this one
-constexpr double kExpected = 1e-2;                // of the movement expected: errors are relative to at least that
-constexpr int kStiffnessInterval = 20;            // steps between two looks at the spectrum
+constexpr double kStateRounding = 20 * kEpsilon;  // of a state: smaller errors count as 0
+constexpr double kMinDivisor = 1e-290;            // stands for 0 as a divisor
+constexpr double kLargestSize = 1e280;            // of a state (sizes may be infinite): steps from it stay finite
+constexpr double kMinShift = 1e-6;                // shift for differences of a state that is 0 and has no size
+constexpr double kLaterShare = 1e-3;              // of a step: the interval of the difference for df/dt
+constexpr double kUnknownStep = 1e-3;             // of the time to the stop, while no time constant is known
+constexpr double kMinError = 1e-12;               // in tolerances: a smaller error does not lengthen the next step
+                                                  // further
+constexpr double kExpected = 1e-2;                // of the expected movement: least size for relative errors
+constexpr int kStiffnessInterval = 20;            // steps between two estimates of the spectrum
 constexpr double kMinStiffProduct = 2.5,
                  kMaxNonstiffProduct = 0.5;  // step times spectral radius; the explicit method is stable up to 3.3
 
@@ -63,7 +64,7 @@ struct OdeIntegrator::Work {
         return std::max({min[i], expected[i], moved[i], kStateRounding / tolerance * std::abs(x[i]), kMinDivisor});
     }
 
-    /// f, remembered where it does not exist: the rest of the step is not worth its evaluations.
+    /// Evaluates f and remembers if it does not exist: then the rest of the step is skipped.
     void evaluate(double time, const double* at, double* out) {
         if (!fault) fault = !system.rates(time, {at, n}, {out, n});
         if (fault) std::fill_n(out, n, 0.0);
@@ -97,8 +98,8 @@ struct OdeIntegrator::Work {
         return radius;
     }
 
-    /// What the rates here set in motion within the fastest time constant, one state through the next: a state that
-    /// moves with a high power of time only would otherwise be compared with nearly nothing.
+    /// Estimates the movement of each state within the fastest time constant from the rates here, through chains of
+    /// states: the error of a state that moves with a high power of time would otherwise be compared with nearly 0.
     void expect_movement(double time_constant) {
         for (Index i = 0; i < n; ++i) shifted[i] = time_constant * std::abs(dx[i]);
         for (Index k = 0; k < n; ++k) {
@@ -136,7 +137,7 @@ struct OdeIntegrator::Work {
         for (Index i = 0; i < n; ++i) moved[i] = std::max(moved[i], std::abs(x[i] - first[i]));
     }
 
-    /// From the step's beginning; the result is in trial, trial_dx, error. The largest error in tolerances.
+    /// From the step's beginning; the results are trial, trial_dx and error. Returns the largest error in tolerances.
     double attempt(double length) {
         fault = false;
         if (implicit) {
@@ -193,7 +194,7 @@ struct OdeIntegrator::Work {
             if (onto_stop)
                 length = left;
             else if (2 * length > left)
-                length = 0.5 * left;  // two even steps rather than a long one and a sliver
+                length = 0.5 * left;  // two equal steps rather than a long one and a very short one
             const double worst = attempt(length);
             const double power = implicit ? kImplicitPower : kExplicitPower;
             double factor =

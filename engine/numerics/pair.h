@@ -1,5 +1,5 @@
-// Two neighbouring numbers of an array in one register, which every processor that we build for has: for short loops
-// that a compiler leaves as they are. GCC's and Clang's vector extension.
+// Two neighbouring numbers of an array in one register: for short loops that a compiler does not vectorise. Uses the
+// vector extension of GCC and Clang; every supported processor has such registers.
 //
 //   for (std::size_t i = 0; i + 1 < n; i += 2) store(to + i, load(from + i) * 2.0);
 #pragma once
@@ -11,10 +11,10 @@ namespace tunewright {
 
 using Pair = double __attribute__((vector_size(16)));
 
-/// Four, in loops that are made for wider registers too (registers.h).
+/// Four numbers, in loops that also exist for wider registers (registers.h).
 using Quad = double __attribute__((vector_size(32)));
 
-/// The outcome of comparing two pairs: all bits where it holds, else none.
+/// The result of comparing two pairs: all bits set where the comparison holds, else none.
 using PairMask = decltype(Pair{} < Pair{});
 
 inline Pair load(const double* from) {
@@ -33,7 +33,7 @@ inline PairBits bits_of(Pair x) {
     return bits;
 }
 
-/// |x|: without the sign's bits.
+/// |x|: clears the sign bits.
 inline Pair size(Pair x) {
     const PairBits bits = bits_of(x) & std::int64_t{0x7fffffffffffffff};
     std::memcpy(&x, &bits, sizeof bits);

@@ -1,5 +1,5 @@
-// Two complex numbers at a time, for sweeps over frequency: what pair.h is for real ones. Formulas that are written as
-// templates serve std::complex and this.
+// Two complex numbers at a time, for sweeps over frequency; pair.h has real ones. Formulas that are templates work with
+// std::complex and with this type.
 #pragma once
 
 #include <cmath>
@@ -31,26 +31,26 @@ inline PairComplex product(PairComplex a, PairComplex b) {
     return {a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
 }
 
-/// n/d with `square` = |d|^2, which must be ordinary numbers.
+/// n/d with `square` = |d|^2; both must be far from overflow and underflow.
 inline PairComplex quotient(PairComplex n, PairComplex d, Pair square) {
     const PairComplex scaled = product(n, conj(d));
     return {scaled.re / square, scaled.im / square};
 }
 
-/// Whether both squares are far enough from over- and underflow.
+/// True if both squares are far enough from overflow and underflow.
 inline bool ordinary(Pair square) {
     return square[0] > kMinSquare && square[0] < kMaxSquare && square[1] > kMinSquare && square[1] < kMaxSquare;
 }
 
-/// The largest angle that `unit_circle` takes, rad.
+/// The largest angle for `unit_circle`, rad.
 constexpr double kMaxPairAngle = 1e6;
 inline bool in_reach(Pair angle) { return std::abs(angle[0]) <= kMaxPairAngle && std::abs(angle[1]) <= kMaxPairAngle; }
 
-/// e^(j angle) to 2e-16 for |angle| <= kMaxPairAngle: the remainder to the nearest multiple of pi/2, in three parts
-/// of 33 bits, whose products with the multiple are exact (Cody and Waite, Software Manual for the Elementary
+/// e^(j angle) to 2e-16 for |angle| <= kMaxPairAngle: by the remainder to the nearest multiple of pi/2, which has three
+/// parts of 33 bits whose products with the multiple are exact (Cody and Waite, Software Manual for the Elementary
 /// Functions, 1980), and the Taylor polynomials of sine and cosine up to pi/4.
 inline PairComplex unit_circle(Pair angle) {
-    constexpr double kRounder = 0x1.8p52;  // added, it leaves the nearest whole number in the last bits
+    constexpr double kRounder = 0x1.8p52;  // after adding it, the last bits hold the nearest whole number
     constexpr double kHalfPiFirst = 0x1.921fb544p0, kHalfPiSecond = 0x1.0b4611a6p-34,
                      kHalfPiThird = 0x1.3198a2e037073p-69;
     const Pair shifted = angle * (2 / std::numbers::pi) + kRounder, quarters = shifted - kRounder;
@@ -69,19 +69,19 @@ inline PairComplex unit_circle(Pair angle) {
     cosine = cosine * s - 1.0 / 720;
     cosine = cosine * s + 1.0 / 24;
     cosine = 1.0 - (0.5 * s - s * s * cosine);
-    // Quarter turns: by one sine and cosine change places, by two both change sign.
+    // Quarter turns: an odd number swaps sine and cosine, two change both signs.
     const PairBits quarter = bits_of(shifted), odd = (quarter & 1) != 0;
     const Pair re = odd ? sine : cosine, im = odd ? cosine : sine;
     return {((quarter + 1) & 2) != 0 ? -re : re, (quarter & 2) != 0 ? -im : im};
 }
 
-/// Of two numbers or of two at a time.
+/// For one number or for two at a time.
 template <class Number>
 struct FractionOf {
     Number numerator, denominator;
 };
 
-/// Calls `pair(omega, to)` for two neighbours at a time, and where it says false or there is only one, to[i] =
+/// Calls `pair(omega, to)` for two neighbours at a time; if it returns false, or for a single one, to[i] =
 /// `one(omega)`.
 template <class Value, class One, class TwoAtATime>
 void in_pairs(std::span<const double> omega, Value* to, const One& one, const TwoAtATime& pair) {

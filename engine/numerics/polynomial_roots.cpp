@@ -15,9 +15,9 @@ using Complex = std::complex<double>;
 using Index = std::size_t;
 
 constexpr double kRelativeRootTolerance =
-    4096 * std::numeric_limits<double>::epsilon();  // of coefficients and of roots beside
-constexpr double kRootSpreadFactor = 4;             // a torn root's distance from its centre, in eps^(1/m)
-constexpr int kNewtonSteps = 3;  // a simple root is good to half its digits: they double at each step
+    4096 * std::numeric_limits<double>::epsilon();  // relative to coefficients and to neighbouring roots
+constexpr double kRootSpreadFactor = 4;             // distance of a split multiple root from its centre, in eps^(1/m)
+constexpr int kNewtonSteps = 3;  // a simple root has half its digits at first; each step doubles them
 
 Complex horner(std::span<const double> coefficients, Complex x) {
     Complex value = 0;
@@ -32,7 +32,7 @@ Complex horner_derivative(std::span<const double> coefficients, Complex x) {
     return value;
 }
 
-/// Of the monic polynomial with these roots, scaled so that the roots have size one; with the sums of absolute terms.
+/// The monic polynomial with these roots, scaled so that the roots have size one, with the sums of absolute terms.
 struct Product {
     std::vector<Complex> coefficients{1.0};
     std::vector<double> sizes{1.0};
@@ -49,7 +49,8 @@ struct Product {
     }
 };
 
-/// The polynomial itself, monic and in the roots' own geometric mean: powers of it neither over- nor underflow.
+/// The given polynomial, monic and scaled by the roots' geometric mean, so that powers of it neither overflow nor
+/// underflow.
 class Given {
 public:
     explicit Given(std::span<const double> coefficients) : degree_(coefficients.size() - 1) {
@@ -59,7 +60,7 @@ public:
             monic_.push_back(coefficients[i] / coefficients[0] / std::pow(scale_, static_cast<double>(i)));
     }
 
-    /// How far the coefficients of these roots' polynomial are off, relative to the terms that they are sums of.
+    /// Error of the coefficients of these roots' polynomial, relative to the terms that they are sums of.
     double error_of(const std::vector<Complex>& roots) const {
         const Product product(roots, scale_);
         double worst = 0;
@@ -91,8 +92,8 @@ Complex newton(std::span<const double> coefficients, Complex root) {
     return root;
 }
 
-/// Each root on its own, pairs together, where that brings the polynomial nearer: Newton's method on one root of a
-/// cluster spoils the product, and could make the two of a narrow pair change places.
+/// Improves each root separately, pairs together, if that brings the polynomial nearer: Newton's method on one root of
+/// a cluster could make the product worse, and could exchange the two roots of a narrow pair.
 void polish(std::span<const double> coefficients, const Given& given, std::vector<Complex>& roots) {
     double error = given.error_of(roots);
     for (Index i = 0; i < roots.size(); ++i) {
@@ -115,7 +116,8 @@ public:
     Merger(const Given& given, std::vector<Complex>& roots) : given_(given), roots_(roots), degree_(roots.size()) {}
 
     void run() {
-        // All groups at once, since a torn one beside it spoils the test of any; else those that stand by themselves.
+        // All groups at once, because a split root nearby makes the test of a single group fail; otherwise the isolated
+        // groups.
         const std::vector<Group> groups = find_groups();
         std::vector<Complex> all = roots_;
         for (const Group& group : groups) put(group, all);
@@ -133,7 +135,7 @@ public:
 private:
     using Group = std::vector<Index>;
 
-    /// Largest first: m roots that have no other within reach of an m-fold one.
+    /// Largest first: m roots, with no other root within the distance to which an m-fold root splits.
     std::vector<Group> find_groups() const {
         std::vector<Group> groups;
         std::vector<bool> taken(degree_, false);
@@ -155,7 +157,7 @@ private:
         return kRootSpreadFactor * std::pow(std::numeric_limits<double>::epsilon(), 1.0 / static_cast<double>(m));
     }
 
-    /// On one point, a real one unless the group lies on one side of the axis.
+    /// Replaces the group by one point, which is real unless the group lies on one side of the axis.
     void put(const Group& group, std::vector<Complex>& roots) const {
         Complex centre = 0;
         for (const Index k : group) centre += roots_[k] / static_cast<double>(group.size());
@@ -197,9 +199,9 @@ private:
     Index degree_;
 };
 
-/// Rounding of coefficients tears an m-fold root apart to about eps^(1/m) of itself, differently for every scale of s.
-/// Groups of roots that close are put on one point, their centre as a root of the (m - 1)th derivative, where the
-/// polynomial of the roots so changed is the given one to the rounding of its coefficients; others stay as they are.
+/// Rounding of the coefficients splits an m-fold root over about eps^(1/m) of itself, differently for every scale of s.
+/// A group of roots that close is replaced by one point, its centre as a root of the (m - 1)th derivative, if the
+/// resulting polynomial equals the given one to the rounding of its coefficients. Other groups stay as they are.
 /// `roots`: conjugate pairs as neighbours.
 void merge_multiple_roots(const Given& given, std::vector<Complex>& roots) {
     if (roots.size() >= 2) Merger(given, roots).run();
@@ -211,7 +213,7 @@ std::vector<Complex> polynomial_roots(std::span<const double> coefficients) {
     const int n = static_cast<int>(coefficients.size()) - 1;
     if (n <= 0) return {};
     if (n == 1) return {Complex(-coefficients[1] / coefficients[0])};
-    // s = scale x makes first and last coefficient alike.
+    // s = scale x makes the first and the last coefficient equal.
     const double last = coefficients[static_cast<Index>(n)];
     const double scale = last == 0 ? 1 : std::pow(std::abs(last / coefficients[0]), 1.0 / n);
     const auto size = static_cast<Index>(n);

@@ -13,10 +13,11 @@ namespace {
 
 using Index = std::size_t;
 
-constexpr double kTaylorNorm = 0.5;  // of F h in the states' own units: up to it the series loses no digits
-constexpr int kMaxTerms = 40;        // of the series: 0.5^40/40! is far below rounding; stops numbers out of range
+constexpr double kTaylorNorm = 0.5;  // norm of F h in the states' own units: up to it the series loses no digits
+constexpr int kMaxTerms = 40;        // of the series: 0.5^40/40! is far below rounding; also ends the series for
+                                     // numbers out of range
 
-constexpr Index kInputs = 5;  // of a step beside its states: the cubic's coefficients and the constant
+constexpr Index kInputs = 5;  // of a step in addition to its states: the cubic's coefficients and the constant
 
 /// The exponential series of F h on the columns of [I G b], term by term; the moments' series have the same terms with
 /// other weights.
@@ -52,8 +53,9 @@ public:
     }
 
 private:
-    /// Term m of the exponential is F^m h^m/m! x; of the moment of s^j/j! it is F^m h^(m + k)/(m + k)! x with k = j
-    /// + 1. False: the terms count no more; each component by itself, as they may be in units far apart.
+    /// Term m of the exponential is F^m h^m/m! x; of the moment of s^j/j! it is F^m h^(m + k)/(m + k)! x with k = j +
+    /// 1. False: the terms are negligible, checked for each component separately, because their units may differ
+    /// widely.
     bool add(int m) {
         double* to = step_.columns.data();
         const double* from = term_.data();
@@ -75,7 +77,7 @@ private:
     ExactStep step_;
 };
 
-/// Row by row to columns of ExactStep's length.
+/// Converts rows to columns of ExactStep's length.
 std::vector<double> in_columns(const std::vector<double>& F, Index n) {
     const Index length = column_length(n);
     std::vector<double> columns(n * length, 0.0);

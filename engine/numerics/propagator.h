@@ -16,7 +16,7 @@ struct ExactStep {
     double h = 0;
     std::size_t n = 0;
     /// n + 5 columns: those of Phi; Gamma_j, the integrals of e^(F (h - s)) G s^j/j!, j = 0 to 3; the constant, the
-    /// integral of e^(F s) b. Together, so that a step is one product; each of length().
+    /// integral of e^(F s) b. They are stored together, so that a step is one product; each has length().
     std::vector<double> columns;
 
     std::size_t length() const { return column_length(n); }
@@ -30,7 +30,7 @@ inline void advance(const ExactStep& step, const Cubic& v, std::vector<double>& 
     map_columns(step.columns.data(), step.n, x, inputs);
 }
 
-/// What `first` leaves at its end, column by column, carried on by the states alone over `second`.
+/// The columns of `first` at its end, propagated by the states alone over `second`.
 ColumnProduct carried_over(const ExactStep& second, const ExactStep& first, double* to);
 
 /// row Phi for a row of n numbers.
@@ -48,7 +48,7 @@ public:
     /// A step of length first.h + second.h.
     ExactStep compose(const ExactStep& first, const ExactStep& second) const;
 
-    /// Whether it was made of these.
+    /// True if it was made with these matrices.
     bool is_of(const std::vector<double>& F, const std::vector<double>& G, const std::vector<double>& b,
                double h0) const;
 
@@ -57,7 +57,7 @@ public:
 
 private:
     int n_;
-    std::vector<double> F_, G_, b_;  // F in columns as ExactStep's
+    std::vector<double> F_, G_, b_;  // F in columns like those of ExactStep
     double h0_, norm_;
     std::vector<ExactStep> levels_;
 };

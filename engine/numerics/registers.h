@@ -1,6 +1,5 @@
-// Registers wider than those that every processor has, for loops in straight lines: their bodies are inlined into a
-// function for each kind of register, and the processor that runs the program decides which one is called. Other
-// compilers and processors get the common one alone.
+// Wide registers, for loops without branches: their bodies are inlined into one function for each kind of register, and
+// the processor at run time decides which one is called. Other compilers and processors use only the common registers.
 //
 //   TUNEWRIGHT_INLINED void body(...) { ... }
 //   TUNEWRIGHT_FOR_AVX2 void body_avx2(...) { body(...); }
@@ -26,8 +25,8 @@ namespace tunewright {
 
 enum class Registers { common, avx2 };
 
-/// act(0), ..., act(kCount - 1), each with a constant of the program: a loop would keep in memory what else stays in
-/// registers.
+/// act(0), ..., act(kCount - 1), each with a compile-time constant: a loop would keep values in memory that stay in
+/// registers this way.
 template <std::size_t kCount, class Act>
 TUNEWRIGHT_INLINED void for_each_index(const Act& act) {
     [&]<std::size_t... kIndex>(std::index_sequence<kIndex...>) {
@@ -36,7 +35,7 @@ TUNEWRIGHT_INLINED void for_each_index(const Act& act) {
     (std::make_index_sequence<kCount>());
 }
 
-/// The widest that this processor has.
+/// The widest registers of this processor.
 inline Registers widest_registers() {
 #if TUNEWRIGHT_WIDE
     static const bool wide = __builtin_cpu_supports("avx2");

@@ -1,6 +1,6 @@
 #include "engine/numerics/rosenbrock_stepper.h"
 
-// Its checks would throw for matrices that are merely ill-conditioned.
+// uBLAS's checks would throw for matrices that are merely ill-conditioned.
 #define BOOST_UBLAS_NDEBUG 1
 
 #include <algorithm>

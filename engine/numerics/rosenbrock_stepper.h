@@ -1,5 +1,5 @@
-// Single steps of Rosenbrock's method for stiff equations, by Boost.Odeint. Apart from its user because its matrices
-// (Boost.uBLAS 1.74) use what C++20 has removed: this header and its source are C++17.
+// Single steps of Rosenbrock's method for stiff equations, by Boost.Odeint. It has its own source because its matrices
+// (Boost.uBLAS 1.74) use features that C++20 has removed: this header and its source are C++17.
 #pragma once
 
 #include <functional>
@@ -19,13 +19,13 @@ public:
     RosenbrockStepper(RosenbrockStepper&&) noexcept;
     RosenbrockStepper& operator=(RosenbrockStepper&&) noexcept;
 
-    /// From x at t to x_new at t + h; not finite where J makes the step's equations singular.
+    /// From x at t to x_new at t + h; not finite if J makes the step's equations singular.
     void step(const Rates& rates, const Derivatives& derivatives, const double* x, double t, double h, double* x_new,
               double* error);
 
-    /// Readies `at` for the last step.
+    /// Prepares `at` for the last step.
     void keep();
-    /// States at t + s h of the step that was kept, s in [0, 1].
+    /// States at t + s h of the step that `keep` was called for, s in [0, 1].
     void at(double s, double* x) const;
 
 private:

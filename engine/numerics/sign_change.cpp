@@ -11,13 +11,13 @@ namespace tunewright {
 namespace {
 
 constexpr double kRelativeRootTolerance =
-    2 * std::numeric_limits<double>::epsilon();  // of a root: neighbouring numbers, nearly
-constexpr double kMaxValue = 1e100;              // of a value: differences and quotients of two such are still finite
+    2 * std::numeric_limits<double>::epsilon();  // of a root: nearly neighbouring numbers
+constexpr double kMaxValue = 1e100;              // of a value: differences and quotients of two such values are finite
 constexpr std::uintmax_t kMaxEvaluations = 200;
 
 double finite(double value) { return value < -kMaxValue ? -kMaxValue : value < kMaxValue ? value : kMaxValue; }
 
-/// Ends of an interval that holds a change of sign and is shorter than `is_short` asks for; equal where f is 0.
+/// Ends of an interval that contains a change of sign and satisfies `is_short`; equal where f is 0.
 template <class Function, class IsShort>
 std::pair<double, double> enclose(const Function& f, double a, double b, double f_a, double f_b,
                                   const IsShort& is_short) {
@@ -27,7 +27,7 @@ std::pair<double, double> enclose(const Function& f, double a, double b, double 
         std::swap(a, b);
         std::swap(f_a, f_b);
     }
-    if (!(a < b) || (f_a < 0) == (f_b < 0)) return {b, b};  // no sign changes: nothing to look for
+    if (!(a < b) || (f_a < 0) == (f_b < 0)) return {b, b};  // no sign change
     auto evaluations = kMaxEvaluations;
     return boost::math::tools::toms748_solve([&](double x) { return finite(f(x)); }, a, b, finite(f_a), finite(f_b),
                                              is_short, evaluations);
@@ -48,7 +48,7 @@ double log_root(const std::function<double(double)>& f, double a, double b, doub
 }
 
 double first_positive(const std::function<double(double)>& f, double low, double high, double f_low, double f_high) {
-    // 0 counts as just below it, so that the search ends between two numbers and not on a zero.
+    // 0 counts as just below it, so that the search ends between two numbers and not at a zero.
     const auto below_at_zero = [](double value) { return value == 0 ? -std::numeric_limits<double>::min() : value; };
     const auto is_short = [](double left, double right) {
         return right - left <= kRelativeRootTolerance * std::max(std::abs(left), std::abs(right));

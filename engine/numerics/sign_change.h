@@ -1,6 +1,6 @@
-// Where a function of one variable changes its sign between two points. The one place that knows Boost.Math's
-// bracketing root finder, algorithm 748 (Alefeld, Potra and Shi, ACM Trans. Math. Softw. 21 (1995) 327-344): four to
-// six evaluations a smooth root, and never more than a bisection would take by a small factor.
+// The sign change of a function of one variable between two points. Only its source uses Boost.Math's bracketing root
+// finder, algorithm 748 (Alefeld, Potra and Shi, ACM Trans. Math. Softw. 21 (1995) 327-344): four to six evaluations
+// for a smooth root, and at most a small multiple of those of a bisection.
 //
 //   const auto f = [](double x) { return x * x - 2; };
 //   const double root = root_between(f, 1, 2, f(1), f(2), 1e-12);   // 1.414213562373
@@ -21,11 +21,11 @@ double root_between(const std::function<double(double)>& f, double a, double b, 
 /// The same for positive `a` and `b` in ln x: `tolerance` is relative.
 double log_root(const std::function<double(double)>& f, double a, double b, double f_a, double f_b, double tolerance);
 
-/// The smallest number found in (low, high] at which f > 0, to rounding: `f_low` <= 0 < `f_high`.
+/// The smallest number found in (low, high] at which f > 0, to rounding. Requires `f_low` <= 0 < `f_high`.
 double first_positive(const std::function<double(double)>& f, double low, double high, double f_low, double f_high);
 
-/// The first s in (a, b] at which g, which is not above 0 at a, rises above it; located to rounding. g is looked at in
-/// `looks` points between a and b as well, to find an excursion that is over at b.
+/// The first s in (a, b] at which g, which is not above 0 at a, rises above it; located to rounding. g is also
+/// evaluated at `looks` points between a and b, to find an excursion that has ended before b.
 std::optional<double> first_crossing(const std::function<double(double)>& g, double a, double b, int looks = 4);
 
 }  // namespace tunewright

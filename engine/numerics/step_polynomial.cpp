@@ -8,11 +8,11 @@ namespace tunewright {
 namespace {
 
 constexpr double kBorderTolerance =
-    8 * std::numeric_limits<double>::epsilon();  // of the time: closer counts as a step's border
+    8 * std::numeric_limits<double>::epsilon();  // of the time: a closer time counts as a step's border
 
 using Matrix = std::array<std::array<double, 6>, 6>;
 
-/// Row k holds what value k contributes to the six coefficients: Lagrange's polynomials multiplied out.
+/// Row k has the contributions of value k to the six coefficients: Lagrange's polynomials multiplied out.
 Matrix lagrange() {
     Matrix rows{};
     for (std::size_t k = 0; k < 6; ++k) {
@@ -61,7 +61,7 @@ const StepPolynomial* SignalHistory::find(double time, bool before) const {
     if (supposed_ && time > supposed_->t + slack) return &*supposed_;
     if (steps_.empty()) return nullptr;
     if (cursor_ >= steps_.size()) cursor_ = steps_.size() - 1;
-    // The step that begins last before `time`, or at it if the value after a border is wanted.
+    // The last step that begins before `time`, or at it if the value after a border is requested.
     const double latest_begin = before ? time - slack : time + slack;
     const auto begins_early = [&](std::size_t i) {
         return before ? steps_[i].t < latest_begin : steps_[i].t <= latest_begin;

@@ -1,5 +1,5 @@
-// A signal over one step of an integrator: the quintic through six of its values. Values, slopes, integrals; a history
-// of such steps, for signals that are looked up later.
+// A signal over one step of an integrator: the quintic through six of its values. It gives values, slopes and
+// integrals. A history of such steps serves signals that are read later.
 #pragma once
 
 #include <array>
@@ -8,12 +8,12 @@
 
 namespace tunewright {
 
-/// Where the six values are taken: fractions of the step, both ends included (Chebyshev's extreme points).
+/// Positions of the six values as fractions of the step, both ends included (Chebyshev's extreme points).
 extern const std::array<double, 6> kSixPoints;
 
 struct StepPolynomial {
     double t = 0, h = 0;        ///< from t to t + h
-    std::array<double, 6> c{};  ///< of powers of s = (time - t)/h
+    std::array<double, 6> c{};  ///< coefficients of powers of s = (time - t)/h
 
     static StepPolynomial through(double t, double h, const std::array<double, 6>& values);
     static StepPolynomial constant(double t, double h, double value) { return {t, h, {value}}; }
@@ -22,25 +22,25 @@ struct StepPolynomial {
     double slope(double s) const {
         return h > 0 ? (c[1] + s * (2 * c[2] + s * (3 * c[3] + s * (4 * c[4] + s * 5 * c[5])))) / h : 0;
     }
-    /// From t to t + s h.
+    /// Integral from t to t + s h.
     double integral(double s) const {
         return h * s * (c[0] + s * (c[1] / 2 + s * (c[2] / 3 + s * (c[3] / 4 + s * (c[4] / 5 + s * c[5] / 6)))));
     }
     double end() const { return t + h; }
 };
 
-/// 0 before its first step.
+/// The signal is 0 before its first step.
 class SignalHistory {
 public:
-    /// Replaces what was supposed.
+    /// Adds a step, in place of a supposed one.
     void add(const StepPolynomial& step);
     bool empty() const { return steps_.empty(); }
-    /// From its beginning on, until the next step is added.
+    /// Uses this step from its beginning on, until the next step is added.
     void suppose(const StepPolynomial& step) { supposed_ = step; }
-    /// From `time`, the end of the last step, on as it went there.
+    /// Continues the signal from `time`, the end of the last step, with its slope there.
     void suppose_line(double time);
-    /// Value and slope at `time`, of the earlier step (`before`) or the later where it is the border of two; beyond the
-    /// last step the last one continued.
+    /// Value and slope at `time`. At the border of two steps, those of the earlier (`before`) or the later one; beyond
+    /// the last step, of its continuation.
     double at(double time, bool before) const;
     double slope(double time, bool before) const;
 
@@ -49,7 +49,7 @@ private:
 
     std::vector<StepPolynomial> steps_;
     std::optional<StepPolynomial> supposed_;
-    mutable std::size_t cursor_ = 0;  // times are asked for in nearly ascending order
+    mutable std::size_t cursor_ = 0;  // times are read in nearly ascending order
 };
 
 }  // namespace tunewright

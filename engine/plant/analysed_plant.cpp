@@ -8,13 +8,13 @@
 namespace tunewright {
 namespace {
 
-/// "plant/..." of one plant, as a place below `place`.
+/// Moves an error's place from "plant/..." of one plant to below `place`.
 Error moved(Error error, const std::string& place) {
     error.where = place + error.where.substr(std::string("plant").size());
     return error;
 }
 
-/// Where the plants of the model stand, with each of them; none for points and equations.
+/// The plants of the model with their places in the request; none for points and equations.
 std::vector<std::pair<std::string, Plant>> linear_plants(const PlantModel& plant) {
     std::vector<std::pair<std::string, Plant>> plants;
     if (const auto* single = std::get_if<Plant>(&plant)) plants.emplace_back("plant", *single);
@@ -24,7 +24,7 @@ std::vector<std::pair<std::string, Plant>> linear_plants(const PlantModel& plant
     return plants;
 }
 
-/// What no plant may have; of those beside the first, which the subject is made of, also what cannot be factored.
+/// The errors of all plants; for those after the first one, also the errors of factoring.
 std::vector<Error> faults_of(const std::vector<std::pair<std::string, Plant>>& plants) {
     std::vector<Error> faults;
     for (const auto& [place, plant] : plants)

@@ -1,4 +1,4 @@
-// What a request is about, in the form in which it is computed with: made once from what was asked, with every fault.
+// The plant of a request in the form in which it is computed with, made once from the request, with all its errors.
 #pragma once
 
 #include <optional>
@@ -14,7 +14,7 @@
 
 namespace tunewright {
 
-/// One linear plant or several; figures are the nominal one's.
+/// One linear plant or several; figures are those of the nominal plant.
 struct AnalysedLinear {
     PlantFamily family;
     LinearPlant nominal;  ///< of `family`
@@ -28,14 +28,15 @@ struct AnalysedNonlinear {
 
 class AnalysedPlant {
 public:
-    /// Every fault at once, `where` = "plant/...": plant_faults, MeasuredPlant::make, NonlinearSystem::make,
+    /// All errors at once, `where` = "plant/...": plant_faults, MeasuredPlant::make, NonlinearSystem::make,
     /// linearised_plant, and unsupported for modes that input or output cannot reach.
     static std::variant<AnalysedPlant, std::vector<Error>> make(const PlantModel& plant);
 
-    /// An identified plant with what its record leaves open. Errors: as LinearPlant::make of the nominal plant.
+    /// An identified plant with the uncertainty that its record leaves. Errors: as LinearPlant::make of the nominal
+    /// plant.
     static Expected<AnalysedPlant> of_family(PlantFamily family);
 
-    /// The one place that distinguishes the kinds: a function of each of AnalysedLinear, MeasuredPlant,
+    /// The only place that distinguishes the kinds: calls a function for each of AnalysedLinear, MeasuredPlant,
     /// AnalysedNonlinear.
     template <class Visitor>
     decltype(auto) visit(Visitor&& visitor) const {
@@ -43,12 +44,12 @@ public:
     }
 
     const MeasuredPlant* measured() const { return std::get_if<MeasuredPlant>(&content_); }
-    /// Null where the plant is not given by equations.
+    /// Null if the plant is not given by equations.
     const NonlinearSystem* equations() const;
     /// The plant, the nominal one of several, or the linearisation; null and empty for measured points.
     const LinearPlant* linear() const;
     std::optional<Plant> nominal() const;
-    /// All plants that one controller must serve, where they are more than one; else null.
+    /// All plants that one controller must serve, if there are several; else null.
     const PlantFamily* family() const;
 
 private:
@@ -58,7 +59,7 @@ private:
     Content content_;
 };
 
-/// The functions of the kinds that AnalysedPlant::visit takes, put together from lambdas.
+/// Combines lambdas into the visitor that AnalysedPlant::visit takes.
 template <class... Functions>
 struct OfKinds : Functions... {
     using Functions::operator()...;

@@ -12,10 +12,10 @@ namespace {
 
 constexpr std::size_t kMinPoints = 8;
 constexpr double kPi = std::numbers::pi;
-constexpr double kMaxTurn = 2;  // rad between neighbours: beyond it the next turn could be meant as well
+constexpr double kMaxTurn = 2;  // rad between neighbours: beyond it the number of turns is ambiguous
 
 constexpr double kMaxPhaseOffAxis =
-    kPi / 3;  // from 0 or 180 degrees: beyond it a lag could have turned either sign there
+    kPi / 3;  // from 0 or 180 degrees: beyond it the sign of the static gain is ambiguous
 
 Error at_field(const std::string& field, const std::string& message, ErrorKind kind = ErrorKind::invalid_argument) {
     return {kind, "plant/" + field, message};
@@ -30,10 +30,11 @@ std::optional<Error> check_point(const FrequencyResponse& points, std::size_t i)
         return at_field("omega/" + index, "omega is " + text(points.omega[i]) + "; frequencies must be > 0.");
     if (i > 0 && !(points.omega[i] > points.omega[i - 1]))
         return at_field("omega/" + index, "omega is " + text(points.omega[i]) + " after " + text(points.omega[i - 1]) +
-                                              "; the frequencies must ascend, each once. Sort the points.");
+                                              "; the frequencies must be in ascending order, each once. Sort the "
+                                              "points.");
     if (points.re[i] == 0 && points.im[i] == 0)
         return at_field("re/" + index, "re and im are both 0 at omega " + text(points.omega[i]) +
-                                           "; the response of a plant is not 0. Leave the point out.");
+                                           "; the response of a plant is not 0. Omit the point.");
     return std::nullopt;
 }
 
@@ -44,7 +45,7 @@ std::optional<Error> points_fault(const FrequencyResponse& points) {
     for (const auto& [name, size] : {std::pair{"re", points.re.size()}, {"im", points.im.size()}})
         if (size != n)
             return at_field(name, std::string(name) + " has " + std::to_string(size) + " numbers and omega " +
-                                      std::to_string(n) + "; they must be equally many.");
+                                      std::to_string(n) + "; their numbers must be equal.");
     if (n < kMinPoints)
         return at_field("omega", "omega has " + std::to_string(n) + " points; at least " + std::to_string(kMinPoints) +
                                      " are needed.");
@@ -57,7 +58,7 @@ std::optional<Error> points_fault(const FrequencyResponse& points) {
 
 namespace {
 
-/// Slope at the middle of three points: of the parabola through them.
+/// Slope of the parabola through three points, at the middle one.
 double middle_slope(double x0, double x1, double x2, double y0, double y1, double y2) {
     const double left = (y1 - y0) / (x1 - x0), right = (y2 - y1) / (x2 - x1);
     return (left * (x2 - x1) + right * (x1 - x0)) / (x2 - x0);
@@ -66,7 +67,7 @@ double middle_slope(double x0, double x1, double x2, double y0, double y1, doubl
 double slope_at(const std::vector<double>& x, const std::vector<double>& y, std::size_t i) {
     const std::size_t n = x.size();
     if (i > 0 && i + 1 < n) return middle_slope(x[i - 1], x[i], x[i + 1], y[i - 1], y[i], y[i + 1]);
-    // At an end the parabola's slope there: twice the chord's less the slope at the neighbour.
+    // At an end, the parabola's slope there: twice the chord's slope minus that at the neighbour.
     const std::size_t a = i == 0 ? 0 : n - 2, inner = i == 0 ? 1 : n - 2;
     return 2 * (y[a + 1] - y[a]) / (x[a + 1] - x[a]) - slope_at(x, y, inner);
 }
@@ -80,7 +81,7 @@ Expected<MeasuredPlant> MeasuredPlant::make(const FrequencyResponse& points) {
     plant.integrators_ = points.integrators;
     const auto value = [&](std::size_t i) { return std::complex<double>(points.re[i], points.im[i]); };
 
-    // Integrators taken off, a real plant starts near its positive or its negative static gain.
+    // Without its integrators a real plant starts near its positive or its negative static gain.
     const double start = std::remainder(std::arg(value(0)) + 0.5 * kPi * points.integrators, 2 * kPi);
     plant.static_sign_ = std::abs(start) <= 0.5 * kPi ? 1 : -1;
     const double off_axis = plant.static_sign_ > 0 ? std::abs(start) : kPi - std::abs(start);
@@ -88,8 +89,8 @@ Expected<MeasuredPlant> MeasuredPlant::make(const FrequencyResponse& points) {
         return at_field("omega/0",
                         "At the lowest frequency, " + text(points.omega[0]) + ", the plant already turns by " +
                             text(off_axis * 180 / kPi) +
-                            " degrees, so the sign of its static gain is not known. Measure lower frequencies, "
-                            "or mend integrators.",
+                            " degrees, so the sign of its static gain is unknown. Measure lower frequencies, or "
+                            "correct the value of integrators.",
                         ErrorKind::unsupported);
     double phase = start - 0.5 * kPi * points.integrators;
     plant.turned_ = -kPi * (std::round(start / kPi) + points.unstable_poles);
@@ -106,7 +107,7 @@ Expected<MeasuredPlant> MeasuredPlant::make(const FrequencyResponse& points) {
     if (kept < points.omega.size() && (kept < kMinPoints || !plant.phase_crossover()))
         return at_field("omega/" + std::to_string(kept),
                         "Between omega " + text(points.omega[kept - 1]) + " and " + text(points.omega[kept]) +
-                            " the phase turns by more than 115 degrees, so it cannot be followed. Measure more points "
+                            " the phase changes by more than 115 degrees, so it is ambiguous. Measure more points "
                             "there.",
                         ErrorKind::unsupported);
     return plant;

@@ -1,6 +1,6 @@
-// What is controlled, as the user describes it. Values are deviations from the operating point, except those of a
-// nonlinear plant; time is in the user's unit, omega in rad per that unit. `Plant` is a linear SISO plant
-// y = P(s) (u + d) with dead time L >= 0 at its input; `PlantModel` is everything that a request may be about.
+// The controlled plant in the user's description. Values are deviations from the operating point, except those of a
+// nonlinear plant; time is in the user's unit, omega in rad per that unit. `Plant` is a linear SISO plant y = P(s) (u +
+// d) with dead time L >= 0 at its input; `PlantModel` is any plant that a request may have.
 #pragma once
 
 #include <complex>
@@ -13,19 +13,19 @@
 
 namespace tunewright {
 
-/// Factors of a nominal value between which the true one lies: 0 < low <= 1 <= high.
+/// Factors of a nominal value that enclose the true one: 0 < low <= 1 <= high.
 struct FactorRange {
     double low = 1;
     double high = 1;
 };
 
-/// How far a plant's parameters may lie from their nominal values. K is the whole plant's gain, whatever its type.
+/// Uncertainty of a plant's parameters around their nominal values. K is the whole plant's gain, for every type.
 struct Uncertainty {
     std::optional<FactorRange> K = {}, T = {}, T1 = {}, T2 = {}, L = {};
     bool empty() const { return !K && !T && !T1 && !T2 && !L; }
 };
 
-/// K e^(-Ls) / (T s + 1), taken literally: T < 0 is unstable, T = 0 a pure dead time with gain.
+/// K e^(-Ls) / (T s + 1), for any T: T < 0 is unstable, T = 0 a pure dead time with gain.
 struct Fopdt {
     double K = 0;
     double T = 0;
@@ -96,8 +96,8 @@ struct PlantSet {
     std::vector<Plant> plants;
 };
 
-/// What a request may be about: one linear plant (perhaps with uncertain parameters), several, measured points of one,
-/// or differential equations.
+/// Any plant of a request: one linear plant (perhaps with uncertain parameters), several, measured points of one, or
+/// differential equations.
 using PlantModel = std::variant<Plant, PlantSet, FrequencyResponse, NonlinearPlant>;
 
 }  // namespace tunewright

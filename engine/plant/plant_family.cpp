@@ -13,14 +13,14 @@ namespace {
 using Point = PlantRegion::Point;
 
 // The 95 % point of chi-square with 1 to 8 degrees of freedom (Abramowitz and Stegun 1964, table 26.8). Boost.Math's
-// quantile has the same seven digits; its further ones would move the ends of every region by up to 1.2e-7 of their
-// distance from the centre, and with them answers that are kept and compared.
+// quantile has the same seven digits; its further digits would move the ends of every region by up to 1.2e-7 of their
+// distance from the centre, and would change stored answers that are compared.
 constexpr std::array<double, 8> kChiSquare95 = {3.841459, 5.991465, 7.814728, 9.487729,
                                                 11.07050, 12.59159, 14.06714, 15.50731};
 constexpr double kMinLength = 1e-300;
-constexpr double kMinShare = 0.05;  // of a time constant, before its sign would change
+constexpr double kMinShare = 0.05;  // of a time constant: its least value, before its sign would change
 
-/// The members that a plant type has, by name; transfer functions and state spaces answer to K and L alone here.
+/// The members of a plant type, by name; transfer functions and state spaces have only K and L here.
 template <class T>
 double* member(T& plant, const std::string& name) {
     if (name == "L") return &plant.L;
@@ -37,7 +37,7 @@ double* member(T& plant, const std::string& name) {
     return nullptr;
 }
 
-/// a1, a2, a3 of den [a3, a2, a1, 1], perhaps times s: counted back from the last coefficient other than 0.
+/// a1, a2, a3 of den [a3, a2, a1, 1], perhaps times s: indexed from the last coefficient other than 0.
 double* denominator_coefficient(TransferFunction& plant, const std::string& name) {
     if (name != "a1" && name != "a2" && name != "a3") return nullptr;
     const auto last = std::find_if(plant.den.rbegin(), plant.den.rend(), [](double c) { return c != 0; });
@@ -107,11 +107,11 @@ bool keeps_sign(const std::string& name) { return name != "K" && name != "L" && 
 
 double length(const Point& z) { return std::sqrt(dot(z, z)); }
 
-/// Empty where they are different parameters of the plant.
+/// Error if they are not different parameters of the plant.
 std::optional<Error> fault_of_names(const Plant& plant, const std::vector<std::string>& names) {
     const auto fault = [](const std::string& name, const std::string& what) {
         return Error{ErrorKind::invalid_argument, "plant",
-                     "covariance names \"" + name + "\"" + what + " Send it as the answer had it, or leave it out."};
+                     "covariance names \"" + name + "\"" + what + " Send it unchanged from the answer, or omit it."};
     };
     Plant copy = plant;
     for (auto name = names.begin(); name != names.end(); ++name) {
@@ -227,7 +227,7 @@ void PlantRegion::cut(std::vector<double> shares) {
 }
 
 double PlantRegion::share_towards(const Point& z) const {
-    constexpr double kAngleTolerance = 1e-6;  // 1 - cos of the angle to an end
+    constexpr double kAngleTolerance = 1e-6;  // of 1 - cos of the angle to an end
     const double size = length(z);
     if (cut_ends_.empty() || size == 0) return 1;
     double sum = 0, weights = 0;

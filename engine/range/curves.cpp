@@ -10,7 +10,7 @@ namespace tunewright::range {
 namespace {
 
 constexpr double kUnstable = std::numeric_limits<double>::infinity();
-constexpr int kRefinements = 2;  // looks at the top of a parabola, for the worst place of a quantity
+constexpr int kRefinements = 2;  // evaluations at the maximum of a parabola, for the worst point of a quantity
 
 double value_of(const PointEvaluation& look, Quantity quantity) {
     if (!look.stable) return kUnstable;
@@ -29,7 +29,7 @@ PointFigures figures(const PointEvaluation& look) {
     return result;
 }
 
-/// The looks of a curve, ascending, and the search for the worst between them.
+/// The evaluations of a curve, ascending, and the search for the worst point between them.
 class CurveLooks {
 public:
     CurveLooks(PointDesigns& places, OwnOptima& own, const SettingsInUse& settings)
@@ -74,7 +74,7 @@ private:
     std::vector<PointEvaluation> looks_;
 };
 
-/// The worst place again, against its own optimum and on the grid that no search sees.
+/// Evaluates the worst point again, against its own optimum and on a grid that the searches do not use.
 Expected<WorstPoint> checked(PointDesigns& places, const SettingsInUse& settings, double at, Quantity quantity,
                              double allowance) {
     const auto place = places.at(at);

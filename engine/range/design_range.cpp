@@ -13,7 +13,7 @@
 namespace tunewright::range {
 namespace {
 
-constexpr int kMaxPointsAdded = 6;  // of one setting that must hold between its points
+constexpr int kMaxPointsAdded = 6;  // points that are added so that one setting holds between the points
 
 SettingsInUse always(const IdealPid& controller) {
     return [controller](double) { return std::vector<IdealPid>{controller}; };
@@ -58,7 +58,7 @@ private:
         control_.progress(progress);
     }
 
-    /// A stop keeps what was found; another error ends the work.
+    /// No error if it was a stop, which keeps the results so far; any other error ends the work.
     std::optional<Error> unless_stopped(const Error& error) {
         if (error.kind != ErrorKind::cancelled || !design_.one) return error;
         design_.partial = true;
@@ -118,7 +118,7 @@ private:
     std::optional<Error> search_schedule() {
         if (design_.partial || (stopped() && design_.one)) {
             design_.partial = true;
-            design_.why_no_schedule = "The design was stopped before a schedule was looked for.";
+            design_.why_no_schedule = "The design was stopped before the search for a schedule.";
             return std::nullopt;
         }
         if (one_is_enough()) {
@@ -163,7 +163,7 @@ private:
             design_.schedule = std::move(schedule);
             return unless_stopped(curve.error());
         }
-        // Both curves over the same places, so that they can be drawn and read beside each other.
+        // Both curves have the same points, so that they can be drawn and compared.
         if (design_.one && !design_.one_curve.places.empty())
             if (auto error = add_places(design_.one_curve, places_, own_, always(design_.one->controller), extra))
                 return error;
@@ -186,10 +186,10 @@ private:
     }
 
     void judge() {
-        const std::string rule = " (a schedule is worth it above " + text(kMinCostRatioForSchedule) + " times).";
+        const std::string rule = " (a schedule is worthwhile above " + text(kMinCostRatioForSchedule) + " times).";
         if (!design_.one) {
             design_.verdict = Verdict::schedule;
-            design_.because = "No one setting keeps the limits over the range: it needs a schedule.";
+            design_.because = "No single setting keeps the limits over the range, so it needs a schedule.";
             return;
         }
         const double one = design_.one_curve.places.empty() ? design_.one->worst_relative_IAE
@@ -198,13 +198,13 @@ private:
             std::isfinite(one) ? "costs up to " + text(one, 3) + " times" : "has no finite part of";
         if (one <= 1 + options_.allowance) {
             design_.verdict = Verdict::one_setting;
-            design_.because = "One setting is enough: its IAE is nowhere more than " + text(one, 3) +
-                              " times that of the place's own optimum" + rule;
+            design_.because = "One setting is enough: its IAE is at most " + text(one, 3) +
+                              " times that of the optimum at each point" + rule;
             return;
         }
         design_.verdict = one <= kMinCostRatioForSchedule ? Verdict::optional : Verdict::schedule;
         design_.because =
-            "One setting " + cost + " the IAE of a place's own optimum" +
+            "One setting " + cost + " the IAE of the optimum at that point" +
             (design_.schedule ? ", a schedule of " + std::to_string(design_.schedule->schedule.rows.size()) +
                                     " rows up to " + text(design_.schedule->worst_relative_IAE, 3) + " times"
                               : std::string()) +
@@ -214,7 +214,7 @@ private:
     const RangeProblem& problem_;
     const RangeOptions& options_;
     PointDesigns points_, integrated_;
-    PointDesigns& places_;  ///< of the schedule and the curves
+    PointDesigns& places_;  ///< the rows of the schedule and the points of the curves
     const RunControl& control_;
     OwnOptima own_;
     RangeDesign design_;
@@ -235,7 +235,7 @@ std::vector<Error> option_faults(const RangeOptions& options) {
           "Ms is " + text(options.limits.Ms) + "; must be above 1 and at most 4.");
     check(options.limits.Mt > 1 && options.limits.Mt <= 4, "Mt",
           "Mt is " + text(options.limits.Mt) + "; must be above 1 and at most 4.");
-    check(!options.limits.m_circle, "constraint", "A range is designed under limits of Ms and Mt; leave m_circle out.");
+    check(!options.limits.m_circle, "constraint", "A range is designed under limits on Ms and Mt; omit m_circle.");
     check(options.allowance > 0 && options.allowance <= 1, "allowance",
           "allowance is " + text(options.allowance) + "; must be above 0 and at most 1.");
     check(within(options.b, 0, 1), "b", "b is " + text(options.b) + "; must be 0 to 1.");
@@ -256,7 +256,7 @@ Expected<RangeDesign> design_range(const RangeProblem& problem, const RunControl
 
 namespace {
 
-constexpr std::size_t kOptimumPoints = 9;  // with optima of their own; the worst places join them
+constexpr std::size_t kOptimumPoints = 9;  // points with optima of their own; the worst points are added to them
 
 }  // namespace
 
@@ -270,7 +270,7 @@ Expected<RangeDesign> judge_schedule(const RangeProblem& problem, const Schedule
     auto own = OwnOptima::over(places, kOptimumPoints);
     if (!own) return own.error();
 
-    // The curve's places are too few to see every limit exceeded; it has those where one is.
+    // The curve has too few points to show every exceeded limit; points that exceed one are added to it.
     const auto verified = verify(places, *own, schedule, std::log1p(problem.options.allowance));
     if (!verified) return verified.error();
     std::vector<double> extra = bends_of(model, schedule);

@@ -1,4 +1,5 @@
-// The entry: one setting and a schedule for an operating range, what each costs, and whether the schedule is worth it.
+// The main entry point: designs one setting and a schedule for an operating range, with the cost of each, and decides
+// whether the schedule is worthwhile.
 //
 //   const auto model = model_of_points(points, Between::parameters);
 //   const auto design = design_range({.scheduling = {"load", "%"}, .model = *model, .options = {}}, control);
@@ -24,45 +25,46 @@ struct RangeProblem {
     Scheduling scheduling;
     std::shared_ptr<const RangeModel> model;  ///< model_of_points, model_of_branch
     RangeOptions options;
-    bool hold_between = false;  ///< one setting keeps the limits between the points too: for models that are exact
+    bool hold_between = false;  ///< one setting keeps the limits between the points too: for exact models
 };
 
-/// Is a schedule worth it? By the largest IAE with one setting over that of the place's own optimum.
+/// Whether a schedule is worthwhile, by the largest ratio of the IAE with one setting to that of the point's own
+/// optimum.
 enum class Verdict {
-    one_setting,  ///< not above 1 + allowance: a schedule would win nothing that is asked for
-    optional,     ///< not above 1.3: a schedule wins what few loops need
-    schedule,     ///< above 1.3, or no one setting keeps the limits
+    one_setting,  ///< at most 1 + allowance: a schedule has no advantage
+    optional,     ///< at most 1.3: a schedule has an advantage that few loops need
+    schedule,     ///< above 1.3, or no single setting keeps the limits
 };
 
-/// The border between `optional` and `schedule`.
+/// The threshold between `optional` and `schedule`.
 constexpr double kMinCostRatioForSchedule = 1.3;
 
 struct RangeDesign {
     std::optional<OneSetting> one;
-    std::string why_no_one;  ///< the sentence, where there is none
+    std::string why_no_one;  ///< the reason, as a sentence, if there is no such setting
     std::optional<ScheduleDesign> schedule;
     std::string why_no_schedule;
-    RangeCurve one_curve, schedule_curve;  ///< without places where there is no such design
+    RangeCurve one_curve, schedule_curve;  ///< without points if there is no such design
     Verdict verdict = Verdict::schedule;
     std::string because;  ///< the verdict as a sentence with its figures
-    std::string stated;   ///< how the plants between the points are known
+    std::string stated;   ///< the model of the plants between the points, as a sentence
     std::vector<Warning> warnings;
-    bool partial = false;  ///< stopped early: what was found by then
+    bool partial = false;  ///< stopped early, with the results so far
 };
 
-/// Every fault of the options, invalid_argument with `where` = "options/<field>": limits outside (1, 4] or m_circle,
+/// All errors of the options, invalid_argument with `where` = "options/<field>": limits outside (1, 4] or m_circle,
 /// allowance outside (0, 1], rows outside 1 to 20, b outside 0 to 1, hysteresis outside 0 to 0.2, P as a controller.
 std::vector<Error> option_faults(const RangeOptions& options);
 
-/// One setting, the schedule, their curves at 61 places and at points and rows, the same for both, the worst places and
-/// the verdict. Where one setting stays
-/// within the allowance everywhere and no number of rows is asked for, the schedule has that one row. Progress: stages
-/// "tune", "schedule" and "evaluate", with the best so far.
+/// Designs one setting and the schedule, with their curves (at 61 evenly spaced points and at all points and rows, the
+/// same for both), the worst points and the verdict. If one setting stays within the allowance everywhere and no number
+/// of rows is requested, the schedule consists of that one row. Progress: stages "tune", "schedule" and "evaluate",
+/// with the best so far.
 ///
-/// Warnings: the model's; "limit-exceeded-between" where one setting exceeds a limit between the points;
-/// "schedule-over-allowance"; "schedule-above-limit" where `holds_limits` is false. Errors: option_faults' first; those
-/// of PointDesigns::at; where neither a setting nor a schedule exists, that of the setting; cancelled before anything
-/// was found.
+/// Warnings: the model's; "limit-exceeded-between" if one setting exceeds a limit between the points;
+/// "schedule-over-allowance"; "schedule-above-limit" if `holds_limits` is false. Errors: the first of option_faults;
+/// those of PointDesigns::at; if there is neither a setting nor a schedule, that of the setting; cancelled if it was
+/// stopped before anything was found.
 Expected<RangeDesign> design_range(const RangeProblem& problem, const RunControl& control);
 
 /// Evaluates a given schedule over the range without a design: fast enough to follow a slider. Its cost is relative to
@@ -70,7 +72,7 @@ Expected<RangeDesign> design_range(const RangeProblem& problem, const RunControl
 /// `one` is empty and the verdict says nothing; a schedule beyond a limit has the warning "schedule-above-limit". Rows
 /// ascend; hysteresis is in the unit of `at`.
 ///
-/// Errors: option_faults' first; those of PointDesigns::at.
+/// Errors: the first of option_faults; those of PointDesigns::at.
 Expected<RangeDesign> judge_schedule(const RangeProblem& problem, const Schedule& schedule, const RunControl& control);
 
 }  // namespace tunewright::range

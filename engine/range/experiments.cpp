@@ -24,8 +24,8 @@ std::optional<Error> fault_of(const SteadyBranch& branch, const ExperimentOption
             return fault("experiment/at", "The place " + text(at) + " lies outside the range of " + text(branch.low()) +
                                               " to " + text(branch.high()) + ".");
         if (k > 0 && !(at > options.at[k - 1]))
-            return fault("experiment/at",
-                         "The places must ascend; " + text(at) + " follows " + text(options.at[k - 1]) + ".");
+            return fault("experiment/at", "The places must be in ascending order; " + text(at) + " follows " +
+                                              text(options.at[k - 1]) + ".");
     }
     if (options.size && !(std::abs(*options.size) > 0 && std::isfinite(*options.size)))
         return fault("experiment/size", "The size of the input's change is " + text(*options.size) +
@@ -33,13 +33,14 @@ std::optional<Error> fault_of(const SteadyBranch& branch, const ExperimentOption
     return std::nullopt;
 }
 
-/// By how much y moves over the range.
+/// The range of y over the range.
 double y_span(const SteadyBranch& branch) {
     const auto [low, high] = std::ranges::minmax(branch.states(), {}, &SteadyState::y);
     return high.y - low.y;
 }
 
-/// The input's change that moves y by so much in the end; of an integrating plant within its own time.
+/// The change of the input that finally moves y by dy; for an integrating plant, that moves it within the plant's own
+/// time.
 double size_for(const LinearPlant& plant, double dy) {
     const double gain = std::abs(plant.low_frequency_gain());
     return plant.integrators() > 0 ? dy / (gain * std::max(plant.time_scale(), 1e-300)) : dy / gain;
@@ -58,7 +59,7 @@ Expected<PlaceTest> test_at(const SteadyBranch& branch, double at, const Experim
     if (!system) return system.error();
     const auto linear = LinearPlant::make(branch.linearised(*rest));
     if (!linear) return linear.error();
-    // Along an output that is held y does not move over the range: the size is then that of y itself.
+    // Along a constant output y has no range: then the size is that of y itself.
     const double span = y_span(branch), dy = span > 0 ? span : std::abs(rest->y);
     const double size = options.size.value_or(size_for(*linear, options.y_part * dy));
     PlaceTest result{.rest = *rest, .size = size, .test = {}};

@@ -1,4 +1,4 @@
-// Step and relay tests at several places of a range, simulated on its equations: the rehearsal of a whole procedure.
+// Simulated step and relay tests at several points of a range, on its equations: the rehearsal of a whole procedure.
 #pragma once
 
 #include <optional>
@@ -16,23 +16,24 @@ enum class ExperimentKind { step, relay };
 
 struct ExperimentOptions {
     ExperimentKind kind = ExperimentKind::step;
-    std::vector<double> at;  ///< places of the range, 1 to 20, ascending
+    std::vector<double> at;  ///< values of the scheduling variable, 1 to 20, ascending
     std::optional<double> size =
-        {};                ///< of the step of u, or half of the relay's swing; of either sign for a step, not 0
-    double y_part = 0.05;  ///< without `size`: such that y moves by about this part of what it moves over the range
-    double hysteresis_part = 0;  ///< of the relay, as a part of that motion of y; a plant without dead time needs one
+        {};                ///< size of the step of u, or half the swing of the relay; for a step of either sign, not 0
+    double y_part = 0.05;  ///< without `size`: share of the range of y by which y is to move
+    double hysteresis_part = 0;  ///< hysteresis of the relay, as a share of that motion of y; a plant without dead time
+                                 ///< needs one
 };
 
-/// Deviations from the steady state at the place.
+/// Deviations from the steady state at this point.
 struct PlaceTest {
     SteadyState rest;
-    double size = 0;  ///< of u, as used
+    double size = 0;  ///< size of the change of u that was used
     std::variant<StepTest, NonlinearRelayTest> test;
 };
 
-/// Each test on the equations about their own steady state; records that identification reads like measured ones.
-/// Stops between two tests; progress after each, stage "experiment". Errors: those of SteadyBranch::at,
-/// NonlinearSystem::make, simulate_step_test and simulate_relay_test with the place in the sentence; invalid_argument,
+/// Runs each test on the equations about their own steady state. Identification reads the records like measured ones. A
+/// stop takes effect between two tests; progress after each, stage "experiment". Errors: those of SteadyBranch::at,
+/// NonlinearSystem::make, simulate_step_test and simulate_relay_test, with the place in the message; invalid_argument,
 /// `where` = "experiment/at", "experiment/size".
 Expected<std::vector<PlaceTest>> test_places(const SteadyBranch& branch, const ExperimentOptions& options,
                                              const RunControl& control);

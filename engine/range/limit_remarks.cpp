@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kMaxDigits = 9;
 
-/// The value and its limit with as many digits as tell them apart.
+/// The value and its limit with as many digits as distinguish them.
 struct ValueAndLimit {
     std::string value;  ///< "Ms is 1.4002 at load = 3 %"
     std::string limit;
@@ -38,9 +38,8 @@ const WorstPoint* worst_limit(const RangeCurve& curve) {
 std::optional<Warning> one_above_limit(const RangeCurve& curve, const PointDesigns& places) {
     if (!exceeds_limit(curve)) return std::nullopt;
     const auto [value, limit] = words_of(*worst_limit(curve), places);
-    return Warning{"limit-exceeded-between", "With one setting " + value +
-                                                 ", between the points at which its limit of " + limit +
-                                                 " is held. Add a point there."};
+    return Warning{"limit-exceeded-between", "With one setting " + value + " between the points, above its limit of " +
+                                                 limit + ". Add a point there."};
 }
 
 Warning schedule_above_limit(const RangeCurve& curve, double excess, const PointDesigns& places) {

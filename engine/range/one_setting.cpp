@@ -19,13 +19,13 @@ namespace {
 using robust::DesignPoint;
 
 constexpr double kInfiniteLogCost = std::numeric_limits<double>::infinity();
-constexpr double kCompareTolerance = 1e-3;   // of simulations that only compare starts
-constexpr double kReportedTolerance = 1e-5;  // of those that are reported
-constexpr double kMaxSameDesignLog = 0.03;   // of each logarithm: another start that leads nowhere else
-constexpr int kRounds = 4;                   // of searches under tighter limits
-constexpr int kRegionRounds = 10;            // of adding the worst plants inside regions
+constexpr double kCompareTolerance = 1e-3;   // of simulations that only rank the starts
+constexpr double kReportedTolerance = 1e-5;  // of simulations whose results are reported
+constexpr double kMaxSameDesignLog = 0.03;   // in each logarithm: two ends within it are the same design
+constexpr int kRounds = 4;                   // rounds of searches with tighter limits
+constexpr int kRegionRounds = 10;            // rounds in which the worst plants inside regions are added
 
-/// All plants of all points as one problem; nominal is the first point's.
+/// All plants of all points as one problem; the first point's is nominal.
 struct Together {
     std::vector<LinearPlant> others;
     robust::DesignProblem problem;
@@ -59,8 +59,8 @@ double log_cost_ratio_of(const std::vector<PointDesign*>& points, const DesignPo
     return aim == Aim::worst ? worst : std::log(sum / double(points.size()));
 }
 
-/// Where searches begin: the least integrated error, which needs no simulation, and the cheapest own optimum that can
-/// be moved within the limits of all points. Cheapest first.
+/// The starts of the searches: the design with the least integrated error, which needs no simulation, and the cheapest
+/// own optimum that can be moved within the limits of all points. Cheapest first.
 Expected<std::vector<DesignPoint>> starts(const std::vector<PointDesign*>& points, const RangeOptions& options, bool PI,
                                           const RunControl& control) {
     Together together(points, PI);
@@ -119,7 +119,7 @@ private:
     int steps_ = 0;
 };
 
-/// The best end of searches from the starts; the limits hold as far as the searches' grids see.
+/// The best end of the searches from the starts; the limits hold on the searches' grids.
 JointResult best_end(const JointProblem& joint, const std::vector<DesignPoint>& starts, const JointOptions& search,
                      Progressing& progress) {
     std::optional<JointResult> best;
@@ -154,7 +154,7 @@ IdealPid setting_at(const DesignRules& rules, const DesignPoint& x, double b) {
 
 namespace {
 
-/// Peaks on every plant of the place, those set aside too; empty where one loop is not stable.
+/// Peaks on every plant of the point, including those set aside; empty if a loop is unstable.
 std::optional<Peaks> worst_peaks(const PointDesign& place, const IdealPid& controller) {
     const ParallelPid gains = to_parallel(controller);
     std::optional<Peaks> worst;
@@ -207,7 +207,8 @@ struct VerifiedEnd {
     bool stopped = false;
 };
 
-/// The best end that holds the limits on the independent grid as well, searched again inside them where it does not.
+/// The best end that also keeps the limits on the independent grid; if it does not, the search is repeated with tighter
+/// limits.
 Expected<VerifiedEnd> verified_end(const std::vector<PointDesign*>& points, const JointProblem& joint,
                                    const std::vector<DesignPoint>& from, const RunControl& control,
                                    Progressing& progress) {
@@ -224,7 +225,7 @@ Expected<VerifiedEnd> verified_end(const std::vector<PointDesign*>& points, cons
     }
     return Error{ErrorKind::numerical_failure, "",
                  "The one setting found does not hold its limits on the independent frequency grid, so it is not "
-                 "returned. Give a filter with a longer Tf, or raise the limits a little."};
+                 "returned. Use a filter with a longer Tf, or raise the limits slightly."};
 }
 
 OneSetting described(const std::vector<PointDesign*>& points, const DesignRules& rules, const DesignPoint& x,
@@ -241,7 +242,7 @@ OneSetting described(const std::vector<PointDesign*>& points, const DesignRules&
     return one;
 }
 
-/// `PI`: with Td = 0, as one_setting_problem has it.
+/// `PI`: with Td = 0, as in one_setting_problem.
 Expected<OneSetting> found_setting(const std::vector<PointDesign*>& points, PointDesigns& places,
                                    const RangeOptions& options, bool PI) {
     Progressing progress(places.rules(), places.control(), options.limits);

@@ -10,8 +10,8 @@ namespace {
 using robust::DesignPoint;
 
 constexpr double kNoTd = -std::numeric_limits<double>::infinity();  // its logarithm
-constexpr double kFirstStep = 0.4;                                  // of a logarithm
-constexpr double kUnbounded = 700;                                  // a logarithm: next to the largest double's
+constexpr double kFirstStep = 0.4;                                  // of each logarithm
+constexpr double kUnbounded = 700;                                  // of a logarithm: near that of the largest double
 
 }  // namespace
 

@@ -12,17 +12,17 @@
 namespace tunewright {
 namespace {
 
-constexpr double kMinDamping = 0.5;      // below it a pair rings: no lags stand for it
-constexpr double kCloseTo = 1.6 - 1e-9;  // the source's own example has a ratio of 1.6 and does not count it
-constexpr double kNearlyReal = 0.99;     // repeated real poles of a polynomial come out as such pairs
+constexpr double kMinDamping = 0.5;      // below it a pair oscillates and cannot be replaced by lags
+constexpr double kCloseTo = 1.6 - 1e-9;  // the source's own example has a ratio of 1.6 and does not count it as close
+constexpr double kNearlyReal = 0.99;     // computed repeated real poles of a polynomial are such pairs
 
-constexpr double kOfDeadTime = 5;       // T2 and T3: lags and leads beyond 5 theta look alike to the loop
-constexpr int kMaxRounds = 20;          // of the fixed point; two or three do
-constexpr double kSameDeadTime = 1e-9;  // relative, of two rounds
+constexpr double kOfDeadTime = 5;       // T2 and T3: lags and leads longer than 5 theta are equivalent for the loop
+constexpr int kMaxRounds = 20;          // rounds of the fixed point; two or three are usual
+constexpr double kSameDeadTime = 1e-9;  // relative difference between two rounds
 
 struct TimeConstants {
     std::vector<double> lags;   // falling
-    std::vector<double> leads;  // of left-half-plane zeros, falling
+    std::vector<double> leads;  // of left-half-plane zeros, in descending order
     double delay = 0;           // dead time and right-half-plane zeros
     std::vector<Warning> warnings;
 };
@@ -38,7 +38,7 @@ Expected<TimeConstants> time_constants(const LinearPlant& plant) {
             found.warnings.push_back({"complex-poles-as-lags", "A pole pair with damping " + text(zeta) + " at " +
                                                                    text(std::abs(pole)) +
                                                                    " rad per time unit was taken as two equal lags."});
-        // For a pair, T = 1/|p|: zeta T each keeps the sum 2 zeta T.
+        // Each lag of the pair is zeta T with T = 1/|p|, which keeps the sum 2 zeta T.
         found.lags.push_back(zeta / std::abs(pole));
     }
     for (const auto zero : plant.zeros()) {
@@ -53,7 +53,8 @@ Expected<TimeConstants> time_constants(const LinearPlant& plant) {
     return found;
 }
 
-// Which lag a lead is set against: the closest larger one, or the closest smaller one if that is nearer and within 1.6.
+// The lag that a lead is cancelled against: the closest larger one, or the closest smaller one if that is nearer and
+// within 1.6.
 size_t partner(const std::vector<double>& lags, double lead) {
     const auto smaller = std::ranges::find_if(lags, [&](double lag) { return lag < lead; });
     const size_t at_smaller = static_cast<size_t>(smaller - lags.begin());
@@ -63,8 +64,7 @@ size_t partner(const std::vector<double>& lags, double lead) {
     return to_smaller < to_larger && to_smaller < kCloseTo ? at_smaller : at_smaller - 1;
 }
 
-// (lead s + 1)/(lag s + 1) as a factor of the gain and what is left of the lag: rules T1 to T3; theta is the effective
-// dead time.
+// Replaces (lead s + 1)/(lag s + 1) by a gain and a remaining lag: rules T1 to T3; theta is the effective dead time.
 struct Cancelled {
     double factor = 1, lag = 0;
 };
@@ -99,8 +99,8 @@ std::optional<WithoutLeads> cancel_leads(const TimeConstants& found, double thet
     return left;
 }
 
-// Eqs. 10 and 11. An integrator is a lag without end: the half that it would be given changes nothing, so that a
-// neglected lag next to it is all dead time.
+// Eqs. 10 and 11. An integrator is an infinite lag: adding half of a neglected lag does not change it, so the whole lag
+// becomes dead time.
 ReducedModel share_out(const TimeConstants& found, const WithoutLeads& left, const LinearPlant& plant,
                        ReducedOrder order) {
     ReducedModel model;
@@ -131,13 +131,14 @@ ReducedModel share_out(const TimeConstants& found, const WithoutLeads& left, con
 Expected<ReducedModel> half_rule(const LinearPlant& plant, ReducedOrder order) {
     const auto found = time_constants(plant);
     if (!found) return found.error();
-    // The rules for leads need the effective dead time that they lead to: a short fixed-point iteration (Section 2.2),
-    // from that of the plant without its leads, since too small a guess cancels leads that the answer would keep.
+    // The rules for leads need the effective dead time that results from them: a short fixed-point iteration (Section
+    // 2.2). It starts from that of the plant without its leads, because with a smaller value it would cancel leads that
+    // the result keeps.
     ReducedModel model = share_out(*found, {1, found->lags}, plant, order);
     double theta = model.L;
     for (int round = 0; round < kMaxRounds; ++round) {
         const auto left = cancel_leads(*found, theta);
-        if (!left) return reduction_fails("a zero in the left half-plane has no lag to be set against.");
+        if (!left) return reduction_fails("a zero in the left half-plane has no lag that could cancel it.");
         model = share_out(*found, *left, plant, order);
         if (std::abs(model.L - theta) <= kSameDeadTime * model.L) break;
         theta = model.L;

@@ -14,8 +14,8 @@
 namespace tunewright {
 namespace {
 
-// Times after the model's dead time, in time constants: steps over which a cubic through e^-t errs by about 1e-6 in
-// area.
+// Times after the model's dead time, in time constants: steps over which a cubic through e^-t has an error of about
+// 1e-6 in area.
 const std::vector<double> kModelTimes = [] {
     std::vector<double> times;
     for (double t = 0.12; t < 20; t += 0.12 * std::exp(t / 5)) times.push_back(t);
@@ -31,7 +31,7 @@ Signal response(const ReducedModel& model, double t) {
 
 }  // namespace
 
-// What is left of the decaying modes at the end would add up in integrals weighted with time: it is cut off.
+// Sets the rest of the decaying modes at the end to 0, because it would add up in integrals weighted with time.
 StepDifference::TracePoint StepDifference::at_rest(const LinearPlant& plant, double t) {
     const double K = plant.low_frequency_gain();
     if (plant.integrators() == 0) return {t, K, 0};
@@ -61,7 +61,7 @@ StepDifference::StepDifference(const LinearPlant& plant, std::optional<double> h
     }
 }
 
-// Before point `next` of the trace a cubic, after its last one a straight line.
+// Interpolates by a cubic before point `next` of the trace, by a straight line after its last one.
 StepDifference::TracePoint StepDifference::plant_at(size_t next, double t) const {
     const TracePoint& a = trace_[next - 1];
     if (next == trace_.size()) return {t, a.y + a.slope * (t - a.t), a.slope};
@@ -70,10 +70,10 @@ StepDifference::TracePoint StepDifference::plant_at(size_t next, double t) const
     return {t, value_at(y, t - a.t), slope_at(y, t - a.t)};
 }
 
-// Rising; the dead time twice, for the jump of the slope (of y where there is no lag).
+// Ascending; the dead time twice, for the jump of the slope (or of y without a lag).
 std::vector<double> StepDifference::model_times(const ReducedModel& model) const {
     std::vector<double> times;
-    const double first = trace_[1].t;  // the plant's dead time: before it the trace has no points
+    const double first = trace_[1].t;  // before the plant's dead time the trace has no points
     for (int k = 1; model.L < first && k < 8; ++k) times.push_back(model.L + (first - model.L) * k / 8);
     for (const double factor : kModelTimes) times.push_back(model.L + factor * model.T1);
     if (ends_at_horizon_) std::erase_if(times, [&](double t) { return t >= trace_.back().t; });
@@ -82,7 +82,7 @@ std::vector<double> StepDifference::model_times(const ReducedModel& model) const
     return times;
 }
 
-// The difference just before and just after the model's dead time are the nodes of the first two times.
+// The differences just before and just after the model's dead time are the nodes of the first two times.
 std::vector<ResponseNode> StepDifference::nodes(const ReducedModel& model) const {
     const std::vector<double> times = model_times(model);
     std::vector<ResponseNode> nodes;
@@ -117,9 +117,9 @@ double StepDifference::absolute(const ReducedModel& model) const {
 namespace {
 
 constexpr double kMinLag = 1e-6;            // of the time scale
-constexpr double kMinScale = 1e-3;          // of the dead time, for a plant that is nearly nothing else
-constexpr double kMinResponseShare = 1e-6;  // of the static gain or slope: less is no response to fit
-constexpr int kMaxEvaluations = 150;        // of each search; most end by their tolerance before
+constexpr double kMinScale = 1e-3;          // of the dead time, for a plant that is nearly a pure dead time
+constexpr double kMinResponseShare = 1e-6;  // of the static gain or slope: a smaller response cannot be fitted
+constexpr int kMaxEvaluations = 150;        // of each search; most reach their tolerance earlier
 constexpr double kMaxLag = 1e4;             // of the time scale
 
 double criterion(ReductionMethod method, const StepDifference& difference, const ReducedModel& model) {
@@ -128,8 +128,8 @@ double criterion(ReductionMethod method, const StepDifference& difference, const
     return method == ReductionMethod::min_ise ? integrals.ISE : integrals.ITAE;
 }
 
-// What is searched for, in units of its own: L and ln T; with an integrator L alone where T follows from it or is 0;
-// with a horizon K too.
+// The unknowns, in natural units: L and ln T; with an integrator only L if T follows from it or is 0; with a horizon K
+// too.
 class ModelSearch {
 public:
     ModelSearch(const LinearPlant& plant, const ReductionRequest& request, double scale)
@@ -155,7 +155,7 @@ private:
     double scale_, K_;
     int integrators_;
     bool fits_T_, fits_K_;
-    std::optional<double> ramp_delay_;  // where it ties L to T
+    std::optional<double> ramp_delay_;  // with it L determines T
 };
 
 ReducedModel ModelSearch::model(const std::vector<double>& x) const {
@@ -177,13 +177,13 @@ std::vector<double> ModelSearch::unknowns(const ReducedModel& model) const {
     return x;
 }
 
-// A simplex, then subspaces from where it stopped: a kink of |.| may stall a simplex.
+// A simplex, then subspaces from its end, because a kink of |.| may stall a simplex.
 ReducedModel ModelSearch::min(const ReducedModel& start) const {
     std::vector<double> x = unknowns(start);
     const double unit = cost(start);
     if (!(unit > 0)) return start;
     const auto f = [&](const std::vector<double>& at, bool&) {
-        const double outside = std::max(0.0, -at[0]);  // dead times below 0 count as 0, and cost something
+        const double outside = std::max(0.0, -at[0]);  // negative dead times count as 0, with a penalty
         return cost(model(at)) / unit + outside;
     };
     for (const auto& [search, size, tolerance] :
@@ -192,7 +192,7 @@ ReducedModel ModelSearch::min(const ReducedModel& start) const {
     return model(x);
 }
 
-// Moments (dead time and lags shared out), and what two points or the tangent say where they apply.
+// Starts: by moments (dead time and lags shared out), and by the two-point and tangent reductions if they apply.
 std::vector<ReducedModel> starts(const LinearPlant& plant, double scale) {
     std::vector<ReducedModel> models;
     const double K = plant.low_frequency_gain(), L = plant.dead_time();
@@ -210,8 +210,8 @@ double time_scale(const LinearPlant& plant) {
 
 Error nothing_moved(double horizon, const LinearPlant& plant) {
     return {ErrorKind::invalid_argument, "reduction/horizon",
-            "horizon is " + text(horizon) + "; by then the step response has not moved (the dead time is " +
-                text(plant.dead_time()) + "). Give a horizon that the response has settled by, or leave it out."};
+            "horizon is " + text(horizon) + ", but the step response has not moved by then (the dead time is " +
+                text(plant.dead_time()) + "). Give a horizon by which the response has settled, or omit it."};
 }
 
 }  // namespace
@@ -234,8 +234,7 @@ Expected<ReducedModel> min_error(const LinearPlant& plant, const ReductionReques
         best.warnings.push_back(
             {"short-horizon", "The model's time constant, " + text(best.T1) + ", exceeds the horizon " +
                                   text(*request.horizon) +
-                                  ": the part of the response that was fitted hardly depends on it. "
-                                  "Give a longer horizon."});
+                                  ", so the fitted part of the response hardly depends on it. Give a longer horizon."});
     return best;
 }
 

@@ -15,10 +15,10 @@ constexpr double kUndamped = 1e-9;  // damping below which a mode counts as lyin
 
 Error no_rule(const std::string& reason) {
     return {ErrorKind::unsupported, "plant",
-            reason + " Rules that work on a reduced model do not cover this; use the method robust."};
+            reason + " Rules that need a reduced model do not support this plant; use the method robust."};
 }
 
-// What no reduction here can express.
+// Error of a plant that no reduction here can represent.
 std::optional<Error> beyond_reduction(const LinearPlant& plant, ReducedOrder order) {
     for (const auto pole : plant.poles()) {
         if (pole.real() > kUndamped * std::abs(pole))
@@ -31,7 +31,9 @@ std::optional<Error> beyond_reduction(const LinearPlant& plant, ReducedOrder ord
         return no_rule("The plant has a zero at s = 0: it has no static gain, so integral action cannot hold it.");
     const int max = order == ReducedOrder::first ? 1 : 2;
     if (plant.integrators() > max)
-        return no_rule("The plant has " + std::to_string(plant.integrators()) + " integrators; the model can carry " +
+        return no_rule("The plant has " + std::to_string(plant.integrators()) +
+                       " integrators; the model can have at "
+                       "most " +
                        std::to_string(max) + ".");
     return std::nullopt;
 }
@@ -63,7 +65,7 @@ Error named_method_fails(ReductionMethod method, const Error& reason) {
 Error horizon_unused(ReductionMethod method) {
     return {ErrorKind::invalid_argument, "reduction/horizon",
             std::string("horizon is given, but the reduction ") + to_string(method) +
-                " has none: leave it out, or choose min_ise, min_iae or min_itae."};
+                " has none: omit it, or choose min_ise, min_iae or min_itae."};
 }
 
 Error both_fail(ReductionMethod preferred, const Error& first, const Error& second) {
@@ -72,7 +74,7 @@ Error both_fail(ReductionMethod preferred, const Error& first, const Error& seco
                 to_string(other_than(preferred)) + ": " + second.message + " Use " + kCure};
 }
 
-// A plant that has the asked form already is taken as it is, whichever method is named.
+// A plant that already has the requested form is not changed, whatever the method.
 bool has_form(const LinearPlant& plant, ReducedOrder order) {
     if (!plant.zeros().empty()) return false;
     for (const auto pole : plant.poles())

@@ -10,7 +10,7 @@ namespace tunewright {
 namespace {
 
 constexpr double kEssentiallyMonotone = 0.8;
-constexpr double kCrossingTolerance = 1e-13;  // of a crossing's instant
+constexpr double kCrossingTolerance = 1e-13;  // of a crossing's time
 
 }  // namespace
 
@@ -49,7 +49,7 @@ double ramp_delay(const LinearPlant& plant) {
 Expected<ReducedModel> ramp_asymptote(const LinearPlant& plant) {
     ReducedModel model{.integrators = 1, .K = plant.low_frequency_gain(), .L = ramp_delay(plant)};
     if (model.L < 0)
-        return reduction_fails("the zeros of the plant outweigh its lags, the ramp leads the step by " +
+        return reduction_fails("the zeros of the plant exceed its lags, so the ramp leads the step by " +
                                text(-model.L) + ".");
     model.exact = plant.poles().empty() && plant.zeros().empty();
     return model;
@@ -76,7 +76,9 @@ StepSample steepest(const LinearPlant& plant, const std::vector<StepSample>& sam
 Expected<ReducedModel> tangent(const LinearPlant& plant, TangentTime time) {
     if (plant.integrators() == 1) return ramp_asymptote(plant);
     if (plant.direct_term() != 0 && !plant.poles().empty())
-        return reduction_fails("the step response jumps at once (as many zeros as poles), it has no steepest point.");
+        return reduction_fails(
+            "the step response jumps at once (as many zeros as poles), so it has no steepest "
+            "point.");
 
     ReducedModel model{.K = plant.low_frequency_gain(), .L = plant.dead_time()};
     model.exact = plant.zeros().empty() && plant.poles().size() <= 1;
@@ -98,7 +100,7 @@ Expected<ReducedModel> tangent(const LinearPlant& plant, TangentTime time) {
 
 namespace {
 
-// The plant without its integrator: its step response is the slope of the plant's own.
+// The plant without its integrator; its step response is the derivative of the plant's own.
 Expected<LinearPlant> without_integrator(const LinearPlant& plant) {
     return LinearPlant::make(Zpk{.K = plant.gain(),
                                  .zeros = {plant.zeros().begin(), plant.zeros().end()},

@@ -11,10 +11,11 @@
 namespace tunewright {
 namespace {
 
-constexpr double kMaxUnsaidDifference = 2;  // percent; of the overshoot in percent of the step
+constexpr double kMaxUnsaidDifference =
+    2;  // percent (of the overshoot: percent of the step); smaller differences are not reported
 
 constexpr const char* kNotIdeal = "The ideal loop has no such figure.";
-constexpr const char* kNotBuilt = "The loop as built has no such figure.";
+constexpr const char* kNotBuilt = "The implemented loop has no such figure.";
 
 Figure percent_above(const Figure& on_device, const Figure& ideal) {
     if (on_device && ideal && *ideal != 0) return 100 * (*on_device / *ideal - 1);
@@ -34,7 +35,7 @@ Expected<DeviceLoop> loop_of(const AnalysedPlant& subject, const device::DeviceM
     return DeviceLoop{evaluation->robustness, evaluation->performance, evaluation->responses, {}};
 }
 
-// The settings nearest in what counts: as robust as the ideal loop, and as quick as that allows.
+// The settings closest to the ideal loop: as robust as it is, and as fast as that allows.
 Expected<device::Fitted> nearest(const AnalysedPlant& subject, const device::DeviceModel& device, const IdealPid& pid,
                                  const Evaluation& ideal, const Error& why, const RunControl& control) {
     const LinearPlant* plant = subject.linear();
@@ -82,8 +83,8 @@ Expected<DeviceEntry> device_entry_of(const AnalysedPlant& subject, const device
                                       const RunControl& control) {
     if (std::holds_alternative<Npid>(ideal.controller))
         return Error{ErrorKind::unsupported, "",
-                     "The nonlinear integral of this controller is in no product and in no sampled law here; only the "
-                     "ideal loop is judged."};
+                     "No product and no sampled law here has the nonlinear integral of this controller; only the ideal "
+                     "loop is evaluated."};
     const auto pid = to_ideal(ideal.controller);
     if (!pid) return pid.error();
     auto fitted = device::fit(device, *pid);
@@ -99,8 +100,7 @@ void warn_of_difference(Evaluation& evaluation, const DeviceEntry& on_device) {
     if (!on_device.loop.robustness.stable) {
         evaluation.warnings.push_back(
             {"unstable-as-built",
-             "On the controller as it is built the loop is unstable: sample faster, or design for "
-             "the controller with the method robust."});
+             "The implemented loop is unstable: sample faster, or design for the controller with the method robust."});
         return;
     }
     std::string moved;
@@ -112,8 +112,8 @@ void warn_of_difference(Evaluation& evaluation, const DeviceEntry& on_device) {
     note(DifferingFigure::load_IAE, on_device.load_IAE_percent, "the load IAE");
     if (moved.empty()) return;
     evaluation.warnings.push_back(
-        {"differs-as-built", "The controller as it is built, its rounding and its sampling included, moves " + moved +
-                                 " from the ideal loop; the figures in implemented are what it does."});
+        {"differs-as-built", "The implemented controller, with its rounding and sampling, changes " + moved +
+                                 " from the ideal loop; implemented has the figures of the implemented loop."});
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// One line of an answer: a controller with everything known about it.
+// One entry of an answer: a controller with everything known about it.
 #pragma once
 
 #include <optional>
@@ -17,21 +17,21 @@ namespace tunewright {
 /// The groups of a comparison, the best first.
 enum class StandingGroup {
     holds,
-    above_limit,  ///< settles, with a larger Ms than was asked of it or of all
-    not_settled,  ///< stable, but a response does not come to rest where it should
+    above_limit,  ///< settles, with a larger Ms than its own limit or the common one
+    not_settled,  ///< stable, but a response does not settle at its target
     unstable,
 };
 
-/// How an entry stands in a comparison, and why it stands behind others.
+/// The standing of an entry in a comparison, and the reason why it stands behind others.
 struct Standing {
     StandingGroup group = StandingGroup::unstable;
-    bool settles = false;   ///< stable, and both responses come to rest where they should
-    bool within = true;     ///< the limit on Ms that was asked of this entry, if one was
-    Figure Ms;              ///< of the loop as it will run: on the worst plant, in the user's own controller
-    Figure min_limit;       ///< least limit on the Ms of all entries with which it holds; none where no limit does
-    Figure excess_percent;  ///< of the load IAE over the least at the same Ms; by it entries rank
-    int order = 0;          ///< from 1: its place where no limit on the Ms of all is set
-    std::string why;        ///< what keeps it from the first group; empty where nothing does
+    bool settles = false;   ///< stable, and both responses settle at their targets
+    bool within = true;     ///< Ms is within the limit that was set for this entry; true without a limit
+    Figure Ms;              ///< of the implemented loop on the worst plant
+    Figure min_limit;       ///< the least common limit on Ms that this entry keeps; none where no limit helps
+    Figure excess_percent;  ///< load IAE above the least at the same Ms; the ranking's criterion
+    int order = 0;          ///< position, from 1, without a common limit on Ms
+    std::string why;        ///< the reason why it is not in the first group; empty if it is
     bool holds() const { return group == StandingGroup::holds; }
 };
 
@@ -52,25 +52,25 @@ struct TuningEntry {
     std::string method;  ///< id; "baseline" for today's settings; empty for controllers that were sent
     std::string title;
     std::string source;
-    bool over_region = false;  ///< limits hold over the record's confidence region, not on its model alone
+    bool over_region = false;  ///< limits hold over the record's confidence region, not for its model alone
     /// Load IAE of an entry over the region, divided by that of the same method on the model alone.
     std::optional<double> region_cost;
-    MethodOptions options;  ///< given, over the defaults
+    MethodOptions options;  ///< the given ones, with the defaults for the others
     std::optional<Plant> reduced_model;
-    std::optional<double> Ms_limit;            ///< that the method was asked for
-    std::optional<double> asked_Ms;            ///< the same where the request asked, or the method promises it
+    std::optional<double> Ms_limit;            ///< the limit that the method designed for
+    std::optional<double> asked_Ms;            ///< the same limit if the request set it or the method promises it
     std::optional<double> asked_overshoot;     ///< percent of the step, where the request has one
-    Reports reports;                           ///< of the method, and what was asked for of every controller
-    std::optional<OptimumAtMs> optimum_at_Ms;  ///< where asked for
-    std::optional<double> best_PI_load_IAE;    ///< beside a robust PID: of the robust PI within the same limits
-    std::optional<DeviceEntry> on_device;      ///< where asked for and possible
-    std::optional<Standing> standing;          ///< of what was tuned, and of the baseline
-    /// The longest sample time of a program with backward rules that keeps Ms within 5 %; of designs.
+    Reports reports;                           ///< the method's own, and those requested for every controller
+    std::optional<OptimumAtMs> optimum_at_Ms;  ///< if requested
+    std::optional<double> best_PI_load_IAE;  ///< of a robust PID: the load IAE of the robust PI within the same limits
+    std::optional<DeviceEntry> on_device;    ///< if requested and possible
+    std::optional<Standing> standing;        ///< only for designs and the baseline
+    /// Only for designs: the longest sample time of a program with backward rules that keeps Ms within 5 %.
     std::optional<Figure> longest_sample_time;
-    std::optional<Controller> unjudged;    ///< in place of an evaluation, where there is no plant to judge it on
-    std::optional<Evaluation> evaluation;  ///< warnings of the method come first in its list
+    std::optional<Controller> unjudged;    ///< the controller, if there is no plant to evaluate it on
+    std::optional<Evaluation> evaluation;  ///< its list of warnings begins with those of the method
     std::optional<Error> error;
-    std::vector<verdict::Finding> verdict;  ///< the most important first
+    std::vector<verdict::Finding> verdict;  ///< the most important finding first
 
     /// The report of this type; null if there is none.
     template <class Report>

@@ -18,7 +18,7 @@
 namespace tunewright {
 namespace {
 
-// An evaluation speaks of "controller/..."; the request has a list of them.
+// Moves an error's place from "controller/..." of one evaluation to the request's list of controllers.
 Error placed(Error error, std::size_t index) {
     const std::string one = "controller";
     if (error.where.starts_with(one)) error.where.replace(0, one.size(), "controllers/" + std::to_string(index));
@@ -27,7 +27,7 @@ Error placed(Error error, std::size_t index) {
 
 Error out_of_time(std::size_t done) {
     return {ErrorKind::timeout, "",
-            "The time allowed was over after " + std::to_string(done) + " controllers; send fewer, or fewer points."};
+            "The time limit was reached after " + std::to_string(done) + " controllers; send fewer, or fewer points."};
 }
 
 std::vector<int> by_load_IAE(const std::vector<TuningEntry>& entries) {

@@ -1,4 +1,4 @@
-// Controllers that were given, each evaluated on the same plant.
+// Given controllers, each evaluated on the same plant.
 #pragma once
 
 #include <optional>
@@ -23,13 +23,12 @@ struct EvaluationResult {
     std::optional<int> proposed;            ///< the one to show first; none without controllers
 };
 
-/// Each controller is judged alone, in the order sent; a stop is seen between two of them. Without controllers the
-/// result has none. `options` are the same for all: steps, actuator, horizon, traces.
+/// Each controller is evaluated alone, in the order of the request; a stop request takes effect between two of them.
+/// Without controllers the result has none. `options` are the same for all: steps, actuator, horizon, traces.
 ///
-/// Errors: those of evaluate(), `where` = "controllers/<index>/..."; timeout where it was stopped.
-/// `labels`: in which verdicts speak. `device`: each is also settled for the user's own controller and judged on it.
-/// `model`: the one from a record that `subject` is made of; null for a plant that was given.
-/// `given_steps`: those of `options` that the user names.
+/// Errors: those of evaluate(), `where` = "controllers/<index>/..."; timeout if it was stopped. `labels`: the units in
+/// verdicts. `device`: the user's own controller, on which each is evaluated as well. `model`: the identified model
+/// that `subject` is made of; null for a given plant. `given_steps`: the steps of `options` that the user set.
 Expected<EvaluationResult> evaluate_all(const AnalysedPlant& subject, const std::vector<Controller>& controllers,
                                         const EvaluateOptions& options,
                                         const std::optional<device::DeviceModel>& device, const verdict::Labels& labels,

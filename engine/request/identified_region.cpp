@@ -18,7 +18,7 @@ bool breaks_limit(const Evaluation& evaluation, std::optional<double> Ms_limit) 
 }
 
 void warn_of_region(Evaluation& evaluation, std::optional<double> Ms_limit, bool identified) {
-    constexpr double kMinBadRatio = 2;  // times the limit
+    constexpr double kMinBadRatio = 2;  // multiple of the limit
     if (identified)
         for (Warning& warning : evaluation.warnings)
             if (warning.code == "unstable-in-region") warning.level = WarningLevel::bad;
@@ -33,11 +33,11 @@ void warn_of_region(Evaluation& evaluation, std::optional<double> Ms_limit, bool
 
 void say_choice(Evaluation& held, const Evaluation& nominal) {
     const std::string there = nominal.region->worst_Ms ? "Ms up to " + text(*nominal.region->worst_Ms) + " is possible"
-                                                       : std::string("the loop may be unstable");
+                                                       : std::string("an unstable loop");
     held.warnings.insert(held.warnings.begin(),
                          {"held-on-region",
-                          "The limits hold on every plant that the record leaves possible (95 %). With the design for "
-                          "the model alone, the next entry, " +
+                          "The limits hold for every plant in the record's confidence region (95 %). With the design "
+                          "for the model alone (the next entry), the region allows " +
                               there + " on them."});
 }
 
@@ -48,7 +48,8 @@ void warn_of_band(Evaluation& evaluation, const std::optional<ExcitedBand>& band
         {"beyond-excited-band",
          "The loop's phase crossover, omega " + text(*crossover) +
              ", lies beyond the band that the record excited (up to omega " + text(band->omega_high) +
-             "): there the model is a guess. Ask for less, or repeat the test with faster or larger changes of u."});
+             "): the model is not reliable there. Lower the limit on Ms, or repeat the test with faster or larger "
+             "changes of u."});
 }
 
 namespace {

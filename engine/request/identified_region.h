@@ -1,4 +1,4 @@
-// What a record leaves open about its plant, and what that means for a design.
+// The uncertainty that a record leaves about its plant, and its consequences for a design.
 #pragma once
 
 #include <optional>
@@ -11,22 +11,22 @@
 
 namespace tunewright {
 
-/// The 95 % confidence region of the chosen model, and beside it the best fit of every structure that the record does
-/// not distinguish from its own. Error: numerical_failure where the covariance is no covariance.
+/// The 95 % confidence region of the chosen model, together with the best fit of every structure that the record does
+/// not distinguish from the chosen one. Error: numerical_failure if the covariance matrix is not valid.
 Expected<PlantFamily> identified_region(const IdentifiedModel& model);
 
-/// The model with its region as what controllers are judged on; the model alone where it has no covariance. Errors:
-/// as LinearPlant::make of its plant.
+/// The model with its region, as the plant that controllers are evaluated on; the model alone if it has no covariance.
+/// Errors: as LinearPlant::make of its plant.
 Expected<AnalysedPlant> subject_of(const IdentifiedModel& model);
 
-/// Whether some plant of the region is unstable, or beyond the limit on Ms that the method was asked for, if it was.
+/// True if some plant of the region is unstable, or exceeds the limit on Ms of the method's options (if there is one).
 bool breaks_limit(const Evaluation& evaluation, std::optional<double> Ms_limit);
 
-/// Warns where the region's worst Ms is above the limit. With a model from a record (`identified`) what the region
-/// shows is the answer's own doubt, not only the user's: then the warnings may be of level bad.
+/// Warns where the region's worst Ms is above the limit. With a model from a record (`identified`) the region is a
+/// result of this answer and not an input of the user: then the warnings may be of level bad.
 void warn_of_region(Evaluation& evaluation, std::optional<double> Ms_limit, bool identified);
 
-/// The design that holds on the region stands before the one on the model alone, and says why.
+/// Explains why the design that holds on the region stands before the one for the model alone.
 void say_choice(Evaluation& held, const Evaluation& nominal);
 
 /// Warns where the loop's phase crossover lies beyond the band that the record excited.

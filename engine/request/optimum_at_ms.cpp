@@ -26,7 +26,7 @@ RobustOptima::RobustOptima(TuningProblem problem, const EvaluateOptions& options
 Expected<double> RobustOptima::load_IAE_at(double Ms, const RunControl& control) {
     const auto design = front_.at(Ms, {control.stop, nullptr, nullptr});
     if (!design) return design.error();
-    // To infinity and without limits the loop is linear, and the search has simulated it.
+    // With an infinite horizon and without limits the loop is linear, and the search has already simulated it.
     if (!options_.horizon && !options_.actuator) return design->load_IAE * std::abs(options_.load_step);
     const auto evaluation = evaluate(PlantModel(problem_.plant), design->controller, options_);
     if (!evaluation) return evaluation.error();
@@ -38,7 +38,7 @@ Expected<double> RobustOptima::load_IAE_at(double Ms, const RunControl& control)
 
 OptimumAtMs RobustOptima::compare_at_Ms(const Evaluation& evaluation, const RunControl& control) {
     const auto& Ms = evaluation.robustness.Ms;
-    if (!Ms) return none("The loop has no Ms, so there is nothing to compare at.");
+    if (!Ms) return none("The loop has no Ms, so there is no optimum to compare it with.");
     if (*Ms <= 1 || *Ms > limits::kMaxMs)
         return none("Ms is " + text(*Ms) + "; optima are computed for Ms above 1 and up to " + text(limits::kMaxMs) +
                     ".");

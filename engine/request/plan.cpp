@@ -33,7 +33,7 @@ Expected<std::vector<PlannedRow>> plan_rows(const std::vector<MethodRequest>& re
         planned.push_back({method, requests[i].options, "", {}, where});
     }
     if (planned.empty())
-        return Error{ErrorKind::invalid_argument, "tune", "tune is empty; name at least one method, such as robust."};
+        return Error{ErrorKind::invalid_argument, "tune", "tune is empty; give at least one method, such as robust."};
     return planned;
 }
 
@@ -41,7 +41,7 @@ namespace {
 
 std::string first_name(const std::string& path) { return path.substr(0, path.find('/')); }
 
-// One row for each controller with integral action: without it a load leaves a lasting error.
+// A method gives one row for each of its controllers with integral action: without it a load leaves a lasting error.
 std::vector<MethodVariant> variants_of(const TuningMethod& method) {
     if (!method.variants.empty()) return method.variants;
     std::vector<MethodVariant> variants;
@@ -60,17 +60,18 @@ Error unsuitable(const std::string& path, const std::string& message) {
     return {ErrorKind::unsupported, path, message};
 }
 
-// The given options that the method knows, or what in them does not suit it.
+// The given options that the method has, or the error in them.
 Expected<MethodOptions> known_options(const MethodOptions& given, const TuningMethod& method) {
     MethodOptions known;
     for (const auto& [path, value] : given.values()) {
         if (!named(method.options, first_name(path))) {
             if (path != kControllerOption || value == OptionValue(std::string("PID"))) continue;
-            return unsuitable(
-                path, method.id + " tunes PID controllers only; " + std::get<std::string>(value) + " was asked for.");
+            return unsuitable(path, method.id + " tunes PID controllers only, but " + std::get<std::string>(value) +
+                                        " was "
+                                        "requested.");
         }
         if (const auto fault = misfit(method.options, path, value))
-            return unsuitable(path, method.id + " cannot take this: " + *fault);
+            return unsuitable(path, method.id + " cannot be used here: " + *fault);
         known.set(path, value);
     }
     return known;

@@ -24,23 +24,21 @@ Figure judged_Ms(const TuningEntry& entry) {
     return Figure(worst_Ms(entry)->value);
 }
 
-// Why the responses do not come to rest where they should; empty where they do.
+// The reason why the responses do not settle at their targets; empty if they do.
 std::string unrest(const Performance& performance) {
     for (const Figure* figure : {&performance.setpoint.settling_time, &performance.load.recovery_time,
                                  &performance.setpoint.IAE, &performance.load.IAE})
-        if (!*figure) return figure->why.empty() ? "The response does not come to rest." : figure->why;
+        if (!*figure) return figure->why.empty() ? "The response does not settle." : figure->why;
     return {};
 }
 
 std::string above(const TuningEntry& entry, const Figure& Ms, double limit) {
     const bool several = entry.evaluation->region.has_value();
     if (Ms)
-        return std::string(worst_Ms(entry)->on_worst_plant() ? "On the worst plant that it must serve Ms is "
-                                                             : "Ms is ") +
-               text(*Ms) + ", above " + text(limit) + ".";
-    if (entry.on_device && !entry.on_device->loop.robustness.stable)
-        return "The loop is unstable as the user's controller computes it.";
-    return several ? "The loop is unstable on some plant that it must serve." : "The loop has no Ms.";
+        return std::string(worst_Ms(entry)->on_worst_plant() ? "On the worst plant Ms is " : "Ms is ") + text(*Ms) +
+               ", above " + text(limit) + ".";
+    if (entry.on_device && !entry.on_device->loop.robustness.stable) return "The implemented loop is unstable.";
+    return several ? "The loop is unstable on at least one of the plants." : "The loop has no Ms.";
 }
 
 std::optional<double> baseline_limit(const std::vector<TuningEntry>& entries) {
@@ -62,7 +60,7 @@ Standing standing_of(const TuningEntry& entry, std::optional<double> own, const 
     standing.settles = evaluation.robustness.stable && restless.empty();
     standing.min_limit = standing.settles && standing.within && standing.Ms
                              ? Figure(*standing.Ms / (1 + limits::kMaxRelativeExcessRanked))
-                             : no_figure("No limit on Ms makes it hold.");
+                             : no_figure("No limit on Ms would include it.");
     const auto behind = [&](StandingGroup group, std::string why) {
         standing.group = group;
         standing.why = std::move(why);
@@ -77,7 +75,7 @@ Standing standing_of(const TuningEntry& entry, std::optional<double> own, const 
     return standing;
 }
 
-// The optimum at the entry's Ms, or where there is none (limits that no controller meets) that at the nearest Ms.
+// The optimum at the entry's Ms. If there is none (no controller meets such limits), the optimum at the nearest Ms.
 std::optional<double> optimum_for(const TuningEntry& entry, const std::vector<TuningEntry>& entries) {
     if (entry.optimum_at_Ms && entry.optimum_at_Ms->IAE) return *entry.optimum_at_Ms->IAE;
     const auto& Ms = entry.evaluation->robustness.Ms;
@@ -104,7 +102,7 @@ auto key(const TuningEntry& entry) {
                       entry.evaluation->performance.load.IAE.value_or(kInfinity));
 }
 
-// The same without the limits on Ms.
+// The sort key without the limits on Ms.
 auto key_without_limits(const TuningEntry& entry) {
     auto without = key(entry);
     if (std::get<0>(without) == StandingGroup::above_limit) std::get<0>(without) = StandingGroup::holds;
@@ -126,7 +124,7 @@ std::vector<int> ranked(std::vector<TuningEntry>& entries, const RankingTerms& t
         order.push_back(static_cast<int>(i));
         entry.standing = standing_of(entry, entry.method == "baseline" ? of_baseline : entry.asked_Ms, terms);
         const auto optimum = optimum_for(entry, entries);
-        // The plant's own load IAE, of a nonlinear one too: figures of the linearisation would hide what it does.
+        // For a nonlinear plant too, its own load IAE: the figures of the linearisation would hide its behaviour.
         const auto& IAE = entry.evaluation->performance.load.IAE;
         entry.standing->excess_percent = optimum && IAE && *optimum > 0
                                              ? Figure(100 * (*IAE / *optimum - 1))

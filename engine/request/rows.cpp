@@ -58,7 +58,7 @@ void Rows::evaluate_into(TuningEntry& entry, const Controller& controller, std::
     entry.evaluation = std::move(*evaluation);
 }
 
-// The method's own, completed, and what was asked for of every controller.
+// Adds the method's own report, completed, and those requested for every controller.
 void Rows::add_reports(TuningEntry& entry, std::shared_ptr<MethodReport> own) {
     if (!entry.evaluation || !(own || request_.evaluate.tradeoff)) return;
     const std::lock_guard locked(tradeoffs_lock_);
@@ -72,7 +72,7 @@ void Rows::add_reports(TuningEntry& entry, std::shared_ptr<MethodReport> own) {
             std::make_shared<TradeoffReport>(tradeoffs_->of(entry.evaluation->controller, entry.reduced_model)));
 }
 
-// `fitted`: the settings, where the method designs for the controller as it is built.
+// `fitted` receives the settings if the method designs for the implemented controller.
 Expected<TunedController> Rows::tuned_with(const PlannedRow& planned, const std::optional<TuningProblem>& problem,
                                            const SetpointOptions& setpoint, const RunControl& control,
                                            std::optional<device::Fitted>& fitted) const {
@@ -106,7 +106,7 @@ void Rows::add_device_entry(TuningEntry& entry, std::optional<device::Fitted> fi
                       ideal, entry.on_device);
 }
 
-// Settings that were given as typed are judged as they stand, whatever the others are made for.
+// Given settings are evaluated as given, whatever product the other entries are converted to.
 void Rows::add_baseline_on_device(TuningEntry& entry, const RunControl& control) const {
     if (!request_.baseline_settings || !entry.evaluation) return add_device_entry(entry, std::nullopt, control);
     const auto& [device, settings] = *request_.baseline_settings;
@@ -117,7 +117,7 @@ void Rows::add_baseline_on_device(TuningEntry& entry, const RunControl& control)
                       ideal, entry.on_device);
 }
 
-// What is said of a design, and of no controller that was given.
+// Adds the figures and findings that only designs have, not given controllers.
 void Rows::add_to_design(const PlannedRow& planned, const std::optional<TuningProblem>& problem,
                          const RunControl& control, TuningEntry& entry) const {
     entry.longest_sample_time = longest_sample_time_of(subject_, *entry.evaluation, control.stop);
@@ -161,7 +161,7 @@ TuningEntry Rows::entry(const PlannedRow& planned, const std::optional<TuningPro
     return entry;
 }
 
-// The method's entry, and before it one that holds on the record's region, where that is needed and can be had.
+// The method's entry, and before it one that holds on the record's region if that is needed and possible.
 MadeRow Rows::of(const PlannedRow& planned, const RunControl& control) {
     MadeRow made;
     made.entries.push_back(entry(planned, problem_, control, made.partial));

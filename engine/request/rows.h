@@ -1,4 +1,4 @@
-// One row of a tuning answer: a planned method's controller with everything that is said of it.
+// One row of a tuning answer: a planned method's controller with its evaluation and findings.
 #pragma once
 
 #include <list>
@@ -18,31 +18,31 @@
 
 namespace tunewright {
 
-/// A planned row, made.
+/// The entries of one planned row.
 struct MadeRow {
     std::vector<TuningEntry> entries;  ///< one, or two where a design on the record's region comes first
-    bool partial = false;              ///< stopped before its search had ended
+    bool partial = false;              ///< stopped before its search had finished
     bool cancelled() const;            ///< stopped before there was a design
 };
 
-/// Methods name an option or a field of the plant; the request has the one under the method's place, `where`, and the
-/// other only if it gave a plant.
+/// Moves an error's place into the request: an option lies below the method's place, `where`; a field of the plant
+/// exists only if the request has a plant.
 Error placed(const TuningRequest& request, Error error, const std::string& where);
 
-/// Makes the rows of one request; several at once, if wanted. What it is made from must outlive it.
+/// Makes the rows of one request; several threads may call it at once. Its arguments must outlive it.
 class Rows {
 public:
-    /// `subject`: what every controller is judged on. `problem`: what methods work on, empty where the plant is known
-    /// by points alone. `model`: the record's, null where there is none.
+    /// `subject`: the plant that every controller is evaluated on. `problem`: the input of the methods, empty if the
+    /// plant is known by points alone. `model`: the record's, null without a record.
     Rows(const TuningRequest& request, const AnalysedPlant& subject, const std::optional<TuningProblem>& problem,
          const IdentifiedModel* model);
 
     MadeRow of(const PlannedRow& planned, const RunControl& control);
-    /// The settings given in the request, which has some.
+    /// The entry of today's settings; the request must have them.
     TuningEntry baseline(const RunControl& control);
 
 private:
-    /// Several rules may give the very same controller: it is evaluated once.
+    /// Several rules may give the same controller: it is evaluated once.
     struct Evaluated {
         explicit Evaluated(const IdealPid& controller) : pid(controller) {}
         IdealPid pid;
@@ -67,10 +67,10 @@ private:
     const AnalysedPlant& subject_;
     const std::optional<TuningProblem>& problem_;
     const IdentifiedModel* model_;
-    std::mutex lock_;  // of what follows
+    std::mutex lock_;  // protects the members below
     std::list<Evaluated> evaluated_;
     std::mutex tradeoffs_lock_;
-    std::optional<Tradeoffs> tradeoffs_;  // made when first asked for
+    std::optional<Tradeoffs> tradeoffs_;  // made at the first request for it
 };
 
 }  // namespace tunewright

@@ -18,12 +18,12 @@
 namespace tunewright {
 namespace {
 
-constexpr double kIdentifyShare = 0.3;  // of the progress, with a record
-constexpr double kRowsShare = 0.3;      // of what then remains, where optima are computed for every row
+constexpr double kIdentifyShare = 0.3;  // share of the progress, with a record
+constexpr double kRowsShare = 0.3;      // share of the remaining progress, if optima are computed for every row
 
 Error cancelled() { return {ErrorKind::cancelled, "", "The job was cancelled before a design was found."}; }
 
-// One run of tune(): what its steps share.
+// One run of tune(): the state that its steps share.
 class TuningRun {
 public:
     TuningRun(const TuningRequest& request, const RunControl& control) : request_(request), control_(control) {}
@@ -50,10 +50,10 @@ private:
 
     const TuningRequest& request_;
     const RunControl& control_;
-    std::optional<AnalysedPlant> subject_;  // what every controller is judged on
-    std::optional<PlantFamily> held_;       // where limits must hold, if that is more than one plant
+    std::optional<AnalysedPlant> subject_;  // the plant that every controller is evaluated on
+    std::optional<PlantFamily> held_;       // the plants on which limits must hold, if there are several
     std::optional<double> dead_time_std_;
-    std::optional<TuningProblem> problem_;  // what methods work on, unless the plant is known by points alone
+    std::optional<TuningProblem> problem_;  // the input of the methods, unless the plant is known by points alone
     std::shared_ptr<const BestSoFar> best_;
     std::optional<Rows> rows_;
     TuningResult result_;
@@ -63,13 +63,13 @@ void TuningRun::report(double fraction, const std::string& stage, const std::str
     if (control_.progress) control_.progress({fraction, stage, message, best_});
 }
 
-// With the better of its best design and ours.
+// Reports the progress with the better of its best design and the best one so far.
 void TuningRun::report_better(Progress progress) const {
     if (best_ && !(progress.best && progress.best->load_IAE < best_->load_IAE)) progress.best = best_;
     control_.progress(progress);
 }
 
-// A part of the work sees 0 to 1 as its own.
+// Gives a part of the work the range `from` to `to` of the progress.
 RunControl TuningRun::share(double from, double to) const {
     RunControl part = control_;
     if (!control_.progress) return part;
@@ -128,7 +128,7 @@ void TuningRun::keep_best(const TuningEntry& entry) {
         BestSoFar{entry.evaluation->controller, *load.IAE, *robustness.Ms, robustness.Mt.value_or(0)});
 }
 
-// Where a rule has no derivative its PID row is its PI row once more.
+// If a rule has no derivative, its PID row repeats its PI row.
 bool TuningRun::repeats(const TuningEntry& entry) const {
     const IdealPid* pid = entry.evaluation ? std::get_if<IdealPid>(&entry.evaluation->controller) : nullptr;
     return pid != nullptr && std::ranges::any_of(result_.controllers, [&](const TuningEntry& other) {
@@ -138,7 +138,7 @@ bool TuningRun::repeats(const TuningEntry& entry) const {
            });
 }
 
-// What several rows, perhaps at work at once, have done of them all.
+// The progress of all rows together, which may run at the same time.
 class TuningRun::RowsProgress {
 public:
     RowsProgress(TuningRun& run, std::size_t rows, double from, double to)
@@ -169,11 +169,11 @@ private:
 
     TuningRun& run_;
     std::mutex lock_;
-    std::vector<double> done_;  // share of each
+    std::vector<double> done_;  // fraction done of each row
     const double from_, to_;
 };
 
-// False: stopped before the last row.
+// False if it was stopped before the last row.
 bool TuningRun::tune_rows(const std::vector<PlannedRow>& planned, double from, double to) {
     RowsProgress progress(*this, planned.size(), from, to);
     std::vector<std::optional<MadeRow>> made(planned.size());
@@ -195,7 +195,7 @@ bool TuningRun::tune_rows(const std::vector<PlannedRow>& planned, double from, d
     return whole;
 }
 
-// The column "how far from the optimum at the same Ms".
+// Fills the column "distance from the optimum at the same Ms".
 void TuningRun::compare_with_optima(double from) {
     RobustOptima optima(*problem_, on_linearisation(*subject_, request_.evaluate));
     const double share_of_one = (1 - from) / static_cast<double>(result_.controllers.size());
@@ -210,7 +210,7 @@ void TuningRun::compare_with_optima(double from) {
     }
 }
 
-// Where several designs are ranked it is by their distance from it.
+// Optima are needed if several designs are ranked, because they are ranked by their distance from them.
 bool TuningRun::wants_optima() const {
     const bool several = request_.tune.size() > 1 || request_.tune.front().of_all();
     return problem_ && request_.evaluate.optimum_at_Ms.value_or(several);
@@ -268,8 +268,9 @@ Expected<TuningResult> tune(const TuningRequest& request, const RunControl& cont
                       request.ultimate.has_value();
     if (given != 1)
         return Error{ErrorKind::invalid_argument, "",
-                     given > 1 ? "More than one of plant, record, model and ultimate is given; give one of them."
-                               : "Neither plant, record, model nor ultimate is given; give one of them."};
+                     given > 1 ? "The request gives more than one of plant, record, model and ultimate; give exactly "
+                                 "one."
+                               : "The request gives none of plant, record, model and ultimate; give exactly one."};
     if (request.ultimate) return tune_on_ultimate(request);
     return TuningRun(request, control).result();
 }

@@ -1,4 +1,5 @@
-// The one entry: a tuning request in, a tuning result out. Record -> model -> controllers -> evaluations -> ranking.
+// The main entry point: a tuning request in, a tuning result out. Record -> model -> controllers -> evaluations ->
+// ranking.
 #pragma once
 
 #include <optional>
@@ -15,54 +16,57 @@
 
 namespace tunewright {
 
-/// Whether methods that can hold their limits over the 95 % confidence region of a record's model do so.
+/// When methods that can hold their limits over the 95 % confidence region of a record's model do so.
 enum class IdentifiedRegion {
-    where_needed,  ///< where the design on the model alone breaks a limit there: then both are answered, this one first
+    where_needed,  ///< if the design for the model alone breaks a limit on the region: then both are answered, the
+                   ///< design for the region first
     unused,
     held,
 };
 
-/// Result of an experiment with a proportional controller, for a plant of which nothing else is known.
+/// Result of an experiment with a proportional controller, for a plant that is otherwise unknown.
 struct UltimateTest {
     double Ku = 1;            ///< gain at which the loop oscillates, u/y, != 0
     double Pu = 1;            ///< period of that oscillation, > 0
-    std::optional<double> K;  ///< static gain, y/u, != 0, of the sign of Ku
+    std::optional<double> K;  ///< static gain, y/u, != 0, with the sign of Ku
 
-    /// The fault of the signs, if there is one: a proportional controller makes a plant oscillate at a gain of the
-    /// plant's own sign.
+    /// An error if the signs differ: a proportional controller makes a plant oscillate only at a gain of the plant's
+    /// own sign.
     std::optional<Error> fault() const;
 };
 
 struct TuningRequest {
     std::optional<AnalysedPlant> subject;  ///< exactly one of subject, record, model and ultimate
     std::optional<Record> record;
-    std::optional<IdentifiedModel> model;  ///< what an earlier request found in its record
+    std::optional<IdentifiedModel> model;  ///< a model that an earlier request identified from a record
     std::optional<UltimateTest> ultimate;
     IdentifyOptions identify;
     std::vector<MethodRequest> tune = {MethodRequest{}};
     std::optional<Controller> baseline;
     EvaluateOptions evaluate;
-    verdict::GivenSteps given_steps;  ///< those of `evaluate` that the user names
+    verdict::GivenSteps given_steps;  ///< the steps of `evaluate` that the user set
     struct TypedSettings {
         device::DeviceModel device;
         product::Settings settings;
     };
-    std::optional<TypedSettings> baseline_settings;  ///< whose ideal twin `baseline` is
-    std::optional<device::DeviceModel> device;  ///< the user's own controller, for which entries are settled and judged
+    std::optional<TypedSettings>
+        baseline_settings;  ///< settings in the user's product; `baseline` is the equivalent ideal controller
+    std::optional<device::DeviceModel>
+        device;  ///< the user's own controller, for which entries are converted and evaluated
     IdentifiedRegion identified_region = IdentifiedRegion::where_needed;
-    verdict::Labels labels;  ///< in which verdicts speak
+    verdict::Labels labels;  ///< the units in verdicts
 };
 
 struct TuningResult {
     std::optional<IdentifiedModel> model;
-    std::optional<OperatingPoint> operating_point;  ///< of a nonlinear plant
+    std::optional<OperatingPoint> operating_point;  ///< only for a nonlinear plant
     std::vector<TuningEntry> controllers;
     std::vector<int> ranking;  ///< indices into controllers, best first; entries with an error are left out
     std::string ranking_by;
-    std::optional<double> rank_Ms;  ///< the limit on the Ms of all that ranking goes by; none where nothing ranks them
-    bool partial = false;           ///< cancelled after a feasible design was found
-    std::vector<verdict::Finding> verdict;  ///< over all entries: which to take
-    std::optional<int> proposed;            ///< the entry to show first; none where no entry has a controller
+    std::optional<double> rank_Ms;          ///< the common limit on Ms of the ranking; none if entries are not ranked
+    bool partial = false;                   ///< cancelled after a feasible design was found
+    std::vector<verdict::Finding> verdict;  ///< the verdict on the whole answer: which entry to take
+    std::optional<int> proposed;            ///< the entry to show first; none if no entry has a controller
 };
 
 /// Errors: those of identification; of the single method if all fail; invalid_argument; cancelled.

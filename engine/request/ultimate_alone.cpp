@@ -17,7 +17,7 @@ bool takes_ultimate(const TuningMethod& method) {
     return std::ranges::any_of(method.options, [](const OptionDescription& option) { return option.name == kGain; });
 }
 
-/// A plant of that static gain, of which the rules on Ku and Pu look at nothing else.
+/// A plant of that static gain: the rules on Ku and Pu read nothing else of it.
 Expected<TuningProblem> stand_in(double K) {
     const Plant plant = Fopdt{.K = K, .T = 1, .L = 1};
     auto linear = LinearPlant::make(plant);
@@ -34,7 +34,7 @@ Expected<TunedController> tuned_on(const UltimateTest& test, double K, const Pla
     return row.method->tune(*problem, options, {});
 }
 
-/// Without the static gain, a rule's settings and none of its remarks, which speak of K Ku.
+/// Without the static gain: a rule's settings without its remarks, which are about K Ku.
 Expected<TunedController> tuned_without_gain(const UltimateTest& test, const PlannedRow& row) {
     const double one = 2 / test.Ku, other = 7 / test.Ku;
     auto tuned = tuned_on(test, one, row);
@@ -42,7 +42,7 @@ Expected<TunedController> tuned_without_gain(const UltimateTest& test, const Pla
     if (!tuned || !again) return tuned ? again : tuned;
     if (!(tuned->controller == again->controller))
         return Error{ErrorKind::unsupported, "ultimate/K",
-                     row.method->id + " also needs the static gain: give K beside Ku and Pu."};
+                     row.method->id + " also needs the static gain: give K as well as Ku and Pu."};
     tuned->warnings.clear();
     return tuned;
 }
@@ -52,8 +52,8 @@ Expected<TunedController> tuned(const UltimateTest& test, const PlannedRow& row)
     if (!takes_ultimate(*row.method))
         return Error{ErrorKind::unsupported, "",
                      "The method " + row.method->id +
-                         " needs a model of the plant or a record; Ku and Pu alone serve the rules on the ultimate "
-                         "point, such as ziegler_nichols_ultimate."};
+                         " needs a model of the plant or a record; Ku and Pu alone are enough only for the rules on "
+                         "the ultimate point, such as ziegler_nichols_ultimate."};
     return test.K ? tuned_on(test, *test.K, row) : tuned_without_gain(test, row);
 }
 
@@ -82,7 +82,7 @@ std::optional<Error> UltimateTest::fault() const {
     if (!K || Ku * *K > 0) return std::nullopt;
     return Error{ErrorKind::invalid_argument, "ultimate/Ku",
                  "Ku is " + text(Ku) + " and K is " + text(*K) +
-                     "; they must have the same sign. Give both as they were found, or leave K out."};
+                     "; they must have the same sign. Give both with the signs that were measured, or leave K out."};
 }
 
 Expected<TuningResult> tune_on_ultimate(const TuningRequest& request) {
@@ -97,7 +97,7 @@ Expected<TuningResult> tune_on_ultimate(const TuningRequest& request) {
         result.controllers.push_back(std::move(entry));
     }
     if (result.ranking.empty()) return all_failed(result.controllers);
-    result.ranking_by = "the order of the methods; without a plant nothing ranks them";
+    result.ranking_by = "the order of the methods; they are not ranked, because no plant is known";
     result.verdict = verdict::of_all_without_loop();
     result.proposed = verdict::proposed(result.controllers, result.verdict);
     return result;

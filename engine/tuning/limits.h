@@ -10,9 +10,9 @@ namespace tunewright::limits {
 /// Largest peaks of |S| and |T|. Åström and Hägglund, Advanced PID Control (2006), section 4.6: reasonable Ms lie
 /// between 1.2 and 2; Garpinger and Hägglund design for 1.4.
 inline constexpr double kDefaultMs = 1.4, kDefaultMt = kDefaultMs;
-/// The largest limit on Ms or Mt that may be asked for: beyond it the loop hardly differs from an unstable one.
+/// The largest limit on Ms or Mt in a request: a loop with a larger peak is nearly unstable.
 inline constexpr double kMaxMs = 4, kMaxMt = kMaxMs;
-/// Time constant of the filter of a PID over Td (N = 10), where the plant bounds the gain.
+/// Time constant of the filter of a PID over Td (N = 10), if the plant bounds the gain.
 inline constexpr double kDefaultTf_over_Td = 0.1;
 /// Largest overshoot of a set-point step, percent.
 inline constexpr double kDefaultMaxOvershootPercent = 5;
@@ -33,8 +33,8 @@ inline constexpr double kMaxRelativeExcessFound = 1e-5;
 /// Verify: the returned design, on its own plants and on frequencies that the search never saw. Peaks that the search
 /// has interpolated differ from those by less.
 inline constexpr double kMaxRelativeExcessVerified = 2e-5;
-/// Judge: the same design on plants between its own, of a confidence region or of a range. A plant beyond it joins
-/// those that the design is made for.
+/// Judge: the same design on plants between its own, in a confidence region or a range. A plant that exceeds the limit
+/// by more is added to those of the design.
 inline constexpr double kMaxRelativeExcessJudged = 5e-5;
 /// Rank: entries of a comparison under the limit that is common to all, whose peaks have been computed to about 1e-5.
 inline constexpr double kMaxRelativeExcessRanked = 1e-4;
@@ -51,6 +51,6 @@ static_assert(kMaxRelativeExcessStepped < kMaxRelativeExcessSearched &&
                   kMaxRelativeExcessJudged < kMaxRelativeExcessRanked &&
                   kMaxRelativeExcessRanked < kMaxRelativeExcessShown &&
                   kMaxRelativeExcessShown < kMaxRelativeExcessShownOfWorst,
-              "what one step accepts no later one calls exceeded");
+              "a later step must not reject what an earlier one accepts");
 
 }  // namespace tunewright::limits

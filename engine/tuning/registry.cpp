@@ -79,8 +79,8 @@ const std::vector<TuningMethod>& method_registry() {
             if (method.weighs_setpoint)
                 method.options.push_back(setpoint_option(
                     method.overshoot ? "overshoot at most " + text(limits::kDefaultMaxOvershootPercent) +
-                                           " %, with an objective that sees the set point b = 1"
-                                     : "the weight of the source",
+                                           " %; with an objective that includes the set point, b = 1"
+                                     : "the weight in the source",
                     bool(method.overshoot)));
         return all;
     }();

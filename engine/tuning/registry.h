@@ -1,4 +1,4 @@
-// All tuning methods, in the order in which they are listed: the one place that names them.
+// All tuning methods, in the order in which they are listed: the only place that names them.
 #pragma once
 
 #include <string>
@@ -8,13 +8,13 @@
 
 namespace tunewright {
 
-/// Every method, in the order in which they are listed. The one place that names them all.
+/// Every method, in the order in which they are listed.
 const std::vector<TuningMethod>& method_registry();
 
-/// The method of a request that names none: the first of the registry.
+/// The method of a request that gives none: the first in the registry.
 const std::string& default_method();
 
-/// Null if there is none of this id.
+/// Null for an unknown id.
 const TuningMethod* find_method(const std::string& id);
 
 }  // namespace tunewright

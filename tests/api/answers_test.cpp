@@ -62,17 +62,17 @@ TEST(Answers, ANullFigureIsWrittenWithItsReason) {
     robustness.stable = true;
     robustness.Ms = 1.25;
     robustness.gain_margin = std::numeric_limits<double>::infinity();
-    robustness.gain_margin.why = "No higher gain loses stability.";
+    robustness.gain_margin.why = "No higher gain destabilises the loop.";
     robustness.tolerates.gain_high = no_figure(robustness.gain_margin.why);
     robustness.Ms.why = "Never shown: Ms is not null.";
     robustness.tolerates.gain_low = 0.5;
     const Json written = Json::parse(encode(robustness_contract(), robustness));
     EXPECT_EQ(written["Ms"], 1.25);
     EXPECT_TRUE(written["gain_margin"].is_null());
-    EXPECT_EQ(written["why_null"]["gain_margin"], "No higher gain loses stability.");
+    EXPECT_EQ(written["why_null"]["gain_margin"], "No higher gain destabilises the loop.");
     EXPECT_FALSE(written["why_null"].contains("Ms"));
     EXPECT_EQ(written["tolerates"]["gain"], (Json::array({0.5, nullptr})));
-    EXPECT_EQ(written["tolerates"]["why_null"]["gain"], "No higher gain loses stability.");
+    EXPECT_EQ(written["tolerates"]["why_null"]["gain"], "No higher gain destabilises the loop.");
     expect_valid(written, "Robustness");
 }
 

@@ -105,7 +105,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadRequest{"AModeOutOfReachThatIsUnstable", with_plant(R"({"type": "nonlinear", "states": {"x": 1, "z": 0},
                                   "equations": {"x": "q - x + z", "z": "z"},
                                   "input": {"name": "q", "nominal": 1}, "output": "x"})"),
-                   422, "/plant/equations", "The linearisation at the operating point cannot be worked with."},
+                   422, "/plant/equations", "The linearisation at the operating point is not supported."},
         BadRequest{"UnknownNameInAnEquation",
                    with_plant(R"({"type": "nonlinear", "states": {"h": 1}, "equations": {"h": "q - hh"},
                                   "input": {"name": "q", "nominal": 1}, "output": "h"})"),

@@ -219,7 +219,7 @@ TEST(Controllers, WhatABlockCannotBeIsRefusedOrMadeNearest) {
     const Refused no = refused(controller_settings_call("emerson_deltav_series", request.dump()));
     EXPECT_EQ(no.status, 422);
     EXPECT_EQ(no.type, "not-representable");
-    EXPECT_THAT(no.detail, HasSubstr("The nearest: both times"));
+    EXPECT_THAT(no.detail, HasSubstr("The nearest settings: both times"));
     const Json body = settings_of("emerson_deltav_series", with({{"nearest", true}}, request));
     EXPECT_EQ(body["notes"][0]["code"], "nearest");
 }

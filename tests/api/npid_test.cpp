@@ -41,7 +41,7 @@ TEST(NpidForm, IsEvaluatedWithTheStepsThatAreAskedFor) {
     EXPECT_TRUE(schema_faults(body, "EvaluateAnswer").empty());
     const Json &own = body["controllers"][0], &narrow = body["controllers"][1];
     EXPECT_EQ(own["controller"]["form"], "npid");
-    EXPECT_EQ(own["controller"]["delta_r"], 2) << "the set-point step's size";
+    EXPECT_EQ(own["controller"]["delta_r"], 2) << "the size of the set-point step";
     EXPECT_EQ(narrow["controller"]["delta_r"], 0.1);
     EXPECT_EQ(own["nonlinear"]["sector"], Json::parse("[0, 1]"));
     EXPECT_TRUE(own["nonlinear"]["circle_criterion"].get<bool>());

@@ -86,7 +86,8 @@ INSTANTIATE_TEST_SUITE_P(
                 {{"noise_std", 0.1}},
                 "/relay/relay_sample_time",
                 "noise belongs to samples"},
-        Refusal{"LevelsExchanged", kFirstOrder, {{"u_plus", -1}, {"u_minus", 1}}, "/relay/u_minus", "Exchange the two"},
+        Refusal{
+            "LevelsExchanged", kFirstOrder, {{"u_plus", -1}, {"u_minus", 1}}, "/relay/u_minus", "Swap the two values"},
         Refusal{"TooManyCycles", kFirstOrder, {{"cycles", 1001}}, "/relay/cycles", "1000"},
         Refusal{"IntervalBetweenSamples",
                 kFirstOrder,

@@ -36,7 +36,7 @@ class CommandTest(unittest.TestCase):
         fast = ("--language", "st", "--derivative", "filtered_forward", "--sample-time", "2")
         self.assertIn("stable only for Tf above half", self.refused(result_of(ideal("derivative")), *fast)["detail"])
         self.assertIn("no time from which one can be proposed", self.refused(result_of(ideal(Ti=None, Td=0)), "--language", "st")["detail"])
-        self.assertIn("nothing would bring u back", self.refused(
+        self.assertIn("u would not return", self.refused(
             result_of(ideal(Ti=None)), "--language", "st", "--form", "velocity")["detail"])
         problem = self.refused(result_of(ideal(), units={"time": "weeks"}), "--language", "st")
         self.assertEqual(problem["errors"][0]["pointer"], "/units/time")

@@ -73,7 +73,7 @@ TEST(Comparison, AnOptionThatDoesNotSuitAMethodIsItsRefusal) {
     EXPECT_THAT(no_P[0].refusal->message, HasSubstr("controller is P; it must be one of PID, PI"));
     const auto no_PI = rows_of("rimc", options("controller", std::string("PI")));
     ASSERT_TRUE(no_PI[0].refusal);
-    EXPECT_THAT(no_PI[0].refusal->message, HasSubstr("rimc tunes PID controllers only; PI was asked for"));
+    EXPECT_THAT(no_PI[0].refusal->message, HasSubstr("rimc tunes PID controllers only, but PI was requested"));
     const auto too_large = rows_of("robust", options("Ms", 5.0));
     ASSERT_TRUE(too_large[0].refusal);
     EXPECT_THAT(too_large[0].refusal->message, HasSubstr("Ms is 5; it must be above 1 and at most 4"));

@@ -44,7 +44,7 @@ TEST(FamilyFigures, AnUnstableCornerIsNeverToldAsAllStable) {
                                               [](const Warning& each) { return each.code == "unstable-in-region"; });
     ASSERT_NE(warning, evaluation->warnings.end());
     EXPECT_EQ(warning->detail.find("100 %"), std::string::npos) << warning->detail;
-    EXPECT_NE(warning->detail.find("99.2 % of those looked at"), std::string::npos) << warning->detail;
+    EXPECT_NE(warning->detail.find("99.2 % of the evaluated plants"), std::string::npos) << warning->detail;
 }
 
 // 2,000 plants and one that is unstable: 99.95 % would round to 100 %.

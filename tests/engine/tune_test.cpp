@@ -175,10 +175,10 @@ TEST(Tune, RefusesRequestsThatAreNoneWithAPlace) {
 
     request = request_for(kPlant, {method("simc")});
     request.ultimate = UltimateTest{};
-    EXPECT_THAT(tune(request, {}).error().message, HasSubstr("More than one of plant, record, model and ultimate"));
+    EXPECT_THAT(tune(request, {}).error().message, HasSubstr("more than one of plant, record, model and ultimate"));
     request.subject.reset();
     request.ultimate.reset();
-    EXPECT_THAT(tune(request, {}).error().message, HasSubstr("Neither plant, record, model nor ultimate"));
+    EXPECT_THAT(tune(request, {}).error().message, HasSubstr("none of plant, record, model and ultimate"));
 }
 
 TEST(Tune, MethodWarningsComeBeforeThoseOfTheEvaluation) {

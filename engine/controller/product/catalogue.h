@@ -1,4 +1,4 @@
-// The products whose settings can be converted: one table in catalogue/, a source for each maker or group.
+// The products whose settings can be converted: one table in catalogue/, with a source file for each maker or group.
 #pragma once
 
 #include <string_view>
@@ -11,10 +11,10 @@ namespace tunewright::product {
 /// All of them, by maker; ids are unique.
 const std::vector<Product>& catalogue();
 
-/// Null if there is none of that id.
+/// Null for an unknown id.
 const Product* find(std::string_view id);
 
-/// The groups, each in the source of its name.
+/// The groups, each in the source file of its name.
 std::vector<Product> siemens_products();
 std::vector<Product> rockwell_products();
 std::vector<Product> schneider_products();

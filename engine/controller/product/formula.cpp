@@ -30,7 +30,7 @@ constexpr Symbol kSymbols[] = {
 
 double power(double x, double exponent) { return exponent == 1 ? x : std::pow(x, exponent); }
 
-// Numerators and denominators apart, so that no factor is rounded on its way through a reciprocal.
+// Multiplies numerators and denominators separately, so that no factor is rounded by a reciprocal.
 double product_of(const Term& term, const Quantities& quantities, double Quantities::*without) {
     double above = term.factor, below = 1;
     for (const Symbol& symbol : kSymbols) {
@@ -57,7 +57,7 @@ struct Fraction {
     }
 };
 
-// A factor such as 1/60 reads as a divisor: the shorter of the two spellings.
+// Writes a factor such as 1/60 as a divisor if that is shorter.
 void add_factor(double factor, Fraction& fraction) {
     if (factor == 1) return;
     if (factor == -1) return fraction.multiply("-1");

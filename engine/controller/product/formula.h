@@ -1,4 +1,4 @@
-// The formulas of parameters, read from their terms: value, inverse and text.
+// Value, inverse and text of the parameters' formulas, computed from their terms.
 #pragma once
 
 #include <optional>
@@ -7,7 +7,7 @@
 
 namespace tunewright::product {
 
-/// Gain and times of a block's own form, in seconds and units of u per y, and what else a term may ask for.
+/// Gain and times of a block's own form, in seconds and units of u per y, and the other quantities that a term may use.
 struct Quantities {
     double Kp = 0;
     double Ti = std::numeric_limits<double>::infinity();
@@ -19,22 +19,23 @@ struct Quantities {
     double K = 1;
 };
 
-/// factor * Kp^Term::Kp * ...; not finite where the law leaves the parameter open (a ratio to a time of 0).
+/// factor * Kp^Term::Kp * ...; not finite if the law does not determine the parameter (a ratio to a time of 0).
 double value_of(const Term& term, const Quantities& quantities);
 
-/// The quantity that makes the term this value; the others stay as they are. `exponent` is the term's of that quantity.
+/// Solves for the quantity that gives the term this value, with the others unchanged. `exponent` is that quantity's
+/// exponent in the term.
 double solved(const Term& term, const Quantities& quantities, double Quantities::*unknown, double exponent,
               double value);
 
-/// Tf of a derivative filter from its parameter, the other quantities known, and back. `clock` is dt of the firmware or
-/// the sample time, in seconds.
+/// Tf of a derivative filter from its parameter, with the other quantities known, and the inverse. `clock` is dt of the
+/// firmware or the sample time, in seconds.
 double filter_value(const Parameter& parameter, const Quantities& quantities, double clock);
 double filter_time(const Parameter& parameter, const Quantities& quantities, double clock, double value);
 
-/// Tf of a first-order filter that delays a slope like the block's does: of M samples (M - 1) Ts/2, of the four points
-/// Ts. Both add that to the delay of a difference, Ts/2.
+/// Tf of a first-order filter with the same delay as the block's slope: (M - 1) Ts/2 for M samples, Ts for four points.
+/// Both add it to the delay of a difference, Ts/2.
 double slope_filter_time(double samples, double Ts);
-/// The samples of a slope as a whole number, from 1 to a million.
+/// The number of samples of a slope, rounded to a whole number from 1 to a million.
 int whole_samples(double samples);
 
 }  // namespace tunewright::product

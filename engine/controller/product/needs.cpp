@@ -14,7 +14,7 @@ Error missing_span(const Product& product, const Parameter& parameter, const cha
 Error missing_sample_time(const Product& product, const std::string& why) {
     return {ErrorKind::invalid_argument, "sample_time",
             "sample_time is missing; " + why + ", and " + std::string(product.name) +
-                " has no default. Give the period with which the block runs."};
+                " has no default. Give the period at which the block is called."};
 }
 
 }  // namespace
@@ -62,7 +62,7 @@ std::optional<Error> missing_for_filter(const Product& product, const Context& c
 std::vector<std::string> needs_of(const Product& product) {
     std::vector<std::string> needs;
     Context context;
-    // Each is given in turn, until nothing is missing any more.
+    // Adds one missing value at a time until nothing is missing.
     for (int k = 0; k < 3; ++k) {
         std::optional<Error> missing = missing_for_filter(product, context);
         for (const Parameter& parameter : product.parameters) {

@@ -36,21 +36,21 @@ void note_weights(const Comparison& it, std::vector<Note>& notes) {
     if (it.asked.setpoint_lag > 0)
         notes.push_back({"setpoint-filter", "The design filters the set point, 1/(1 + " +
                                                 tunewright::text(it.asked.setpoint_lag) +
-                                                " s), which the block has no setting for. Put that lag before its set "
+                                                " s), but the block has no setting for it. Put that lag before its set "
                                                 "point, or ramp the set point over about that time."});
     const bool b_differs = !same(it.asked.b, it.realised.b);
     const bool c_differs = derivative && !same(it.asked.c, it.realised.c);
     if (!b_differs && !c_differs) return;
-    std::string sentence = "The block weighs the set point with b = " + text(it.realised.b);
+    std::string sentence = "The block weights the set point with b = " + text(it.realised.b);
     if (derivative) sentence += ", c = " + text(it.realised.c);
-    sentence += " where the design has b = " + text(it.asked.b);
+    sentence += ", the design with b = " + text(it.asked.b);
     if (derivative) sentence += ", c = " + text(it.asked.c);
-    sentence += "; the answer to loads does not depend on them.";
+    sentence += "; the response to loads does not depend on the weights.";
     notes.push_back({"setpoint-weights", with_text(sentence, it.product.weights.text)});
     const std::string prefilter = setpoint_prefilter(it.asked, it.realised);
     if (prefilter.empty()) return;
-    notes.push_back({"prefilter", "A filter of the set point before the block restores the design's answer to it: " +
-                                      prefilter + "."});
+    notes.push_back(
+        {"prefilter", "A filter of the set point before the block restores the design's response: " + prefilter + "."});
 }
 
 std::string filter_words(const Filter& filter) {
@@ -65,7 +65,8 @@ std::string filter_words(const Filter& filter) {
     return "no filter";
 }
 
-// A series block whose filter's ratio can be set has the design's own filter with another ratio than the settings'.
+// For a series block whose filter ratio can be set: reports another ratio with which the block has the design's own
+// filter.
 void note_other_ratio(const Comparison& it, std::vector<Note>& notes) {
     const Parameter* ratio = parameter_of(it.product, ParameterRole::filter);
     if (it.product.form != Form::series || it.product.filter.kind != FilterKind::parameter || !ratio) return;
@@ -96,16 +97,19 @@ void note_filter(const Comparison& it, std::vector<Note>& notes) {
     const bool derivative = it.realised.Td != 0;
     const bool idle = !derivative && asked.type != FilterType::measurement_first_order &&
                       asked.type != FilterType::measurement_second_order && realised.type == FilterType::none;
-    // A slope over one sample is the plain difference.
+    // A slope over one sample is a plain difference.
     const bool slope = derivative && realised.type != FilterType::none &&
                        (kind == FilterKind::slope || kind == FilterKind::four_points);
     if (idle || (asked.type == realised.type && same(asked.Tf, realised.Tf) && !slope &&
                  !(derivative && kind == FilterKind::unknown)))
         return;
     std::string sentence = "The design has " + filter_words(asked) + "; the block has " + filter_words(realised) + ".";
-    if (slope) sentence += " It stands for a slope over several samples of the same delay, which it is not exactly.";
+    if (slope) sentence += " It approximates a slope over several samples with the same delay.";
     if (asked.type == FilterType::measurement_first_order || asked.type == FilterType::measurement_second_order) {
-        if (realised.type != asked.type) sentence += " Filter the measurement before the block for the design's own.";
+        if (realised.type != asked.type)
+            sentence +=
+                " To keep the design's filter, filter the measurement before the "
+                "block.";
     } else if (realised.type == FilterType::none && kind != FilterKind::unknown) {
         sentence += " Filter the measurement before the block, and tune with that filter.";
     }
@@ -122,8 +126,8 @@ void note_rounding(const Comparison& it, std::vector<Note>& notes) {
                  " for " + text(*exact, 6);
     }
     if (which.empty()) return;
-    notes.push_back({"rounding", "The block takes steps only: " + which +
-                                     ". What it then does is what is realised; judge the loop by that."});
+    notes.push_back(
+        {"rounding", "The block accepts only steps: " + which + ". Evaluate the loop with the realised controller."});
 }
 
 const char* rule_name(IntegralRule rule) {
@@ -135,7 +139,7 @@ const char* rule_name(IntegralRule rule) {
     return "backward";
 }
 
-/// A first-order lag by forward differences: 1 - Ts/Tf of it is left after a sample.
+/// A first-order lag by forward differences multiplies its state by 1 - Ts/Tf in each sample.
 void note_unstable_filter(const Comparison& it, std::vector<Note>& notes) {
     const auto Ts = clocks_of(it.product, it.context).sample_time;
     const double unit = it.context.seconds_per_time, Tf = it.realised.filter.Tf;
@@ -144,36 +148,38 @@ void note_unstable_filter(const Comparison& it, std::vector<Note>& notes) {
     notes.push_back(
         {"unstable-filter", "The block filters its derivative by forward differences, which is unstable with Tf = " +
                                 text(Tf) + " at a sample time of " + text(*Ts / unit) +
-                                ": Tf must be above half of it. Take a longer Tf, or a shorter sample time."});
+                                ": Tf must be above half of it. Use a longer Tf, or a shorter sample time."});
 }
 
 void note_algorithm(const Comparison& it, std::vector<Note>& notes) {
     const Algorithm& algorithm = it.product.algorithm;
     if (!algorithm.published) {
         notes.push_back({"discretisation",
-                         "How the block forms its integral and derivative could not be read; where "
-                         "that counts, backward differences are assumed."});
+                         "The block's rules for its integral and derivative are unknown; backward differences are "
+                         "assumed."});
     } else if (algorithm.integral != IntegralRule::backward && it.realised.has_integral()) {
         notes.push_back({"discretisation", std::string("The block integrates by the ") + rule_name(algorithm.integral) +
-                                               " rule; that changes the loop where the sample time is not small "
-                                               "against Ti."});
+                                               " rule; this changes the loop unless the sample time is small compared "
+                                               "with Ti."});
     }
     note_unstable_filter(it, notes);
     if (uses_firmware_clock(it.product) && !it.context.loop_clock_s) {
-        notes.push_back({"clock", "Computed with the clock of the firmware, " + text(*algorithm.sample_time_s) +
-                                      " s. " + std::string(algorithm.sample_time_text)});
+        notes.push_back({"clock", "Computed with the firmware's period, " + text(*algorithm.sample_time_s) + " s. " +
+                                      std::string(algorithm.sample_time_text)});
     }
 }
 
-/// A block whose output is in percent, and a u that is not.
+/// For a block whose output is in percent while u is not.
 void note_percent(const Comparison& it, std::vector<Note>& notes) {
     constexpr double kPercent = 100;
     const double span = it.context.spans.u_high - it.context.spans.u_low;
     if (!it.product.in_percent || !it.context.u_span_given || same(span, kPercent)) return;
     const Parameter& gain = *parameter_of(it.product, ParameterRole::gain);
     notes.push_back({"percent", "The output of the block is in percent, and u spans " + text(span) +
-                                    " here: where u is what the percent stand for, type " + std::string(gain.name) +
-                                    " times " + text(kPercent / span) + ", or tune with u in percent."});
+                                    " here: if 0 to 100 % of the output correspond to this span, "
+                                    "enter " +
+                                    std::string(gain.name) + " times " + text(kPercent / span) +
+                                    ", or tune with u in percent."});
 }
 
 void note_evidence(const Comparison& it, std::vector<Note>& notes) {
@@ -181,7 +187,7 @@ void note_evidence(const Comparison& it, std::vector<Note>& notes) {
     if (evidence.unverified.empty() && evidence.level == EvidenceLevel::read) return;
     std::string list;
     for (const std::string_view one : evidence.unverified) list += (list.empty() ? "" : "; ") + std::string(one);
-    notes.push_back({"unverified", "Not read in the maker's own text or code: " + list + "."});
+    notes.push_back({"unverified", "Not verified in the maker's own text or code: " + list + "."});
 }
 
 }  // namespace
@@ -194,10 +200,10 @@ bool tells_deviation(const Note& note) {
 
 std::string setpoint_prefilter(const IdealPid& asked, const IdealPid& realised) {
     if (!asked.has_integral() || !same(asked.Ti, realised.Ti) || !same(asked.Kp, realised.Kp)) return "";
-    // What the set point's derivative becomes is as far from the design's as the filters are from each other.
+    // The derivatives of the set point differ by as much as the filters do.
     const bool kicks = (asked.c != 0 && asked.Td != 0) || (realised.c != 0 && realised.Td != 0);
     if (kicks && (asked.filter.type != realised.filter.type || !same(asked.filter.Tf, realised.filter.Tf))) return "";
-    // Degrees: a part of the block's set point has to be at least as steep as the design's.
+    // Degrees of the numerators: a part of the block's set-point response must be at least as steep as the design's.
     const bool filtered = realised.filter.type == FilterType::derivative;
     const auto degree = [&](double b, double c) {
         if (c != 0 && realised.Td != 0) return filtered ? 1 : 2;

@@ -1,4 +1,4 @@
-// What a block does differently from the law that it was set for, in sentences.
+// Notes on the differences between a block and the law that it was set for.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace tunewright::product {
 
-/// A conversion as far as it has come: the law asked for, what is typed, and what the block then is.
+/// A conversion in progress: the requested law, the settings, and the law that the block realises.
 struct Comparison {
     const Product& product;
     const IdealPid& asked;
@@ -17,13 +17,13 @@ struct Comparison {
     const Settings& typed;     ///< in the block's resolution
 };
 
-/// Weights, filter, rounding, rules of the algorithm, clock, evidence: each that differs or that has to be known, with
-/// the codes setpoint-weights, prefilter, filter, filter-ratio (of a series block: the settings that have the design's
+/// Adds a note for each difference or fact to know: weights, filter, rounding, rules of the algorithm, clock, evidence.
+/// Codes: setpoint-weights, prefilter, filter, filter-ratio (of a series block: the settings that have the design's
 /// own), rounding, discretisation, clock, unverified.
 void add_notes(const Comparison& comparison, std::vector<Note>& notes);
 
-/// The set-point filter before the block that gives the weights asked for, exactly, as text; "" where there is none:
-/// the block has no integral action, or no part of the set point that a proper filter could shape.
+/// The set-point filter before the block that gives exactly the requested weights, as text. "" if there is none: the
+/// block has no integral action, or no part of the set point that a proper filter could shape.
 ///   F(s) = [1 + b Ti s + c Ti s D]/[1 + b' Ti s + c' Ti s D],  D = Td s/(1 + Tf s), b' and c' the block's.
 std::string setpoint_prefilter(const IdealPid& asked, const IdealPid& realised);
 

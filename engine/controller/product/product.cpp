@@ -7,7 +7,7 @@
 namespace tunewright::product {
 namespace {
 
-constexpr int kDecimalDigits = 15;  // as many as a decimal keeps through arithmetic: 253, not 252.99999999999997
+constexpr int kDecimalDigits = 15;  // digits that a decimal keeps through arithmetic: 253, not 252.99999999999997
 
 }  // namespace
 

@@ -1,5 +1,5 @@
-// A controller as its maker builds it, described by data: its form, its parameters and what it does with them. A new
-// one is an entry of a table (catalogue/) with its example; conversions and search read nothing but this description.
+// A product as data: its form, its parameters and their meaning. A new product is an entry of a table (catalogue/) with
+// its example; conversions and search read only this description.
 #pragma once
 
 #include <limits>
@@ -15,7 +15,7 @@
 
 namespace tunewright::product {
 
-/// What a parameter holds: a number, a word (also a code that is typed as text) or a switch.
+/// The value of a parameter: a number, a word (also a code that is typed as text) or a switch.
 using Value = std::variant<double, std::string, bool>;
 
 struct Setting {
@@ -26,7 +26,7 @@ struct Setting {
 };
 using Settings = std::vector<Setting>;
 
-/// The law whose gain and times the formulas of the parameters speak of.
+/// The law whose gain and times appear in the formulas of the parameters.
 enum class Form {
     ideal,     ///< Kp (e + (1/Ti) int e + Td d/dt ...)
     parallel,  ///< the same law, whose parameters are gains
@@ -36,20 +36,20 @@ enum class Form {
 
 enum class ParameterRole {
     gain,
-    multiplier,  ///< of all three parts; read before the gain
+    multiplier,  ///< multiplies all three parts; read before the gain
     integral,
     derivative,
     filter,
     weight_b,
     weight_c,
-    choice,       ///< of weights or filter, by `options`
+    choice,       ///< sets weights or filter, by `options`
     sample_time,  ///< the block's own period as it is typed
-    fixed,        ///< not part of the twin, which is that of its `standard`
-    limit,        ///< of output, integral or tracking: no part of the linear law
+    fixed,        ///< not part of the equivalent ideal controller, which is that of its `standard`
+    limit,        ///< limit of output, integral or tracking: not part of the linear law
 };
 
-/// How a parameter depends on the law. A `power` is factor * K^.. * Kp^.. * ... of `Term`; the others say how theirs
-/// differs.
+/// How a parameter depends on the law. A `power` is factor * K^.. * Kp^.. * ... of `Term`; the others state their
+/// formula.
 enum class Shape {
     power,
     one_minus_b,     ///< 1 - b
@@ -58,7 +58,7 @@ enum class Shape {
     alpha_code,      ///< text "100".."199" for 1 - b = 0.00..0.99; "000" is read as 0.65
     plus_clock,      ///< Tf + dt, dt the clock of the firmware
     lag_per_sample,  ///< Tf/(Tf + dt)
-    slope_samples,   ///< M = 1 + 2 Tf/Ts, a slope over M periods of the same delay
+    slope_samples,   ///< M = 1 + 2 Tf/Ts: a slope over M periods with the same delay
     option,          ///< one of `options`
     constant,        ///< `standard`
 };
@@ -67,18 +67,18 @@ enum class Shape {
 struct Term {
     double factor = 1;
     double Kp = 0, Ti = 0, Td = 0, Tf = 0;
-    double ideal_Td = 0;    ///< of the ideal form, where the own one is the series form
+    double ideal_Td = 0;    ///< of the ideal form, if the own form is the series form
     double Sy = 0, Su = 0;  ///< spans of measurement and output
     double Ts = 0;          ///< sample time
     double K = 0;           ///< the multiplier's value
 };
 
-/// One of a parameter's choices and what it makes of the law.
+/// One of a parameter's options and its effect on the law.
 struct Option {
     Value value;
     std::optional<double> b = {}, c = {};
     std::optional<FilterType> filter = {};
-    /// b and c are those of the parameters weight_b and weight_c, which count with such an option alone.
+    /// b and c are set by the parameters weight_b and weight_c, which have an effect only with such an option.
     bool free_weights = false;
     std::optional<bool> integral = {}, derivative = {};  ///< false: that action is switched off
 };
@@ -96,30 +96,31 @@ struct Parameter {
     Shape shape = Shape::power;
     Term term = {};
     Range range = {};
-    /// What the models whose manuals were read take at most: more gets a note, for others may take it.
+    /// The largest value that models with a known manual accept: a larger one gives a note, because other models may
+    /// accept it.
     double usual_max = std::numeric_limits<double>::infinity();
-    double resolution = 0;  ///< step of what can be typed; 0: a floating-point number
-    /// The maker's default, where it is known; of a filter also what stands where the law leaves it open.
+    double resolution = 0;  ///< step of the values that can be entered; 0: a floating-point number
+    /// The maker's default, if known; also the filter's value if the law leaves it undetermined.
     std::optional<Value> standard = {};
-    std::optional<double> off = {};     ///< means: no such part
-    std::string_view zero_remark = "";  ///< what 0 does where it does not mean: no such part
+    std::optional<double> off = {};     ///< the value that means: no such part
+    std::string_view zero_remark = "";  ///< the effect of 0 if it does not mean: no such part
     std::vector<Option> options = {};   ///< the first is the maker's default
-    bool compiled_in = false;           ///< changed by building the firmware anew alone: a design keeps `standard`
-    /// Decided elsewhere than by a design (mode, variant of the block): of choices a design takes the first, others it
-    /// leaves out.
+    bool compiled_in = false;           ///< can be changed only by building the firmware: a design keeps `standard`
+    /// Not set by a design (mode, variant of the block): a design uses the first option, and leaves out other such
+    /// parameters.
     bool elsewhere = false;
     std::string_view remark = "";
 };
 
 enum class FilterKind {
     none,
-    parameter,    ///< of the derivative, by the parameter of that role
+    parameter,    ///< of the derivative, set by the parameter of that role
     ratio,        ///< Tf = `value` * td of the own form, fixed
-    measurement,  ///< of the second order over the whole measurement, by the parameter
-    chosen,       ///< by a parameter which of the two, `parameter` or `measurement`
-    slope,        ///< of the derivative over `value` samples, or as many as the parameter says
-    four_points,  ///< (3, 1, -1, -3)/(10 Ts), which delays like Tf = Ts
-    unknown,      ///< there is one, or may be, but nobody could read it: the twin has none
+    measurement,  ///< of the second order over the whole measurement, set by the parameter
+    chosen,       ///< a parameter chooses between `parameter` and `measurement`
+    slope,        ///< of the derivative over `value` samples, or the number that the parameter gives
+    four_points,  ///< (3, 1, -1, -3)/(10 Ts), with the same delay as Tf = Ts
+    unknown,      ///< there may be one, but no description was found: the equivalent controller has none
 };
 
 struct FilterRule {
@@ -128,18 +129,18 @@ struct FilterRule {
     std::string_view text = "";
 };
 
-/// Weights where no parameter sets them; of the series form b is of its own gain.
+/// Weights if no parameter sets them; those of the series form refer to its own gain.
 struct Weights {
     double b = 1;
     double c = 0;
     std::string_view text = "";
 };
 
-/// How the sign of Kp is typed.
+/// How the sign of Kp is entered.
 struct Action {
     enum class Kind { signed_gain, switched, reverse_only };
     Kind kind = Kind::signed_gain;
-    std::string_view name = "";  ///< the switch, written for direct action alone
+    std::string_view name = "";  ///< name of the switch, written only for direct action
     Value direct = true;         ///< its value for Kp < 0
     Value reverse = false;
     std::string_view text = "";
@@ -153,7 +154,7 @@ struct Algorithm {
     std::string_view text = "";
     std::string_view anti_windup = "";
     std::optional<double> sample_time_s = {};  ///< default
-    bool firmware_clock = false;               ///< that default is fixed, and formulas use it
+    bool firmware_clock = false;               ///< the sample time is fixed, and formulas use it
     std::string_view sample_time_text = "";
 };
 
@@ -166,18 +167,18 @@ struct Evidence {
     std::vector<std::string_view> sources = {};
 };
 
-/// A design of the ideal form with a filter of the derivative, and what is to be typed for it: six digits as published.
+/// A design of the ideal form with a filter of the derivative, and the settings for it, with six digits as published.
 struct Example {
     IdealPid design = {};
     double y_span = 200, u_span = 100, sample_time_s = 0.25;
     Settings settings = {};
 };
 
-/// What comes with a product for a table of settings, where its maker's text was read.
+/// The gain scheduling that comes with a product, if its maker's text was read.
 struct GainScheduling {
-    std::size_t sets = 0;                  ///< most rows that it holds; 0: as many as wished
-    std::optional<Interpolation> between;  ///< none: a way of its own, told in `text`
-    std::string_view text = "";            ///< its name, what it is led by, and how it goes from one set to the next
+    std::size_t sets = 0;                  ///< largest number of rows; 0: no limit
+    std::optional<Interpolation> between;  ///< none: it interpolates in its own way, described in `text`
+    std::string_view text = "";            ///< its name, its scheduling variable, and its interpolation between sets
     std::string_view source = "";
 };
 
@@ -187,9 +188,9 @@ struct Product {
     std::string_view law = "";  ///< formula over the parameters' names
     std::string_view gain_basis = "";
     std::vector<Parameter> parameters = {};
-    /// The gain's output is in percent and no parameter scales it: u has to be in percent too.
+    /// The gain's output is in percent and no parameter scales it: u must be in percent too.
     bool in_percent = false;
-    double series_alpha = 0;  ///< of a series form, where no parameter's setting is given
+    double series_alpha = 0;  ///< alpha of a series form if no parameter sets it
     FilterRule filter = {};
     Weights weights = {};
     Action action = {};
@@ -197,7 +198,7 @@ struct Product {
     std::vector<std::string_view> traps = {};
     Evidence evidence = {};
     Example example = {};
-    std::optional<GainScheduling> scheduling = {};  ///< none: none is known
+    std::optional<GainScheduling> scheduling = {};  ///< none: unknown
 };
 
 /// True if a choice of the product decides whether this parameter has an effect.
@@ -215,7 +216,7 @@ std::string_view to_string(EvidenceLevel level);  ///< "read", "partly", "unveri
 /// "3", "PV", "false".
 std::string text_of(const Value& value);
 
-/// The parameter's formula from its term, e.g. "60 Kp Sy/(Ti Su)"; of a choice what each of its values means.
+/// The parameter's formula from its term, e.g. "60 Kp Sy/(Ti Su)"; for a choice the meaning of each value.
 std::string formula_text(const Product& product, const Parameter& parameter);
 
 }  // namespace tunewright::product

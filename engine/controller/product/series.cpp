@@ -5,7 +5,7 @@
 namespace tunewright::product {
 namespace {
 
-// Two equal zeros (Ti = 4 Td) may miss 0 by rounding.
+// Two equal zeros (Ti = 4 Td) may give a small negative value by rounding.
 constexpr double kDiscriminantTolerance = 1e-13;
 
 RatioSeries nearest(double Kp, double Ti, double Td, double alpha) {
@@ -21,7 +21,7 @@ RatioSeries nearest(double Kp, double Ti, double Td, double alpha) {
 }  // namespace
 
 RatioSeries ratio_series(double Kp, double Ti, double Td, double alpha) {
-    // Written over 1/Ti, so that no integral action is no special case and Td = 0 gives ti = Ti exactly.
+    // In terms of 1/Ti, so that Ti may be infinite and Td = 0 gives ti = Ti exactly.
     const double left = 1 - alpha;
     double discriminant = 1 - 4 * Td / (left * Ti);
     if (std::abs(discriminant) < kDiscriminantTolerance) discriminant = 0;

@@ -1,4 +1,4 @@
-// The series form whose lead is filtered by a given fraction of its own derivative time, as blocks have it:
+// The series form whose lead is filtered by a given fraction of its own derivative time, as in many blocks:
 //   Kc (1 + 1/(ti s)) (1 + td s)/(1 + alpha td s)
 // (pid.h's to_series takes the filter's time instead). Back to the ideal form: to_ideal(SeriesPid).
 #pragma once
@@ -11,9 +11,10 @@ namespace tunewright::product {
 
 struct RatioSeries {
     double Kc = 0, ti = 0, td = 0;
-    /// Of complex zeros, where these are the nearest: gain of P and D of its ideal twin relative to what was asked for.
+    /// For complex zeros, which have no series form: gain of P and D of the nearest one's ideal equivalent relative to
+    /// the requested gains.
     struct Deviation {
-        double min_Ti = 0;  ///< 4 Td/(1 - alpha): what Ti would have to reach
+        double min_Ti = 0;  ///< 4 Td/(1 - alpha): the least Ti with real zeros
         double proportional = 1, derivative = 1;
     };
     std::optional<Deviation> deviation = {};
@@ -23,8 +24,8 @@ struct RatioSeries {
 /// derivative's filter Tf = alpha td. 0 <= alpha < 1; Ti may be infinite.
 ///
 /// Below Ti = 4 Td/(1 - alpha) the zeros are complex. Then ti = td = sqrt(Ti Td), Kc = Kp sqrt(Td/Ti), which keeps the
-/// integral gain, and for alpha = 0 the derivative gain too; the other way that keeps it, Td cut to what the zeros
-/// allow, gives derivative action away.
+/// integral gain, and for alpha = 0 the derivative gain too; the alternative with the same integral gain, a Td reduced
+/// until the zeros are real, would lose derivative action.
 RatioSeries ratio_series(double Kp, double Ti, double Td, double alpha);
 
 }  // namespace tunewright::product

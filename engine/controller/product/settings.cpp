@@ -14,17 +14,17 @@
 namespace tunewright::product {
 namespace {
 
-/// A conversion on its way: always to the nearest, with a sentence for each thing that the block cannot be.
+/// A conversion in progress: always to the nearest settings, with a note for each thing that the block cannot do.
 struct Work {
     const Product& product;
     const IdealPid& pid;  ///< in the caller's unit of time
     const Context& context;
     Quantities own = {};
-    Settings choices = {};  ///< what is chosen, before the other parameters are looked at
+    Settings choices = {};  ///< the chosen options, before the other parameters are set
     Settings settings = {};
     std::vector<Note> notes = {};
     std::vector<std::string> refusals = {};
-    std::string_view beyond = "";  ///< a parameter whose value is no number any more
+    std::string_view beyond = "";  ///< name of a parameter whose value is out of the number range
 };
 
 double alpha_of(const Product& product) {
@@ -36,10 +36,10 @@ void refuse_complex_zeros(const RatioSeries& series, Work& work) {
     work.refusals.push_back(
         "Its form is a series, whose zeros are real: Ti = " + text(work.pid.Ti) + " is below " +
         text(series.deviation->min_Ti / unit) + ", 4 Td/(1 - alpha) with alpha = " + text(alpha_of(work.product)) +
-        ". The nearest: both times sqrt(Ti Td) = " + text(series.ti / unit) + " and a gain of " +
-        text(series.Kc / work.own.Kp) + " Kp. It keeps the integral gain; the proportional gain becomes " +
+        ". The nearest settings: both times sqrt(Ti Td) = " + text(series.ti / unit) + " and a gain of " +
+        text(series.Kc / work.own.Kp) + " Kp. They keep the integral gain; the proportional gain becomes " +
         text(series.deviation->proportional) + " times and the derivative gain " + text(series.deviation->derivative) +
-        " times the design's. Better: tune for this block, under that limit.");
+        " times the design's. A tuning for this block, under that limit, is better.");
 }
 
 void set_sign(Work& work) {
@@ -48,9 +48,8 @@ void set_sign(Work& work) {
     work.own.Kp = -work.own.Kp;
     if (action.kind == Action::Kind::reverse_only) {
         work.refusals.push_back(
-            "Its gain is never negative and it has no switch for the direction, while Kp = " + text(work.pid.Kp) +
-            ". The nearest is the same gain with the opposite sign, for an "
-            "actuator that is turned round. " +
+            "Its gain cannot be negative and it has no switch for the direction, but Kp = " + text(work.pid.Kp) +
+            ". The nearest setting is the same gain with the opposite sign, for an inverted actuator. " +
             std::string(action.text));
     }
 }
@@ -66,8 +65,8 @@ void set_own_form(Work& work) {
     own.Tf = pid.filter.type == FilterType::none ? 0 : pid.filter.Tf * unit;
     if (work.product.form == Form::p_only && (pid.has_integral() || pid.Td != 0)) {
         work.notes.push_back({"proportional-only",
-                              "The block has no integral and no derivative action: it gets the "
-                              "proportional part of the design alone, which is another loop."});
+                              "The block has no integral and no derivative action: it has only the proportional part "
+                              "of the design, which gives another loop."});
     }
     if (work.product.form != Form::series) return;
     const double alpha = alpha_of(work.product);
@@ -80,19 +79,19 @@ void set_own_form(Work& work) {
     if (alpha > 0) own.Tf = alpha * series.td;
 }
 
-// If one option sets both weights, c decides among those of the same b only. Free weights cost less than any
-// difference that counts, so that they are taken where no fixed ones are the design's.
+// If one option sets both weights, c decides only among options with the same b. Free weights cost less than any
+// difference that matters, so they are chosen unless fixed weights equal the design's.
 constexpr double kLessThanB = 1e-6, kFreeWeights = 1e-12;
-constexpr double kActionMismatchCost = 10;  ///< of an action too much or too little: more than weights can differ
+constexpr double kActionMismatchCost = 10;  ///< cost of an action too many or missing: more than weights can differ
 
 bool law_role(ParameterRole role) {
     return role == ParameterRole::gain || role == ParameterRole::multiplier || role == ParameterRole::integral ||
            role == ParameterRole::derivative || role == ParameterRole::sample_time;
 }
 
-constexpr double kMaxIntegralTime = 1e6;  // s, of an integral time
+constexpr double kMaxIntegralTime = 1e6;  // s, largest integral time that is entered for no integral action
 
-// The law has no integral action: what stands for that, or what comes nearest to it.
+// The value for a law without integral action, or the nearest one.
 std::optional<double> without_integral(const Parameter& parameter, Work& work) {
     if (parameter.off) return *parameter.off;
     Quantities slow = work.own;
@@ -100,35 +99,38 @@ std::optional<double> without_integral(const Parameter& parameter, Work& work) {
     const double longest = rounded(parameter, value_of(parameter.term, slow));
     slow.Ti = solved(parameter.term, work.own, &Quantities::Ti, parameter.term.Ti, longest);
     work.refusals.push_back(std::string(parameter.name) +
-                            " has no value that is known to switch integral action off, "
-                            "and the design has none. The nearest: " +
+                            " has no known value that switches integral action off, and the design has no integral "
+                            "action. The nearest setting: " +
                             std::string(parameter.name) + " = " + text(longest, 6) + ", an integral time of " +
                             text(slow.Ti / work.context.seconds_per_time, 3) +
-                            ". On a plant that is as slow as that it counts: judge the loop by what is realised.");
+                            ". On a plant with times as long as that the loop differs: evaluate it with the realised "
+                            "controller.");
     return longest;
 }
 
-// A value that the law determines, into the parameter's range.
+// Limits a value that the law determines to the parameter's range.
 double within_range(const Parameter& parameter, double value, Work& work) {
     const double typed = rounded(parameter, value);
     if (typed > parameter.usual_max)
         work.notes.push_back({"range", std::string(parameter.name) + " is " + text(typed, 6) +
-                                           ", and not every model takes that. " + std::string(parameter.remark)});
+                                           ", and not every model accepts it. " + std::string(parameter.remark)});
     const bool inside = value >= parameter.range.low - parameter.resolution / 2 &&
                         value <= parameter.range.high + parameter.resolution / 2;
     if (inside || (parameter.off && value == *parameter.off)) return value;
     if (law_role(parameter.role)) {
-        work.refusals.push_back(std::string(parameter.name) + " would be " + text(value, 6) + ", and it takes " +
+        work.refusals.push_back(std::string(parameter.name) + " would be " + text(value, 6) + ", but it accepts " +
                                 range_text(parameter) + ". The nearest: " + std::string(parameter.name) + " = " +
                                 text(typed, 6) + ".");
     } else if (parameter.role == ParameterRole::filter) {
-        work.notes.push_back({"range", std::string(parameter.name) + " would be " + text(value, 6) + ", and it takes " +
+        work.notes.push_back({"range", std::string(parameter.name) + " would be " + text(value, 6) +
+                                           ", but it "
+                                           "accepts " +
                                            range_text(parameter) + ": it is " + text(typed, 6) + "."});
     }
     return typed;
 }
 
-/// Back-calculation's time, sqrt(Ti Td), is Ti where there is no derivative.
+/// The tracking time of back-calculation, sqrt(Ti Td), is Ti without a derivative.
 Term term_of(const Parameter& parameter, const Quantities& own) {
     Term term = parameter.term;
     if (parameter.role == ParameterRole::limit && own.Td == 0) term.Ti += std::exchange(term.Td, 0);
@@ -149,7 +151,7 @@ std::optional<double> number_for(const Parameter& parameter, Work& work) {
                                   work.product.filter.kind == FilterKind::parameter && parameter.standard))
         return within_range(parameter, value, work);
     if (law_role(parameter.role)) work.beyond = parameter.name;
-    // The law leaves it open: there is no derivative, or no filter.
+    // The law does not determine it: there is no derivative, or no filter.
     if (parameter.off && work.own.Tf == 0) return parameter.off;
     return number_of(parameter, {});
 }
@@ -166,7 +168,7 @@ const Option& nearest_option(const Parameter& parameter, const IdealPid& pid) {
         if (option.filter) sum += (*option.filter == FilterType::measurement_second_order) != measured;
         return sum;
     };
-    // Of two equally near the gentler one: the smaller weight of the set point.
+    // Of two equally near options, the smaller weight of the set point.
     const Option* best = &parameter.options.front();
     for (const Option& option : parameter.options) {
         const double difference = distance(option) - distance(*best);
@@ -197,9 +199,9 @@ void add_setting(const Parameter& parameter, Work& work) {
     if (parameter.compiled_in && value && parameter.standard && Value(*value) != *parameter.standard)
         work.notes.push_back({"compiled-in", std::string(parameter.name) + " is " + text(*value, 4) + " here and " +
                                                  text_of(*parameter.standard) +
-                                                 " in the firmware as it is published; without a firmware that was "
-                                                 "built anew this is another loop. Tune for this product, and the "
-                                                 "design keeps the published one."});
+                                                 " in the published firmware; unless you build the firmware with "
+                                                 "another value, the loop differs. A tuning for this product keeps the "
+                                                 "published value."});
     if (value) add(parameter, *value, work);
 }
 
@@ -218,7 +220,7 @@ std::optional<Error> add_settings(Work& work) {
         if (!counts(work.product, parameter, work.choices)) continue;
         if (auto missing = missing_for(work.product, parameter, work.context)) {
             if (parameter.role != ParameterRole::limit) return missing;
-            work.notes.push_back({"limit", std::string(parameter.name) + " is left out: it is " +
+            work.notes.push_back({"limit", std::string(parameter.name) + " is not computed: it is " +
                                                formula_text(work.product, parameter) + ", which needs u_span. " +
                                                std::string(parameter.remark)});
             continue;
@@ -228,12 +230,11 @@ std::optional<Error> add_settings(Work& work) {
     const Action& action = work.product.action;
     if (action.kind == Action::Kind::switched && work.pid.Kp < 0) {
         work.settings.push_back({std::string(action.name), action.direct});
-        work.notes.push_back({"action",
-                              "Kp is negative: the gain is typed without its sign, and the direction is set "
-                              "by " +
-                                  std::string(action.name) + ". " + std::string(action.text)});
+        work.notes.push_back(
+            {"action", "Kp is negative: the gain is entered without its sign, and the direction is set by " +
+                           std::string(action.name) + ". " + std::string(action.text)});
     }
-    // A switch that is left as it comes, at 0, would act the wrong way.
+    // A switch that keeps its initial value 0 would act in the wrong direction.
     const double* reverse = std::get_if<double>(&action.reverse);
     if (action.kind == Action::Kind::switched && work.pid.Kp > 0 && reverse != nullptr && *reverse != 0)
         work.notes.push_back({"action", "Kp is positive, so " + std::string(action.name) + " must be " +
@@ -245,8 +246,8 @@ std::optional<Error> unusable(const Product& product, const IdealPid& pid) {
     if (pid.Kp == 0 || !std::isfinite(pid.Kp))
         return Error{ErrorKind::not_representable, "controller/Kp",
                      std::string(product.name) + ": Kp is " + text(pid.Kp) +
-                         "; without a proportional part there is no ideal form to convert. The nearest has a small Kp "
-                         "with Ti = Kp/Ki."};
+                         "; without a proportional part there is no ideal form to convert. The nearest controller has "
+                         "a small Kp with Ti = Kp/Ki."};
     if (!(pid.Ti > 0) || !(pid.Td >= 0) || !std::isfinite(pid.Td) || !std::isfinite(pid.b) || !std::isfinite(pid.c))
         return Error{ErrorKind::invalid_argument, "controller",
                      "Ti must be above 0, Td at least 0, and b and c numbers."};
@@ -254,7 +255,7 @@ std::optional<Error> unusable(const Product& product, const IdealPid& pid) {
 }
 
 Error refusal(const Work& work) {
-    std::string message = std::string(work.product.name) + " cannot be this controller.";
+    std::string message = std::string(work.product.name) + " cannot represent this controller.";
     for (const std::string& sentence : work.refusals) message += " " + sentence;
     return {ErrorKind::not_representable, "controller", std::move(message)};
 }
@@ -270,7 +271,9 @@ Expected<Converted> to_settings(const Product& product, const IdealPid& pid, con
     if (auto missing = add_settings(work)) return *missing;
     if (!work.beyond.empty())
         return Error{ErrorKind::invalid_argument, "controller",
-                     std::string(work.beyond) + " would be beyond any number. Check the controller and the spans."};
+                     std::string(work.beyond) +
+                         " would be out of the number range. Check the controller and the "
+                         "spans."};
     if (!work.refusals.empty() && !nearest) return refusal(work);
 
     const Settings typed = as_typed(product, work.settings);
@@ -312,22 +315,22 @@ void note_scheduling(const Product& product, const Schedule& schedule, std::vect
     if (!product.scheduling) {
         notes.push_back(
             {"no-gain-scheduling",
-             "No gain scheduling of this product is known here. A program beside it can write the settings as "
-             "the rows say; see that a change does not make the output jump."});
+             "No gain scheduling of this product is known here. Another program can write the settings of the rows; "
+             "make sure that a change does not make the output jump."});
         return;
     }
     const GainScheduling& own = *product.scheduling;
     if (own.sets > 0 && schedule.rows.size() > own.sets)
         notes.push_back({"too-many-rows", "The schedule has " + std::to_string(schedule.rows.size()) +
-                                              " rows and the product holds " + std::to_string(own.sets) +
+                                              " rows, but the product has at most " + std::to_string(own.sets) +
                                               " sets. Design it with rows = " + std::to_string(own.sets) + "."});
     if (schedule.rows.size() < 2 || own.between == schedule.interpolation) return;
-    std::string detail = "The schedule is meant with " + std::string(to_string(schedule.interpolation)) +
-                         "; the product does otherwise between its rows: " + std::string(own.text);
+    std::string detail = "The schedule is designed for " + std::string(to_string(schedule.interpolation)) +
+                         "; the product interpolates differently between its rows: " + std::string(own.text);
     if (own.between)
         detail += " Design it with interpolation = " + std::string(to_string(*own.between)) + ".";
     else
-        detail += " At the rows themselves it is exact.";
+        detail += " At the rows themselves the settings are exact.";
     notes.push_back({"interpolation", std::move(detail)});
 }
 
@@ -338,7 +341,7 @@ bool is_switched(const Product& product, const std::string& name) {
     return parameter->role == gain || parameter->role == integral || parameter->role == derivative;
 }
 
-/// What comes with the known products for a schedule switches gain and times alone.
+/// The gain scheduling of the known products switches only gain and times.
 void note_held(const Product& product, ConvertedSchedule& answer) {
     if (!product.scheduling) return;
     std::vector<std::string> held;
@@ -358,13 +361,13 @@ void note_held(const Product& product, ConvertedSchedule& answer) {
     answer.notes.push_back({"held-between-rows",
                             "The rows differ in " + names + ", which the product's gain scheduling does not switch: " +
                                 std::string(product.scheduling->text) +
-                                " Give all rows the same filter and set-point weight, or write these values by a "
-                                "program of your own."});
+                                " Give all rows the same filter and set-point weight, or write these values with your "
+                                "own program."});
 }
 
 bool holds(const std::vector<Note>& notes, const Note& note) { return std::ranges::find(notes, note) != notes.end(); }
 
-/// What every row says is said once.
+/// A note that every row has is stated once.
 void lift_common_notes(ConvertedSchedule& answer) {
     std::vector<RowSettings>& rows = answer.rows;
     std::vector<Note> common;

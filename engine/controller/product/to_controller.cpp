@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
-// What the settings say, in seconds and units of u per y, in the block's own form.
+// The law that the settings define, in seconds and units of u per y, in the block's own form.
 struct Law {
     Quantities own;
     double b = 1, c = 0;
@@ -23,13 +23,13 @@ Error no_twin(const Product& product, std::string_view name, const std::string& 
     return {ErrorKind::not_representable, "settings/" + std::string(name), std::string(product.name) + ": " + reason};
 }
 
-/// A parameter of the law, the product that it stands in, and its value.
+/// A parameter of the law, its product, and its value.
 class Reading {
 public:
     Reading(const Product& product, const Settings& settings, const Context& context)
         : product_(product), settings_(settings), context_(context) {}
 
-    /// Empty: neither given nor known by default.
+    /// Empty if it is neither given nor known by default.
     std::optional<double> number(const Parameter& parameter) {
         const auto value = number_of(parameter, settings_);
         if (value) note_if_default(parameter, *value);
@@ -75,7 +75,7 @@ private:
     std::optional<Error> missing_ = {};
 };
 
-// Sets one quantity from the parameter of its role; `absent` where nothing is known.
+// Sets one quantity from the parameter of its role, or to `absent` if that is unknown.
 std::optional<double> solve(const Product& product, ParameterRole role, double Quantities::*unknown,
                             double Term::*exponent, const Quantities& own, double absent, Reading& reading) {
     const Parameter* parameter = parameter_of(product, role);
@@ -86,7 +86,7 @@ std::optional<double> solve(const Product& product, ParameterRole role, double Q
     return solved(parameter->term, own, unknown, parameter->term.*exponent, *value);
 }
 
-// -1 where the switch of the action stands on direct.
+// -1 if the switch for the action is set to direct.
 double sign_of(const Product& product, const Settings& settings) {
     if (product.action.kind != Action::Kind::switched) return 1;
     const Value* given = setting_named(settings, product.action.name);
@@ -104,11 +104,13 @@ std::optional<Error> read_gain(const Product& product, const Settings& settings,
     if (own.Kp == 0 || !std::isfinite(own.Kp))
         return no_twin(product, gain.name,
                        std::string(gain.name) +
-                           " leaves no proportional part, and the ideal form's times are ratios "
-                           "to it. Give a gain that is not 0.");
+                           " leaves no proportional part, but the ideal form's times are ratios to it. Give a gain "
+                           "that is not 0.");
     if (product.action.kind != Action::Kind::signed_gain && own.Kp < 0)
         return Error{ErrorKind::invalid_argument, "settings/" + std::string(gain.name),
-                     std::string(gain.name) + " is negative, which " + std::string(product.name) + " does not take. " +
+                     std::string(gain.name) + " is negative, which " + std::string(product.name) +
+                         " does not "
+                         "accept. " +
                          std::string(product.action.text)};
     return std::nullopt;
 }
@@ -170,7 +172,7 @@ Filter read_filter(const Product& product, const Settings& settings, const Clock
     return idle || !(filter.Tf > 0) ? Filter{} : filter;
 }
 
-// What no term says: weights by options, by parameters, by what the block fixes.
+// Reads the weights, which no term defines: they come from options, from parameters, or are fixed by the block.
 void read_weights(const Product& product, Reading& reading, Law& law) {
     law.b = product.weights.b;
     law.c = product.weights.c;
@@ -199,12 +201,13 @@ void note_outsiders(const Product& product, const Settings& settings, std::vecto
         const Value* given = setting_named(settings, parameter.name);
         if (given && !counts(product, parameter, settings))
             notes.push_back({"outside-the-twin", std::string(parameter.name) + " is " + text_of(*given) +
-                                                     "; it has no effect with what is chosen beside it."});
+                                                     "; it has no effect with the other settings that are chosen."});
         if (parameter.role != ParameterRole::fixed || !given || !parameter.standard || *given == *parameter.standard)
             continue;
         notes.push_back({"outside-the-twin", std::string(parameter.name) + " is " + text_of(*given) +
-                                                 "; the twin is that of " + text_of(*parameter.standard) +
-                                                 " and does not contain what it does."});
+                                                 "; the equivalent controller is that "
+                                                 "of " +
+                                                 text_of(*parameter.standard) + " and does not include its effect."});
     }
 }
 
@@ -217,11 +220,11 @@ void note_zeros(const Product& product, const Settings& settings, std::vector<No
     const Parameter* integral = parameter_of(product, ParameterRole::integral);
     if (integral && !number_of(*integral, settings) && counts(product, *integral, settings))
         notes.push_back({"integral-off", std::string(integral->name) +
-                                             " is not given and no default of it is known: the twin has no integral "
-                                             "action."});
+                                             " is not given and its default is unknown: the equivalent controller has "
+                                             "no integral action."});
 }
 
-// The series form's filter stands over its whole lead: its twin's weights, times and filter come from one conversion.
+// The series form's filter covers its whole lead: weights, times and filter of its equivalent come from one conversion.
 IdealPid twin(const Product& product, const Law& law) {
     if (product.form == Form::series && law.filter.type == FilterType::derivative) {
         const SeriesPid series{
@@ -233,7 +236,8 @@ IdealPid twin(const Product& product, const Law& law) {
     return pid;
 }
 
-// What no controller of the ideal form is: a filter that lets nothing pass, a series lead that its own filter outlasts.
+// Error of settings without an equivalent ideal form: a filter that lets nothing pass, or a series lead that is shorter
+// than its own filter.
 std::optional<Error> beyond(const Product& product, const IdealPid& pid) {
     const auto at = [&](ParameterRole role, const std::string& reason) {
         const Parameter* parameter = parameter_of(product, role);
@@ -241,14 +245,15 @@ std::optional<Error> beyond(const Product& product, const IdealPid& pid) {
     };
     if (!std::isfinite(pid.filter.Tf))
         return at(ParameterRole::filter,
-                  "the filter's time becomes infinite, so no derivative is left. Give another value, or "
-                  "no derivative.");
+                  "the filter's time becomes infinite and removes the derivative. Give another value, or no "
+                  "derivative.");
     if (pid.Td < 0)
-        return at(ParameterRole::derivative, "the filter outlasts the integral time, which makes the ideal form's Td " +
-                                                 text(pid.Td) +
-                                                 ". Take a shorter derivative or a smaller ratio of the filter.");
+        return at(ParameterRole::derivative,
+                  "the filter time is longer than the integral time, which makes the ideal "
+                  "form's Td " +
+                      text(pid.Td) + ". Use a shorter derivative time or a smaller ratio of the filter.");
     if (!std::isfinite(pid.Kp) || !std::isfinite(pid.Td) || std::isnan(pid.Ti) || !std::isfinite(pid.b))
-        return at(ParameterRole::gain, "the values together are beyond any number.");
+        return at(ParameterRole::gain, "the result is out of the number range.");
     return std::nullopt;
 }
 

@@ -9,7 +9,7 @@
 namespace tunewright::product {
 namespace {
 
-constexpr int kSignificantDigits = 4;  // of a floating-point number as typed: off by 5e-4 of it at most
+constexpr int kSignificantDigits = 4;  // digits of a floating-point number as entered: relative error at most 5e-4
 constexpr int kMinDecimals = 2;
 
 bool takes_number(const Parameter& parameter) {
@@ -70,7 +70,7 @@ std::string fixed_text(double value, int decimals) {
     return {text, static_cast<std::size_t>(n)};
 }
 
-// Digits before the point count, so that 1234.567 keeps its two decimals and 0.0083333 gets six.
+// Digits before the point count too, so that 1234.567 keeps its two decimals and 0.0083333 has six.
 std::string floating_text(double value) {
     if (!std::isfinite(value) || std::abs(value) >= 1e15) return text(value, kSignificantDigits);
     int decimals = kMinDecimals;
@@ -187,7 +187,7 @@ std::string encoded_alpha(double alpha) {
 
 double rounded(const Parameter& parameter, double value) {
     if (parameter.off && value == *parameter.off) return value;
-    // By the steps in one where they are whole: 0.001 times a number is not the decimal that is typed.
+    // Divides by the steps per unit if they are whole: 0.001 times a number is not the decimal that is entered.
     const double steps = 1 / parameter.resolution, whole = std::round(steps);
     if (parameter.resolution > 0 && std::abs(steps - whole) <= 1e-9 * whole)
         value = std::round(value * whole) / whole;

@@ -21,7 +21,7 @@ double rounded(double value, double resolution) {
 PidProgram::PidProgram(const SampledPid& law, const ProgramLimits& limits)
     : law_(law), limits_(limits), past_(samples_kept(law), 0.0) {}
 
-// y_f and v = dy_f/dt: of the first order v = (y - y_f)/Tf, of the second v' = (2/Tf^2)(y - y_f) - (2/Tf) v.
+// Computes y_f and v = dy_f/dt: v = (y - y_f)/Tf for the first order, v' = (2/Tf^2)(y - y_f) - (2/Tf) v for the second.
 double PidProgram::filtered_trapezoidal(double y) {
     const double Tf = law_.gains.filter.Tf, r = 0.5 * law_.Ts / Tf, mean = 0.5 * (y + y_before_), before = y_f_;
     y_before_ = y;
@@ -61,7 +61,7 @@ double PidProgram::derivative(double f) {
         case DerivativeRule::filtered_forward: D_ = has_filter ? (1 - Ts / Tf) * D_ + move / Tf : move / Ts; break;
         case DerivativeRule::filtered_trapezoidal:
             if (whole_by_trapezoids(law_)) {
-                const double set = f + y_f_;  // c r, which no filter smooths
+                const double set = f + y_f_;  // c r is not filtered
                 D_ = Kd * ((set - set_before_) / Ts - v_);
                 set_before_ = set;
                 break;
@@ -103,7 +103,8 @@ double PidProgram::step(double r, double y) {
     P_ = P;
     e_ = e;
     const double given = rounded(u_, limits_.u_resolution), beyond = given - within(given);
-    return beyond == 0 ? given : given - std::copysign(limits_.u_resolution, beyond);  // the last multiple within
+    return beyond == 0 ? given
+                       : given - std::copysign(limits_.u_resolution, beyond);  // the last multiple within the limits
 }
 
 }  // namespace tunewright

@@ -1,4 +1,4 @@
-// The sampled law as it runs: one call a sample, states within, limits and dead band of a real program.
+// The sampled law as a running program: one call per sample, internal states, limits and dead band.
 #pragma once
 
 #include <optional>
@@ -8,14 +8,13 @@
 
 namespace tunewright {
 
-/// What a program has beside the linear law.
+/// The nonlinear parts of a program.
 struct ProgramLimits {
-    std::optional<ActuatorLimits>
-        output;               ///< of u, deviations. Its integral waits while it would drive u beyond a
-                              ///< limit, which u is at meanwhile; a velocity algorithm has nothing that winds up
-    double u_resolution = 0;  ///< >= 0: u is rounded to a multiple of it, within the limits
-    double y_resolution = 0;  ///< >= 0: y is read as a multiple of it
-    double dead_band = 0;     ///< >= 0: a smaller |r - y| counts as none
+    std::optional<ActuatorLimits> output;  ///< limits of u, deviations. The integral stops while it would drive u
+                                           ///< beyond; a velocity algorithm has none that winds up
+    double u_resolution = 0;               ///< >= 0: u is rounded to a multiple of it, within the limits
+    double y_resolution = 0;               ///< >= 0: y is rounded to a multiple of it
+    double dead_band = 0;                  ///< >= 0: a smaller |r - y| counts as 0
 
     bool linear() const { return !output && u_resolution == 0 && y_resolution == 0 && dead_band == 0; }
 };
@@ -25,7 +24,7 @@ class PidProgram {
 public:
     explicit PidProgram(const SampledPid& law, const ProgramLimits& limits = {});
 
-    /// The output u_k for what is read at t_k.
+    /// The output u_k for r and y read at t_k.
     double step(double r, double y);
 
 private:
@@ -36,12 +35,12 @@ private:
 
     SampledPid law_;
     ProgramLimits limits_;
-    double r_f_ = 0;          // the set point's filter
-    double y_f_ = 0, v_ = 0;  // the measurement's filter
+    double r_f_ = 0;          // state of the set point's filter
+    double y_f_ = 0, v_ = 0;  // states of the measurement's filter
     double y_before_ = 0, set_before_ = 0;
-    std::vector<double> past_;  // f of the samples before, the latest first
+    std::vector<double> past_;  // f of the previous samples, the latest first
     double D_ = 0, I_ = 0, e_ = 0;
-    double P_ = 0, u_ = 0;  // of the sample before, for the velocity algorithm
+    double P_ = 0, u_ = 0;  // of the previous sample, for the velocity algorithm
 };
 
 }  // namespace tunewright

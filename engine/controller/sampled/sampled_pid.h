@@ -1,6 +1,5 @@
-// The PID law as a program computes it, once every sample time: the rules by which its integral and derivative are
-// formed. Gains, weights and filter are those of the continuous law (pid.h); as the sample time falls it becomes that
-// law.
+// The PID law as a program computes it once every sample time, with the rules for its integral and derivative. Gains,
+// weights and filter are those of the continuous law (pid.h), which is its limit for a sample time of 0.
 //
 // At t_k = k Ts the program reads r_k and y_k, and its output is held until the next one (zero-order hold), from
 // t_k + `computation_delay` on. Everything is at rest, and 0, before k = 0. With e = r - y_f and f = c r - y_f:
@@ -23,10 +22,10 @@
 //   By trapezoids, where `trapezoidal_filter` says so: y_f, and the derivative of y_f with it, are the continuous ones
 //   with s = (2/Ts)(z - 1)/(z + 1).
 //
-// The set point's filter by backward Euler: r_f,k = (T r_f,k-1 + Ts r_k)/(T + Ts) takes the place of r_k.
-// A velocity algorithm adds the increments of the same sum to what it last gave: within limits the same output.
-// Sources: Astrom and Wittenmark, Computer-Controlled Systems (3rd ed. 1997), section 8.5; Astrom and Hagglund,
-// Advanced PID Control (2006), section 13.3. Slope and four points: the programs that use them (product/).
+// The set point's filter by backward Euler: r_f,k = (T r_f,k-1 + Ts r_k)/(T + Ts) takes the place of r_k. A velocity
+// algorithm adds the increments of the same sum to its last output: within limits the output is the same. Sources:
+// Astrom and Wittenmark, Computer-Controlled Systems (3rd ed. 1997), section 8.5; Astrom and Hagglund, Advanced PID
+// Control (2006), section 13.3. Slope and four points: the programs that use them (product/).
 #pragma once
 
 #include "engine/controller/pid.h"
@@ -36,9 +35,9 @@ namespace tunewright {
 enum class IntegralRule { backward, forward, trapezoidal };
 
 enum class DerivativeRule {
-    difference,            ///< no filter of the derivative, whatever the gains say
-    filtered_backward,     ///< of the gains' `derivative` filter; without one the difference
-    filtered_forward,      ///< the same; stable only for Tf > Ts/2
+    difference,            ///< unfiltered, even if the gains have a filter
+    filtered_backward,     ///< with the gains' `derivative` filter; without one the difference
+    filtered_forward,      ///< the same by the forward rule; stable only for Tf > Ts/2
     filtered_trapezoidal,  ///< the same
     slope,                 ///< over `slope_samples` periods; no filter
     four_points,           ///< no filter
@@ -50,12 +49,12 @@ struct SampledPid {
     IntegralRule integral = IntegralRule::backward;
     DerivativeRule derivative = DerivativeRule::filtered_backward;
     int slope_samples = 1;         ///< M >= 1
-    double computation_delay = 0;  ///< >= 0, time; also more than Ts
+    double computation_delay = 0;  ///< >= 0, time; may be longer than Ts
     bool velocity = false;
-    bool trapezoidal_filter = false;  ///< of the measurement
+    bool trapezoidal_filter = false;  ///< trapezoidal filter of the measurement
 };
 
-/// Whether filter of the measurement and derivative are formed together, by trapezoids.
+/// True if filter of the measurement and derivative are computed together, by the trapezoidal rule.
 inline bool whole_by_trapezoids(const SampledPid& law) {
     const FilterType type = law.gains.filter.type;
     return law.trapezoidal_filter &&

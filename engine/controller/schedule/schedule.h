@@ -1,4 +1,4 @@
-// A table of settings over the scheduling variable, and the settings that a controller makes of it between its rows.
+// A table of settings over the scheduling variable, and the settings between its rows.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@ namespace tunewright {
 
 /// How the user's controller moves between the rows of its schedule.
 enum class Interpolation {
-    steps,            ///< a row's settings from its place on, with hysteresis
+    steps,            ///< a row's settings hold from its value on, with hysteresis
     linear_in_gains,  ///< Kp, 1/Ti and Td are linear between rows
     linear_in_times,  ///< Kp, Ti and Td are linear between rows
 };
@@ -25,22 +25,22 @@ struct ScheduleRow {
     double Kp = 0, Ti = 0, Td = 0, Tf = 0, b = 1;
 };
 
-/// Below the first row and above the last one their settings hold.
+/// Below the first row and above the last one, the settings of that row hold.
 struct Schedule {
     Interpolation interpolation = Interpolation::linear_in_gains;
-    double hysteresis = 0;          ///< in the unit of `at`, of `steps`: a row is left h/2 beyond its border
+    double hysteresis = 0;          ///< for `steps`, in the unit of `at`: a row is left h/2 beyond its border
     std::vector<ScheduleRow> rows;  ///< ascending, at least one
 };
 
-/// The controller of one row, filter of the measurement of second order.
+/// The controller of one row, with a second-order filter of the measurement.
 IdealPid controller_of(const ScheduleRow& row);
 
-/// What the controller computes with at a place. Linear kinds: b and Tf are linear too. `steps`: the row whose border
-/// was passed last without hysteresis.
+/// The controller's settings at a value of the scheduling variable. Linear kinds: b and Tf are linear too. `steps`: the
+/// row whose border was passed last, without hysteresis.
 IdealPid settings_at(const Schedule& schedule, double at);
 
-/// The row of `steps` that is in use at a place, when `row` was before: it is left where `at` is half the hysteresis
-/// beyond its borders.
+/// For `steps`: the row in use at a value, after `row`: a row is left when `at` is half the hysteresis beyond its
+/// border.
 std::size_t row_after(const Schedule& schedule, std::size_t row, double at);
 
 }  // namespace tunewright

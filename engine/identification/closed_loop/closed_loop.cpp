@@ -20,22 +20,24 @@
 namespace tunewright {
 namespace {
 
-/// A search's structures by instrumental variables, with what each leaves.
+/// A search's structures fitted by instrumental variables, with the unexplained part of each.
 struct Refined {
     ModelSearch search;
     std::vector<double> mismatch, gain_error;
-    std::vector<double> left;  ///< of what the set point did to y, the share that the model leaves
+    std::vector<double> left;  ///< share of the set point's effect on y that the model does not explain
 
     std::size_t chosen() const { return static_cast<std::size_t>(search.choice.index); }
 };
 
-constexpr double kMaxMismatch = 25;                ///< of InstrumentFit::mismatch: some 10 are chance
+constexpr double kMaxMismatch = 25;                ///< limit of InstrumentFit::mismatch: about 10 occur by chance
 constexpr double kMinUnknownGainError = 0.5;       ///< standard error over the gain
-constexpr double kMinGainError = 1e-5;             ///< standard error over the gain that no record of a loop can give
-constexpr double kMinFitPercentOfSmallError = 99;  ///< per cent: so good a free run may have so small an error
-constexpr double kMinDivisor = 1e-300;             ///< keeps a division by what may be 0 finite
+constexpr double kMinGainError = 1e-5;             ///< a smaller standard error over the gain is not credible for a
+                                                   ///< record of a loop
+constexpr double kMinFitPercentOfSmallError = 99;  ///< per cent: with so good a fit of the free run so small an error
+                                                   ///< is possible
+constexpr double kMinDivisor = 1e-300;             ///< keeps a division by a value near 0 finite
 
-/// The sum of squares of what filters of the set point explain of a signal about its mean.
+/// The sum of squares that filters of the set point explain of a signal about its mean.
 double by_set_point(const std::vector<double>& signal, const SetPointPart& part) {
     const auto n = static_cast<Eigen::Index>(signal.size());
     Eigen::MatrixXd columns(n, static_cast<Eigen::Index>(part.filtered.size()));
@@ -47,7 +49,7 @@ double by_set_point(const std::vector<double>& signal, const SetPointPart& part)
     return (columns * least_squares(columns, values)).squaredNorm();
 }
 
-/// Whether the recognised controller would drive this plant away: static feedback of the positive sign.
+/// True if the recognised controller would destabilise this plant: static feedback of the positive sign.
 bool driven_away(const LoopRecord& loop, const Fit& fit) {
     const double K = fit.linear[0] * (fit.form.structure == Structure::unstable ? -1 : 1);
     return K * loop.gain > 0;
@@ -71,7 +73,7 @@ std::optional<Refined> refined(ModelSearch search, const CleanRecord& record, co
         if (!better) continue;
         fit = std::move(better->fit);
         out.search.percents[i] = fit_percent(record, fit);
-        // A gain without any error is one that nothing in the equations depends on.
+        // A gain with a standard error of 0 means that the equations do not depend on it.
         const bool empty =
             (better->gain_error < kMinGainError && out.search.percents[i] < kMinFitPercentOfSmallError) ||
             driven_away(loop, fit);
@@ -83,18 +85,18 @@ std::optional<Refined> refined(ModelSearch search, const CleanRecord& record, co
 
 bool usable(const Refined& r, std::size_t i) {
     constexpr double kMaxKnownGainError = 0.3;                             // standard error over the gain
-    constexpr double kMaxLeft = 0.1, kBesideBest = 0.003, kTimesBest = 3;  // of what the set point did to y
+    constexpr double kMaxLeft = 0.1, kBesideBest = 0.003, kTimesBest = 3;  // of the set point's effect on y
     const double min = *std::ranges::min_element(r.left);
     return r.search.fits[i].determined && r.mismatch[i] < kMaxMismatch && r.gain_error[i] < kMaxKnownGainError &&
            r.left[i] < std::min(kMaxLeft, kBesideBest + kTimesBest * min);
 }
 
-/// The structure whose residual the set point explains least, where the one that least squares preferred does not do,
-/// or leaves plainly more. A free run that is far worse is no model, and an integrator beside a slow disturbance
-/// whitens as well as a lag does: it must run as well.
+/// Chooses the structure whose residual the set point explains least, if the one that least squares preferred is not
+/// good enough or clearly worse. Its free run must not be much worse. An integrator with a slow disturbance gives as
+/// white a residual as a lag, so its free run must be as good.
 void choose_again(Refined& r) {
     constexpr double kMismatchPerParameter = 3,
-                     kMinMismatchGain = 6;  // of mismatch: for a parameter; for another choice
+                     kMinMismatchGain = 6;  // of mismatch: gain for an additional parameter, and for another choice
     constexpr double kMaxSseRatio = 5, kMaxSseRatioOfIntegrator = 1.2;  // ratios of sums of squares
     const auto cost = [&](std::size_t i) {
         return r.mismatch[i] + kMismatchPerParameter * r.search.fits[i].form.parameters();
@@ -112,11 +114,11 @@ void choose_again(Refined& r) {
     if (best == r.chosen() || (usable(r, r.chosen()) && cost(r.chosen()) < cost(best) + kMinMismatchGain)) return;
     r.search.choice = {static_cast<int>(best),
                        std::string(name_of(r.search.fits[best].form.structure)) +
-                           ": of the structures whose gain the set point's moves tell, the one that leaves least of "
-                           "what they did."};
+                           ": of the structures whose gain the moves of the set point determine, the one that explains "
+                           "most of their effect."};
 }
 
-/// The gain's standard error over its size; 0 where it is not known.
+/// The gain's standard error over its size; 0 if it is unknown.
 double gain_error(const IdentifiedModel& model) {
     const auto error = model.standard_errors.find("K");
     if (error == model.standard_errors.end()) return 0;
@@ -134,7 +136,7 @@ double gain_error(const IdentifiedModel& model) {
     return error->second / std::max(std::abs(K), kMinDivisor);
 }
 
-/// As the inverse of a proportional controller does.
+/// True if the model responds at once, like the inverse of a proportional controller.
 bool answers_at_once(const IdentifiedModel& model) {
     constexpr double kMaxLagInSpacings = 2;  // spacings of the samples
     return std::any_of(model.candidates.begin(), model.candidates.end(), [&](const Candidate& candidate) {
@@ -148,13 +150,13 @@ double left_by_line(std::span<const double> y, std::span<const double> u) {
     return deviation(residuals(straight_line(y, u), y, u));
 }
 
-/// As the inverse of a proportional controller whose law u keeps to.
+/// True if the model is like the inverse of a proportional controller that u follows.
 bool is_inverse_of_law(const CleanRecord& record, const IdentifiedModel& model) {
     constexpr double kMaxGainProductError = 0.1;
     if (!may_be_controlled(record) || !answers_at_once(model)) return false;
     const std::vector<double> u = input_at_samples(record);
     const std::span all_u(u), all_y(record.y);
-    // A plant that is quick beside the rows shows u a row later.
+    // A plant that is fast compared with the sampling shows u one row later.
     if (left_by_line(all_y.last(u.size() - 1), all_u.first(u.size() - 1)) < left_by_line(all_y, all_u)) return false;
     const std::optional<ControllerLaw> law = controller_law(record, u, {});
     const auto* lag = std::get_if<Fopdt>(&model.plant);
@@ -167,7 +169,7 @@ bool is_inverse_of_law(const CleanRecord& record, const IdentifiedModel& model) 
 Expected<IdentifiedModel> identify_in_loop(const CleanRecord& full, const LoopRecord& loop, ModelChoice model,
                                            const RunControl& control) {
     constexpr double kMinFRatio = 4, kMinMismatchDifference = 10;  // F ratio; difference of mismatch
-    if (!loop.part) return no_plant_in_loop(full, loop, "and nothing but feedback moves u");
+    if (!loop.part) return no_plant_in_loop(full, loop, "and only feedback moves u");
     if (loop.part->strength < kMinFRatio)
         return no_plant_in_loop(
             full, loop,
@@ -190,28 +192,31 @@ Expected<IdentifiedModel> identify_in_loop(const CleanRecord& full, const LoopRe
     std::optional<Refined>& best = two_stage && (!direct || better(*two_stage, *direct)) ? two_stage : direct;
     const bool follows = best && best->search.chosen().determined &&
                          (best->mismatch[best->chosen()] < kMaxMismatch || responds(full, best->search.chosen()));
-    if (!follows) return no_plant_in_loop(full, loop, "and y does not plainly follow the moves from outside the loop");
+    if (!follows) return no_plant_in_loop(full, loop, "and y does not clearly follow the moves from outside the loop");
     if (driven_away(loop, best->search.chosen()))
         return no_plant_in_loop(full, loop,
-                                "and the gain that the moves from outside the loop give has the sign with which this "
-                                "controller would have driven y away");
-    constexpr double kMaxUnexplainedShare = 0.5;  // of what the set point did to y
+                                "and with the gain that follows from the moves from outside the loop, this controller "
+                                "would have been unstable");
+    constexpr double kMaxUnexplainedShare = 0.5;  // of the set point's effect on y
     if (best->left[best->chosen()] > kMaxUnexplainedShare)
-        return no_plant_in_loop(full, loop, "and no structure explains what the moves from outside the loop did to y");
+        return no_plant_in_loop(full, loop,
+                                "and no structure explains the effect of the moves from outside the loop "
+                                "on y");
     const double error = best->gain_error[best->chosen()];
     if (!(error < kMinUnknownGainError)) {
         return no_plant_in_loop(full, loop,
-                                "and the moves from outside the loop leave the gain unknown (its standard error is " +
+                                "and the moves from outside the loop do not determine the gain (its standard error "
+                                "is " +
                                     text(100 * error, 2) + " % of it)");
     }
     if (loop.found.used == LoopExcitation::switched_on) {
-        // One move has nothing to be compared with: what is slow in the residual may be the plant's.
+        // A single move cannot be compared with others: slow parts of the residual may belong to the plant.
         for (Fit& fit : best->search.fits) fit.as_open_as_least_squares = true;
     }
     IdentifiedModel answer = searched_model(std::move(best->search), full);
     if (loop.found.used == LoopExcitation::switched_on && !(gain_error(answer) < kMinUnknownGainError)) {
         return no_plant_in_loop(full, loop,
-                                "and its start leaves the gain unknown (its standard error is " +
+                                "and its start does not determine the gain (its standard error is " +
                                     text(100 * gain_error(answer), 2) + " % of it)");
     }
     return answer;
@@ -222,7 +227,7 @@ void doubt_open_loop(const CleanRecord& full, IdentifiedModel& model) {
                      kMinRestlessnessOfLaw = 0.15;  // restlessness
     constexpr double kMinGainErrorOfLaw = 0.33;     // standard error over the gain
     constexpr double kMaxLawShareUnknownGain = 0.8,
-                     kMaxLawShareAtOnce = 0.95;  // what the law leaves of u over what the model leaves of y
+                     kMaxLawShareAtOnce = 0.95;  // standard deviation of u from the law over that of y from the model
     const double restless = restlessness(looked_at_for_feedback(full));
     const CleanRecord record = condensed(full, kMaxLoopSamples);
     const bool inverse = is_inverse_of_law(record, model);
@@ -236,40 +241,40 @@ void doubt_open_loop(const CleanRecord& full, IdentifiedModel& model) {
                           (restless > kMinRestlessnessOfLaw && by_law < 1) || at_once || inverse;
     if (!in_doubt) return;
     LoopRecord loop;
-    loop.found.evidence = "u moves restlessly, and filters of y explain " + text(100 * law->share, 3) +
-                          " % of its variance, where the model explains " +
+    loop.found.evidence = "u moves irregularly, and filters of y explain " + text(100 * law->share, 3) +
+                          " % of its variance, but the model explains only " +
                           text(100 * std::max(0.0, 1 - unexplained), 3) + " % of y's.";
     model.data_quality.closed_loop = loop.found;
     model.warnings.insert(model.warnings.begin(),
                           {"closed-loop",
-                           "A controller seems to move u in answer to y: " + loop.found.evidence +
+                           "A controller seems to move u in response to y: " + loop.found.evidence +
                                " Then the model may be the controller's inverse in place of the plant: "
                                "step u in manual, or step the set point and record it as column r.",
                            WarningLevel::bad});
 }
 
 void report_loop(const LoopRecord& loop, IdentifiedModel& model) {
-    std::string detail = "A controller moves u in answer to y: " + loop.found.evidence;
+    std::string detail = "A controller moves u in response to y: " + loop.found.evidence;
     switch (loop.found.used) {
         case LoopExcitation::set_point:
             detail +=
-                " The model rests on what the moves of the set point did alone; disturbances that the controller "
-                "answered count as noise in its standard errors.";
+                " The model is based only on the effect of the set point's moves; disturbances to which the controller "
+                "responded count as noise in its standard errors.";
             break;
         case LoopExcitation::switched_on:
             detail +=
-                " The model rests on what switching the controller on, or the set point's move before the first row, "
-                "did; disturbances that the controller answered count as noise in its standard errors.";
+                " The model is based on the effect of switching the controller on, or of the set point's move before "
+                "the first row; disturbances to which the controller responded count as noise in its standard errors.";
             break;
         case LoopExcitation::outside_moves:
             detail +=
-                " The model rests on the moves of u that y does not explain, taken for moves of the set point. Record "
-                "the set point as column r.";
+                " The model is based on the moves of u that y does not explain, which were assumed to be moves of the "
+                "set point. Record the set point as column r.";
             break;
         case LoopExcitation::none:
             detail +=
-                " The formula asked for does not know of feedback: its figures may be the controller's in place of the "
-                "plant's.";
+                " The requested formula does not consider feedback: its figures may describe the controller instead of "
+                "the plant.";
             break;
     }
     model.data_quality.closed_loop = loop.found;

@@ -1,4 +1,4 @@
-// Records of closed loops: what may be learned of the plant where a controller moves u in answer to y.
+// Identification from records of closed loops, in which a controller moves u in response to y.
 #pragma once
 
 #include "engine/expected.h"
@@ -8,21 +8,19 @@
 
 namespace tunewright {
 
-/// 1. The structure is searched for with the recorded u, and with the set point's part of u alone.
-/// 2. Both ends are refined by instrumental variables (instrument_fit.h), and the one stays whose residual the set
-/// point
+/// 1. Search the structure with the recorded u, and with only the set point's part of u.
+/// 2. Refine both results by instrumental variables (instrument_fit.h); keep the one whose residual the set point
 ///    explains less.
-/// 3. Where the loop was switched on once, the standard errors are at least those of least squares.
+/// 3. If the loop was switched on once, the standard errors are at least those of least squares.
 ///
-/// Errors:
-/// not_identifiable where nothing but feedback moves u, or too little to know the gain within a half of itself, or
-/// where the gain that comes out is of the sign with which that controller drives its plant away; cancelled.
+/// Errors: not_identifiable if only feedback moves u, if the other moves are too small to determine the gain within
+/// half of its size, or if the recognised controller would be unstable with the resulting gain; cancelled.
 Expected<IdentifiedModel> identify_in_loop(const CleanRecord& record, const LoopRecord& loop, ModelChoice model,
                                            const RunControl& control);
 
-/// Where no feedback was found: warns (closed-loop) if u is restless, and filters of y explain more of u than the model
-/// explains of y, while the model is in doubt (its gain unknown) or u plainly moves as no test does. So it is in loops
-/// whose controller sees another noise than the record shows.
+/// For records without found feedback: warns (closed-loop) if u moves irregularly and filters of y explain more of u
+/// than the model explains of y, and the model is doubtful (its gain is unknown) or u clearly moves unlike any test.
+/// This happens in loops whose controller reads another noise than the record contains.
 void doubt_open_loop(const CleanRecord& record, IdentifiedModel& model);
 
 /// Fills data_quality.closed_loop and adds warning closed-loop.

@@ -21,17 +21,17 @@ namespace tunewright {
 namespace {
 
 constexpr double kMinDeparture = 0.02;  ///< of y's range: y has left its rest
-constexpr double kNoiseDeviations = 4;  ///< of noise, which is no movement
+constexpr double kNoiseDeviations = 4;  ///< standard deviations of noise, which count as no movement
 
-/// How many rows u stands still at its first value.
+/// Number of rows in which u is constant at its first value.
 std::size_t still_rows(const std::vector<double>& u) {
     return static_cast<std::size_t>(std::ranges::find_if(u, [&](double v) { return v != u.front(); }) - u.begin());
 }
 
-/// True if u moves up to this row by small moves, or by single steps of its grid, and not by a step that somebody made.
+/// True if u moves up to this row by small moves, or by single steps of its grid, and not by a deliberate step.
 bool creeps(const std::vector<double>& u, std::size_t row) {
-    constexpr double kMaxStepShare = 0.5, kMaxStepInGrids = 1.5;  // of the whole way; of the grid
-    constexpr std::size_t kMaxFewLevels = 3;                      // so few levels show no grid
+    constexpr double kMaxStepShare = 0.5, kMaxStepInGrids = 1.5;  // of the whole change; in steps of the grid
+    constexpr std::size_t kMaxFewLevels = 3;                      // so few levels do not define a grid
     if (std::set<double>(u.begin(), u.end()).size() <= kMaxFewLevels) return false;
     double largest = 0;
     for (std::size_t i = 1; i <= row && i < u.size(); ++i) largest = std::max(largest, std::abs(u[i] - u[i - 1]));
@@ -39,7 +39,7 @@ bool creeps(const std::vector<double>& u, std::size_t row) {
     return largest <= std::max(kMaxStepShare * way, kMaxStepInGrids * quantisation_step(u));
 }
 
-/// The static gain; empty where the plant integrates.
+/// The static gain; empty if the plant integrates.
 std::optional<double> gain_of(const IdentifiedModel& model) {
     const auto plant = LinearPlant::make(model.plant);
     return plant && plant->integrators() == 0 ? std::optional(plant->low_frequency_gain()) : std::nullopt;
@@ -57,7 +57,7 @@ bool same_sign(const IdentifiedModel& a, const IdentifiedModel& b) {
     return one && other && *one * *other > 0;
 }
 
-/// Gains a tenth apart, or three standard errors.
+/// True if the gains differ by less than a tenth, or by less than three standard errors.
 bool agree(const IdentifiedModel& estimated, const IdentifiedModel& from_off) {
     constexpr double kMaxGainDifference = 0.1, kGainStandardErrors = 3;
     const std::optional<double> one = gain_of(estimated), other = gain_of(from_off);
@@ -70,9 +70,11 @@ IdentifiedModel warned(IdentifiedModel model, const std::string& taken, WarningL
     model.warnings.insert(
         model.warnings.begin(),
         {"u0-not-recorded",
-         "The record begins with u already moved and y still at rest, so what u was before is not in it. " + taken +
-             " The gain K and the lags rest on that: give u0, the value of u before the first row, or record from five "
-             "rows before the switch on.",
+         "The record begins after u has moved, with y still at rest, so it does not contain the previous value of "
+         "u. " +
+             taken +
+             " The gain K and the lags depend on that: give u0, the value of u before the first row, or start the "
+             "record five rows before the switch.",
          level});
     return model;
 }
@@ -109,7 +111,7 @@ ColdStart cold_start(const Record& record, const CleanRecord& clean, bool in_loo
 
 Expected<IdentifiedModel> cold_start_model(ColdStart start, Expected<IdentifiedModel> estimated,
                                            Expected<IdentifiedModel> from_off, double off) {
-    constexpr double kAsMuch = 1.05, kNoMore = 1;  // of what the other model leaves
+    constexpr double kAsMuch = 1.05, kNoMore = 1;  // relative to the residual of the other model
     const double max = start == ColdStart::plain ? kAsMuch : kNoMore;
     const bool as_well = from_off && (estimated ? share_left_by(*from_off) <= max * share_left_by(*estimated)
                                                 : start == ColdStart::plain);
@@ -122,7 +124,7 @@ Expected<IdentifiedModel> cold_start_model(ColdStart start, Expected<IdentifiedM
                       WarningLevel::bad);
     }
     if (rivals && same_sign(*estimated, *from_off)) from_off->alternatives.push_back(estimated->plant);
-    return warned(std::move(*from_off), "It is taken to be " + text(off) + ", off.", WarningLevel::warning);
+    return warned(std::move(*from_off), "It is assumed to be " + text(off) + ", off.", WarningLevel::warning);
 }
 
 }  // namespace tunewright

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kMinLawRows = 40, kMinLawSegment = 10;
 
-/// Rows [from, to) in which u is neither still at the start nor held at an end.
+/// Rows [from, to) in which u is neither constant at the start nor at an end of its range.
 struct MovingRows {
     int from = 0, to = 0;
     int size() const { return to - from; }
@@ -42,8 +42,8 @@ std::vector<MovingRows> moving_rows(std::span<const double> u) {
     return found;
 }
 
-/// y, the integral of r - y, what the set point adds (the integral of one that is not known, or r itself), dy/dt; the
-/// last column is u. Each segment's mean is taken out.
+/// Columns: y, the integral of r - y, the set point's contribution (the integral of an unknown one, or r itself),
+/// dy/dt; the last column is u. Each segment's mean is subtracted.
 Eigen::MatrixXd law_rows(const CleanRecord& record, const std::vector<double>& u, const std::vector<double>& r,
                          const std::vector<MovingRows>& segments) {
     const bool r_moves = !r.empty() && std::ranges::any_of(r, [&](double value) { return value != r.front(); });
@@ -72,7 +72,7 @@ Eigen::MatrixXd law_rows(const CleanRecord& record, const std::vector<double>& u
     return X;
 }
 
-/// The share of the last column's variance that the others leave, and their coefficients.
+/// The share of the last column's variance that the others do not explain, and their coefficients.
 struct Explained {
     Eigen::VectorXd coefficient;
     double left = 1;
@@ -85,7 +85,7 @@ Explained explain(const Eigen::MatrixXd& X, const Eigen::VectorXd& z) {
     return {c, (z - X * c).squaredNorm() / total};
 }
 
-/// Explains u by itself: u about its mean is a straight line over time and a multiple of its first or second integral.
+/// Explains u by itself: u about its mean as a straight line over time plus a multiple of its first or second integral.
 Explained by_integral_of_itself(const CleanRecord& record, const std::vector<double>& u, const MovingRows& rows,
                                 int order) {
     Eigen::MatrixXd X(rows.size(), 3);
@@ -113,13 +113,14 @@ bool is_sine(const CleanRecord& record, const std::vector<double>& u, const Movi
            std::sqrt(-sine.coefficient[2]) * length > kTwoPeriods;
 }
 
-/// Share of u's variance left by u as a lag that follows one step: u' = a + b u, integrated, and a straight line over
-/// it. A soft start is that; a filter of y explains it too, with y's noise.
+/// Share of u's variance that remains if u is modelled as a lag after one step: u' = a + b u, integrated, plus a
+/// straight line. A soft start has this form; a filter of y explains it too, with the noise of y.
 double left_by_lagged_step(const CleanRecord& record, const std::vector<double>& u, const MovingRows& rows) {
     return by_integral_of_itself(record, u, rows, 1).left;
 }
 
-/// P or PI; PID only where the integral has its share, for y and its slope alone are also how a lag leads to its input.
+/// Fits P or PI. PID only if the integral contributes, because a lag's output and its slope alone also explain its
+/// input.
 Explained law_of(const Eigen::MatrixXd& rows, double plain) {
     constexpr double kMinIntegralVarianceRatio = 4;  // times the variance that the law leaves without its integral
     const Eigen::Index m = rows.cols() - 1;

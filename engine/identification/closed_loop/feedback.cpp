@@ -11,14 +11,14 @@
 namespace tunewright {
 namespace {
 
-constexpr int kMinMoves = 12;         ///< fewer moves of u tell no law
-constexpr double kTinyRoot = 1e-150;  ///< keeps a division by what may be 0 finite; its square is too
+constexpr int kMinMoves = 12;         ///< fewer moves of u do not determine a law
+constexpr double kTinyRoot = 1e-150;  ///< keeps a division by a value near 0 finite, also when squared
 
-/// Least squares that a few outliers, the set point's moves, do not bend.
+/// Least squares that is robust against a few outliers, such as moves of the set point.
 struct Regression {
     Eigen::VectorXd coefficient, residual;
-    std::vector<char> usual;  ///< rows that are no outliers
-    double scale = 0;         ///< of the residual's middle part
+    std::vector<char> usual;  ///< 1 for rows that are not outliers
+    double scale = 0;         ///< deviation of the middle part of the residual
 };
 
 double quantile(std::vector<double> values, double part) {
@@ -27,9 +27,9 @@ double quantile(std::vector<double> values, double part) {
     return *at;
 }
 
-/// At most a twentieth of the rows is left out: those beyond four deviations.
+/// At most a twentieth of the rows is omitted: those with residuals above four deviations.
 Regression regress(const Eigen::MatrixXd& X, const Eigen::VectorXd& z) {
-    constexpr int kRounds = 6;  // until the set of outliers no longer changes, in practice
+    constexpr int kRounds = 6;  // enough in practice for the set of outliers to stop changing
     constexpr double kScaleQuantile = 0.8,
                      kScaleQuantileInDeviations = 1.2816;  // that quantile of |normal|, in standard deviations
     constexpr double kOutlierScales = 4, kMinKeptShare = 0.95;
@@ -61,7 +61,7 @@ Regression regress(const Eigen::MatrixXd& X, const Eigen::VectorXd& z) {
     return out;
 }
 
-/// Root mean squares of two regressions of the same z over the rows usual to both.
+/// Root mean squares of two regressions of the same z over the rows that are usual in both.
 struct Errors {
     double a = 0, b = 0;
     double ratio() const { return b / std::max(a, kTinyRoot); }
@@ -82,7 +82,7 @@ Errors compare(const Regression& a, const Regression& b) {
     return out;
 }
 
-/// The rows looked at, and what happened from one to the next.
+/// The selected rows, and the changes between them.
 struct Moves {
     bool every_row = true;
     std::vector<int> row;
@@ -112,7 +112,7 @@ Moves moves_of(const CleanRecord& r, const std::vector<double>& u, int moved) {
     return m;
 }
 
-/// u's moves by u's own past, by y up to the same row, and by y of the rows before.
+/// Predictions of u's moves from u's own past, from y up to the same row, and from y of the earlier rows.
 struct Predictions {
     Regression by_u, by_y, by_past_y;
     int coefficients = 0, first = 0, y_column = 0;  ///< first: index of the first move predicted
@@ -120,17 +120,17 @@ struct Predictions {
 
 double rate(const Moves& m, int j) { return m.dt[j] > 0 ? m.du[j] / m.dt[j] : 0; }
 
-/// Uneven rows: what goes on at its rate, goes on for the row's own time; and what bends goes on bending.
+/// For uneven rows: a constant rate continues for the time of the row, and so does its change.
 double carried_on(const Moves& m, int j) { return rate(m, j - 1) * m.dt[j]; }
 double bent_on(const Moves& m, int j) {
     const double apart = m.dt[j - 1] + m.dt[j - 2];
     return apart > 0 ? (rate(m, j - 1) - rate(m, j - 2)) / apart * m.dt[j] * (m.dt[j] + m.dt[j - 1]) : 0;
 }
 
-/// Ramps and slewing valves: most moves go on at the rate of the move before.
+/// True for ramps and slewing valves: most moves continue at the rate of the previous move.
 bool on_ramps(const Moves& m) {
     constexpr double kRateTolerance = 1e-3,
-                     kMaxSameShare = 0.6;  // relative rounding of logged figures; share of the moves
+                     kMaxSameShare = 0.6;  // relative rounding of logged values; share of the moves
     int same = 0, moved = 0;
     for (int j = 2; j < m.size(); ++j) {
         if (m.du[j] == 0) continue;
@@ -160,7 +160,7 @@ Predictions predict_every_row(const Moves& m) {
     return {regress(own, z), regress(same, z), regress(past, z), kOwnLags, kFirstRow, kShortLags};
 }
 
-/// From one move of u to the next: the differences of y and its integral, as a PI law with rests between its moves.
+/// From one move of u to the next: the differences of y and its integral, for a PI law that rests between its moves.
 Predictions predict_moves(const Moves& m) {
     constexpr int kFewMoves = 60;
     const bool few = m.size() < kFewMoves;
@@ -188,7 +188,7 @@ Predictions predict_moves(const Moves& m) {
     return {regress(own, z), regress(same, z), regress(past, z), columns, first, kept};
 }
 
-/// Predictions of y from y's past alone, and from both pasts.
+/// Predictions of y from y's past alone, and from the past of both.
 struct NewsOfY {
     Regression by_y, by_both;
     int first = 0;
@@ -210,9 +210,9 @@ NewsOfY news_of_y(const CleanRecord& r, const std::vector<double>& u) {
     return {regress(own, z), regress(both, z), kFirstRow};
 }
 
-/// The part of u's news (what u's past does not predict of its moves) that y's news (what both pasts do not predict of
-/// y) leaves unexplained, as a ratio of root mean squares. In an open-loop test with a clean y and a noisy reading of
-/// u, y predicts u, but its news do not.
+/// The part of u's innovations (its moves that its past does not predict) that y's innovations (not predicted by the
+/// past of both) leave unexplained, as a ratio of root mean squares. In an open-loop test with a clean y and a noisy
+/// reading of u, y predicts u, but its innovations do not.
 double unexplained_by_news(const Moves& m, const Predictions& p, const NewsOfY& y) {
     constexpr int kLags = 6;
     const auto n = static_cast<int>(p.by_u.residual.size()) - kLags;
@@ -229,11 +229,11 @@ double unexplained_by_news(const Moves& m, const Predictions& p, const NewsOfY& 
     return errors.ratio();
 }
 
-/// A logger that writes u after its answer shows y and u of the same row as a controller would. The law of a plant is
-/// a lag with a gain; that of a controller has no lag of y, or, with integral action, no gain from u to y.
+/// If a logger writes u after y has responded to it, y and u of the same row look as with a controller. But the law of
+/// a plant is a lag with a gain; that of a controller has no lag of y or, with integral action, no gain from u to y.
 bool is_law_of_lag(const CleanRecord& r, const std::vector<double>& u) {
     constexpr double kMaxLagCoefficient = 0.2,
-                     kMaxGainCoefficient = 0.7;  // coefficients that a controller's law stays below
+                     kMaxGainCoefficient = 0.7;  // a controller's law has smaller coefficients
     const int n = r.samples() - 2;
     Eigen::MatrixXd X(n, 3);
     Eigen::VectorXd z(n);
@@ -260,14 +260,15 @@ bool on_few_levels(std::vector<double> u) {
     return levels <= kMaxLevels;
 }
 
-/// A pseudo-random sequence or a heater by pulse width, whatever jitter or grid u has.
+/// True for a pseudo-random sequence or a heater with pulse width modulation, with any jitter or grid of u.
 bool switches_between_two(const CleanRecord& r) { return two_levels(input_levels(r)).switch_time.size() >= 3; }
 
-/// Moves that the law of the controller leaves over, far beyond what it leaves elsewhere; the first of a few in a row.
+/// Moves that the controller's law does not explain, much larger than its other residuals; of several successive ones
+/// only the first.
 std::vector<OutsideMove> outside_moves(const CleanRecord& r, const Moves& m, const Predictions& p) {
     constexpr double kMinResidualScales = 10,
-                     kMinShareOfRange = 0.01;  // deviations of the law's residual; of u's range
-    constexpr int kMinMovesBetween = 8;        // moves between two that count apart
+                     kMinShareOfRange = 0.01;  // standard deviations of the law's residual; of u's range
+    constexpr int kMinMovesBetween = 8;        // moves between two of them that count separately
     const double law = p.by_y.coefficient[p.y_column];
     std::vector<OutsideMove> found;
     if (law == 0) return found;
@@ -282,7 +283,7 @@ std::vector<OutsideMove> outside_moves(const CleanRecord& r, const Moves& m, con
     return found;
 }
 
-/// The record's moves, where they could be a controller's.
+/// The record's moves, if a controller could have made them.
 std::optional<Moves> possible_moves(const CleanRecord& r, const std::vector<double>& u) {
     if (r.changes() < kMinMoves || r.samples() < 3 * kMinMoves) return std::nullopt;
     const RecordKind kind = r.kind == RecordKind::automatic ? found_kind(r) : r.kind;
@@ -295,14 +296,15 @@ std::optional<Moves> possible_moves(const CleanRecord& r, const std::vector<doub
 }
 
 std::optional<Feedback> found_in_moves(const CleanRecord& r, const std::vector<double>& u, const Moves& moves) {
-    constexpr double kMinOwnError = 1e-6;         // of u's range: its own past predicts u to rounding
-    constexpr double kMaxExactErrorRatio = 0.03;  // ratio of errors that no open-loop test shows
-    constexpr double kMoreThanChance = 1.6;       // standard errors of the log ratio; more where rows are uneven
+    constexpr double kMinOwnError = 1e-6;         // of u's range: u is predicted by its own past except for rounding
+    constexpr double kMaxExactErrorRatio = 0.03;  // ratio of errors below that of any open-loop test
+    constexpr double kMoreThanChance = 1.6;       // standard errors of the log ratio; more for uneven rows
     constexpr double kMoreUneven = 3;
-    constexpr double kNewsInY = 0.8;                // u's past must not lower y's error below that share
-    constexpr double kByNews = 0.3;                 // of what y explains of u's moves, its news explain this
-    constexpr double kMinYError = 3e-4;             // of y's range: a y without news is a simulation's
-    constexpr double kMaxPlainLawErrorRatio = 0.5;  // ratio of errors at which its outliers are the set point's moves
+    constexpr double kNewsInY = 0.8;                // u's past must not lower y's error below this share
+    constexpr double kByNews = 0.3;                 // share of y's explanation of u's moves that its innovations must
+                                                    // explain
+    constexpr double kMinYError = 3e-4;             // of y's range: a y with a smaller error is a simulation's
+    constexpr double kMaxPlainLawErrorRatio = 0.5;  // ratio of errors at which the outliers are moves of the set point
     const Predictions p = moves.every_row ? predict_every_row(moves) : predict_moves(moves);
     const Errors same = compare(p.by_u, p.by_y), past = compare(p.by_u, p.by_past_y);
     if (same.a < kMinOwnError) return std::nullopt;
@@ -345,7 +347,7 @@ std::vector<double> input_at_samples(const CleanRecord& r) {
 bool may_be_controlled(const CleanRecord& r) { return possible_moves(r, input_at_samples(r)).has_value(); }
 
 double restlessness(const CleanRecord& r) {
-    constexpr double kMinMovingShare = 0.1;  // of the rows: tests move u in fewer
+    constexpr double kMinMovingShare = 0.1;  // of the rows: tests move u in fewer rows
     const std::vector<double> u = input_at_samples(r);
     const std::optional<Moves> moves = possible_moves(r, u);
     if (!moves || moves->size() < kMinMovingShare * r.samples() || is_law_of_lag(r, u)) return 0;

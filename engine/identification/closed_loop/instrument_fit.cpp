@@ -14,13 +14,13 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kNoLength = 1e-12;     ///< a column of zeros keeps a length to divide by
-constexpr double kNoVariance = 1e-300;  ///< keeps a division by what may be 0 finite
+constexpr double kNoLength = 1e-12;     ///< length of a column of zeros, as a divisor
+constexpr double kNoVariance = 1e-300;  ///< keeps a division by a value near 0 finite
 
-/// The coefficients of 1 + a1 q^-1 + ...: the least of Akaike's criterion up to order 8, by Levinson and Durbin.
+/// The coefficients of 1 + a1 q^-1 + ... with the least Akaike criterion up to order 8, by Levinson and Durbin.
 VectorXd whitening(const VectorXd& e) {
     constexpr int kMaxOrder = 8;            // order
-    constexpr double kPredictable = 1e-12;  // of the variance: what is left is rounding
+    constexpr double kPredictable = 1e-12;  // of the variance: the remainder is rounding
     const Index n = e.size();
     const int max = static_cast<int>(std::min<Index>(kMaxOrder, n / 10));
     VectorXd covariance(max + 1);
@@ -45,7 +45,7 @@ VectorXd whitening(const VectorXd& e) {
     return best;
 }
 
-/// Rows from the filter's order on.
+/// The filtered rows, without the first ones up to the filter's order.
 MatrixXd filtered(const MatrixXd& X, const VectorXd& a) {
     const Index order = a.size() - 1, n = X.rows() - order;
     MatrixXd out = MatrixXd::Zero(n, X.cols());
@@ -53,8 +53,8 @@ MatrixXd filtered(const MatrixXd& X, const VectorXd& a) {
     return out;
 }
 
-/// The sensitivities of a model to its parameters: under the recorded u (J), and under the set point's part of u alone
-/// (Z, the instruments); n_samples rows.
+/// The sensitivities of a model to its parameters for the recorded u (J), and for only the set point's part of u (Z,
+/// the instruments); n_samples rows.
 class LoopSensitivities {
 public:
     LoopSensitivities(const CleanRecord& record, const SetPointPart& part)
@@ -87,7 +87,7 @@ private:
     Index n_;
 };
 
-/// The filtered problem, columns scaled to length one, parameters at their bounds left out.
+/// The filtered problem, with columns of length one and without parameters at their bounds.
 struct InstrumentEquations {
     MatrixXd J, Z;
     VectorXd e, length;
@@ -106,9 +106,9 @@ struct InstrumentEquations {
         }
     }
     VectorXd step() const { return solve_square(gram(Z, J), transpose_times(Z, e)).cwiseQuotient(length); }
-    /// The part of e that lies in the instruments' span.
+    /// The part of e in the span of the instruments.
     double merit() const {
-        constexpr double kRidge = 1e-9;  // columns have length 1: dependent instruments count once
+        constexpr double kRidge = 1e-9;  // columns have length 1: dependent instruments count only once
         const VectorXd b = transpose_times(Z, e);
         MatrixXd G = gram(Z, Z);
         G.diagonal().array() += kRidge;
@@ -147,7 +147,7 @@ Fit moved(Fit fit, const ShapeBounds& bounds, const std::vector<Index>& free, co
     return fit;
 }
 
-/// No logarithm moves by more than this in a step, no dead time by more than a tenth of the record.
+/// Limits a step: no logarithm moves by more than this, no dead time by more than a tenth of the record.
 double allowed_part(const Fit& fit, const std::vector<Index>& free, const VectorXd& step) {
     constexpr double kLogarithm = 0.7, kDeadTime = 0.1;  // a factor of 2; of the record
     const std::vector<int> places = fit.form.searched();
@@ -162,7 +162,7 @@ double allowed_part(const Fit& fit, const std::vector<Index>& free, const Vector
     return part;
 }
 
-/// The set point's filters against the filtered residual.
+/// Correlation of the set point's filters with the filtered residual.
 double mismatch_of(const SetPointPart& part, const InstrumentEquations& here, const VectorXd& a) {
     const auto n = static_cast<Index>(part.filtered.front().size());
     MatrixXd W(n, static_cast<Index>(part.filtered.size()));
@@ -180,13 +180,13 @@ double mismatch_of(const SetPointPart& part, const InstrumentEquations& here, co
            effective_samples({e.data(), static_cast<std::size_t>(e.size())});
 }
 
-/// Variance of the gain, in units of its scaled column, by leaving out one stretch of the record after another
-/// (delete-d jackknife: Shao and Wu 1989): a load that stepped once is no noise that goes on all the time. A stretch
-/// without which the gain is hardly determined, as the one of a single move of the set point, has nothing to be
-/// compared with.
+/// Variance of the gain, in units of its scaled column, by omitting one part of the record after another (delete-d
+/// jackknife: Shao and Wu 1989), because a load that stepped once is not noise over the whole record. A part without
+/// which the gain is hardly determined, such as that of a single move of the set point, cannot be compared and is not
+/// used.
 double jackknife(const InstrumentEquations& here, Index gain) {
     constexpr Index kStretches = 10;
-    constexpr double kMaxGainVarianceRatio = 25;  // times the gain's variance without the stretch
+    constexpr double kMaxGainVarianceRatio = 25;  // relative to the gain's variance without the part
     const Index length = here.e.size() / kStretches;
     const MatrixXd A = gram(here.Z, here.J), squares = gram(here.Z, here.Z);
     const VectorXd b = transpose_times(here.Z, here.e);
@@ -208,8 +208,7 @@ double jackknife(const InstrumentEquations& here, Index gain) {
     return spread * spread * (stretches - 1) * (stretches - 1) / stretches;
 }
 
-/// Variance of the gain, in units of its scaled column, where residuals count as the independent samples they are
-/// worth.
+/// Variance of the gain, in units of its scaled column, if the residuals count as their number of independent samples.
 double gain_variance(const InstrumentEquations& here, Index gain) {
     const auto m = static_cast<double>(here.J.cols());
     if (gain >= here.J.cols()) return 0;
@@ -219,7 +218,7 @@ double gain_variance(const InstrumentEquations& here, Index gain) {
     return here.e.squaredNorm() / std::max(1.0, independent - m) * row.squaredNorm() / (scale * scale);
 }
 
-/// Rows: principal axes of the covariance, one standard deviation long.
+/// Rows: principal axes of the covariance, each of one standard deviation.
 std::vector<std::vector<double>> deviations_of(const InstrumentEquations& here, const std::vector<Index>& free,
                                                Index all, double inflation) {
     const auto n = static_cast<double>(here.e.size()), m = static_cast<double>(free.size());
@@ -247,8 +246,8 @@ std::optional<InstrumentFit> fit_by_instrument(const CleanRecord& record, const 
                                                const std::stop_token& stop) {
     constexpr int kIterations = 40, kFilterSettles = 4, kHalvings = 8;
     constexpr double kMinStepLength = 1e-6;  // step in standard lengths of the columns
-    constexpr double kUsualMismatch = 8;     // chance gives so much
-    constexpr double kOfUnfiltered = 0.5;    // of the variance that slow disturbances would give
+    constexpr double kUsualMismatch = 8;     // usual value by chance
+    constexpr double kOfUnfiltered = 0.5;    // of the variance that slow disturbances would cause
     LoopSensitivities rows(record, part);
     const ShapeBounds bounds = shape_bounds(record, start.form.structure);
     Fit fit = start;
@@ -257,7 +256,7 @@ std::optional<InstrumentFit> fit_by_instrument(const CleanRecord& record, const 
     std::vector<Index> free = free_of(fit, bounds, nullptr);
     for (int iteration = 0; iteration < kIterations && !stop.stop_requested(); ++iteration) {
         if (iteration <= kFilterSettles) a = whitening(rows.e);
-        // A parameter at its bound is freed where the equations pull it inside.
+        // A parameter at its bound is freed if the equations move it inside.
         std::vector<Index> every(static_cast<std::size_t>(rows.J.cols()));
         for (std::size_t k = 0; k < every.size(); ++k) every[k] = static_cast<Index>(k);
         const VectorXd pushed = InstrumentEquations(rows, a, every).step();
@@ -288,7 +287,7 @@ std::optional<InstrumentFit> fit_by_instrument(const CleanRecord& record, const 
     out.fit.sse = rows.e.squaredNorm();
     const auto gain = fit.form.searched().size();
     const Index place = std::find(free.begin(), free.end(), static_cast<Index>(gain)) - free.begin();
-    // A filter of a few rows does not make white what a load leaves for the rest of the record.
+    // A filter of a few rows cannot whiten the effect of a load over the rest of the record.
     const InstrumentEquations unfiltered(rows, VectorXd::Ones(1), free);
     const double scale = here.length[place], white = std::max(gain_variance(here, place), kNoVariance);
     const double slow =

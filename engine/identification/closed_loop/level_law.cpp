@@ -21,7 +21,7 @@ int turns_of(std::span<const double> u) {
     return turns;
 }
 
-/// Root mean square of what the line over y leaves of u.
+/// Root mean square of the residual of u from the line over y.
 double left_of(std::span<const double> u, std::span<const double> y, const Line& line) {
     double squares = 0;
     for (const double left : residuals(line, y, u)) squares += left * left;
@@ -32,8 +32,9 @@ double left_of(std::span<const double> u, std::span<const double> y, const Line&
 
 std::optional<LevelLaw> level_law(const CleanRecord& record, const std::vector<double>& u) {
     constexpr int kMinTurns = 12;
-    constexpr double kMaxRoundingDeviations = 1.5;    // of the rounding's deviation
-    constexpr double kMaxUnexplainedDeviation = 0.3;  // of u's deviation: a line that explains less of u is none
+    constexpr double kMaxRoundingDeviations = 1.5;    // of the rounding's standard deviation
+    constexpr double kMaxUnexplainedDeviation = 0.3;  // of u's standard deviation: a line with a larger residual is no
+                                                      // law
     if (turns_of(u) < kMinTurns) return std::nullopt;
     const double of_u = quantisation_step(u), of_y = quantisation_step(record.y);
     if (!(of_u > 0) || !(of_y > 0)) return std::nullopt;

@@ -1,4 +1,4 @@
-// A proportional controller in a log that is rounded: u is a straight line over y, as far as the figures tell.
+// Recognises a proportional controller in a rounded log: u is a straight line over y, within the rounding.
 #pragma once
 
 #include <optional>
@@ -10,21 +10,22 @@ namespace tunewright {
 
 /// u = constant + gain y.
 ///
-/// With u = Kp (r - y) the gain is -Kp in y's range over u's scale (RecordScale), and the plant that least squares
-/// would answer is its inverse: -1/Kp, at once.
+/// With u = Kp (r - y) the gain is -Kp in y's range over u's scale (RecordScale), and least squares would give its
+/// inverse as the plant: -1/Kp without lag.
 struct LevelLaw {
-    double gain = 0;  ///< dimensionless u over y
-    double left = 0;  ///< root mean square of what it leaves of u, dimensionless
+    double gain = 0;  ///< gain from y to u, dimensionless
+    double left = 0;  ///< root mean square of the residual of u, dimensionless
 };
 
-/// feedback.h looks at moves; this is what is left where they show nothing.
+/// feedback.h examines moves; this examines levels, for records whose moves show nothing.
 ///
-/// Rounding drowns the moves of u and y from row to row, but not their levels. The law is found where
-/// - it explains u within half more than the rounding of both does;
-/// - it does so better than u of the row before goes with y, as behind a plant that is quick beside the rows;
-/// - u turns back a dozen times and more, as no ramp or sine of a test does.
+/// Rounding may hide the moves of u and y from row to row, but not their levels. The law is found if
+/// - its residual of u is at most 1.5 times that expected from the rounding of both;
+/// - it explains u better than y follows u of the previous row, as with a plant that is fast compared with the
+///   sampling;
+/// - u reverses a dozen times or more, unlike a ramp or a sine of a test.
 ///
-/// `u` is the input at the samples, dimensionless. Empty where u or y lies on no grid (series.h).
+/// `u` is the input at the samples, dimensionless. Empty if u or y has no grid (series.h).
 std::optional<LevelLaw> level_law(const CleanRecord& record, const std::vector<double>& u);
 
 }  // namespace tunewright

@@ -13,20 +13,20 @@
 namespace tunewright {
 namespace {
 
-constexpr int kMinRowsBetweenMoves = 10;  ///< rows between two moves by hand
+constexpr int kMinRowsBetweenMoves = 10;  ///< rows between two manual moves
 
-/// Rows [from, to), and the changes of u [first, last) inside that somebody may have made.
+/// Rows [from, to), and the changes of u [first, last) inside that may be manual.
 struct QuietStretch {
     int from = 0, to = 0, first = 0, last = 0;
 };
 
-/// The first row that a change of u comes with.
+/// The first row that shows a change of u.
 int first_row_of(const CleanRecord& record, int change) {
     const double time = record.v_time[static_cast<std::size_t>(change)];
     return static_cast<int>(std::ranges::lower_bound(record.t, time) - record.t.begin());
 }
 
-/// Stretches between changes that are too near to one another.
+/// Intervals between changes of u that are too close together.
 std::vector<QuietStretch> quiet_runs(const CleanRecord& r) {
     std::vector<int> row;
     for (int change = 0; change < r.changes(); ++change) row.push_back(first_row_of(r, change));
@@ -37,7 +37,7 @@ std::vector<QuietStretch> quiet_runs(const CleanRecord& r) {
         if (runs.empty()) runs.push_back({});
         QuietStretch& now = runs.back();
         if (j < r.changes() && near(j)) {
-            now = {row[j], 0, j + 1, 0};  // the controller's last move: it may be still from here on
+            now = {row[j], 0, j + 1, 0};  // the controller's last move: u may be constant after it
             continue;
         }
         if (!ends) continue;
@@ -61,7 +61,7 @@ bool steps_inside(const CleanRecord& r, const QuietStretch& run) {
     return false;
 }
 
-/// Of a stretch's length: times that were scaled and scaled back.
+/// of an interval's length: rounding of times that were scaled and scaled back
 constexpr double kStretchTolerance = 1e-9;
 
 Record between(const Record& record, double from, double to) {
@@ -101,7 +101,7 @@ std::optional<double> level_before_set_point(const CleanRecord& record, const st
 namespace {
 
 /// True if u steps once in `run`, to an end of its range in the record, and leaves it while y is on its way: a
-/// controller that is switched on far from its set point does that. By hand one waits for y to come to rest.
+/// controller that is switched on far from its set point does that; an operator waits for y to come to rest.
 bool one_step_to_end(const CleanRecord& record, const QuietStretch& run) {
     constexpr double kLastPartShare = 0.25,
                      kMaxStillMovement = 0.1;  // of the rows after the step; of y's movement over all of them
@@ -121,11 +121,11 @@ bool one_step_to_end(const CleanRecord& record, const QuietStretch& run) {
 std::optional<SwitchOn> switched_on(const CleanRecord& record, const std::vector<double>& r) {
     constexpr double kMinSetPointDistance = 0.05;       // of y's range
     constexpr int kRowsBefore = 10, kMaxRowOffset = 2;  // rows
-    constexpr double kNoiseMargin = 0.5;                // noise goes beyond what ten rows show of its range
+    constexpr double kNoiseMargin = 0.5;                // because noise exceeds the range that ten rows show
     const std::vector<QuietStretch> runs = quiet_runs(record);
     if (runs.size() < 2 || runs.front().from != 0 || runs.front().to >= record.samples()) return std::nullopt;
     const bool held = one_step_to_end(record, runs.front());
-    if (runs.front().last > runs.front().first && !held) return std::nullopt;  // a test by hand has its own answer
+    if (runs.front().last > runs.front().first && !held) return std::nullopt;  // a manual test is handled separately
     const int row = held ? first_row_of(record, runs.front().first) : runs.front().to;
     if (row < kRestRows) return std::nullopt;
     const int from = std::max(0, row - kRowsBefore);

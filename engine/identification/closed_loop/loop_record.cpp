@@ -20,10 +20,11 @@ constexpr double kMinSetPointShare = 0.05, kMinFRatio = 10;  ///< share of u's v
 std::string by_news(const Feedback& feedback, const RecordScale& scale) {
     return "y, " + std::string(feedback.at_once ? "of the same and earlier rows" : "of earlier rows") +
            ", predicts the moves of u within " + text(feedback.by_y * scale.u_scale, 3) +
-           " where u's own past leaves " + text(feedback.by_u * scale.u_scale, 3) + ".";
+           ", while u's own past predicts them within " + text(feedback.by_u * scale.u_scale, 3) + ".";
 }
 
-/// Steps of a set point at the samples: changes below 2 % of its range are none, and a ramp is one.
+/// Number of steps of a set point at the samples: changes below 2 % of its range do not count, and a ramp counts as
+/// one.
 int moves_of(const std::vector<double>& r) {
     constexpr double kMaxJitter = 0.02;
     const auto [low, high] = std::ranges::minmax(r);
@@ -38,7 +39,7 @@ int moves_of(const std::vector<double>& r) {
     return moves;
 }
 
-/// A law that leaves far less of u than u leaves of y.
+/// A law that explains u much better than u explains y.
 struct PlainLaw {
     double gain = 0;
     std::string evidence;
@@ -49,25 +50,28 @@ std::optional<PlainLaw> plain_law(const CleanRecord& record, const SetPoint& set
     constexpr double kOfFreePlant = 0.25, kOfModel = 0.5;
     const std::vector<double> u = input_at_samples(record);
     const std::optional<ControllerLaw> law = controller_law(record, u, set_point.at_samples);
-    // u over y alone is also how a plant that is quick beside its input looks.
+    // u over y alone also looks like this for a plant that is fast compared with its input.
     if (!law || law->integral == 0) return std::nullopt;
     const double left_of_y = left_by_model ? *left_by_model : left_by_free_plant(record, u);
     if (!(law->left < (left_by_model ? kOfModel : kOfFreePlant) * left_of_y)) return std::nullopt;
-    return PlainLaw{law->gain, "the law of a controller, from y and its integral, leaves " + text(100 * law->left, 2) +
-                                   " % of u's variance, where u leaves " + text(100 * left_of_y, 2) + " % of y's."};
+    return PlainLaw{law->gain,
+                    "the law of a controller, with y and its integral, leaves "
+                    "only " +
+                        text(100 * law->left, 2) + " % of u's variance unexplained, while u leaves " +
+                        text(100 * left_of_y, 2) + " % of y's."};
 }
 
 std::string by_set_point(const SetPointPart& part) {
     return "u follows the set point: its moves explain " + text(100 * part.share, 3) + " % of u's variance.";
 }
 
-/// Kicks that were seen in the record's beginning, `length` of it.
+/// Converts kicks that were found in the beginning of the record, with length `length`, to the whole record.
 std::vector<OutsideMove> of_whole_record(std::vector<OutsideMove> kicks, double length) {
     for (OutsideMove& kick : kicks) kick.time *= length;
     return kicks;
 }
 
-/// Takes the first of the moves from outside that explains u plainly; else the one that explains most.
+/// Chooses the first of the moves from outside that clearly explains u; else the one that explains most.
 void choose_excitation(const CleanRecord& record, const SetPoint& set_point, const std::vector<OutsideMove>& kicks,
                        bool u0_given, LoopRecord& loop) {
     const std::vector<double> u = input_at_samples(record);
@@ -135,11 +139,12 @@ Expected<std::optional<LoopRecord>> find_loop(const CleanRecord& full, const Rec
 Error no_plant_in_loop(const CleanRecord& r, const LoopRecord& loop, const std::string& why) {
     const double y_span = r.scale.y_scale;
     const std::string cure = "Put the controller in manual and step u by up to " + text(u_span(r), 2) +
-                             " (what u moves here), or step the set point up and down by up to " + text(y_span, 2) +
-                             " (what y moves here) and record it as column r.";
+                             " (the range of u in this record), or step the set point up and down by up "
+                             "to " +
+                             text(y_span, 2) + " (the range of y in this record) and record it as column r.";
     return {ErrorKind::not_identifiable, "record",
             "The record is of a closed loop (" + loop.found.evidence.substr(0, loop.found.evidence.size() - 1) + "), " +
-                why + ": the plant cannot be distinguished from the controller. " + cure};
+                why + ", so the plant cannot be distinguished from the controller. " + cure};
 }
 
 }  // namespace tunewright

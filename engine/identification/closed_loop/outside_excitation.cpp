@@ -12,10 +12,10 @@
 namespace tunewright {
 namespace {
 
-/// True if r is y, as many controllers write it in manual: of this row or the one before, and rounded, in some rows.
+/// True if r is y, as many controllers write it in manual: of this row or the previous one, perhaps rounded.
 bool tracks(std::span<const double> r, std::span<const double> y) {
     constexpr double kLevelTolerance = 1e-3,
-                     kMaxGrid = 0.1;  // of y's range; more is a level of r, not a figure's rounding
+                     kMaxGrid = 0.1;  // of y's range: a larger step is a level of r, not rounding
     constexpr double kMaxMoves = 0.8,
                      kMinMovingShare = 0.1;  // of the moves of r; of the rows: a set point moves in fewer
     const double grid = quantisation_step(r), same = kLevelTolerance + (grid < kMaxGrid ? 0.5 * grid : 0);
@@ -28,9 +28,9 @@ bool tracks(std::span<const double> r, std::span<const double> y) {
     return moves > kMinMovingShare * static_cast<double>(r.size()) && tracking > kMaxMoves * moves;
 }
 
-/// True if u is a straight line over r, of the same row or the one before, but for rounding.
+/// True if u is a straight line over r, of the same row or the previous one, except for rounding.
 bool commands(std::span<const double> r, std::span<const double> u) {
-    constexpr double kMaxDeviationShare = 1e-3;  // of u's deviation
+    constexpr double kMaxDeviationShare = 1e-3;  // of u's standard deviation
     const double spread = deviation(u), grid = quantisation_step(u);
     if (!(spread > 0) || !(deviation(r) > 0)) return false;
     const double max = std::max(kMaxDeviationShare * spread, grid < spread ? grid : 0.0);
@@ -62,7 +62,7 @@ std::vector<double> column_at_samples(const CleanRecord& clean, const Record& re
     return r;
 }
 
-/// A set point that is known only by its moves.
+/// A set point of which only the moves are known.
 std::vector<double> steps_at_samples(const std::vector<OutsideMove>& moves, const CleanRecord& record) {
     std::vector<double> w(static_cast<std::size_t>(record.samples()), 0.0);
     for (const OutsideMove& move : moves) {
@@ -72,21 +72,22 @@ std::vector<double> steps_at_samples(const std::vector<OutsideMove>& moves, cons
     return w;
 }
 
-/// From where y rests before, so far as a unit step where no set point is known.
+/// A step from the previous rest of y; a unit step if no set point is known.
 std::vector<double> stepped_from(double y_before, const std::vector<double>& r, std::size_t from, std::size_t rows) {
     std::vector<double> w(rows, y_before);
     for (std::size_t i = from; i < rows; ++i) w[i] = r.empty() ? y_before + 1 : r[i];
     return w;
 }
 
-/// The mean of y's first rows if y is at rest there and goes far from it; else empty.
+/// The mean of y's first rows if y is at rest there and moves far from it; else empty.
 std::optional<double> rest_at_first_row(const CleanRecord& record, const std::vector<double>& r) {
     constexpr double kMinTravel = 0.5, kMinDeparture = 0.02;  // of y's range
-    constexpr double kNoiseDeviations = 3;                    // deviations that noise may take y the other way
+    constexpr double kNoiseDeviations = 3;                    // standard deviations that noise may move y in the other
+                                                              // direction
     constexpr std::size_t kFirstRows = 3;                     // rows that may all lie within the dead time
     const std::span<const double> y(record.y);
     if (y.size() < static_cast<std::size_t>(10 * kRestRows)) return std::nullopt;
-    // A u that stands still in the first rows shows them at rest: nobody has moved it yet.
+    // If u is constant in the first rows they show rest: u has not been moved yet.
     const std::vector<double> u = input_at_samples(record);
     if (std::all_of(u.begin(), u.begin() + kRestRows, [&](double value) { return value == u.front(); }))
         return std::nullopt;

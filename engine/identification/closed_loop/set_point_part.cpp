@@ -9,7 +9,7 @@
 namespace tunewright {
 namespace {
 
-constexpr int kFilters = 8, kPoles = 9;  ///< of a Laguerre network; of those tried
+constexpr int kFilters = 8, kPoles = 9;  ///< filters of a Laguerre network; poles that are tried
 
 Eigen::VectorXd low_pass(const Eigen::VectorXd& w, double pole) {
     Eigen::VectorXd x(w.size());
@@ -72,7 +72,7 @@ std::optional<SetPointPart> set_point_part(const std::vector<double>& u, const s
         if (min >= 0 && sum >= min) continue;
         min = sum, best = X, coefficient = c, rest = left;
     }
-    constexpr double kMinDivisor = 1e-300, kMinUnexplainedShare = 1e-12;  // keep divisions by what may be 0 finite
+    constexpr double kMinDivisor = 1e-300, kMinUnexplainedShare = 1e-12;  // keep divisions by values near 0 finite
     SetPointPart part;
     const Eigen::VectorXd explained = best * coefficient;
     for (const double value : explained) part.u.push_back(value - explained[0]);

@@ -13,12 +13,14 @@
 namespace tunewright {
 namespace {
 
-constexpr int kValleysRefined = 2;  ///< minima of the scan; twice as many with a zero, whose sign parts them
-constexpr int kStartsRefined = 2;   ///< starts from simpler fits
-constexpr int kThinSamples = 160;   ///< enough to rank starts
+constexpr int kValleysRefined = 2;  ///< local minima of the scan; twice as many with a zero, whose two signs give
+                                    ///< separate ones
+constexpr int kStartsRefined = 2;   ///< starts that come from simpler fits
+constexpr int kThinSamples = 160;   ///< samples that are enough to rank starts
 constexpr Effort kCoarseEffort{15, 1e-4};
 constexpr Effort kComparisonEffort{60, 1e-7};
-/// From the optimum on fewer samples: where noise is left, what remains after one step is of second order.
+/// From the optimum on fewer samples: with noise in the residual, the remaining error after one step is of second
+/// order.
 constexpr Effort kOneStepEffort{4, 1e-2};
 constexpr Effort kFinalEffort{60, 1e-11};
 
@@ -54,7 +56,8 @@ bool same_form(const ModelForm& a, const ModelForm& b) {
     return a.other_level == b.other_level && a.load == b.load && (a.slope == b.slope || is_integrating(a.structure));
 }
 
-/// A slow part beside the one lag of a simpler fit. A relay's oscillation hardly shows it, so neither does the scan.
+/// Adds a slow part to the one lag of a simpler fit. A relay's oscillation hardly shows it, so the scan does not find
+/// it.
 void add_slow_parts(const ModelShape& simpler, std::vector<ModelShape>& starts) {
     if (simpler.structure != Structure::fopdt) return;
     for (const double times : {5.0, 20.0}) {
@@ -74,7 +77,7 @@ Fit fit_form(const FitContext& context, const ModelForm& form, const std::vector
         extended.insert(extended.end(), shapes.begin(), shapes.end());
         if (context.relay && form.structure == Structure::sopdt_zero) add_slow_parts(fit.shape, extended);
     }
-    // Of either kind: the simpler fits' neighbourhood looks good from the start, another valley only once refined.
+    // Of both kinds: a simpler fit's neighbourhood looks good at once, another local minimum only after refinement.
     std::vector<ModelShape> starts = scan_shapes(context.few(), form, kValleysRefined * form.gains(), context.stop);
     if (!extended.empty()) {
         const std::vector<ModelShape> best = best_points(context, form, extended);
@@ -92,18 +95,18 @@ Fit fit_form(const FitContext& context, const ModelForm& form, const std::vector
     return fit;
 }
 
-/// Differences of the criterion (Kass and Raftery 1995, section 3.2).
+/// differences of the criterion (Kass and Raftery 1995, section 3.2)
 constexpr double kMinEvidenceOverSimpler = 5, kPositiveEvidence = 6, kStrongEvidence = 10, kOverwhelmingEvidence = 50;
 
 /// The slope of an integrator at rest can be distinguished from its response if the record shows y before u moves, or u
 /// moving again.
 bool shows_rest(const CleanRecord& r) {
-    constexpr int kMinSamplesBefore = 4;  // samples that tell a slope from their noise
+    constexpr int kMinSamplesBefore = 4;  // samples that distinguish a slope from noise
     const auto before = std::count_if(r.t.begin(), r.t.end(), [&](double t) { return t <= r.v_time.front(); });
     return r.changes() > 1 || before >= kMinSamplesBefore;
 }
 
-/// A level of rest far from what u did is no level of rest: the structure is wrong, and the start stands in for another
+/// A level of rest far from the range of u is not plausible: the structure is wrong, and the start replaces another
 /// lag.
 bool plausible_rest(const CleanRecord& r, const Fit& fit) {
     const double rest = level_of_rest(fit);
@@ -115,14 +118,14 @@ bool plausible_rest(const CleanRecord& r, const Fit& fit) {
     return rest >= std::min(0.0, *low) - span && rest <= std::max(0.0, *high) + span;
 }
 
-/// A relay at work from the first row on: no part of the record is at rest.
+/// True for a relay that works from the first row: no part of the record is at rest.
 bool starts_in_relay(const FitContext& context) {
     const CleanRecord& r = context.record;
     return context.relay && context.start == RecordStart::unseen &&
            std::any_of(r.v_level.begin(), r.v_level.end(), [](double v) { return v == 0; });
 }
 
-/// The starts other than rest that the record leaves open for this structure.
+/// The starts other than rest that are possible for this structure in the record.
 std::vector<ModelForm> other_starts(const FitContext& context, const Fit& from_rest) {
     if (context.start == RecordStart::at_rest) return {};
     std::vector<ModelForm> starts;
@@ -156,7 +159,7 @@ FitContext fit_context(CleanRecord record, bool relay, const RunControl& control
 bool leaves_a_pattern(const FitContext& context, const Fit& fit) {
     const auto n = static_cast<double>(fit.residual.size());
     constexpr double kMinNoiseVariances = 2,
-                     kMinCorrelationTime = 3;  // times the noise's variance; samples of correlation time
+                     kMinCorrelationTime = 3;  // multiple of the noise's variance; samples of correlation time
     return fit.sse > kMinNoiseVariances * n * context.noise * context.noise &&
            correlation_time(fit.residual) > kMinCorrelationTime;
 }
@@ -178,12 +181,13 @@ double known_noise(const FitContext& context, const Fit* best) {
 }
 
 bool at_shortest_lag(const Fit& fit) {
-    constexpr double kMaxLogBoundDistance = 0.2;  // of ln T: the search ends at the bound, or a step of its scan before
+    constexpr double kMaxLogBoundDistance = 0.2;  // of ln T: the search ended at the bound, or one step of its scan
+                                                  // before it
     return fit.form.structure == Structure::unstable && fit.shape.p[1] <= kMinUnstable + kMaxLogBoundDistance;
 }
 
 double unexplained_share(const FitContext& context, const Fit& fit) {
-    constexpr double kNoiseKnownTo = 1.1;  // the noise is known to some ten per cent
+    constexpr double kNoiseKnownTo = 1.1;  // uncertainty of the noise: about ten per cent
     double left = 0;
     for (const double e : fit.residual) left += e * e;
     const double noise = kNoiseKnownTo * context.noise, n = context.record.samples();
@@ -194,7 +198,7 @@ Fit fit_structure(const FitContext& context, Structure structure, const Disturba
                   const std::vector<Fit>& simpler) {
     const CleanRecord& record = context.record;
     const ModelForm form{structure, false, disturbances.slope, disturbances.load};
-    // A start that the simplest self-regulating structure needed, its extensions need too.
+    // A start that the simplest self-regulating structure needs is needed by its extensions too.
     const auto fopdt =
         std::find_if(simpler.begin(), simpler.end(), [](const Fit& f) { return f.form.structure == Structure::fopdt; });
     const bool known_start = fopdt != simpler.end() && fopdt->form.other_level && !is_integrating(structure);
@@ -207,7 +211,7 @@ Fit fit_structure(const FitContext& context, Structure structure, const Disturba
     }
     Fit best = fit_form(context, form, simpler);
     if (known_start) return best;
-    // What moves before u does is a start or a drift: beside a drift a start must be needed for itself.
+    // A movement before that of u is a start or a drift: in addition to a drift a start must be significant by itself.
     const double lead = disturbances.slope                     ? kStrongEvidence
                         : context.start == RecordStart::moving ? 0
                                                                : kPositiveEvidence;
@@ -263,7 +267,7 @@ void finish_fits(const FitContext& context, std::vector<Fit>& fits) {
     double best = std::numeric_limits<double>::max();
     for (const Fit& fit : fits)
         if (fit.determined) best = std::min(best, fit.sse);
-    // What the errors of the parameters from fewer samples can cost, several times over.
+    // Largest change of the criterion through the errors of parameters from fewer samples, with a margin.
     const double n = context.record.samples();
     const double noise = best / n + kVarianceFloor;
     constexpr double kSeveralTimes = 100, kNearBest = 1.02;
@@ -301,14 +305,14 @@ bool looks_integrating(const Fit& fit) {
     return has_quadratic(structure) && !is_integrating(structure) && fit.shape.a1() > kWithoutEnd;
 }
 
-/// What so many more parameters take up of the noise in `independent` samples, as a factor of the deviation that they
-/// leave: 95 % of an F distribution is about 4.
+/// Reduction of the residual's deviation by `more` additional parameters that only fit noise in `independent` samples,
+/// as a factor: 95 % of an F distribution is about 4.
 double by_noise(int more, double independent, int parameters) {
     constexpr double kFRatio = 4;
     return std::sqrt(1 + kFRatio * more / std::max(1.0, independent - parameters));
 }
 
-/// Whether `simple` explains the record as well as `best` does, but for noise.
+/// True if `simple` explains the record as well as `best`, except for noise.
 bool as_good(const Fit& simple, const Fit& best, double lead, double points, double left, double independent) {
     const bool unusual = best.form.structure == Structure::sopdt_zero || best.form.structure == Structure::unstable ||
                          (best.form.other_level && !simple.form.other_level);
@@ -329,7 +333,7 @@ bool shows_drift(const CleanRecord& r) {
 
 bool plausible_load(const CleanRecord& r, const Fit& fit) {
     constexpr double kMaxLoadInRanges = 3,
-                     kMaxLoadDifference = 0.4;  // ranges of u; of a move, that the load may differ from it
+                     kMaxLoadDifference = 0.4;  // ranges of u; relative difference between the load and a move
     if (!fit.form.load) return true;
     const double load = fit.linear[fit.form.load_index()] / fit.linear[0];
     if (!(std::abs(load) <= kMaxLoadInRanges)) return false;
@@ -356,23 +360,24 @@ std::string why_chosen(const std::vector<Fit>& fits, const std::vector<double>& 
         "fit " + text(percents[at(chosen)]) + " % against " + text(percents[at(rival)]) + " % of " + other;
     const double lead = criteria[at(rival)] - criteria[at(chosen)];
     if (lead < 0) {
-        return name + ": the simpler structure; what " + other + " gains is within what noise explains (" + figures +
-               "; information criterion within " + text(-lead, 3) + ").";
+        return name + ": the simpler structure; the amount that " + other + " gains is within what noise explains (" +
+               figures + "; its information criterion is within " + text(-lead, 3) + ").";
     }
     return name + ": the best balance of fit and number of parameters (" + figures +
-           "; information criterion lower by " + text(lead, 3) + " with " + figure_text(independent_samples) +
+           "; its information criterion is lower by " + text(lead, 3) + " with " + figure_text(independent_samples) +
            " independent samples).";
 }
 
 StructureChoice choose(const std::vector<Fit>& fits, const std::vector<double>& criteria,
                        const std::vector<double>& percents, double independent_samples) {
-    int best = -1, slowest = -1;  // `slowest` is the best among all, lags without end included
+    int best = -1, slowest = -1;  // `slowest` is the best of all, including infinite lags
     for (int i = 0; i < static_cast<int>(fits.size()); ++i) {
         if (!fits[i].determined) continue;
         if (slowest < 0 || criteria[i] < criteria[slowest]) slowest = i;
         if (!looks_integrating(fits[i]) && (best < 0 || criteria[i] < criteria[best])) best = i;
     }
-    // What looks like an integrator is left to the integrators' structures, unless none of them explains the record.
+    // A model that looks like an integrator is replaced by an integrating structure, unless none of them explains the
+    // record.
     if (best < 0 || criteria[slowest] + kOverwhelmingEvidence < criteria[best]) best = slowest;
     if (best < 0) return {-1, ""};
     int chosen = best;

@@ -19,15 +19,15 @@ double root_mean_square(const std::vector<double>& x) {
            std::sqrt(static_cast<double>(x.size()));
 }
 
-constexpr double kMinDivisor = 1e-300;   ///< keeps a division by what may be 0 finite
-constexpr double kSettledWithin = 0.05;  ///< of the largest distance from rest, as in settling times of 5 %
+constexpr double kMinDivisor = 1e-300;   ///< keeps a division by a value near 0 finite
+constexpr double kSettledWithin = 0.05;  ///< of the largest distance from rest, as for the 5 % settling time
 
 bool self_regulating(const Fit& fit) {
     return !is_integrating(fit.form.structure) && fit.form.structure != Structure::unstable;
 }
 
-/// What is still to come after the last sample, relative to the largest distance from rest so far. 1 for structures
-/// that do not settle.
+/// The movement after the last sample, relative to the largest distance from rest so far. 1 for structures that do not
+/// settle.
 double remaining_movement(const CleanRecord& r, const Fit& fit) {
     if (!self_regulating(fit)) return 1;
     double offset = fit.linear[fit.form.offset_index()];
@@ -46,31 +46,35 @@ void warn_unsettled(const CleanRecord& r, const Fit& fit, double remaining, std:
     if (!self_regulating(fit) || remaining <= kSettledWithin || r.changes() > 2) return;
     warnings.push_back(
         {"unsettled-record",
-         "The record ends while y still moves: by the model " + text(100 * remaining / (1 + remaining), 3) +
-             " % of the response is yet to come, so gain and time constant are extrapolated. Record until y settles."});
+         "The record ends while y is still moving: according to the model " +
+             text(100 * remaining / (1 + remaining), 3) +
+             " % of the response is missing, so gain and time constant are extrapolated. Record until y settles."});
 }
 
 /// Adds the warnings on residuals; true if the model leaves a pattern in them.
 bool warn_residuals(const CleanRecord& r, const Fit& fit, const DataQuality& quality, std::vector<Warning>& warnings) {
     const double rms = root_mean_square(fit.residual), unit = r.scale.y_scale;
     const double noise = std::max(quality.noise_std, quality.quantisation / std::sqrt(12.0)) / unit;
-    constexpr double kMinVisibleRms = 0.007;                         // of y's range: what an eye sees in the plot
-    constexpr double kMinNoiseRatio = 1.5, kMinCorrelationTime = 3;  // times the noise; samples of correlation time
-    constexpr double kMaxResidualInRms = 8;                          // root mean squares
+    constexpr double kMinVisibleRms = 0.007;                         // of y's range: visible in the plot
+    constexpr double kMinNoiseRatio = 1.5, kMinCorrelationTime = 3;  // multiple of the noise; samples of correlation
+                                                                     // time
+    constexpr double kMaxResidualInRms = 8;                          // multiple of the root mean square
     const bool pattern =
         rms > kMinVisibleRms && rms > kMinNoiseRatio * noise && correlation_time(fit.residual) > kMinCorrelationTime;
     if (pattern) {
         warnings.push_back(
-            {"structured-residuals", "The model misses y by " + text(rms * unit, 3) +
+            {"structured-residuals", "The model differs from y by " + text(rms * unit, 3) +
                                          " (r.m.s.), more than noise or rounding (" + text(noise * unit, 3) +
-                                         ") explain, and the misses are not random. A disturbance, a drift, a "
-                                         "nonlinearity or a richer structure is in the record: compare y and "
-                                         "model in the plot, try another model or repeat the test."});
+                                         ") explain, and the differences are not random. The record contains a "
+                                         "disturbance, a drift, a nonlinearity or a more complex response: compare y "
+                                         "and model in the plot, try another model or repeat the test."});
     }
     double worst = 0;
     for (double e : fit.residual) worst = std::max(worst, std::abs(e));
     if (worst > kMaxResidualInRms * rms) {
-        warnings.push_back({"outliers", "At least one sample lies " + text(worst * unit, 3) + " from the model where " +
+        warnings.push_back({"outliers", "At least one sample lies " + text(worst * unit, 3) +
+                                            " from the model, "
+                                            "while " +
                                             text(rms * unit, 3) +
                                             " is typical; remove false readings from the record."});
     }
@@ -91,15 +95,14 @@ void warn_uncertain(const std::map<std::string, double>& values, const std::map<
         const bool unknown_gain = name == "K" && error > kMinUnknownError * yardstick;
         warnings.push_back({"uncertain-parameters",
                             name + " = " + text(values.at(name)) + " has a standard error of " + text(error, 2) +
-                                ": the record hardly determines it. A larger or longer test, or a simpler model, gives "
-                                "a usable figure.",
+                                ": the record hardly determines it. Use a larger or longer test, or a simpler model.",
                             unknown_gain ? WarningLevel::bad : WarningLevel::warning});
     }
 }
 
 /// A straight line through the samples before the first change of u.
 void warn_not_at_rest(const CleanRecord& r, std::vector<Warning>& warnings) {
-    constexpr int kMinSamples = 5;                                // samples that tell a slope from its error
+    constexpr int kMinSamples = 5;                                // samples that distinguish a slope from its error
     constexpr double kMinDrift = 0.03, kSlopeStandardErrors = 5;  // of y's range; standard errors of the slope
     const int n = static_cast<int>(std::lower_bound(r.t.begin(), r.t.end(), r.v_time.front()) - r.t.begin());
     if (n < kMinSamples || r.t[n - 1] <= r.t[0]) return;
@@ -109,14 +112,15 @@ void warn_not_at_rest(const CleanRecord& r, std::vector<Warning>& warnings) {
     if (moved < kMinDrift || std::abs(slope) < kSlopeStandardErrors * line.slope_std) return;
     warnings.push_back(
         {"not-at-rest",
-         "y already moves by " + text(moved * r.scale.y_scale, 3) + " before u changes, " + text(100 * moved, 2) +
+         "Before u moves, y already changes by " + text(moved * r.scale.y_scale, 3) + " before u changes, " +
+             text(100 * moved, 2) +
              " % of its range: the test did not start at rest, or y drifts. Start the test from a steady state."});
 }
 
 void warn_sampling(const CleanRecord& r, const Fit& fit, const DataQuality& quality, std::vector<Warning>& warnings) {
     constexpr double kManyDropped = 0.05;  // of the rows
-    constexpr double kFewSteps = 10;       // of y's grid over its range
-    constexpr double kLongLag = 50;        // record lengths: half of the longest lag that is searched for
+    constexpr double kFewSteps = 10;       // steps of y's grid in its range
+    constexpr double kLongLag = 50;        // record lengths: half of the longest lag that is searched
     const int rows = quality.samples + quality.samples_dropped;
     if (quality.samples_dropped > kManyDropped * rows) {
         warnings.push_back({"rows-dropped", std::to_string(quality.samples_dropped) + " of " + std::to_string(rows) +
@@ -136,9 +140,11 @@ void warn_sampling(const CleanRecord& r, const Fit& fit, const DataQuality& qual
     if (fit.form.structure == Structure::ipdt) return;
     const double slowest = (is_integrating(fit.form.structure) ? fit.shape.T() : fit.shape.a1()) * r.scale.t_scale;
     if (!is_integrating(fit.form.structure) && slowest < quality.sample_time) {
-        warnings.push_back({"undersampled-response",
-                            "The time constant (" + text(slowest, 3) + ") is below the spacing of the samples (" +
-                                text(quality.sample_time, 3) + "), which cannot show it. Record faster."});
+        warnings.push_back({"undersampled-response", "The time constant (" + text(slowest, 3) +
+                                                         ") is shorter than the spacing of the samples "
+                                                         "(" +
+                                                         text(quality.sample_time, 3) +
+                                                         "), so the samples cannot show it. Record faster."});
     }
 }
 
@@ -148,7 +154,7 @@ bool responds(const CleanRecord& r, const Fit& fit) {
     const double floor = kVarianceFloor * r.samples();
     const double ratio = (squares_about_mean(r.y) + floor) / (fit.sse + floor);
     constexpr double kMinVarianceRatio = 10,
-                     kMinEvidence = 30;  // times the variance; beyond the price of the parameters
+                     kMinEvidence = 30;  // of the variance; of the criterion beyond the cost of the parameters
     const double n = effective_samples(fit.residual);
     return ratio > kMinVarianceRatio || n * std::log(ratio) > (fit.form.parameters() - 1) * std::log(n) + kMinEvidence;
 }

@@ -1,4 +1,4 @@
-// What a user should know before trusting a fitted model: sentences with figures.
+// Warnings that a user should know before trusting a fitted model, with figures.
 #pragma once
 
 #include <map>
@@ -10,9 +10,9 @@
 
 namespace tunewright {
 
-/// The chosen fit in the words of the record.
+/// The chosen fit with its figures in the record's units.
 struct Diagnosis {
-    bool settled = false;  ///< the model's remaining movement at the end is below 5 % of what it has moved
+    bool settled = false;  ///< the model's remaining movement at the end is below 5 % of its movement so far
     std::vector<Warning> warnings;
 };
 
@@ -22,9 +22,8 @@ struct Diagnosis {
 Diagnosis diagnose(const CleanRecord& record, const Fit& fit, const std::map<std::string, double>& values,
                    const std::map<std::string, double>& standard_errors, const DataQuality& quality);
 
-/// Whether y responds to u beyond what noise explains: n ln(sse of a constant/sse) must exceed the price of the
-/// parameters, (p - 1) ln n, by 30, n being the number of independent samples; or the fit must leave less than a tenth
-/// of y's variance.
+/// True if y responds to u by more than noise: n ln(sse of a constant/sse) must exceed the cost of the parameters, (p -
+/// 1) ln n, by 30, with n the number of independent samples; or the fit must leave less than a tenth of y's variance.
 bool responds(const CleanRecord& record, const Fit& fit);
 
 }  // namespace tunewright

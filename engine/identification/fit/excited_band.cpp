@@ -12,10 +12,10 @@ namespace tunewright {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kRatio = 1.25;  // of the frequencies looked at, downward
+constexpr double kRatio = 1.25;  // ratio of the evaluated frequencies, downwards
 constexpr double kNearby = 1.15;
-constexpr int kNearbyPoints = 2;  // to either side
-constexpr double kFinest = 1.02;  // of the end found
+constexpr int kNearbyPoints = 2;  // number of neighbours on either side
+constexpr double kFinest = 1.02;  // ratio near the resulting end
 
 struct Change {
     double t, size;

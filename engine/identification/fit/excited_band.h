@@ -14,19 +14,19 @@ struct ExcitedBand {
     double omega_high = 0;  ///< <= pi over the sample time
 };
 
-/// What the band is computed from: u held between the instants t, at `u_rest` before the first, and y's noise.
+/// The data for the band: u, constant between the times t and equal to `u_rest` before the first, and the noise of y.
 struct Excitation {
     std::vector<double> t, u;
     double u_rest = 0;
     double sample_time = 0;  ///< of y, median
-    double noise_std = 0;    ///< of y, its rounding and what else no sensor resolves included
+    double noise_std = 0;    ///< of y, with its rounding and the least error of any sensor
 };
 
 /// Up to `omega_high` the record's own estimate of P(j omega), the ratio of the Fourier sums of y and u, would have a
-/// relative standard error below 100 %: the plant's answer |P U|^2 exceeds the noise in it, noise_std^2 sample_time T,
-/// T the record's length, somewhere within 15 % of that frequency (empirical transfer function estimate: Ljung 1999,
-/// section 6.3). The changes of u count, so a step that stays counts as the step it is. Empty: nothing of the kind, or
-/// a plant that cannot be computed.
+/// relative standard error below 100 %: the plant's response |P U|^2 exceeds its noise, noise_std^2 sample_time T, T
+/// the record's length, somewhere within 15 % of that frequency (empirical transfer function estimate: Ljung 1999,
+/// section 6.3). U is computed from the changes of u, so a lasting step counts as a step. Empty: there is no such
+/// frequency, or the plant cannot be evaluated.
 std::optional<ExcitedBand> excited_band(const Excitation& excitation, const Plant& plant);
 
 }  // namespace tunewright

@@ -8,10 +8,10 @@
 namespace tunewright {
 namespace {
 
-constexpr int kWalkSteps = 16;  ///< of the walk: a load that matters is slow
+constexpr int kWalkSteps = 16;  ///< steps of the random walk: a load that matters is slow
 
-/// What steps of the load do to y, spread evenly over the record; together they make a walk that ends a standard
-/// deviation of 1 from where it began.
+/// Responses of y to steps of the load, spread evenly over the record; together they form a random walk whose end has a
+/// standard deviation of 1 from its start.
 Eigen::MatrixXd responses(const Fit& fit, const Eigen::VectorXd& t) {
     ModelShape plant = fit.shape;
     plant.p[0] = 0;
@@ -28,7 +28,7 @@ Eigen::MatrixXd responses(const Fit& fit, const Eigen::VectorXd& t) {
     return G;
 }
 
-/// x_k - a x_(k-1) in place of x_k: white where x is such an autoregression, of the same variance in the first row.
+/// x_k - a x_(k-1) in place of x_k: white if x is such an autoregression, with the same variance in the first row.
 Eigen::MatrixXd whitened(const Eigen::MatrixXd& X, double a) {
     Eigen::MatrixXd W = X;
     W.bottomRows(X.rows() - 1) -= a * X.topRows(X.rows() - 1);
@@ -36,20 +36,20 @@ Eigen::MatrixXd whitened(const Eigen::MatrixXd& X, double a) {
     return W;
 }
 
-/// White noise of variance `noise` behind the autoregression, and a load of variance q = `load`.
+/// White noise of variance `noise` as the input of the autoregression, and a load of variance q = `load`.
 struct Strengths {
     double a = 0, noise = 0, load = 0;
     double unlikeliness = INFINITY;  ///< minus twice the logarithm of the restricted likelihood
 };
 
-/// `z` are independent, of variance noise (1 + ratio s_i); so are `others`, with the sum of squares `rest`, of variance
-/// noise: the likeliest.
+/// The likeliest strengths, if `z` are independent with variance noise (1 + ratio s_i), and `others` values with the
+/// sum of squares `rest` have the variance noise.
 Strengths likeliest(const Eigen::VectorXd& z, const Eigen::VectorXd& s, double rest, double others) {
     constexpr int kPoints = 24;
     const double n = others + static_cast<double>(z.size());
     Strengths best;
     for (int k = 0; k < kPoints; ++k) {
-        // From what changes one direction's variance by a tenth to what is a thousand times the noise in it.
+        // From the ratio that changes one direction's variance by a tenth to a thousand times the noise in it.
         const double ratio = k == 0 ? 0 : 0.1 * std::pow(1e7, (k - 1.0) / (kPoints - 2.0)) / s.maxCoeff();
         const Eigen::ArrayXd variance = 1 + ratio * s.array();
         const double noise = (rest + (z.array().square() / variance).sum()) / n;
@@ -75,16 +75,16 @@ Strengths likeliest(const FittedRows& rows, const Eigen::MatrixXd& G, double a) 
     const Eigen::MatrixXd seen = turned.B.bottomLeftCorner(n - m, kWalkSteps);
     const Eigen::VectorXd e = turned.B.col(kWalkSteps).tail(n - m);
     const PrincipalAxes axes = principal_axes(gram(seen, seen));
-    // Ascending: the last `used` are not rounding.
-    constexpr double kMinRelativeEigenvalue = 1e-10;  // of the greatest eigenvalue
+    // In ascending order: only the last `used` are above rounding.
+    constexpr double kMinRelativeEigenvalue = 1e-10;  // of the largest eigenvalue
     const double enough = kMinRelativeEigenvalue * axes.values[kWalkSteps - 1];
     const auto used = (axes.values.array() > std::max(enough, 0.0)).count();
     if (used == 0) return {};
     const Eigen::VectorXd s = axes.values.tail(used);
     const Eigen::VectorXd z =
         transpose_times(axes.vectors.rightCols(used), transpose_times(seen, e)).array() / s.array().sqrt();
-    constexpr double kMinLogArgument = 1e-150;  // keeps the logarithm of what may be 0 finite
-    constexpr double kMinRelativeRest = 1e-12;  // of the squares: their difference is rounding below it
+    constexpr double kMinLogArgument = 1e-150;  // keeps the logarithm of a value near 0 finite
+    constexpr double kMinRelativeRest = 1e-12;  // of the squares: a smaller difference is rounding
     const double rest = std::max(e.squaredNorm() - z.squaredNorm(), kMinRelativeRest * e.squaredNorm());
     Strengths best = likeliest(z, s, rest, static_cast<double>(n - m - used));
     best.a = a;
@@ -93,7 +93,7 @@ Strengths likeliest(const FittedRows& rows, const Eigen::MatrixXd& G, double a) 
     return best;
 }
 
-/// J'RJ for the strengths found; `pulls` is J'G.
+/// J'RJ for the found strengths; `pulls` is J'G.
 Eigen::MatrixXd weighed(const Eigen::MatrixXd& J, const Eigen::MatrixXd& pulls, const Strengths& found) {
     // The noise's covariance is noise/(1 - a^2) a^|i - j|.
     Eigen::MatrixXd coloured = J;
@@ -108,10 +108,10 @@ Eigen::MatrixXd weighed(const Eigen::MatrixXd& J, const Eigen::MatrixXd& pulls, 
 std::vector<Eigen::MatrixXd> weighed_with_load(const Fit& fit, const FittedRows& rows) {
     constexpr double kMaxUnlikeliness = 2;  // of minus twice the logarithm of the likelihood
     const Eigen::Index n = rows.residual.size(), m = rows.J.cols();
-    constexpr int kFreedom = 8;  // rows beyond the unknowns, for the strengths
+    constexpr int kFreedom = 8;  // rows in addition to the unknowns, needed to estimate the strengths
     if (n < m + kWalkSteps + kFreedom || !(rows.residual.squaredNorm() > 0)) return {};
     const Eigen::MatrixXd G = rows.weight.asDiagonal() * responses(fit, rows.time);
-    // The likelihood has one peak over a: beyond what is far less likely there is nothing to find.
+    // The likelihood has a single maximum over a: once it is much less likely, the search ends.
     std::vector<Strengths> found;
     double min = INFINITY;
     for (const double a : {0.0, 0.3, 0.55, 0.75, 0.88, 0.95}) {

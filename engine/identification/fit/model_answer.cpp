@@ -50,25 +50,25 @@ void note_start(const CleanRecord& record, const Fit& fit, DataQuality& quality)
     constexpr double kStepRounding = 1e-12;  // of u's steps
     const double rest = level_of_rest(fit), moved = std::abs(rest) > kStepRounding ? rest : 0;
     const double level = moved * record.scale.u_scale + record.scale.u_rest;
-    quality.notes.push_back("The record does not start at rest: y rests at u = " + text(level) +
+    quality.notes.push_back("The record does not start at rest: y is at rest for u = " + text(level) +
                             ", as estimated from the record (the first u is " + text(record.scale.u_rest) +
                             "). Give u0 if it is known.");
 }
 
-/// Relative to the record's length: from there on a lag may be an integrator, or a drift.
+/// Relative to the record's length: a longer lag may be an integrator, or a drift.
 constexpr double kMinSlowLag = 0.5;
 
-/// Beside a quick part a slow one of many record lengths and a drift look the same.
+/// In addition to a fast part, a slow part of many record lengths and a drift look the same.
 void warn_slow_part(const CleanRecord& r, const Fit& fit, std::vector<Warning>& warnings) {
     if (fit.form.structure != Structure::sopdt_zero || fit.shape.slowest_lag() < kMinSlowLag) return;
     warnings.push_back(
         {"slow-part", "A part of the response has a lag of " + text(fit.shape.slowest_lag() * r.scale.t_scale, 3) +
-                          ", more than half of the record: it may be the plant's or a drift, and the static gain K is "
-                          "open. Record longer, or ask for model fopdt or sopdt."});
+                          ", more than half of the record. It may belong to the plant or be a drift, so the static "
+                          "gain K is uncertain. Record longer, or choose the model fopdt or sopdt."});
 }
 
-/// What the beginning of a slow response cannot be distinguished from: after a test that ends before it has settled, an
-/// integrator's.
+/// The beginning of a slow response cannot be distinguished from that of an integrator if the test ends before it has
+/// settled.
 void warn_slow_or_integrating(const ModelSearch& search, std::vector<Warning>& warnings) {
     constexpr double kStrongEvidence = 10, kMinPercentGain = 1;
     const auto chosen = static_cast<std::size_t>(search.choice.index);
@@ -86,9 +86,9 @@ void warn_slow_or_integrating(const ModelSearch& search, std::vector<Warning>& w
         const Fit& slow = integrating ? fit : search.chosen();
         warnings.push_back({"slow-or-integrating",
                             "A response with a time constant of " + text(slow.shape.slowest_lag() * scale, 3) +
-                                " explains this record as well as an integrator does: it ends too early to tell, and "
-                                "the static gain is open. Record longer, or choose the model by what is known of the "
-                                "process."});
+                                " explains this record as well as an integrator does: the record ends too early to "
+                                "decide, and the static gain is uncertain. Record longer, or choose the model from "
+                                "your knowledge of the process."});
         return;
     }
 }
@@ -96,7 +96,9 @@ void warn_slow_or_integrating(const ModelSearch& search, std::vector<Warning>& w
 void warn_disturbances(const CleanRecord& r, const Fit& fit, std::vector<Warning>& warnings) {
     if (fit.form.slope && !is_integrating(fit.form.structure)) {
         const double slope = fit.linear[fit.form.slope_index()] * r.scale.y_scale / r.scale.t_scale;
-        warnings.push_back({"drift", "y drifts by " + text(slope, 3) + " per unit of time beside its response to u (" +
+        warnings.push_back({"drift", "y drifts by " + text(slope, 3) +
+                                         " per unit of time in addition to its response "
+                                         "to u (" +
                                          text(slope * r.scale.t_scale, 3) +
                                          " over the record). The model was fitted together with this drift."});
     }
@@ -104,9 +106,10 @@ void warn_disturbances(const CleanRecord& r, const Fit& fit, std::vector<Warning
         const double size = fit.linear[fit.form.load_index()] / fit.linear[0] * r.scale.u_scale;
         warnings.push_back(
             {"load-disturbance",
-             "A lasting load as large as " + text(size, 3) + " of u reached the plant at about t = " +
+             "According to the fit, a lasting load as large as " + text(size, 3) +
+                 " of u reached the plant at about t = " +
                  text(r.scale.t_origin + r.scale.t_scale * fit.shape.load_time(), 4) +
-                 ", by the fit. The model was fitted together with this load; repeat the test without it if you can."});
+                 ". The model was fitted together with this load; if possible, repeat the test without it."});
     }
 }
 
@@ -114,19 +117,19 @@ void note_disturbances(IdentifiedModel& model) {
     for (const DisturbanceModel& one : model.disturbances) {
         model.data_quality.notes.push_back("The measured disturbance \"" + one.name + "\" makes " +
                                            text(100 * one.share, 2) +
-                                           " % of what is explained of y: it was identified together with u, and its "
-                                           "own model stands in disturbances.");
+                                           " % of the explained variance of y: it was identified together with u, and "
+                                           "its own model is in disturbances.");
     }
 }
 
-/// A structure that Akaike's criterion does not tell from the chosen one.
+/// A structure that Akaike's criterion does not distinguish from the chosen one.
 struct OpenChoice {
-    std::size_t index = 0;  ///< into the fits
-    double weight = 0;      ///< its likelihood by that criterion, the chosen one's is 1
+    std::size_t index = 0;  ///< index of the fit
+    double weight = 0;      ///< its likelihood by that criterion, relative to the chosen one's
 };
 
-/// The structures of the same kind as the chosen one, itself left out, that Akaike's criterion does not tell from it:
-/// less than 4 above it (Burnham and Anderson 2002, section 2.6).
+/// The other structures of the same kind as the chosen one that Akaike's criterion does not distinguish from it: less
+/// than 4 above it (Burnham and Anderson 2002, section 2.6).
 std::vector<OpenChoice> open_choices(const ModelSearch& search) {
     constexpr double kMaxOpenCriterion = 4;
     const auto chosen = static_cast<std::size_t>(search.choice.index);
@@ -149,9 +152,9 @@ std::vector<OpenChoice> open_choices(const ModelSearch& search) {
 
 bool knows_gain(const FittedPlant& plant) { return plant.standard_errors.at("K") <= std::abs(plant.values.at("K")); }
 
-/// The variance of K with the choice of structure left open, at least the chosen one's own: the mean of own variance
-/// and squared distance from the chosen one's K over the open structures (Burnham and Anderson 2002, section 4.3). One
-/// that does not know K at all says no more than its size.
+/// The variance of K including the uncertainty of the structure, at least the chosen one's own: the mean over the open
+/// structures of own variance plus squared distance from the chosen one's K (Burnham and Anderson 2002, section 4.3). A
+/// structure that does not determine K contributes only the size of K.
 double open_choice_variance(const FittedPlant& chosen, const std::vector<FittedPlant>& plants,
                             const std::vector<OpenChoice>& open) {
     const double its_own = std::pow(chosen.standard_errors.at("K"), 2);
@@ -166,7 +169,8 @@ double open_choice_variance(const FittedPlant& chosen, const std::vector<FittedP
     return std::max(its_own, sum / weights);
 }
 
-/// The other parameters follow K as the covariance says: a plant of another gain still answers u as the record shows.
+/// The other parameters change with K according to the covariance: a plant with another gain must still respond to u as
+/// in the record.
 void widen_gain(FittedPlant& plant, double variance) {
     ParameterCovariance& covariance = plant.covariance;
     const auto at = static_cast<std::size_t>(std::ranges::find(covariance.names, "K") - covariance.names.begin());
@@ -183,7 +187,7 @@ void widen_gain(FittedPlant& plant, double variance) {
     }
 }
 
-/// They are most of what a long record's fits take.
+/// They take most of the memory of a long record's fits.
 void forget_columns(Fit& fit) {
     fit.J.clear();
     fit.nuisance.clear();
@@ -196,7 +200,7 @@ IdentifiedModel searched_model(ModelSearch search, const CleanRecord& recorded) 
     const FitData data = search.context.all();
     IdentifiedModel model;
     model.data_quality = describe_record(recorded);
-    // Means over blocks lie on no grid.
+    // Means over blocks have no grid.
     const double grid =
         recorded.samples() == record.samples() ? model.data_quality.quantisation / record.scale.y_scale : 0;
     const double noise = model.data_quality.noise_std / record.scale.y_scale;
@@ -216,7 +220,8 @@ IdentifiedModel searched_model(ModelSearch search, const CleanRecord& recorded) 
         plants[i] = fitted_plant(record, fit, grid, noise, load);
         if (i != chosen) forget_columns(fit);
     });
-    // A relay's record leaves the static gain to the structure: one that explains it without knowing the gain counts.
+    // A relay's record does not determine the static gain for every structure: one that explains it without determining
+    // the gain counts.
     if (!search.context.relay)
         std::erase_if(open, [&](const OpenChoice& other) { return !knows_gain(plants[other.index]); });
     for (const OpenChoice& other : open) model.alternatives.push_back(plants[other.index].plant);
@@ -252,52 +257,52 @@ IdentifiedModel searched_model(ModelSearch search, const CleanRecord& recorded) 
         note_start(record, fit, model.data_quality);
     }
     if (search.part < 1) {
-        model.data_quality.notes.push_back("The model rests on the first " + text(100 * search.part, 2) +
-                                           " % of the record: over all of it an unstable plant's free run loses its "
-                                           "digits.");
+        model.data_quality.notes.push_back("The model is based on the first " + text(100 * search.part, 2) +
+                                           " % of the record, because over the whole record the free run of an "
+                                           "unstable plant is numerically meaningless.");
     }
     if (at_shortest_lag(search.chosen())) {
         model.warnings.push_back(
             {"record-too-long",
-             "The unstable model's time constant is at the least that a record of this length can "
-             "show (a twentieth of it), so it is only a bound. Give the first few oscillations alone "
-             "(`from`, `to`)."});
+             "The unstable model's time constant is the smallest that a record of this length can show (a twentieth of "
+             "it), so it is only a bound. Give only the first few oscillations (`from`, `to`)."});
     }
     if (record.moves_placed > 0) {
         model.data_quality.notes.push_back(
             std::to_string(record.moves_placed) +
-            " change(s) of u happened while rows are missing: each is placed where it explains y best.");
+            " change(s) of u happened where rows are missing: each is placed where it explains y best.");
     }
     if (record.switches_placed > 0) {
         model.warnings.push_back({"coarse-relay-record",
                                   "The rows are too far apart to show when the relay switched: each switch is placed "
-                                  "between two rows where it explains y best, which the standard errors do not "
-                                  "count. Record at least 40 rows a period."});
+                                  "between two rows where it explains y best, and the standard errors do not include "
+                                  "this. Record at least 40 rows per period."});
     }
     if (!record.v_open.empty()) {
         const auto moves = std::ranges::count_if(record.v_open, [](double length) { return length > 0; });
         model.data_quality.notes.push_back(std::to_string(moves) +
-                                           " change(s) of u happened between rows: when is estimated with the model, "
-                                           "each within its row, and the standard errors count it.");
+                                           " change(s) of u happened between rows: their times are estimated with the "
+                                           "model, each within its row, and the standard errors include this.");
     }
     if (record.moves_unseen > 0) {
         model.warnings.push_back(
-            {"unseen-move", "u moved while nothing was recorded: rows are missing over " +
+            {"unseen-move", "u moved while nothing was recorded: rows are missing for " +
                                 text(record.moves_unseen * record.scale.t_scale, 3) +
-                                " before it is seen to have moved. It is taken to have moved in the middle of them, so "
-                                "the dead time may be off by half of that; its standard error says so. Repeat the test "
-                                "with the recorder running, or give the row at which u moved."});
+                                " before the record shows the move. The move is assumed to be in the middle of them, "
+                                "so the dead time may be wrong by half of that; its standard error includes this. "
+                                "Repeat the test with the recorder running, or give the row at which u moved."});
     }
     if (record.moved_within > 0 && record.v_open.empty()) {
         model.data_quality.notes.push_back(
-            "When u moved is known only to one row (" + text(usual_spacing(record) * record.scale.t_scale, 3) +
-            "), which is not small beside the dead time: if somebody moved u between two rows, L is longer by up to "
-            "as much, and its standard error holds that. Record faster around the step for a better L.");
+            "The time of the move of u is known only to one row (" +
+            text(usual_spacing(record) * record.scale.t_scale, 3) +
+            "), which is not small compared with the dead time: if u moved between two rows, L is longer by up to that "
+            "time, and its standard error includes this. Record faster around the step for a better L.");
     }
     if (record.moved_between_rows) {
         model.data_quality.notes.emplace_back(
-            "u is taken to change midway between the row that shows it and the row before: the samples are not evenly "
-            "spaced, and y follows earlier than the rows of u say.");
+            "u is assumed to change midway between the row that shows it and the previous row, because the samples are "
+            "not evenly spaced and y responds earlier than the rows of u allow.");
     }
     return model;
 }
@@ -357,7 +362,7 @@ void add_cycle(const CleanRecord& r, const RecordedCycle& cycle, const Shift& sh
 }
 
 void add_excited_band(const CleanRecord& record, IdentifiedModel& model) {
-    constexpr double kResolution = 1e-3;  // of y's range: no sensor is taken to resolve less
+    constexpr double kResolution = 1e-3;  // of y's range: least resolution of any sensor
     const double rounding = model.data_quality.quantisation / std::sqrt(12.0);
     const double noise = std::max({model.data_quality.noise_std, rounding, kResolution * record.scale.y_scale});
     model.excited_band = excited_band(

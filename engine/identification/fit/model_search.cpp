@@ -1,17 +1,20 @@
-// One record's models, in this order. Each attempt leaves the search as it was, or puts a better one in its place:
+// The search of one record's models, in this order. Each attempt either replaces the search by a better one or does not
+// change it:
 //
-//  1. Fit the structures of the request, simpler ones first, from each other's ends; richer ones where a pattern or
-//     more than noise is left. Choose by the information criterion (candidates.h).
-//  2. A relay test that no model explains, or whose unstable model runs too long: the record's beginning alone.
-//  3. A pattern, rows unevenly spaced: u changed midway between its rows.
-//  4. Moves of u in gaps: put at the missing rows where they explain y best.
-//  5. Moves of u within their rows: their times estimated with the model; of a relay, its switches put where they
-//     explain y best, whichever leaves less.
+//  1. Fit the structures of the request, simpler ones first, from each other's results; more complex ones if a pattern
+//  or
+//     more than noise remains. Choose by the information criterion (candidates.h).
+//  2. For a relay test that no model explains, or with an unstable model over too long a time: try only the beginning.
+//  3. For a pattern in unevenly spaced rows: let u change midway between its rows.
+//  4. For moves of u in gaps: place them at the missing rows where they explain y best.
+//  5. For moves of u within their rows: estimate their times with the model; for a relay also place its switches where
+//  they
+//     explain y best, and keep the better result.
 //  6. A pattern still: a drift, a load, both.
-//  7. A slow part that may stand in for a drift; then a drift that leaves no pattern.
-//  8. How far the rows may show u late, for the errors of the dead time.
+//  7. Replace a slow part by a drift if that is as good; then try a drift that leaves no pattern.
+//  8. Determine how late the rows may show u, for the errors of the dead time.
 //
-// The order matters: a misplaced move of u looks like a lag or a drift, and a drift takes in what a lag would explain.
+// The order matters: a misplaced move of u looks like a lag or a drift, and a drift explains part of a lag's response.
 #include "engine/identification/fit/model_search.h"
 
 #include <algorithm>
@@ -30,15 +33,15 @@ namespace {
 
 constexpr ModelSearchConstants k;
 
-/// The structures to fit, simpler ones first, those to fit where these leave a pattern, and those that answer the
-/// request: the others only give starting values.
+/// The structures to fit, simpler ones first, those to fit if these leave a pattern, and those that are allowed as a
+/// result: the others only give starting values.
 struct Plan {
     std::vector<Structure> fitted, answers, richer = {};
 };
 
 Plan plan_for(ModelChoice model, const CleanRecord& record) {
     using enum Structure;
-    // An unstable plant is recorded under feedback, so u moves often; after one step any curve may look like its
+    // An unstable plant is recorded under feedback, so u moves often; after a single step any curve may look like its
     // beginning.
     const bool maybe_unstable = record.changes() > 2;
     Plan plan;
@@ -88,8 +91,8 @@ ModelSearch ranked(FitContext context, std::vector<Fit> fits, const Plan& plan, 
     return search;
 }
 
-/// True if the best fit leaves what another lag could explain: more than noise, or no white noise. After a relay test
-/// always: the static gain is the structure's, and another structure's may be far from it.
+/// True if another lag could explain the best fit's residual: it is more than noise, or not white. Always true after a
+/// relay test, because the static gain depends on the structure.
 bool wants_richer(const FitContext& context, const std::vector<Fit>& fits) {
     const Fit* best = best_fit(fits);
     if (best == nullptr || context.relay) return best != nullptr;
@@ -123,7 +126,7 @@ ModelSearch fit_all(FitContext context, ModelChoice model, const Disturbances& d
     return ranked(std::move(context), std::move(fits), plan, disturbances);
 }
 
-/// The chosen structure again with disturbances, and the one that it extends.
+/// Fits the chosen structure with disturbances, and the one that it extends.
 ModelSearch fit_some(const ModelSearch& search, ModelChoice model, const Disturbances& disturbances,
                      const RunControl& control) {
     const Structure chosen = search.chosen().form.structure;
@@ -150,17 +153,18 @@ void try_between_rows(ModelSearch& search, ModelChoice model, const RunControl& 
     const CleanRecord moved = changed_between_rows(search.context.record);
     const Fit& now = search.chosen();
     const Fit fit = fit_shape({&moved, {}}, now.form, now.shape, {}, control.stop);
-    // Rows written at the changes would leave no pattern: late ones are the likelier, unless the fit says otherwise.
+    // If rows were written at the changes there would be no pattern: late rows are more probable, unless the fit
+    // contradicts.
     if (!fit.determined || fit.sse > k.between_rows_max_ratio * now.sse) return;
     ModelSearch other = fit_all(fit_context(moved, search.context.relay, control), model, {}, control);
     if (!usable(other) || other.chosen().sse > k.between_rows_max_ratio * now.sse) return;
     search = std::move(other);
 }
 
-/// A change of u in a gap of the record happened at a row that is missing: at which one, the models tell. Kept where
-/// that leaves a third of the sum of squares or less.
+/// A change of u in a gap of the record happened at a missing row, which the models determine. Kept if this reduces the
+/// sum of squares to a third or less.
 void try_gap_moves(ModelSearch& search, ModelChoice model, const RunControl& control) {
-    // Misses of a few rows here and there are no pattern, and look like noise: the fit itself says whether to look.
+    // A few wrong rows are no pattern and look like noise, so the fit itself decides whether to search.
     if (search.percents[static_cast<std::size_t>(search.choice.index)] > k.explained_percent) return;
     const std::vector<int> moves = gap_moves(search.context.record);
     if (moves.empty() || static_cast<int>(moves.size()) > k.max_gap_moves) return;
@@ -175,18 +179,17 @@ void try_gap_moves(ModelSearch& search, ModelChoice model, const RunControl& con
     search = std::move(other);
 }
 
-/// `record` with the times of its moves estimated within their rows, from those of `search`, and its models; empty
-/// where y shows nothing of them.
+/// `record` with the times of its moves estimated within their rows, from those of `search`, and its models; empty if y
+/// does not show them.
 std::optional<ModelSearch> with_times_estimated(const CleanRecord& record, const ModelSearch& search, ModelChoice model,
                                                 const RunControl& control) {
     const double noise = search.context.noise, n = record.samples();
     if (record.row.empty() || record.changes() < 2) return std::nullopt;
-    // With few rows a half period misplaced switches leave what looks like white noise, and the oscillation looks like
-    // it.
+    // With few rows per half period, misplaced switches leave a residual that looks like white noise.
     const bool pattern = (search.context.relay && few_rows(record)) ||
                          (search.chosen().sse > k.moves_min_noise_variances * n * noise * noise &&
                           correlation_time(search.chosen().residual) > k.moves_min_correlation);
-    RunControl quiet = control;  // the progress of a search that was done is not told again
+    RunControl quiet = control;  // a search must not report progress that has been reported before
     quiet.progress = {};
     std::optional<ModelSearch> other;
     Fit start = search.chosen();
@@ -205,7 +208,7 @@ std::optional<ModelSearch> with_times_estimated(const CleanRecord& record, const
     return other;
 }
 
-/// Moves of u between the rows, as y shows them.
+/// Tries moves of u between the rows, as y shows them.
 void try_move_times(ModelSearch& search, ModelChoice model, const RunControl& control) {
     std::optional<ModelSearch> other = with_times_estimated(search.context.record, search, model, control);
     if (!other) return;
@@ -214,8 +217,8 @@ void try_move_times(ModelSearch& search, ModelChoice model, const RunControl& co
         search = std::move(*other);
 }
 
-/// A relay recorded in few rows a half period: each of its switches lies within the row that shows it. Kept where that
-/// leaves two thirds of the sum of squares or less.
+/// A relay recorded in few rows a half period: each of its switches lies within the row that shows it. Kept if this
+/// reduces the sum of squares to two thirds or less.
 void try_switches_between_rows(ModelSearch& search, ModelChoice model, const RunControl& control) {
     if (search.percents[static_cast<std::size_t>(search.choice.index)] > k.explained_percent) return;
     const CleanRecord& record = search.context.record;
@@ -224,7 +227,7 @@ void try_switches_between_rows(ModelSearch& search, ModelChoice model, const Run
     const auto fitted = [&](CleanRecord placed, ModelChoice choice) {
         return fit_all(fit_context(std::move(placed), true, control), choice, {}, control);
     };
-    // A model of few parameters places them: one of more would explain the misplaced ones too.
+    // A model with few parameters places them: one with more would also explain misplaced ones.
     ModelSearch other = fitted(changed_between_rows(record), ModelChoice::fopdt);
     for (int round = 0; round < k.switch_rounds && usable(other) && !control.stop.stop_requested(); ++round) {
         ModelSearch next = fitted(with_switches_placed(record, other.chosen(), control.stop), ModelChoice::fopdt);
@@ -233,14 +236,14 @@ void try_switches_between_rows(ModelSearch& search, ModelChoice model, const Run
     }
     if (!usable(other)) return;
     other = fitted(with_switches_placed(record, other.chosen(), control.stop), model);
-    // Each place is a parameter more.
+    // Each place is an additional parameter.
     const double freedom = std::max(1 - changes / rows, k.min_freedom);
     if (!usable(other) || k.switches_min_ratio * other.chosen().sse > search.chosen().sse * freedom) return;
     search = std::move(other);
 }
 
-/// Whether another lag explains what a drift (`by_drift`, criterion with `independent` samples) would: it is then kept
-/// in its place, and the choice made again.
+/// True if another lag explains the record as well as a drift (`by_drift`, criterion with `independent` samples): then
+/// the lag is kept instead, and the choice is repeated.
 bool another_lag_does(ModelSearch& search, ModelChoice model, double by_drift, double independent) {
     const Plan plan = plan_for(model, search.context.record);
     const auto fitted = [&](Structure structure) {
@@ -255,8 +258,8 @@ bool another_lag_does(ModelSearch& search, ModelChoice model, double by_drift, d
     return true;
 }
 
-/// A slow part beside a quick one that is slower than the record may stand in for a drift: then a drift is tried in its
-/// place, and kept where it explains the record as well.
+/// A slow part that is slower than the record may replace a drift: a drift is tried in its place, and kept if it
+/// explains the record as well.
 void try_drift_for_slow_part(ModelSearch& search, ModelChoice model, const RunControl& control) {
     const Fit& now = search.chosen();
     if (now.form.structure != Structure::sopdt_zero || now.shape.slowest_lag() < k.slow_part || now.form.slope) return;
@@ -268,8 +271,8 @@ void try_drift_for_slow_part(ModelSearch& search, ModelChoice model, const RunCo
     search = std::move(other);
 }
 
-/// A slow drift hides in gain and time constant without leaving a pattern: its column is tried wherever the record can
-/// show it.
+/// A slow drift can be hidden in gain and time constant without leaving a pattern: its column is tried whenever the
+/// record can show it.
 void try_drift(ModelSearch& search, ModelChoice model, const RunControl& control) {
     const Fit& now = search.chosen();
     if (!shows_drift(search.context.record) || is_integrating(now.form.structure)) return;
@@ -278,7 +281,7 @@ void try_drift(ModelSearch& search, ModelChoice model, const RunControl& control
     const Fit fit = fit_shape(search.context.some(), form, now.shape, k.rough, control.stop);
     const Fit plain = project(search.context.some(), now.form, now.shape);
     if (!fit.determined) return;
-    // Wandering noise and a coarse grid look like a drift for as long as a record lasts.
+    // Low-frequency noise and a coarse grid look like a drift over the record.
     const double time = correlation_time(fit.residual), n = std::max(kMinIndependent, fit.residual.size() / time);
     const double lead = information_criterion(plain, n) - information_criterion(fit, n);
     if (lead < (time < k.white_correlation ? k.strong : k.very_strong)) return;
@@ -289,8 +292,9 @@ void try_drift(ModelSearch& search, ModelChoice model, const RunControl& control
     search = std::move(other);
 }
 
-/// Moves of u within their rows: each time estimated with the model, or a relay's switches put where they explain y
-/// best, whichever leaves less. From few rows a half period the joint estimate may end in another valley.
+/// Tries moves of u within their rows: all times estimated with the model, or a relay's switches placed where they
+/// explain y best, whichever is better. With few rows per half period the joint estimate may end in another local
+/// minimum.
 void try_moves(ModelSearch& search, ModelChoice model, bool relay, const RunControl& control) {
     ModelSearch placed = search;
     try_move_times(search, model, control);
@@ -313,12 +317,12 @@ void try_disturbances(ModelSearch& search, ModelChoice model, const RunControl& 
     for (const Disturbances& d : {Disturbances{true, false}, Disturbances{false, true}, Disturbances{true, true}}) {
         if (control.stop.stop_requested()) return;
         if ((d.slope && !shows_drift(record)) || (d.load && !shows_load(record))) continue;
-        // Both together only where neither alone explains the record.
+        // Both together only if neither alone explains the record.
         if (d.slope && d.load && !leaves_a_pattern(best->context, best->chosen())) break;
         others.push_back(fit_some(search, model, d, control));
         const ModelSearch& other = others.back();
         if (!usable(other) || !plausible_load(record, other.chosen())) continue;
-        // A disturbance that leaves a pattern too stands in for a structure that is none of these.
+        // If a pattern remains with the disturbance, it only replaces a structure that is missing.
         const double less = best->chosen().sse / other.chosen().sse;
         if (less < (leaves_a_pattern(other.context, other.chosen()) ? k.disturbance_min_ratio_of_pattern
                                                                     : k.disturbance_min_ratio))
@@ -332,12 +336,12 @@ void try_disturbances(ModelSearch& search, ModelChoice model, const RunControl& 
     if (usable(whole) && plausible_load(record, whole.chosen())) search = std::move(whole);
 }
 
-/// Whether an unstable model's free run lasts so many time constants that it is all but arbitrary.
+/// True if an unstable model's free run lasts so many time constants that it is nearly arbitrary.
 bool runs_too_long(const Fit& fit) {
     return fit.form.structure == Structure::unstable && fit.shape.T() < k.min_unstable_lag;
 }
 
-/// Kept where the beginning alone is explained by an unstable model with a time constant that it can show.
+/// Kept if an unstable model explains the beginning alone, with a time constant that it can show.
 void try_beginning(ModelSearch& search, const CleanRecord& record, ModelChoice model, const RunControl& control) {
     if (model != ModelChoice::automatic && model != ModelChoice::fopdt) return;
     for (const double part : k.beginnings) {

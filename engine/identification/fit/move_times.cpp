@@ -14,19 +14,19 @@
 namespace tunewright {
 namespace {
 
-/// A change of u whose time is open: its place in v_time, the row before it and the row that shows it.
+/// A change of u whose time is unknown: its place in v_time, the row before it and the row that shows it.
 struct OpenMove {
     int place = 0;
     double low = 0, high = 0;
 
     double length() const { return high - low; }
     double middle() const { return 0.5 * (low + high); }
-    double earliest() const { return low + 1e-3 * length(); }  ///< of the search: times ascend strictly
+    double earliest() const { return low + 1e-3 * length(); }  ///< limits of the search: times are strictly ascending
     double deviation() const { return length() / std::sqrt(12.0); }
 };
 
 std::vector<OpenMove> open_moves(const CleanRecord& r) {
-    constexpr double kMaxSpacings = 5.5;     // usual spacings: rows are missing, too many for one minimum
+    constexpr double kMaxSpacings = 5.5;     // in usual spacings: with more missing rows there may be several minima
     constexpr double kTimeTolerance = 1e-9;  // of the record's length
     const double longest = kMaxSpacings * usual_spacing(r);
     std::vector<OpenMove> moves;
@@ -74,7 +74,7 @@ Eigen::MatrixXd of_samples(const Fit& fit) {
     return J;
 }
 
-/// Shape, linear coefficients and times together.
+/// Estimates shape, linear coefficients and times together.
 class JointFit {
 public:
     JointFit(const CleanRecord& record, std::vector<OpenMove> moves, const Fit& start, double noise,
@@ -84,8 +84,8 @@ public:
         on_rows_ = innovation_variance(fit_.residual);
     }
 
-    /// The evidence() that a model linear in the times, and white noise, would have at the recorded times: the residual
-    /// there says what small shifts would explain.
+    /// The evidence() of a model that is linear in the times, with white noise, at the recorded times: the residual
+    /// there shows how much small shifts would explain.
     double linear_evidence() {
         variance_ = std::max(kVarianceFloor, residual_variance());
         jacobian({&record_, {}}, fit_);
@@ -104,8 +104,8 @@ public:
         return 0.5 * pull.dot(solve_symmetric(normal, pull)) - 0.5 * apart - freedom;
     }
 
-    /// From the best of the recorded times, the middles of the rows and `times`, which `shape` belongs to. Twice: by
-    /// the noise that y shows from row to row, then by what the fit has left.
+    /// Starts from the best of the recorded times, the middles of the rows and `times`, which belong to `shape`. Runs
+    /// twice: with the noise of y from row to row, then with the residual of the fit.
     void run(const std::vector<double>& times, const ModelShape& shape) {
         std::vector<double> middles = record_.v_time;
         for (const OpenMove& move : moves_) middles[static_cast<std::size_t>(move.place)] = move.middle();
@@ -121,7 +121,7 @@ public:
     const CleanRecord& record() const { return record_; }
     const Fit& fit() const { return fit_; }
 
-    /// The logarithm of the marginal likelihood over that of the recorded times, whose fit left `on_rows_`.
+    /// The logarithm of the marginal likelihood relative to the recorded times, whose fit has the residual `on_rows_`.
     double evidence() const {
         const double n = record_.samples();
         const double left = innovation_variance(fit_.residual);
@@ -145,8 +145,8 @@ private:
         return fit_.sse / std::max(0.2 * n, n - taken);
     }
 
-    /// Information of the record on the times, given the model's parameters: their inverse covariance, each time in its
-    /// own standard deviations.
+    /// Information of the record about the times, given the model's parameters: their inverse covariance, each time in
+    /// its own standard deviations.
     Eigen::MatrixXd seen_of(const Eigen::MatrixXd& N) const {
         const Eigen::MatrixXd J = of_samples(fit_), of_both = gram(J, N);
         const Eigen::MatrixXd inverse = inverse_of(gram(J, J) + ridge(J));
@@ -156,7 +156,7 @@ private:
                 seen(i, k) *= at(i).deviation() * at(k).deviation() / variance_;
         return seen;
     }
-    /// Half the logarithm of how much smaller what remains open of the times is than what was.
+    /// Half the logarithm of the ratio of prior to posterior volume of the times.
     static double log_volume(const Eigen::MatrixXd& seen) {
         return 0.5 * (1 + principal_axes(seen).values.array().max(0)).log().sum();
     }
@@ -170,7 +170,7 @@ private:
     }
     double cost(const CleanRecord& r, const Fit& fit) const { return fit.sse + variance_ * surprise(r); }
 
-    /// A part of its diagonal: what nothing depends on is held.
+    /// A share of its diagonal: fixes parameters without any effect.
     static Eigen::MatrixXd ridge(const Eigen::MatrixXd& J) {
         constexpr double kRidge = 1e-10;
         return (kRidge * J.colwise().squaredNorm().maxCoeff() * Eigen::VectorXd::Ones(J.cols())).asDiagonal();
@@ -204,7 +204,7 @@ private:
         jacobian({&record_, {}}, fit_);
     }
 
-    /// Parameters at a bound that are pulled beyond it are held: a step that is cut there leads nowhere.
+    /// Fixes parameters at a bound that would be moved beyond it: a step that is cut there does not help.
     static void hold_at_bound(double value, double low, double high, Eigen::Index k, Eigen::MatrixXd& normal,
                               Eigen::VectorXd& pull) {
         if ((value > low || pull[k] > 0) && (value < high || pull[k] < 0)) return;
@@ -229,7 +229,7 @@ private:
         const double min = 1e-12 * normal.diagonal().maxCoeff();
         normal.diagonal().array() += min;
         const Eigen::VectorXd moved = solve_symmetric(normal, pull);
-        constexpr double kMaxLogStep = 1.5;  // of a logarithm: beyond it the linearisation means nothing
+        constexpr double kMaxLogStep = 1.5;  // of a logarithm: for larger steps the linearisation is meaningless
         double longest = 0;
         for (std::size_t i = 1; i < places.size(); ++i)
             longest = std::max(longest, std::abs(moved[static_cast<Eigen::Index>(i)]));
@@ -260,15 +260,16 @@ private:
     Fit fit_;
 };
 
-/// As many samples as the sums over all pairs of columns are quick for; 0: there are too many moves.
+/// Largest number of samples for which the sums over all pairs of columns are fast; 0: there are too many moves.
 int affordable_samples(std::size_t moves) {
-    constexpr double kMaxWork = 6e7;       // products: some tenths of a second in all
+    constexpr double kMaxWork = 6e7;       // products: about some tenths of a second
     constexpr int kMinSamplesPerMove = 4;  // samples for each move
     const double columns = static_cast<double>(moves) + 8, max = kMaxWork / (columns * columns);
     return max < kMinSamplesPerMove * columns ? 0 : static_cast<int>(std::min(max, 1e6));
 }
 
-/// Dead time that acts: an integrator's lags, else half of the lags but the slowest (Skogestad 2003, half rule).
+/// Effective dead time: with the lags of an integrator, else with half of all lags except the slowest (Skogestad 2003,
+/// half rule).
 double acting_dead_time(const ModelShape& shape) {
     const bool third = shape.structure == Structure::third;
     if (shape.structure == Structure::ipdt) return shape.L();
@@ -280,7 +281,7 @@ double acting_dead_time(const ModelShape& shape) {
 
 /// True if each move may lie anywhere between two rows.
 bool seen_at_rows(const CleanRecord& r, double row) {
-    constexpr int kMaxMoves = 5;                                  // moves: more are a program's
+    constexpr int kMaxMoves = 5;                                  // moves: more come from a program
     constexpr double kMaxLateRows = 1.5, kMinRowsBetween = 2.99;  // rows
     if (r.row.empty() || r.changes() > kMaxMoves || r.moves_unseen > 0 || r.moves_placed > 0 || r.moved_between_rows ||
         !r.v_open.empty())
@@ -294,7 +295,7 @@ bool seen_at_rows(const CleanRecord& r, double row) {
     return true;
 }
 
-/// True if y would show any one of the moves that lay off its row by half of it.
+/// True if y would show each single move that is half a row away from its row.
 bool shown_on_rows(const CleanRecord& record, const Fit& fit, double row, const std::stop_token& stop) {
     constexpr double kMinLogLikelihoodGain = 4;  // two standard errors
     constexpr double kMinSse = 1e-14;            // of y's range squared: rounding
@@ -316,7 +317,7 @@ bool shown_on_rows(const CleanRecord& record, const Fit& fit, double row, const 
 
 std::optional<CleanRecord> with_move_times(const CleanRecord& record, const std::vector<double>& times,
                                            const Fit& start, double noise, bool pattern, const std::stop_token& stop) {
-    constexpr double kMinEvidence = 5;  // logarithm of the likelihoods' ratio (Kass and Raftery 1995, section 3.2)
+    constexpr double kMinEvidence = 5;  // logarithm of the ratio of likelihoods (Kass and Raftery 1995, section 3.2)
     constexpr std::size_t kMinMoves = 2;
     const std::vector<OpenMove> moves = open_moves(record);
     const int max = affordable_samples(moves.size());
@@ -336,8 +337,8 @@ std::optional<CleanRecord> with_move_times(const CleanRecord& record, const std:
         latest = std::max(latest, share);
         row = std::min(row, move.length());
     }
-    // Moves at one phase of the logger's clock lie together anywhere in a row. What the mean of as many independent
-    // ones leaves open is in their own freedom.
+    // Moves at the same phase of the logger's clock may lie together anywhere in a row. The uncertainty of the mean of
+    // independent moves is already part of their own freedom.
     const double together = 1 - (latest - earliest), alone = 1 / static_cast<double>(moves.size());
     placed.moved_within = row * std::sqrt(std::max(0.0, together * together - alone));
     placed.moved_between_rows = false;
@@ -390,11 +391,11 @@ CleanRecord changed_between_rows(CleanRecord record) {
 }
 
 double shown_within(const CleanRecord& record, const Fit& fit, const std::stop_token& stop) {
-    constexpr double kMaxSmallShare = 0.5;  // of the dead time that is seen
+    constexpr double kMaxSmallShare = 0.5;  // of the dead time in the record
     const double row = usual_spacing(record);
     if (!(row > kMaxSmallShare * acting_dead_time(fit.shape)) || !seen_at_rows(record, row)) return 0;
     if (record.changes() > 1 && shown_on_rows(record, fit, row, stop)) return 0;
-    return 2 * row;  // a row at most before the one that stands there
+    return 2 * row;  // at most one row before the recorded one
 }
 
 }  // namespace tunewright

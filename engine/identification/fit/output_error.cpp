@@ -13,7 +13,7 @@ namespace {
 
 /// The square root of 10: a given y0 is assumed to be an average of many readings, and counts as ten samples.
 constexpr double kRestWeight = 3.1622776601683795;
-/// Of a logarithm, for central differences: truncation (1e-8) and rounding (1e-12) both stay small.
+/// In a logarithm, for central differences: keeps both truncation (1e-8) and rounding (1e-12) small.
 constexpr double kLogDifferenceStep = 1e-4;
 
 int anchor_rows(std::span<const FrequencyConstraint> anchors) {
@@ -41,13 +41,13 @@ public:
             if (anchor.omega > 0) y_[row++] = anchor.weight * anchor.value.imag();
         }
         y_square_ = square_of(y_);
-        // The same at every shape.
+        // Independent of the shape.
         columns_.col(form_.offset_index()).head(n_).setOnes();
         if (record_.y_rest) columns_(n_, form_.offset_index()) = kRestWeight;
         if (form_.slope) columns_.col(form_.slope_index()).head(n_) = column(record_.t);
     }
 
-    /// n_rows x linear_size, kept until the next call.
+    /// n_rows x linear_size, valid until the next call.
     const Eigen::MatrixXd& regressors(const ModelShape& shape) {
         const bool zero = form_.gains() == 2;
         respond(shape, zero ? 1 : 0);
@@ -73,13 +73,13 @@ public:
 
     void project(const ModelShape& shape, Projection& result) { project_on(regressors(shape), y_, y_square_, result); }
 
-    /// By normal equations: fast, good to the square root of the precision.
+    /// By normal equations: fast, accurate to the square root of the precision.
     double rough_sum(const ModelShape& shape) {
         const double sum = rough_rest(regressors(shape), y_, y_square_);
         return std::isfinite(sum) ? std::max(sum, 0.0) : std::numeric_limits<double>::max();
     }
 
-    /// d model/d searched, n_rows x searched, kept until the next call.
+    /// d model/d searched, n_rows x searched, valid until the next call.
     Eigen::MatrixXd& sensitivities(const ModelShape& shape, const Eigen::VectorXd& linear) {
         const std::vector<int> places = form_.searched();
         D_.setZero(rows_, static_cast<Eigen::Index>(places.size()));
@@ -154,7 +154,7 @@ private:
         if (zero) columns_.col(k + 1).head(n_) = column(response.x1);
     }
 
-    /// Adds `sign` times the time derivative of what the coefficients from `index` on contribute.
+    /// Adds `sign` times the time derivative of the contribution of the coefficients from `index` on.
     void add_slopes(int place, int index, const UnitResponse& response, double sign, const Eigen::VectorXd& linear) {
         auto target = D_.col(place).head(n_);
         target += sign * linear[index] * column(response.x1);
@@ -215,7 +215,7 @@ ModelShape clamped(ModelShape shape, const ShapeBounds& bounds) {
     return shape;
 }
 
-/// Parameters that a step would push through their bound take no part in it.
+/// Parameters that a step would move beyond their bound are excluded from it.
 std::vector<int> free_parameters(const ModelShape& shape, const std::vector<int>& places, const ShapeBounds& bounds,
                                  const Eigen::VectorXd& descent) {
     std::vector<int> free;
@@ -236,7 +236,7 @@ Eigen::VectorXd damped_step(const Eigen::MatrixXd& normal, const Eigen::VectorXd
     return step;
 }
 
-/// A full step in a logarithm beyond this leaves the region where the linearisation means anything.
+/// A longer step in a logarithm leaves the region in which the linearisation is valid.
 ModelShape moved_by(const ModelShape& shape, const std::vector<int>& places, const Eigen::VectorXd& step,
                     const ShapeBounds& bounds) {
     constexpr double kLongest = 1.5;  // a factor of 4.5
@@ -300,9 +300,9 @@ std::vector<double> sums_of_squares(const FitData& data, const ModelForm& form, 
 
 namespace {
 
-constexpr double kMinStep = 1e-9;  // digits beyond those that any noise leaves
+constexpr double kMinStep = 1e-9;  // a smaller step changes only digits below the noise
 
-/// The search over the shape, as `levenberg_marquardt` wants it.
+/// The search over the shape, as a problem of `levenberg_marquardt`.
 class ShapeFit {
 public:
     ShapeFit(const FitData& data, const ModelForm& form, const ModelShape& start, const Effort& effort,

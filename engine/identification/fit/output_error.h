@@ -10,16 +10,16 @@
 
 namespace tunewright {
 
-/// What the model of a structure is made of beside its shape. The linear coefficients are, in this order: the gain,
-/// gain times b (sopdt_zero), the offset, and those of what else moved y, where it is looked for: the size of the
-/// unseen first step (times the gain, and times gain b), the slope, the load (as the unseen step), and the gains of the
-/// further inputs.
+/// The parts of a structure's model other than its shape. The linear coefficients are, in this order: the gain, gain
+/// times b (sopdt_zero), the offset, and those of other causes of y, if they are fitted: the size of the unseen first
+/// step (times the gain, and times gain b), the slope, the load (as the unseen step), and the gains of the further
+/// inputs.
 struct ModelForm {
     Structure structure = Structure::fopdt;
-    bool other_level = false;  ///< at rest at an unknown level, which u left for its first value at the first sample
-    bool slope = false;        ///< y drifts; integrating structures: the level of rest is unknown
+    bool other_level = false;  ///< at rest at an unknown level before the first sample, at which u took its first value
+    bool slope = false;        ///< y drifts; for integrating structures: the level of rest is unknown
     bool load = false;  ///< a lasting step of unknown size is added to u from ModelShape::load_time on, without L
-    int further = 0;    ///< inputs beside u: the first so many of CleanRecord::d
+    int further = 0;    ///< further inputs: the first ones of CleanRecord::d, this number of them
 
     int gains() const { return structure == Structure::sopdt_zero ? 2 : 1; }
     int offset_index() const { return gains(); }
@@ -28,16 +28,16 @@ struct ModelForm {
     int load_index() const { return slope_index() + (slope ? 1 : 0); }
     int further_index() const { return load_index() + (load ? gains() : 0); }
     int linear_size() const { return further_index() + further; }
-    /// Places in ModelShape::p that are searched for.
+    /// Indices in ModelShape::p of the searched parameters.
     std::vector<int> searched() const;
     int parameters() const { return shape_size(structure) + (load ? 1 : 0) + 2 * further + linear_size(); }
 };
 
-/// Bounds of the search, dimensionless, from the record's sampling and length.
+/// Bounds of the search, dimensionless, derived from the record's sampling and length.
 struct ShapeBounds {
     std::array<double, 5 + 2 * kMaxFurtherInputs> low{}, high{};
 };
-/// ln of the least time constant of an unstable model: a free run over more than 20 of them leaves no digits.
+/// ln of the least time constant of an unstable model: a free run over more than 20 of them is numerically meaningless.
 inline constexpr double kMinUnstable = -2.995732273553991;
 ShapeBounds shape_bounds(const CleanRecord& record, Structure structure);
 
@@ -45,13 +45,13 @@ ShapeBounds shape_bounds(const CleanRecord& record, Structure structure);
 /// digits.
 inline constexpr double kVarianceFloor = 1e-14;
 
-/// A value of the frequency response that the model is held to: a row of the least-squares problem with this weight
-/// (the inverse of its standard deviation relative to that of y's samples).
+/// A measured value of the frequency response as a constraint: a row of the least-squares problem with this weight (the
+/// inverse of its standard deviation relative to that of y's samples).
 struct FrequencyConstraint {
     double omega = 0;  ///< dimensionless; 0: the static gain
     std::complex<double> value;
     double weight = 0;
-    double std = 0;  ///< standard deviation of the value's parts, which may be larger than the weight says
+    double std = 0;  ///< standard deviation of the value's parts, which may be larger than the weight implies
 };
 
 /// A model fitted to a clean record; dimensionless.
@@ -61,29 +61,29 @@ struct Fit {
     std::vector<double> linear;    ///< linear_size() coefficients
     std::vector<double> model;     ///< n_samples: the free run
     std::vector<double> residual;  ///< n_samples: y - model
-    double sse = 0;                ///< sum of squares, that of y_rest's row and the anchors' included
+    double sse = 0;                ///< sum of squares, including those of y_rest's row and of the anchors
     /// Columns d model/d searched, then d model/d linear; rows as in the least-squares problem: n_samples, one for
     /// y_rest if there is one, then the anchors'. Empty until `jacobian`.
     std::vector<std::vector<double>> J;
-    /// Standard deviation, in J's units, of what each row from n_samples on is held to, where it is not the row's own
-    /// noise: 0 for y_rest's, then the anchors'. As long as those rows; filled by `jacobian`.
+    /// Standard deviation, in J's units, of the target of each row from n_samples on, if it differs from the row's own
+    /// noise: 0 for y_rest's, then those of the anchors. As long as those rows; filled by `jacobian`.
     std::vector<double> held_errors;
-    /// Columns for what was estimated beside the parameters and taken out of J (move_times.h), n_samples each.
+    /// Columns of the additional parameters that were removed from J (move_times.h), n_samples each.
     std::vector<std::vector<double>> nuisance;
-    /// Prior knowledge of each of them, as one row of the least-squares problem: its weight, and what the
-    /// estimate leaves of it. J's last rows are these.
+    /// Prior knowledge of each of them, as one row of the least-squares problem: its weight, and its residual. J's last
+    /// rows belong to these.
     std::vector<double> nuisance_weight, nuisance_rest;
-    double nuisance_freedom = 0;  ///< degrees of freedom that they took from the residual
+    double nuisance_freedom = 0;  ///< degrees of freedom of the residual that they used
     bool determined = false;      ///< the gain's column is independent of the others
     int iterations = 0;
-    /// Changes of (searched, linear), one standard deviation long each, that make up the covariance where another
-    /// estimator than least squares knows it. Empty: J determines it.
+    /// Changes of (searched, linear), one standard deviation long each, that give the covariance if it comes from
+    /// another estimator than least squares. Empty: J determines it.
     std::vector<std::vector<double>> deviations;
-    /// Beside them least squares' own errors count, whichever is the larger of each parameter.
+    /// For each parameter the larger of these errors and those of least squares counts.
     bool as_open_as_least_squares = false;
 };
 
-/// The data of a least-squares problem. The referred record and anchors must outlive it.
+/// The data of a least-squares problem. The record and the anchors must outlive it.
 struct FitData {
     const CleanRecord* record = nullptr;
     std::span<const FrequencyConstraint> anchors = {};
@@ -93,15 +93,15 @@ struct FitData {
 /// and the fit's residual.
 Fit project(const FitData& data, const ModelForm& form, const ModelShape& shape);
 
-/// The sum of squares alone, of many shapes, to about 1e-10 of y's own: for ranking starts. By normal equations.
+/// Only the sums of squares, for many shapes, to about 1e-10 of y's own: for ranking starts. By normal equations.
 std::vector<double> sums_of_squares(const FitData& data, const ModelForm& form, const std::vector<ModelShape>& shapes,
                                     const std::stop_token& stop);
 
 /// Levenberg-Marquardt on the shape alone, the linear coefficients eliminated (Kaufman 1975's approximation of the
 /// projected Jacobian), from `start`. Sensitivities to L and the load's time are exact, those to the logarithms are
 /// central differences at fixed L, where the response is smooth. Stops when a step changes no shape parameter by more
-/// than 1e-9 or lowers the sum of squares by less than `tolerance` of itself, after `max_iterations`, or when asked
-/// to.
+/// than 1e-9 or lowers the sum of squares by less than `tolerance` of itself, after `max_iterations`, or after a stop
+/// request.
 struct Effort {
     int max_iterations = 60;
     double tolerance = 1e-11;

@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kMaxRun = 3;
 constexpr double kMinShareOfRange = 0.05;
 
-/// The size of a usual value of the series: its median magnitude, as a standard deviation.
+/// The size of a typical value of the series: its median magnitude, converted to a standard deviation.
 double usual_size(const std::vector<double>& values) {
     std::vector<double> sizes;
     sizes.reserve(values.size());
@@ -42,7 +42,8 @@ std::vector<bool> lone_misses(const Fit& fit) {
     return lone;
 }
 
-/// Marks runs that y jumps to and back from, by far more than it moves from sample to sample otherwise.
+/// Marks runs to which y jumps and from which it jumps back, by much more than it moves otherwise from sample to
+/// sample.
 void mark_jumps(const std::vector<double>& y, std::vector<bool>& marked) {
     constexpr double kMinShareOfRangeAtOnce = 0.25, kMinUsualSizes = 10;
     std::vector<double> moves;
@@ -59,7 +60,8 @@ void mark_jumps(const std::vector<double>& y, std::vector<bool>& marked) {
     }
 }
 
-/// How far the model lies from the samples that it was not fitted to, at least; their places are in the whole record.
+/// The least distance of the model from the samples to which it was not fitted; their indices are those of the whole
+/// record.
 double min_miss(const CleanRecord& whole, const std::vector<std::size_t>& left_out, const ModelSearch& found) {
     const Fit there = project(found.context.all(), found.chosen().form, found.chosen().shape);
     UnitResponse response, level;
@@ -90,10 +92,10 @@ double min_miss(const CleanRecord& whole, const std::vector<std::size_t>& left_o
     return min;
 }
 
-/// Whether the rows up to the one at `time` came at the usual spacing, as those of a recorder that writes whether
-/// anything happens or not: one that waits for a change writes few while all is at rest.
+/// True if the rows up to the one at `time` have the usual spacing, as with a recorder that always writes. A recorder
+/// that waits for a change writes few rows at rest.
 bool written_steadily(const CleanRecord& r, double time, double usual) {
-    constexpr std::ptrdiff_t kLastRows = 8, kMaxLateRows = 2;  // looked at; of them late
+    constexpr std::ptrdiff_t kLastRows = 8, kMaxLateRows = 2;  // number of checked rows, and of late ones among them
     constexpr double kMinLateSpacings = 1.5;                   // usual spacings
     const auto last = std::lower_bound(r.t.begin(), r.t.end(), time) - r.t.begin();
     if (last < kLastRows) return false;
@@ -104,9 +106,9 @@ bool written_steadily(const CleanRecord& r, double time, double usual) {
     return late <= kMaxLateRows;
 }
 
-/// Moves each of the changes `moves` of `placed` to where structure and shape of `fit` explain y best, one after the
-/// other until none moves. `offer(j, take)` calls take(time) for each time that change j may have; it answers whether
-/// that is the best so far.
+/// Moves each of the changes `moves` of `placed` to the time at which structure and shape of `fit` explain y best, one
+/// after the other until none moves. `offer(j, take)` calls take(time) for each possible time of change j; take returns
+/// whether that is the best so far.
 template <class Offer>
 void place(CleanRecord& placed, const Fit& fit, const std::vector<int>& moves, const std::stop_token& stop,
            const Offer& offer) {
@@ -167,7 +169,7 @@ ModelSearch without_false_readings(ModelSearch search, CleanRecord& record, Mode
 }
 
 std::vector<int> gap_moves(const CleanRecord& record) {
-    constexpr double kMinLongSpacings = 1.5;  // usual spacings: a row is missing
+    constexpr double kMinLongSpacings = 1.5;  // in usual spacings: a row is missing
     const double usual = usual_spacing(record);
     std::vector<int> moves;
     for (int j = 0; j < record.changes(); ++j) {
@@ -210,7 +212,7 @@ CleanRecord with_gap_moves_placed(const CleanRecord& record, const Fit& fit, con
 }
 
 CleanRecord with_switches_placed(const CleanRecord& record, const Fit& fit, const std::stop_token& stop) {
-    constexpr int kParts = 5;  // of a row, and then of such a part
+    constexpr int kParts = 5;  // parts of a row, and then of such a part
     std::vector<int> all(static_cast<std::size_t>(record.changes()));
     std::iota(all.begin(), all.end(), 0);
     CleanRecord placed = record;

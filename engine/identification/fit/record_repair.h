@@ -1,6 +1,6 @@
-// What only a model shows of a record, and the record put right by it: false readings beside a step, which a
-// neighbour's value cannot tell from a response (those that no process makes are left out before, record_rows.h), and
-// moves of u that happened while nothing was recorded.
+// Repairs of a record that need a model: false readings next to a step, which neighbouring values cannot distinguish
+// from a response (physically impossible ones are removed before, record_rows.h), and moves of u while nothing was
+// recorded.
 #pragma once
 
 #include <cstddef>
@@ -13,46 +13,46 @@
 
 namespace tunewright {
 
-/// Indices, ascending, of the samples of a fitted record that may be false: up to three in a row that y jumps to and
-/// back from, and single misses or pairs that are ten times as large as the median miss. Empty where they are more than
-/// 1 % of all (and more than four). `fit` is of all samples of `record`.
+/// Indices, ascending, of the samples of a fitted record that may be false: up to three in a row to which y jumps and
+/// from which it jumps back, and single residuals or pairs that are ten times as large as the median residual. Empty if
+/// they are more than 1 % of all (and more than four). `fit` must be of all samples of `record`.
 std::vector<std::size_t> doubtful_samples(const CleanRecord& record, const Fit& fit);
 
-/// Searches once more without the doubtful samples. The second search is returned, and the samples are noted in
-/// `record`'s cleaning, where its model misses each of them by a twentieth of y's range and by eight times what it
-/// misses of the others. Otherwise the first search is returned and the record stays: a process that does what the
-/// samples show is followed by its model.
+/// Searches again without the doubtful samples. The second search is returned, and the samples are recorded in the
+/// cleaning of `record`, if its model differs from each of them by a twentieth of y's range and by eight times its
+/// residual elsewhere. Otherwise the first search is returned and the record is not changed: if the samples are real,
+/// the model follows them.
 ///
-/// Records that were averaged over blocks, or searched in part, are returned as they are. When control.stop asks for
-/// it, the first search is returned.
+/// Records that were averaged over blocks, or searched in part, are returned as they are. After a stop request the
+/// first search is returned.
 ModelSearch without_false_readings(ModelSearch search, CleanRecord& record, ModelChoice model,
                                    const RunControl& control);
 
-/// The time of the last row before the one at or after `time`; `time` itself where that is the first.
+/// The time of the last row before the one at or after `time`; `time` itself if that row is the first.
 double row_before(const CleanRecord& record, double time);
 
 /// Indices into record.v_time, ascending, of the changes of u that were first seen after a spacing of more than 1.5
 /// times the usual one: the record does not show when they happened in it.
 std::vector<int> gap_moves(const CleanRecord& record);
 
-/// Where every change of u was first seen after missing rows, the dead time takes up what they hide, however well the
-/// model then fits: the record with each change in the middle of the rows at which it may have happened, and with
-/// `moves_unseen`, the shortest such stretch. Empty where one change is recorded, where no stretch is two usual
-/// spacings long, and where rows are not evenly spaced, or not before each stretch: what wrote them may have waited for
-/// the change.
+/// For a record in which every change of u first shows after missing rows: the dead time then includes the missing
+/// time, however well the model fits. Returns the record with each change in the middle of its missing rows, and with
+/// `moves_unseen`, the shortest such interval. Empty if one change is recorded, if no interval is two usual spacings
+/// long, or if rows are not evenly spaced, or not before each interval: then the recorder may have waited for the
+/// change.
 std::optional<CleanRecord> with_unseen_moves(const CleanRecord& record);
 
-/// The record with each of the changes `moves` (from gap_moves()) at the missing row at which the structure and shape
-/// of `fit` explain y best: one change after the other, until none moves, three rounds at most. A change is moved back
+/// The record with each of the changes `moves` (from gap_moves()) at the missing row with which the structure and shape
+/// of `fit` explain y best: one change after the other, until none moves, at most three rounds. A change is moved back
 /// by whole usual spacings, eight at most, and never to or before the change of u before it.
 ///
-/// Cost: one projection of the fit (output_error.h) for each row tried. When `stop` asks for it, the changes placed so
-/// far keep their rows.
+/// Cost: one projection of the fit (output_error.h) for each tried row. After a stop request the changes placed so far
+/// keep their rows.
 CleanRecord with_gap_moves_placed(const CleanRecord& record, const Fit& fit, const std::vector<int>& moves,
                                   const std::stop_token& stop);
 
-/// The same of every change of u, within the row that shows it and in steps of a fifth of it: a relay that looks
-/// oftener than it is recorded switches between the rows.
+/// The same for every change of u, within the row that shows it and in steps of a fifth of it: a relay that samples
+/// more often than the recorder switches between the rows.
 CleanRecord with_switches_placed(const CleanRecord& record, const Fit& fit, const std::stop_token& stop);
 
 }  // namespace tunewright

@@ -11,15 +11,16 @@ namespace {
 
 constexpr std::size_t kBlocks = 80;  ///< enough means for a first-order model, few enough to be slow
 
-constexpr std::size_t kMeansForEach = 4;  ///< parameter: what it takes of slow noise can then be put back
+constexpr std::size_t kMeansForEach = 4;  ///< means for each parameter: enough to correct its effect on slow noise
 
-constexpr double kMinVariance = 1e-150;        ///< keeps the logarithm of what may be 0 finite
-constexpr std::size_t kMaxSeriesLengths = 20;  ///< times the series: so far an answer near the unit circle is followed
-constexpr std::size_t kMinAnswerSteps = 8;     ///< steps of an impulse response before it may count as faded
-constexpr double kMaxFadedShare = 1e-6;        ///< of the impulse: two values in a row below it end the answer
-constexpr double kMinAddedShare = 1e-12;       ///< of the sum so far: rows that add less are left out
+constexpr double kMinVariance = 1e-150;        ///< keeps the logarithm of a value near 0 finite
+constexpr std::size_t kMaxSeriesLengths = 20;  ///< multiple of the series' length up to which an impulse response near
+                                               ///< the unit circle is followed
+constexpr std::size_t kMinAnswerSteps = 8;     ///< steps of an impulse response before it may count as decayed
+constexpr double kMaxFadedShare = 1e-6;        ///< of the impulse: two successive values below it end the response
+constexpr double kMinAddedShare = 1e-12;       ///< of the sum so far: rows that add less are omitted
 
-/// Burg's estimates of the orders 0 to `highest`, or fewer where the series is short.
+/// Burg's estimates of the orders 0 to `highest`, or fewer if the series is short.
 std::vector<Autoregression> burg(std::span<const double> e, std::size_t highest) {
     const std::size_t n = e.size();
     std::vector<double> forward(e.begin(), e.end()), backward(e.begin(), e.end());
@@ -59,7 +60,8 @@ Autoregression autoregression(std::span<const double> e, std::size_t highest) {
     return *std::ranges::min_element(orders, {}, criterion);
 }
 
-/// Puts back what the fit has taken of slow noise: the coefficient of a first order rises, the innovations stay.
+/// Corrects for slow noise that the fit has removed: the coefficient of a first order rises, the innovations do not
+/// change.
 void correct(std::vector<double>& a, double n, int parameters) {
     if (a.empty() || a[0] <= 0) return;
     const double max = 1 - 3 / n, m = parameters;
@@ -77,7 +79,7 @@ Eigen::MatrixXd block_means(const Eigen::MatrixXd& X, Eigen::Index block) {
     return means;
 }
 
-/// What the rows of X have beyond the means over their blocks.
+/// The deviations of the rows of X from the means over their blocks.
 Eigen::MatrixXd inside_blocks(const Eigen::MatrixXd& X, const Eigen::MatrixXd& means, Eigen::Index block) {
     Eigen::MatrixXd rest = X;
     for (Eigen::Index c = 0; c < X.cols(); ++c) {
@@ -110,8 +112,8 @@ Eigen::MatrixXd Autoregression::weighed(const Eigen::MatrixXd& X) const {
     const double variance = innovation * innovation;
     const auto order = static_cast<Eigen::Index>(a.size()), n = X.rows();
     if (order == 0) return variance * gram(X, X);
-    // R = innovation^2 H H' with H the impulse response: H' is the same filter backward in time, and what it goes on to
-    // give before the first row makes the noise stationary there.
+    // R = innovation^2 H H' with H the impulse response: H' is the same filter backward in time, and its output before
+    // the first row makes the noise stationary there.
     Eigen::MatrixXd Z = X;
     for (Eigen::Index c = 0; c < Z.cols(); ++c) {
         double* z = Z.col(c).data();
@@ -149,7 +151,7 @@ ResidualNoise::ResidualNoise(std::span<const double> residual, int parameters, d
     correct(slow_.a, static_cast<double>(means.rows()), parameters);
     if (block_ > 1) fast_ = autoregression(values(inside_blocks(e, means, block_)), 3);
     const auto block = static_cast<double>(block_), count = static_cast<double>(n);
-    // Each parameter takes a degree of freedom from the whole; slow regressors take it from the means.
+    // Each parameter uses a degree of freedom of the whole series; slow regressors use those of the means.
     slow_.innovation *=
         std::sqrt(std::min(4.0, means.rows() / std::max(1.0, static_cast<double>(means.rows()) - parameters)));
     const auto gains = slow_.gains(static_cast<std::size_t>(means.rows()));
@@ -165,7 +167,7 @@ Eigen::MatrixXd ResidualNoise::weighed(const Eigen::MatrixXd& X) const {
     Eigen::MatrixXd product = block * block * slow_.weighed(means);
     if (block_ == 1) return product;
     if (!fast_.a.empty()) return product + fast_.weighed(inside_blocks(X, means, block_));
-    // White inside: what the rows have beyond their means needs no rows of its own.
+    // White inside: deviations from the means need no rows of their own.
     Eigen::MatrixXd of_means = block * gram(means, means);
     const double last = static_cast<double>(X.rows()) - block * static_cast<double>(means.rows() - 1);
     of_means += (last - block) * means.bottomRows(1).transpose() * means.bottomRows(1);

@@ -11,7 +11,7 @@
 namespace tunewright {
 namespace {
 
-/// Whether the times from place i on are unit_systems::kMarch more steps of dt.
+/// True if the times from index i on are unit_systems::kMarch more steps of dt.
 bool evenly(std::span<const double> times, std::size_t i, double dt) {
     using unit_systems::kSameStep;
     const double* t = times.data() + i;

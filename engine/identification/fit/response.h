@@ -14,55 +14,55 @@ enum class Structure {
     fopdt,        ///< e^(-Ls)/(T s + 1)
     unstable,     ///< e^(-Ls)/(1 - T s): an fopdt with a negative time constant
     sopdt,        ///< e^(-Ls)/(a2 s^2 + a1 s + 1): two lags or an oscillation
-    sopdt_zero,   ///< (b s + 1) e^(-Ls)/(a2 s^2 + a1 s + 1); b enters linearly and is no shape parameter
+    sopdt_zero,   ///< (b s + 1) e^(-Ls)/(a2 s^2 + a1 s + 1); b is linear, not a shape parameter
     ipdt,         ///< e^(-Ls)/s
     ipdt_lag,     ///< e^(-Ls)/(s (T s + 1))
     third,        ///< e^(-Ls)/((T3 s + 1)(a2 s^2 + a1 s + 1))
     ipdt_second,  ///< e^(-Ls)/(s (a2 s^2 + a1 s + 1))
 };
 
-/// What the response depends on nonlinearly, dimensionless: [L], then ln T, or ln a1 and ln rho with rho = a2/a1^2. Two
-/// equal lags are rho = 1/4, an oscillation is above, and rho -> 0 is one lag, so that the structures are nested
-/// smoothly. Then the time at which an unseen load reaches the plant, where one is looked for, and ln T3; then L and ln
-/// T of each further input.
+/// The nonlinear parameters of the response, dimensionless: [L], then ln T, or ln a1 and ln rho with rho = a2/a1^2. Two
+/// equal lags have rho = 1/4, an oscillation a larger rho, and rho -> 0 is one lag, so that the structures are nested
+/// smoothly. Then the time at which an unmeasured load reaches the plant, if one is fitted, and ln T3; then L and ln T
+/// of each further input.
 struct ModelShape {
     Structure structure = Structure::fopdt;
     std::array<double, 5 + 2 * kMaxFurtherInputs> p{};
 
     double L() const { return p[0]; }
     double load_time() const { return p[3]; }
-    double T() const;   ///< fopdt, unstable (its magnitude), ipdt_lag
-    double a1() const;  ///< sopdt, sopdt_zero, third, ipdt_second
+    double T() const;   ///< for fopdt, unstable (its magnitude), ipdt_lag
+    double a1() const;  ///< for sopdt, sopdt_zero, third, ipdt_second
     double a2() const;
     double T3() const;           ///< third
-    double slowest_lag() const;  ///< of a self-regulating structure, an oscillation's T for it
+    double slowest_lag() const;  ///< for self-regulating structures; for an oscillation its T
 };
 
-/// Places in ModelShape::p that belong to a structure, the dead time's first.
+/// Indices in ModelShape::p that belong to a structure, that of the dead time first.
 std::vector<int> shape_places(Structure structure);
-/// 1 to 4: how many they are.
+/// Number of these indices, 1 to 4.
 int shape_size(Structure structure);
 bool is_integrating(Structure structure);
-/// Whether the denominator has a quadratic factor: a1 and a2 count.
+/// True if the denominator has a quadratic factor: a1 and a2 are used.
 bool has_quadratic(Structure structure);
 /// Its name: "fopdt", ...; "unstable fopdt" for that variant
 const char* name_of(Structure structure);
 
-inline constexpr int kLoadTime = 3, kThirdLag = 4;  ///< their places in ModelShape::p
+inline constexpr int kLoadTime = 3, kThirdLag = 4;  ///< their indices in ModelShape::p
 
-/// The places in ModelShape::p of the dead time and the lag of further input `k`, from 0.
+/// The indices in ModelShape::p of the dead time and the lag of further input `k`, from 0.
 constexpr int further_dead_time(int k) { return kThirdLag + 1 + 2 * k; }
 constexpr int further_lag(int k) { return further_dead_time(k) + 1; }
-/// True if a place holds a time itself, not a logarithm.
+/// True if this index holds a time itself, not a logarithm.
 constexpr bool is_time(int place) {
     return place == 0 || place == kLoadTime || (place > kThirdLag && (place - kThirdLag) % 2 == 1);
 }
 
-/// Shape of further input `k`'s effect on y, of unit gain: e^(-Ls)/(T s + 1), times 1/s where the structure
+/// Shape of the effect of further input `k` on y, with unit gain: e^(-Ls)/(T s + 1), times 1/s if the structure
 /// integrates.
 ModelShape further_shape(const ModelShape& shape, int k);
 
-/// x(t_i), dx/dt and d2x/dt2 (from the right) of the unit-gain response without zero; one entry a sample time.
+/// x(t_i), dx/dt and d2x/dt2 (from the right) of the unit-gain response without zero; one entry for each sample time.
 struct UnitResponse {
     std::vector<double> x, x1, x2;
 };
@@ -70,7 +70,7 @@ struct UnitResponse {
 /// e^(-Ls) over the structure's denominator: the transfer function of `unit_response`.
 std::complex<double> unit_transfer(const ModelShape& shape, std::complex<double> s);
 
-/// A piecewise constant input: 0 at first, level[j] from time[j] on; times ascend strictly from 0.
+/// A piecewise constant input: 0 at first, level[j] from time[j] on; times are strictly ascending from 0.
 struct InputSteps {
     std::span<const double> time, level;
 };

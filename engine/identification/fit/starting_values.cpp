@@ -15,7 +15,7 @@ std::vector<double> geometric(double from, double to, int count) {
 }
 
 /// 0, then geometric; for an input of many changes also `even` ones evenly spaced, because each interval between
-/// changes can hold a minimum.
+/// changes can contain a minimum.
 std::vector<double> dead_times(const CleanRecord& r, int even) {
     const double longest = 0.8 * r.response_time();
     const double spacing = 1.0 / std::max(1, r.samples() - 1);
@@ -32,8 +32,8 @@ ModelShape at(Structure structure, double L, double T, double rho, double load_t
     return {structure, {L, std::log(T), std::log(rho), load_time, std::log(T3)}};
 }
 
-/// A third lag beside a fitted second order, from next to none to the longest, the others shortened for it; the fitted
-/// one first.
+/// A third lag added to a fitted second order, from nearly 0 to the longest, with the others shortened accordingly; the
+/// fitted shape first.
 std::vector<ModelShape> third_beside(const ModelShape& second) {
     const double L = second.L(), a1 = second.a1(), rho = second.a2() / (a1 * a1), load = second.load_time();
     const double slow = std::sqrt(second.a2());
@@ -43,7 +43,7 @@ std::vector<ModelShape> third_beside(const ModelShape& second) {
             shapes.push_back(at(Structure::third, 0.5 * L, a1, rho, load, lag * slow));
         return shapes;
     }
-    // Of the two lags and the dead time: a part of each goes to the third.
+    // A share of the two lags and the dead time becomes the third lag.
     const double longest = 0.5 * a1 * (1 + std::sqrt(std::max(0.0, 1 - 4 * rho))), shorter = a1 - longest;
     for (const double part : {0.25, 0.6, 0.95}) {
         const double spare = part * L + shorter, lag = 0.5 * spare;
@@ -59,7 +59,7 @@ struct Grid {
     std::array<int, 4> size{};
     std::vector<ModelShape> shapes;
 
-    /// Whether no neighbour along an axis is lower.
+    /// True if no neighbour along an axis is lower.
     bool is_local_minimum(const std::vector<double>& values, int index) const {
         int stride = 1, left = index;
         for (int axis = 3; axis >= 0; --axis) {
@@ -73,7 +73,7 @@ struct Grid {
     }
 };
 
-/// The first move of u, and moments spread over the record: a load may come with the test or at any time.
+/// The first move of u, and times spread over the record: a load may begin with the test or at any time.
 std::vector<double> load_times(const CleanRecord& r) {
     std::vector<double> values = {r.v_time.front()};
     for (int i = 1; i < 12; ++i) values.push_back(i / 12.0);
@@ -91,7 +91,7 @@ Grid scan_grid(const CleanRecord& r, const ModelForm& form) {
     if (shape_size(structure) > 1) T = geometric(0.5 * spacing, 4.0, 10);
     if (structure == Structure::unstable) T = geometric(0.05, 2.0, 12);
     if (shape_size(structure) > 2) rho = {0.05, 0.25, 1.5, 10};
-    // Its denominator has been looked for with sopdt.
+    // Its denominator has already been searched for sopdt.
     if (structure == Structure::sopdt_zero) T = geometric(spacing, 2.0, 8), rho = {0.1, 0.25, 1.5};
     if (form.load) load = load_times(r);
     Grid grid{{static_cast<int>(L.size()), static_cast<int>(T.size()), static_cast<int>(rho.size()),
@@ -110,8 +110,8 @@ Grid scan_grid(const CleanRecord& r, const ModelForm& form) {
 }  // namespace
 
 std::vector<ModelShape> scan_shapes(const FitData& data, const ModelForm& form, int max, const std::stop_token& stop) {
-    // With a load's time the scan has a dimension more: wider structures start from what the narrow ones found. The
-    // widest always do.
+    // The time of a load adds a dimension to the scan: larger structures start from the results of the smaller ones.
+    // The largest always do.
     if (form.load && shape_size(form.structure) > 2) return {};
     if (form.structure == Structure::third || form.structure == Structure::ipdt_second) return {};
     const Grid grid = scan_grid(*data.record, form);

@@ -22,7 +22,7 @@ namespace {
 
 using Parameters = std::map<std::string, double>;
 
-/// The plant's parameters by symbol, in the record's units. `lags`: name the second order by T1, T2.
+/// The plant's parameters by symbol, in the record's units. `lags`: the second order has the parameters T1, T2.
 Parameters parameters_of(const RecordScale& s, const ModelForm& form, const ModelShape& shape,
                          std::span<const double> linear, bool lags) {
     const double K = linear[0] * s.y_scale / s.u_scale;
@@ -38,7 +38,7 @@ Parameters parameters_of(const RecordScale& s, const ModelForm& form, const Mode
             if (lags) {
                 const double root = std::sqrt(std::max(0.0, 1 - 4 * std::exp(shape.p[2])));
                 p["T1"] = 0.5 * shape.a1() * (1 + root) * s.t_scale;
-                // The product of the lags keeps the digits of a small one.
+                // The product of the lags keeps the accuracy of a small lag.
                 p["T2"] = shape.a2() / (0.5 * shape.a1() * (1 + root)) * s.t_scale;
             } else {
                 p["T"] = std::sqrt(shape.a2()) * s.t_scale;
@@ -59,7 +59,7 @@ Parameters parameters_of(const RecordScale& s, const ModelForm& form, const Mode
     return p;
 }
 
-/// Whether the quadratic factor is two real lags; equal lags, which a search meets within rounding, count as two.
+/// True if the quadratic factor has two real lags; lags that are equal within rounding count as two.
 bool has_two_lags(const ModelShape& shape) {
     constexpr double kDampingRounding = 1e-9;
     return 4 * std::exp(shape.p[2]) <= 1 + kDampingRounding;
@@ -83,7 +83,7 @@ Plant plant_of(const ModelForm& form, const Parameters& p, bool lags) {
     return Fopdt{};
 }
 
-/// Stretches of samples that the model puts into one step of y's grid: [first, last).
+/// Intervals of samples that the model puts into the same step of y's grid: [first, last).
 std::vector<std::pair<int, int>> plateaus(const Fit& fit, double grid) {
     constexpr int kMinRun = 8;
     std::vector<std::pair<int, int>> runs;
@@ -97,20 +97,21 @@ std::vector<std::pair<int, int>> plateaus(const Fit& fit, double grid) {
     return runs;
 }
 
-/// Rounding to a grid is the same error over a whole plateau, unless noise dithers it: q/sqrt 12 for no noise, falling
-/// as the grid's first harmonic does, e^(-2 pi^2 sigma^2/q^2) for noise sigma (Widrow and Kollar 2008, chapter 19).
+/// The error of rounding to a grid is the same over a whole plateau, unless noise dithers it: q/sqrt 12 without noise,
+/// decreasing like the grid's first harmonic, e^(-2 pi^2 sigma^2/q^2), for noise sigma (Widrow and Kollar 2008, chapter
+/// 19).
 double common_rounding(double grid, double noise) {
     constexpr double kPi = std::numbers::pi;
     const double ratio = noise / grid;
     return grid / std::sqrt(12.0) * std::exp(-2 * kPi * kPi * ratio * ratio);
 }
 
-/// What drifts of the next two powers of time would change, were they fitted: small ones hide in gain and time
-/// constants without leaving a pattern. Each is shrunk by what chance alone would show (James and Stein 1961), so that
-/// it counts only where the record speaks for it. `inverse` is that of J'J, `variance` the noise's over a long run.
+/// Changes of the parameters if drifts of the next two powers of time were fitted: small drifts hide in gain and time
+/// constants without leaving a pattern. Each is shrunk by its expected size by chance (James and Stein 1961), so that
+/// it counts only if the record supports it. `inverse` is that of J'J, `variance` the noise's over a long run.
 std::vector<Eigen::VectorXd> drift_doubts(const Fit& fit, std::span<const double> t, const Eigen::MatrixXd& J,
                                           const Eigen::MatrixXd& inverse, double variance) {
-    constexpr double kDependent = 1e-9;  // what the other columns leave of a power of time is rounding
+    constexpr double kDependent = 1e-9;  // a power of time that the other columns explain up to this share is dependent
     if (is_integrating(fit.form.structure)) return {};
     const auto n = static_cast<Eigen::Index>(fit.residual.size());
     const Eigen::Map<const Eigen::VectorXd> residual(fit.residual.data(), n), time(t.data(), n);
@@ -126,14 +127,14 @@ std::vector<Eigen::VectorXd> drift_doubts(const Fit& fit, std::span<const double
         if (!(size > kDependent * q.squaredNorm())) break;
         const double slope = alone.dot(residual) / size, z2 = slope * slope * size / variance;
         before = alone;
-        // James and Stein's shrinkage of one normal figure, positive part.
+        // James and Stein's shrinkage of one normal value, positive part.
         constexpr double kChanceVariance = 2;
         if (z2 > kChanceVariance) changes.emplace_back(-slope * (1 - kChanceVariance / z2) * moved);
     }
     return changes;
 }
 
-/// Sums over `block` values over the root of their number.
+/// Sums over `block` values, divided by the root of their number.
 std::vector<double> block_sums(std::span<const double> values, std::size_t block) {
     std::vector<double> sums;
     sums.reserve(values.size() / block + 1);
@@ -144,19 +145,19 @@ std::vector<double> block_sums(std::span<const double> values, std::size_t block
     return sums;
 }
 
-/// The same of the first n entries; the rest as it is.
+/// The same for the first n entries; the others are not changed.
 std::vector<double> block_sums(const std::vector<double>& values, std::size_t n, std::size_t block) {
     std::vector<double> sums = block_sums(std::span(values).first(n), block);
     sums.insert(sums.end(), values.begin() + static_cast<std::ptrdiff_t>(n), values.end());
     return sums;
 }
 
-/// No gain is known better than this, relative: so far actuator, plant and sensor together are linear, and a model of a
-/// few lags is the plant.
+/// No gain is known better than this, relatively: actuator, plant and sensor together are not more linear, and a model
+/// of a few lags is not more exact.
 constexpr double kGainNonlinearity = 0.0005;
 
-/// A long record's fit with a few thousand rows in place of all: means over a few rows, weighed by the root of their
-/// number, say as much of parameters and noise. `t` follows.
+/// A long record's fit with a few thousand rows: means over a few rows, weighted by the root of their number, contain
+/// nearly the same information on parameters and noise. `t` is condensed too.
 Fit condensed(const Fit& fit, std::vector<double>& t) {
     constexpr std::size_t kMaxRows = 2000;
     const std::size_t n = fit.residual.size(), block = n / kMaxRows;
@@ -169,9 +170,10 @@ Fit condensed(const Fit& fit, std::vector<double>& t) {
     return less;
 }
 
-/// About a hundred rows: a load that walks is slow. J's columns are divided by `length`.
+/// About a hundred rows are enough, because a load that matters changes slowly. J's columns are divided by `length`.
 FittedRows few_rows(const Fit& fit, std::span<const double> times, const Eigen::VectorXd& length) {
-    constexpr std::size_t kMinBlocks = 64, kBlocksPerColumn = 2;  // rows; more for each column beside the parameters'
+    constexpr std::size_t kMinBlocks = 64, kBlocksPerColumn = 2;  // rows; more for each column that is not a
+                                                                  // parameter's
     const std::size_t n = fit.residual.size(),
                       block = std::max<std::size_t>(1, n / (kMinBlocks + kBlocksPerColumn * fit.nuisance.size()));
     const auto rows = static_cast<Eigen::Index>((n + block - 1) / block);
@@ -205,20 +207,20 @@ FittedRows few_rows(const Fit& fit, std::span<const double> times, const Eigen::
 
 /// The least-squares problem at a fit, each column of J of length 1.
 struct ScaledProblem {
-    Eigen::MatrixXd J;        ///< samples, rows beside them, then one for each shape parameter
-    Eigen::VectorXd length;   ///< of the columns before
+    Eigen::MatrixXd J;        ///< samples, further rows, then one for each shape parameter
+    Eigen::VectorXd length;   ///< lengths of the columns before scaling
     Eigen::MatrixXd inverse;  ///< of J'J
     Eigen::Index samples = 0;
-    int shape = 0;  ///< parameters before the linear ones
+    int shape = 0;  ///< number of parameters before the linear ones
 
     auto of_samples() const { return J.topRows(samples); }
     Eigen::MatrixXd beside_samples() const { return J.bottomRows(J.rows() - samples); }
 };
 
-/// `variance`: the noise's over a long run.
+/// `variance`: long-run variance of the noise.
 ScaledProblem scaled_problem(const Fit& fit, double variance) {
-    constexpr double kNoLength = 1e-12;       // a column of zeros keeps a length to divide by
-    constexpr double kMinEigenvalue = 1e-13;  // eigenvalue of J'J, whose diagonal is 1, that is rounding
+    constexpr double kNoLength = 1e-12;       // length of a column of zeros, as a divisor
+    constexpr double kMinEigenvalue = 1e-13;  // eigenvalue of J'J (with diagonal 1) that counts as rounding
     const int m = fit.form.parameters(), data = static_cast<int>(fit.J[0].size());
     ScaledProblem p;
     p.shape = static_cast<int>(fit.form.searched().size());
@@ -227,7 +229,8 @@ ScaledProblem scaled_problem(const Fit& fit, double variance) {
     p.length.resize(m);
     for (int k = 0; k < m; ++k) {
         p.J.col(k).head(data) = Eigen::Map<const Eigen::VectorXd>(fit.J[k].data(), data);
-        // What no sample shows is still no longer than the record, and no lag is thousands of times another.
+        // Prior knowledge: a parameter that no sample shows is not longer than the record, and no lag is thousands of
+        // times another.
         if (k < p.shape) p.J(data + k, k) = std::sqrt(variance) / (is_time(fit.form.searched()[k]) ? 1.0 : 4.0);
         p.length[k] = std::max(p.J.col(k).norm(), kNoLength);
         p.J.col(k) /= p.length[k];
@@ -240,8 +243,8 @@ ScaledProblem scaled_problem(const Fit& fit, double variance) {
 }
 
 /// The covariance of least squares under noise that is not white: (J'J)^-1 J'RJ (J'J)^-1 (Soderstrom and Stoica 1989,
-/// section 4.2). What the residual shows may be slow noise or a load that walks: with `load` the explanation that
-/// leaves the gain more open counts.
+/// section 4.2). The residual may come from slow noise or from a slowly varying load: with `load` the larger
+/// uncertainty of the gain counts.
 Eigen::MatrixXd open_covariance(const ScaledProblem& p, const ResidualNoise& left, const Fit& whole,
                                 std::span<const double> times, bool load) {
     const Eigen::MatrixXd others = p.beside_samples();
@@ -256,11 +259,12 @@ Eigen::MatrixXd open_covariance(const ScaledProblem& p, const ResidualNoise& lef
 }
 
 /// The rows are scaled deviations of (shape, linear), each one standard deviation long: one per principal axis of the
-/// covariance, and one per plateau of a rounded y, or what drifts too small to be found would do.
+/// covariance, and one per plateau of a rounded y, or for drifts that are too small to be found.
 Eigen::MatrixXd deviations_of(const Fit& whole, std::span<const double> times, double grid, double noise,
                               LoadDoubt load) {
     const double common = grid > 0 ? common_rounding(grid, noise) : 0;
-    constexpr double kDithered = 0.02;  // of a step: noise has made the rounding of one sample another's no more
+    constexpr double kDithered = 0.02;  // of a step: with more noise, the rounding errors of successive samples are
+                                        // independent
     const bool on_plateaus = common > kDithered * grid;
     std::vector<double> t(times.begin(), times.end());
     const Fit fit = on_plateaus ? whole : condensed(whole, t);
@@ -271,18 +275,18 @@ Eigen::MatrixXd deviations_of(const Fit& whole, std::span<const double> times, d
     const Eigen::MatrixXd covariance =
         open_covariance(p, left, whole, times, load == LoadDoubt::counted && !on_plateaus);
     const PrincipalAxes axes = principal_axes(0.5 * (covariance + covariance.transpose()));
-    // Rounding that is the same over a plateau is not noise that is estimated from few samples, so it is not widened.
+    // Rounding that is the same over a plateau is not estimated from few samples, so it is not widened.
     const double widened = on_plateaus ? 1 : student_factor(left.freedom());
     std::vector<Eigen::VectorXd> all;
     all.reserve(static_cast<std::size_t>(m));
     for (int k = 0; k < m; ++k)
         all.emplace_back(widened * std::sqrt(std::max(axes.values[k], 0.0)) * axes.vectors.col(k));
-    // Values that the model is held to in spite of its samples add their own error.
+    // Constraints of the model that are not samples add their own errors.
     for (std::size_t k = 0; k < whole.held_errors.size(); ++k)
         if (whole.held_errors[k] > 0)
             all.emplace_back(whole.held_errors[k] * p.inverse *
                              p.J.row(p.samples + static_cast<Eigen::Index>(k)).transpose());
-    // Such rounding is not a drift either, although it looks like one.
+    // Such rounding looks like a drift but is none.
     if (on_plateaus) {
         for (const auto& [first, last] : plateaus(fit, grid))
             all.emplace_back(common * (p.inverse * p.J.middleRows(first, last - first).colwise().sum().transpose()));
@@ -314,7 +318,7 @@ Plant plant_in_units(const RecordScale& scale, const Fit& fit) {
 
 namespace {
 
-/// Each parameter's error at least that of `other`, the correlations as they are.
+/// Widens each parameter's error to at least that of `other`, without changing the correlations.
 void widen_to(const FittedPlant& other, FittedPlant& plant) {
     const std::size_t size = plant.covariance.names.size();
     std::vector<double> factor(size, 1);
@@ -348,14 +352,14 @@ FittedPlant fitted_plant(const CleanRecord& record, const Fit& fit, double quant
     const std::vector<int> places = fit.form.searched();
     const double open = std::max(record.moves_unseen, record.moved_within);
     if (open > 0) {
-        // u may have moved at any time in it: that is the dead time's.
+        // u may have moved at any time in it, which is an error of the dead time.
         deviations.conservativeResize(deviations.rows() + 1, Eigen::NoChange);
         deviations.bottomRows(1).setZero();
         deviations(deviations.rows() - 1, 0) = open / std::sqrt(12.0);
     }
     const int size = static_cast<int>(places.size());
     for (int axis = 0; axis < deviations.rows(); ++axis) {
-        // A long axis is walked in part and scaled up: the logarithms would overflow.
+        // Differences along a long axis use a part of it and are scaled up, because the logarithms would overflow.
         const double reach = deviations.row(axis).head(size).cwiseAbs().maxCoeff();
         const double part = reach > 1 ? 1 / reach : 1;
         Parameters side[2];
@@ -397,13 +401,13 @@ FittedPlant fitted_plant(const CleanRecord& record, const Fit& fit, double quant
 
 namespace {
 
-/// A plant of the fit's structure as the fit would have it, dimensionless.
+/// A plant in the dimensionless form of the fit.
 struct PlantShape {
     ModelShape shape;
     double gain = 0, zero = 0;  ///< the linear coefficients of K and K b
 };
 
-/// ln a1 and ln rho of a quadratic factor; false where it has no positive coefficients.
+/// Sets ln a1 and ln rho of a quadratic factor; false if it does not have positive coefficients.
 bool set_quadratic(ModelShape& shape, double a1, double a2) {
     if (!(a1 > 0) || !(a2 > 0)) return false;
     shape.p[1] = std::log(a1);
@@ -411,7 +415,7 @@ bool set_quadratic(ModelShape& shape, double a1, double a2) {
     return true;
 }
 
-/// (T3 s + 1)(q2 s^2 + q1 s + 1) of three coefficients.
+/// Factors three coefficients as (T3 s + 1)(q2 s^2 + q1 s + 1).
 bool set_third(ModelShape& shape, double a1, double a2, double a3) {
     for (const std::complex<double> root : polynomial_roots(std::array{a3, a2, a1, 1.0})) {
         if (root.imag() != 0 || !(root.real() < 0)) continue;
@@ -468,7 +472,7 @@ public:
         }
         input_ = {record.v_time, record.v_level};
         const auto rows = static_cast<Eigen::Index>(t_.size());
-        // J's columns of what is no parameter of the plant, and the times of moves.
+        // J's columns of parameters that are not the plant's, and of the times of moves.
         std::vector<const std::vector<double>*> columns;
         const int first = static_cast<int>(fit.form.searched().size()) + fit.form.gains();
         for (int k = first; k < fit.form.parameters(); ++k) columns.push_back(&fit.J[static_cast<std::size_t>(k)]);
@@ -477,7 +481,7 @@ public:
         for (Eigen::Index k = 0; k < others_.cols(); ++k)
             for (Eigen::Index i = 0; i < rows; ++i)
                 others_(i, k) = (*columns[static_cast<std::size_t>(k)])[static_cast<std::size_t>(i * stride_)];
-        constexpr double kRidge = 1e-9;  // of the longest column: those of moves after the last row are 0
+        constexpr double kRidge = 1e-9;  // of the longest column, because those of moves after the last row are 0
         Eigen::MatrixXd normal = gram(others_, others_);
         normal.diagonal().array() += kRidge * normal.diagonal().maxCoeff();
         inverse_ = inverse_of(normal);
@@ -485,7 +489,7 @@ public:
         min_ = left(Eigen::VectorXd::Zero(rows));
     }
 
-    /// Beyond the model's own, at least 0; infinite for a plant that the structure cannot be.
+    /// The increase over the model's own sum, at least 0; infinite for a plant that the structure cannot represent.
     double growth(const std::optional<PlantShape>& plant) const {
         if (!plant) return INFINITY;
         return std::max(0.0, left(run(*plant) - model_) - min_);
@@ -519,7 +523,7 @@ private:
     double min_ = 0;
 };
 
-/// True if the standard errors are so small that the sum of squares is a quadratic over the whole region.
+/// True if the standard errors are so small that the sum of squares is quadratic over the whole region.
 bool is_linear(const FittedPlant& plant) {
     constexpr double kMaxSmallError = 0.05;
     double lags = plant.values.at("L");
@@ -536,7 +540,8 @@ bool is_linear(const FittedPlant& plant) {
 
 std::vector<double> region_reach(const CleanRecord& record, const Fit& fit, const FittedPlant& plant) {
     constexpr double kMinCurvatureGrowth = 1.5,
-                     kCurvatureProbe = 0.02;  // times the curvature's; of the axis, where it is measured
+                     kCurvatureProbe = 0.02;  // multiple of the curvature's growth; share of the axis at which it is
+                                              // measured
     constexpr int kHalvings = 7;
     if (is_linear(plant) || !fit.deviations.empty()) return {};
     const auto region = PlantRegion::of_covariance(plant.plant, plant.covariance.names, plant.covariance.matrix);

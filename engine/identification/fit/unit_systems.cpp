@@ -6,7 +6,7 @@ namespace tunewright::unit_systems {
 
 QuadraticDecay::QuadraticDecay(double a1, double a2) : a2_(a2), sigma_(a1 / (2 * a2)) {
     const double square = sigma_ * sigma_ - 1 / a2;
-    // Nearly equal roots are taken as equal: the relative error of the response is below 1e-12.
+    // Nearly equal roots count as equal: the relative error of the response is below 1e-12.
     constexpr double kEqual = 1e-13;
     const double w2 = std::abs(square) < kEqual * sigma_ * sigma_ ? 0 : square;
     w_ = std::sqrt(std::abs(w2));
@@ -14,7 +14,7 @@ QuadraticDecay::QuadraticDecay(double a1, double a2) : a2_(a2), sigma_(a1 / (2 *
     slow_ = 1 / (a2 * (sigma_ + w_));
 }
 
-/// By Taylor's series of a part so short that its norm is below 1/2, squared back; the terms end below 1e-17.
+/// By a Taylor series over a part with norm below 1/2, then repeated squaring; the terms end below 1e-17.
 StateMatrix<3> CubicDecay::over(double dt) const {
     const double w = 1 / std::sqrt(a2);
     Eigen::Matrix3d M;

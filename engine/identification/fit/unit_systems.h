@@ -1,5 +1,5 @@
-// The linear systems of the model structures under an input that is constant piece by piece: steps of any length by the
-// exact exponential, and several steps of one length at once.
+// The linear systems of the model structures with a piecewise constant input: steps of any length by the exact
+// exponential, and several steps of the same length at once.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +15,8 @@ namespace tunewright::unit_systems {
 /// Steps of DrivenState::march: two pairs.
 inline constexpr std::size_t kMarch = 4;
 
-/// Evenly spaced times differ by their rounding; steps this close share their exponentials. Over a million samples that
-/// amounts to 1e-9 of the record's length.
+/// Evenly spaced times differ by their rounding; steps this close share their exponentials. Over a million samples the
+/// error is 1e-9 of the record's length.
 inline constexpr double kSameStep = 1e-15;
 
 template <std::size_t kOrder>
@@ -33,17 +33,18 @@ StateMatrix<kOrder> product(const StateMatrix<kOrder>& a, const StateMatrix<kOrd
     return out;
 }
 
-/// How the response x, its slope and its curvature (0, 1, 2) follow from the input v and from e, the state less its
-/// rest under v.
+/// The response x, its slope and its curvature (0, 1, 2) as functions of the input v and of e, the state minus its rest
+/// for v.
 template <std::size_t kOrder>
 struct Readings {
-    StateRow<kOrder> jump;                     ///< of e, for each unit by which v falls
+    StateRow<kOrder> jump;                     ///< change of e for each unit by which v falls
     std::array<StateRow<kOrder>, 3> of_state;  ///< e's part
     std::array<double, 3> of_input;            ///< v's part
-    bool integrates = false;                   ///< x has the integral of v besides
+    bool integrates = false;                   ///< x also contains the integral of v
 };
 
-/// One step. Of two lengths, the usual one and what a change of the input between samples leaves, each is kept.
+/// One step. The transitions of two lengths are stored: the usual one, and the remainder after a change of the input
+/// between samples.
 template <std::size_t kOrder, class Transition>
 class Steps {
 public:
@@ -74,11 +75,11 @@ private:
     Kept usual_, other_;
 };
 
-/// kMarch steps of one length: what is read after each of them, and the last state.
+/// kMarch steps of the same length: the outputs after each of them, and the last state.
 template <std::size_t kOrder>
 struct March {
     double dt = -1;
-    std::array<std::array<std::array<Pair, kMarch / 2>, kOrder>, 3> read{};  ///< reading d of e_j
+    std::array<std::array<std::array<Pair, kMarch / 2>, kOrder>, 3> read{};  ///< weight of e_j in output d
     StateMatrix<kOrder> last{};
 
     void prepare(double step, const StateMatrix<kOrder>& once, const Readings<kOrder>& readings) {
@@ -97,26 +98,26 @@ struct March {
     }
 };
 
-/// What moves: at rest under v = 0 first. Steps and March are other objects, whose functions out of line would keep
-/// this one in memory.
+/// The state: initially at rest with v = 0. Steps and March are separate objects, because their non-inlined functions
+/// would keep this one in memory.
 template <std::size_t kOrder>
 class DrivenState {
 public:
     explicit DrivenState(const Readings<kOrder>& readings) : readings_(readings) {}
 
-    /// v from now on.
+    /// Sets v from now on.
     void enter(double input) {
         for (std::size_t j = 0; j < kOrder; ++j) e_[j] += readings_.jump[j] * (v_ - input);
         v_ = input;
     }
 
-    /// A product alone, which the next step waits for. `over` is the transition over dt.
+    /// Only a product, because the next step depends on it. `over` is the transition over dt.
     void advance(double dt, const StateMatrix<kOrder>& over) {
         step(over);
         area_ += v_ * dt;
     }
 
-    /// x to to[0][i], its derivatives up to kDerivatives to to[1][i] and to[2][i].
+    /// Writes x to to[0][i], and its derivatives up to kDerivatives to to[1][i] and to[2][i].
     template <int kDerivatives>
     void read(const std::array<double*, 3>& to, std::size_t i) const {
 #pragma GCC unroll 3
@@ -128,9 +129,9 @@ public:
         }
     }
 
-    /// kMarch steps, read from place i on: each state is this one times a power of the transition, so none waits for
-    /// the one before, and the processor computes two in one instruction. `took` is their time from sample to sample: a
-    /// sum of rounded lengths would drift from it, and an integral with it.
+    /// Takes kMarch steps and writes their outputs from index i on: each state is this one times a power of the
+    /// transition, so no step depends on the previous one, and the processor computes two in one instruction. `took` is
+    /// their total time: a sum of rounded lengths would drift from it, and so would an integral.
     template <int kDerivatives>
     void march(const March<kOrder>& march, double took, const std::array<double*, 3>& to, std::size_t i) {
         read_march<0>(march, to[0] + i);
@@ -163,8 +164,8 @@ private:
         for (std::size_t j = 0; j < kOrder; ++j)
 #pragma GCC unroll 3
             for (std::size_t k = 0; k < kOrder; ++k) next[j] += by[j][k] * e_[k];
-        // Smaller than this it is at rest. Left to decay it would end among denormal numbers, a hundred times as slow,
-        // and never leave them.
+        // A smaller state is set to 0: it would decay to denormal numbers, which are a hundred times slower, and stay
+        // there.
         constexpr double kAtRest = 1e-250;
         if (std::all_of(next.begin(), next.end(), [](double e) { return std::abs(e) < kAtRest; })) next.fill(0);
         e_ = next;
@@ -197,12 +198,12 @@ struct Decay {
 /// T x' + x = v. T < 0: unstable.
 inline DrivenSystem<1, Decay> lag(double T) { return {{{1}, {{{1}, {-1 / T}, {1 / (T * T)}}}, {1, 0, 0}}, {T}}; }
 
-/// x' = l, T l' + l = v: x is the integral of v less T l.
+/// x' = l, T l' + l = v: x is the integral of v minus T l.
 inline DrivenSystem<1, Decay> lagged_integrator(double T) {
     return {{{1}, {{{-T}, {1}, {-1 / T}}}, {-T, 1, 0}, true}, {T}};
 }
 
-/// a2 e'' + a1 e' + e = 0, of (e, e'): in closed form, through the roots -sigma +- w (real) or -sigma +- i w.
+/// a2 e'' + a1 e' + e = 0, for (e, e'): in closed form by the roots -sigma +- w (real) or -sigma +- i w.
 class QuadraticDecay {
 public:
     QuadraticDecay(double a1, double a2);
@@ -215,12 +216,12 @@ private:
     Kind kind_ = Kind::real;
 };
 
-/// From e^(-sigma dt) times cosh(w dt) and sinh(w dt)/w, or their trigonometric twins.
+/// From e^(-sigma dt) times cosh(w dt) and sinh(w dt)/w, or the corresponding cos and sin.
 inline StateMatrix<2> QuadraticDecay::over(double dt) const {
     double cosine = 0, sine = 0;
     if (kind_ == Kind::real) {
         const double apart = 2 * w_ * dt, slow = std::exp(-slow_ * dt);
-        constexpr double kNoCancellation = 0.3;  // e^(-x) - 1 keeps its digits from there on, and is faster
+        constexpr double kNoCancellation = 0.3;  // above it e^(-x) - 1 is accurate, and faster
         const double ratio = apart > kNoCancellation ? std::exp(-apart) - 1 : std::expm1(-apart);
         cosine = slow * (1 + 0.5 * ratio);
         sine = -slow * ratio / (2 * w_);
@@ -240,12 +241,12 @@ inline DrivenSystem<2, QuadraticDecay> second_order(double a1, double a2) {
     return {{{1, 0}, {{{1, 0}, {0, 1}, {-1 / a2, -a1 / a2}}}, {1, 0, 0}}, {a1, a2}};
 }
 
-/// x' = l, a2 l'' + a1 l' + l = v: x is the integral of v less a1 l + a2 l'.
+/// x' = l, a2 l'' + a1 l' + l = v: x is the integral of v minus a1 l + a2 l'.
 inline DrivenSystem<2, QuadraticDecay> integrated_second_order(double a1, double a2) {
     return {{{1, 0}, {{{-a1, -a2}, {1, 0}, {0, 1}}}, {-a1, 1, 0}, true}, {a1, a2}};
 }
 
-/// T3 e' + e = l, a2 l'' + a1 l' + l = 0, of (l, l' sqrt(a2), e).
+/// T3 e' + e = l, a2 l'' + a1 l' + l = 0, for (l, l' sqrt(a2), e).
 struct CubicDecay {
     double T3, a1, a2;
     StateMatrix<3> over(double dt) const;

@@ -9,7 +9,7 @@
 namespace tunewright {
 namespace {
 
-/// Shapes that differ in the dead time and lag of input `k`, as parts of the record.
+/// Shapes that differ in the dead time and the lag of input `k`, as shares of the record.
 std::vector<ModelShape> scanned(const ModelShape& shape, int k) {
     constexpr double kDeadTimes[] = {0, 0.005, 0.01, 0.02, 0.04, 0.08, 0.15, 0.3};
     constexpr double kShortest = 0.001, kLongest = 3;
@@ -27,8 +27,8 @@ std::vector<ModelShape> scanned(const ModelShape& shape, int k) {
     return all;
 }
 
-/// The plant of `fit` with all further inputs of the context's record, the lags and dead times scanned one after the
-/// other and refined together.
+/// The plant of `fit` with all further inputs of the context's record: their lags and dead times are scanned one after
+/// the other and then refined together.
 Fit with_further(const FitContext& context, const Fit& fit) {
     ModelForm form = fit.form;
     ModelShape shape = fit.shape;
@@ -55,7 +55,7 @@ CleanRecord without_parts(CleanRecord record, const Fit& fit) {
     return record;
 }
 
-/// The lags and dead times of the further inputs of `of`, at the plant of `fit`.
+/// The plant of `fit` with the lags and dead times of the further inputs of `of`.
 Fit joined(Fit fit, const Fit& of) {
     fit.form.further = of.form.further;
     for (int k = 0; k < of.form.further; ++k) {
@@ -80,14 +80,14 @@ void leave_out(FitContext& context, int k) {
 
 double sum_of_squares(const Fit& fit) { return fit.determined ? fit.sse : HUGE_VAL; }
 
-/// A drift or a load that was fitted before the inputs were known may have been theirs.
+/// A drift or a load that was fitted without the further inputs may be due to them.
 Fit without_disturbances(Fit fit) {
     fit.form.slope = fit.form.load = false;
     return fit;
 }
 
-/// From the plant alone, and from plants of any lag: beside inputs that move y more than u does, the plant alone is no
-/// start.
+/// Starts from the plant alone, and from plants with any lag: if the further inputs move y more than u does, the plant
+/// alone is not a good start.
 Fit first_joint(const ModelSearch& plain) {
     constexpr double kLagShares[] = {0.01, 0.03, 0.1, 0.3};  // of the record
     std::vector<Fit> starts;
@@ -108,7 +108,7 @@ Fit first_joint(const ModelSearch& plain) {
     return *std::ranges::min_element(fits, {}, sum_of_squares);
 }
 
-/// All structures of `search` with the further inputs of `joint`, chosen among anew on the samples of `context`.
+/// All structures of `search` with the further inputs of `joint`, and the choice repeated, on the samples of `context`.
 ModelSearch all_structures(const ModelSearch& search, const FitContext& context, const Fit& joint, ModelChoice model) {
     std::vector<Fit> fits(search.fits.size());
     parallel_for(context.spread, static_cast<int>(fits.size()), [&](int i) {
@@ -119,7 +119,7 @@ ModelSearch all_structures(const ModelSearch& search, const FitContext& context,
     return ranked_anew(search, context, std::move(fits), model);
 }
 
-/// The same without drift and load, where those explain no more than chance beside the inputs; else `search`.
+/// The same without drift and load if these explain no more than chance in addition to the inputs; else `search`.
 ModelSearch with_needed_disturbances(ModelSearch search, const FitContext& context, ModelChoice model) {
     constexpr double kMinEvidence = 10;  // of the criterion (Kass and Raftery 1995)
     if (!(search.disturbances.slope || search.disturbances.load) || search.choice.index < 0) return search;
@@ -133,7 +133,7 @@ ModelSearch with_needed_disturbances(ModelSearch search, const FitContext& conte
     return lead < kMinEvidence ? bare : search;
 }
 
-/// The input that matters least, if it does not matter.
+/// The input that matters least, if it is not significant.
 std::optional<int> min_needed(const ModelSearch& search) {
     constexpr double kMinEvidence = 10,
                      kMinVarianceShare = 0.001;  // of the criterion (Kass and Raftery 1995); of y's variance
@@ -217,7 +217,7 @@ ModelSearch search_with_further(const CleanRecord& record, ModelChoice model, bo
     if (record.d.empty() || plain.part < 1 || control.stop.stop_requested()) return plain;
     Fit joint = first_joint(plain);
     ModelSearch search = plain;
-    RunControl quiet = control;  // the progress of a search that was done is not told again
+    RunControl quiet = control;  // a search must not report progress that has been reported before
     quiet.progress = {};
     for (int round = 0; round < 2 && !control.stop.stop_requested(); ++round) {
         const Fit whole = on_all(plain.context, joint);
@@ -254,7 +254,7 @@ void note_further_inputs(const Record& record, IdentifiedModel& model) {
         if (std::ranges::find(model.disturbances, input.name, &DisturbanceModel::name) != model.disturbances.end())
             continue;
         model.data_quality.notes.push_back("The measured disturbance \"" + input.name +
-                                           "\" explains nothing of y that u and noise do not; the model is as without "
+                                           "\" explains no part of y beyond u and noise, so the model does not include "
                                            "it.");
     }
 }

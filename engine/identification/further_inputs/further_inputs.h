@@ -1,22 +1,23 @@
-// Models of the measured inputs beside u, identified together with the plant's.
+// Models of further measured inputs, identified together with the plant.
 #pragma once
 
 #include "engine/identification/fit/model_search.h"
 
 namespace tunewright {
 
-/// search_models(), with a lag and a dead time of its own for each of the record's further inputs (CleanRecord::d) that
-/// matters; an integrating plant's integrate too.
+/// search_models(), with a lag and a dead time for each of the record's further inputs (CleanRecord::d) that matters;
+/// if the plant integrates, their models integrate too.
 ///
-/// 1. The plant alone is searched for. Where the record has no further inputs, that is the answer.
-/// 2. Without the drift and the load that step 1 may have found, which may have been the inputs': each input's lag and
-///    dead time start from a scan, the inputs before it held, and all are refined with the plant's.
-/// 3. What they did is taken off y, and the plant's structures are searched for in the rest, with drift and load; with
-///    the best, step 2 once more. Kept where it leaves less.
-/// 4. Every structure is refined together with the inputs, and the choice is made again. Drift and load go again where
-///    the information criterion without them is no more than 10 above.
-/// 5. An input without which the information criterion is no more than 10 above, or that makes less than a thousandth
-///    of y's variance, is left out. Where none remains, the answer is that of step 1.
+/// 1. Search the plant alone. If the record has no further inputs, that is the result.
+/// 2. Without the drift and the load of step 1, which may be due to the inputs: start each input's lag and
+///    dead time from a scan with the previous inputs fixed, and refine all together with the plant's.
+/// 3. Subtract their effect from y, and search the plant's structures in the remainder, with drift and load; with
+///    the best, repeat step 2. Keep the result if its residual is smaller.
+/// 4. Refine every structure together with the inputs, and repeat the choice. Remove drift and load if
+///    the information criterion without them is at most 10 higher.
+/// 5. Remove an input without which the information criterion is at most 10 higher, or that causes less than a
+///    thousandth
+///    of y's variance. If none remains, the result is that of step 1.
 ///
 /// In the result `context.record.d` are the inputs that matter, in the order of ModelForm::further.
 ModelSearch search_with_further(const CleanRecord& record, ModelChoice model, bool relay, const RunControl& control);
@@ -24,7 +25,7 @@ ModelSearch search_with_further(const CleanRecord& record, ModelChoice model, bo
 /// Contribution of further input `k` to y at the record's samples. Needs `fit.linear`.
 std::vector<double> further_part(const CleanRecord& record, const Fit& fit, int k);
 
-/// Share of input `k` in the sum of the variances that u and the further inputs made in y, 0 to 1.
+/// Share of input `k` in the sum of the variances of y due to u and to the further inputs, 0 to 1.
 double further_share(const CleanRecord& record, const Fit& fit, int k);
 
 /// K, T and L of each further input, one after the other, in the record's units.
@@ -35,7 +36,7 @@ std::vector<double> further_parameters(const CleanRecord& record, const ModelFor
 std::vector<DisturbanceModel> disturbances_of(const CleanRecord& record, const Fit& fit,
                                               const std::vector<double>& values, const std::vector<double>& variances);
 
-/// Names in the notes the further inputs of the record that the model does without.
+/// Adds a note that names the further inputs of the record that the model does not include.
 void note_further_inputs(const Record& record, IdentifiedModel& model);
 
 }  // namespace tunewright

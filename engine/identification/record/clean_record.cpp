@@ -26,7 +26,7 @@ std::optional<Error> check_columns(const Record& r) {
     if (r.d.size() > static_cast<std::size_t>(kMaxFurtherInputs)) {
         return Error{ErrorKind::invalid_argument, "record/d",
                      "d has " + std::to_string(r.d.size()) + " further inputs; at most " +
-                         std::to_string(kMaxFurtherInputs) + " are identified together. Leave some out."};
+                         std::to_string(kMaxFurtherInputs) + " can be identified together. Omit some."};
     }
     for (const FurtherInput& input : r.d) {
         if (input.values.size() == r.t.size()) continue;
@@ -43,31 +43,30 @@ std::optional<Error> check_columns(const Record& r) {
 
 std::optional<Error> check_rows(const Record& r, const RecordRows& rows, const Cleaning& done) {
     const int n = static_cast<int>(rows.t.size());
-    constexpr double kFewBackward = 0.1;  // of the rows: more are several records, or none
+    constexpr double kFewBackward = 0.1;  // of the rows: with more, the file contains several records, or none
     if (done.backward > kFewBackward * static_cast<double>(r.t.size())) {
         return Error{ErrorKind::invalid_argument, "record/t",
                      "Times run backward in " + std::to_string(done.backward) + " of " + std::to_string(r.t.size()) +
                          " rows (first at " + row_text(done, done.first_backward) +
-                         "); sort the record by time or give one test alone."};
+                         "); sort the record by time, or give only one test."};
     }
     if (n < kMinSamples) {
-        return not_identifiable(
-            "record", "The record has " + std::to_string(n) + " usable samples" +
-                          (r.t.size() > static_cast<std::size_t>(n)
-                               ? " in " + std::to_string(r.t.size()) + " rows (the others have no y, no u or no time)"
-                               : std::string()) +
-                          "; at least " + std::to_string(kMinSamples) +
-                          " are needed, and 50 or more over the response are better.");
+        return not_identifiable("record", "The record has " + std::to_string(n) + " usable samples" +
+                                              (r.t.size() > static_cast<std::size_t>(n)
+                                                   ? " in " + std::to_string(r.t.size()) +
+                                                         " usable usable rows (the others have no y, no u or no time)"
+                                                   : std::string()) +
+                                              "; at least " + std::to_string(kMinSamples) +
+                                              " are needed, and at least 50 during the response are recommended.");
     }
     if (rows.t.back() <= rows.t.front())
         return not_identifiable("record/t", "All samples have the same time; record the test with its time stamps.");
     const auto [y_low, y_high] = std::minmax_element(rows.y.begin(), rows.y.end());
     if (rows.change_time.empty()) {
         return not_identifiable(
-            "record/u",
-            "u never moves (it is " + text(rows.u_rest) + " in all " + std::to_string(n) +
-                " samples), so nothing can be learned about its effect. Record a test in which u changes, or give "
-                "u0 if u was changed just before the first sample.");
+            "record/u", "u never moves (it is " + text(rows.u_rest) + " in all " + std::to_string(n) +
+                            " samples), so its effect cannot be identified. Record a test in which u changes, or give "
+                            "u0 if u was changed just before the first sample.");
     }
     if (*y_low == *y_high) {
         return not_identifiable(
@@ -102,7 +101,7 @@ void scale_rows(const RecordRows& rows, CleanRecord& clean) {
     }
 }
 
-/// Empty where the input never moves.
+/// Empty if the input never moves.
 std::optional<FurtherSteps> further_steps(const std::vector<double>& t, const FurtherInput& input,
                                           const RecordScale& s) {
     std::vector<std::pair<double, double>> known;
@@ -130,7 +129,7 @@ std::optional<FurtherSteps> further_steps(const std::vector<double>& t, const Fu
     return steps;
 }
 
-/// A record of the same input and facts, without samples: of a long one those are nearly all of it.
+/// A record with the same input and facts, without samples, which are most of a long record.
 CleanRecord without_all_samples(const CleanRecord& record) {
     return {record, {}, {}, {}, record.v_time, record.v_level, record.v_open, record.d};
 }
@@ -157,7 +156,7 @@ void average_input(const CleanRecord& from, int blocks, CleanRecord& to) {
     }
 }
 
-/// The sample indices nearest in time after the few largest changes of v, spaced geometrically.
+/// The indices of the samples nearest in time after the few largest changes of v, spaced geometrically.
 void add_transients(const CleanRecord& r, int each, std::vector<int>& chosen) {
     constexpr int kMaxChanges = 4;
     std::vector<int> order(r.v_time.size());
@@ -195,7 +194,7 @@ Expected<CleanRecord> clean_record(const Record& record) {
     if (!std::isfinite(s.t_scale) || !std::isfinite(s.y_scale) || !std::isfinite(s.u_scale) || s.t_scale <= 0 ||
         s.y_scale <= 0 || s.u_scale <= 0) {
         return Error{ErrorKind::invalid_argument, "record",
-                     "The record's numbers span more than double precision holds; give it in other units."};
+                     "The range of the record's numbers exceeds double precision; give it in other units."};
     }
     clean.kind = record.kind;
     clean.u0_given = record.u0.has_value();
@@ -252,7 +251,7 @@ bool unevenly_spaced(const CleanRecord& record) {
 CleanRecord thin_out(const CleanRecord& record, int max) {
     constexpr int kMaxBlocks = 400;
     const int n = record.samples();
-    // Where u keeps moving, all of the record is transient.
+    // If u keeps moving, the whole record is transient.
     if (n <= max || record.changes() > 4) {
         CleanRecord thin = every_few(record, max);
         if (record.changes() > kMaxBlocks) average_input(record, kMaxBlocks, thin);
@@ -275,7 +274,7 @@ CleanRecord every_few(const CleanRecord& record, int max) {
     const int n = record.samples(), stride = (n + max - 1) / max;
     if (stride <= 1) return record;
     CleanRecord few = without_all_samples(record);
-    // One stride throughout: evenly spaced samples stay evenly spaced.
+    // A constant stride, so that evenly spaced samples stay evenly spaced.
     for (int i = (n - 1) % stride; i < n; i += stride) {
         few.t.push_back(record.t[static_cast<std::size_t>(i)]);
         few.y.push_back(record.y[static_cast<std::size_t>(i)]);

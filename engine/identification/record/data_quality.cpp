@@ -20,7 +20,7 @@ std::string counted(int count, const std::string& one) {
 
 void describe_sampling(const CleanRecord& r, DataQuality& quality) {
     std::vector<double> spacings = tunewright::spacings(r);
-    constexpr double kMaxOddShare = 0.01;  // of the spacings: a row that a logger missed now and then
+    constexpr double kMaxOddShare = 0.01;  // of the spacings: an occasional missed row of a logger
     const double typical = median(spacings);
     const auto odd = std::count_if(spacings.begin(), spacings.end(),
                                    [&](double d) { return std::abs(d - typical) > kOffSpacing * typical; });
@@ -29,7 +29,7 @@ void describe_sampling(const CleanRecord& r, DataQuality& quality) {
     if (quality.irregular)
         quality.notes.emplace_back("The samples are not evenly spaced; each is used at its own time.");
 
-    // Loggers that write on change have long spacings all the time: only what is rare is a gap.
+    // Loggers that write on change often have long spacings: only rare ones are gaps.
     constexpr double kMinUsualSpacings = 5, kUsualQuantile = 0.95;
     const auto usual =
         spacings.begin() + static_cast<std::ptrdiff_t>(kUsualQuantile * static_cast<double>(spacings.size() - 1));
@@ -48,46 +48,48 @@ void describe_sampling(const CleanRecord& r, DataQuality& quality) {
     quality.gaps = gaps;
     quality.notes.push_back(std::to_string(gaps.count) + (gaps.count == 1 ? " gap" : " gaps") +
                             " without a usable sample, the longest of " + text(gaps.longest) +
-                            " from t = " + text(gaps.at) + "; nothing is interpolated, and u is held over it.");
+                            " from t = " + text(gaps.at) +
+                            "; nothing is interpolated, and u is assumed constant over "
+                            "it.");
 }
 
 void describe_times(const Cleaning& done, DataQuality& quality) {
     quality.repeated_times = done.repeated;
     quality.backward_times = done.backward + done.early_stamps;
     auto& notes = quality.notes;
-    if (done.reversed) notes.emplace_back("The rows run from the newest to the oldest; they were turned round.");
+    if (done.reversed) notes.emplace_back("The rows run from the newest to the oldest; their order was reversed.");
     if (done.spread) {
         notes.emplace_back(
-            "The clock is coarser than the sampling: rows of one time were spread evenly until the next "
-            "time.");
+            "The clock is coarser than the sampling: rows with the same time were spread evenly until the next time.");
     } else if (done.repeated > 0) {
         notes.push_back(counted(done.repeated, "duplicate time stamp") + (done.repeated == 1 ? " (" : " (first ") +
-                        row_text(done, done.first_repeated) + "): every y was used, and the last u.");
+                        row_text(done, done.first_repeated) + "): every y and the last u were used.");
     }
     if (done.backward > 0)
-        notes.push_back(counted(done.backward, "row") + " with a time before the rows above left out (first " +
+        notes.push_back(counted(done.backward, "row") + " with a time before that of the rows above removed (first " +
                         row_text(done, done.first_backward) + ").");
     if (done.early_stamps > 0)
-        notes.push_back(counted(done.early_stamps, "row") +
-                        " with a time far ahead of the rows below left out (first " + row_text(done, done.first_early) +
-                        ").");
+        notes.push_back(counted(done.early_stamps, "row") + " with a time far ahead of the rows below removed (first " +
+                        row_text(done, done.first_early) + ").");
     if (done.without_time > 0)
-        notes.push_back(counted(done.without_time, "row") + " without a time, or before the first u, left out.");
+        notes.push_back(counted(done.without_time, "row") + " without a time, or before the first u, removed.");
     if (done.unread > 0)
         notes.push_back(counted(done.unread, "row") +
-                        " at the start left out: u and y both jump away from there with the next one, by more than "
-                        "they move in all others together, as where a logger writes before its first reading.");
+                        " at the start removed: at the next row u and y both jump by more than they move in all others "
+                        "together, as if the logger wrote before its first reading.");
     if (done.silent > 0)
         notes.push_back(counted(done.silent, "row") +
-                        " at the start left out: y holds one number there and leaves it in one row, ten times as far "
-                        "as it ever moves again, while u stands still, as where a sensor is not read yet.");
+                        " at the start removed: y is constant there and then jumps ten times as far as it ever moves "
+                        "again, while u is constant, as if the sensor had not been read yet.");
     if (done.late_moves > 0)
-        notes.push_back(counted(done.late_moves, "change") + " of u with the last sample left out: nothing follows.");
+        notes.push_back(counted(done.late_moves, "change") +
+                        " of u at the last sample removed, because no sample "
+                        "follows.");
     if (done.limited_u > 0)
-        notes.push_back("u was cut to its limits in " + counted(done.limited_u, "row") +
-                        ": that is what reaches the plant.");
+        notes.push_back("u was limited to its range in " + counted(done.limited_u, "row") +
+                        ", because that is the input of the plant.");
     if (done.missing_u > 0)
-        notes.push_back("u is missing in " + counted(done.missing_u, "row") + "; it was held from the row above.");
+        notes.push_back("u is missing in " + counted(done.missing_u, "row") + "; the value of the row above was used.");
 }
 
 /// "line 102 (t = 2.02), line 103 (t = 2.04), ...".
@@ -115,8 +117,8 @@ void describe_missing(const CleanRecord& r, DataQuality& quality) {
     FalseReadings outliers{static_cast<int>(done.spikes.size()), done.spikes};
     outliers.rows.resize(std::min(kMaxListedRows, outliers.rows.size()));
     quality.outliers = std::move(outliers);
-    quality.notes.push_back(counted(static_cast<int>(done.spikes.size()), "plainly false reading") +
-                            " of y left out (" + (done.from_file ? "line " : "row ") + rows +
+    quality.notes.push_back(counted(static_cast<int>(done.spikes.size()), "plainly false reading") + " of y removed (" +
+                            (done.from_file ? "line " : "row ") + rows +
                             (done.spikes.size() > kMaxRowsInSentence ? ", ..." : "") + ").");
 }
 
@@ -130,7 +132,7 @@ bool on_a_level(const TwoLevels& u, double v) {
 void describe_pretest(const CleanRecord& r, DataQuality& quality) {
     quality.u0 = r.scale.u_rest;
     const auto n = static_cast<int>(std::lower_bound(r.t.begin(), r.t.end(), r.v_time.front()) - r.t.begin());
-    // A relay that works from the first sample on leaves no part at rest.
+    // A relay that works from the first sample leaves no part at rest.
     const bool at_work = quality.kind == RecordKind::relay && on_a_level(two_levels(input_levels(r)), 0);
     const std::span t(r.t.data(), static_cast<std::size_t>(n)), y(r.y.data(), static_cast<std::size_t>(n));
     const Line line = straight_line(t, y);
@@ -138,11 +140,11 @@ void describe_pretest(const CleanRecord& r, DataQuality& quality) {
     quality.y0 = r.scale.y_origin + r.scale.y_scale * r.y_rest.value_or(y_mean);
     if (n > 0 && n < kRestRows && r.changes() == 1 && !r.u0_given)
         quality.notes.push_back("Only " + counted(n, "row") +
-                                " before the step of u: the plant is taken to rest there, which they do not show. Give "
-                                "u0 if it does not.");
+                                " before the step of u, which cannot show whether the plant is at rest; rest is "
+                                "assumed. Give u0 if it is not at rest.");
     if (n < 2 || t.back() <= t.front() || at_work) return;
     const double duration = t.back() - t.front();
-    // Two samples determine a line without telling its error.
+    // Two samples determine a line but not its error.
     const double slope = line.slope, error = n > 2 ? line.slope_std : std::abs(slope);
     constexpr double kMaxDrift = 0.03, kSlopeStandardErrors = 5;  // of y's range; standard errors of the slope
     PreTest pretest{n, duration * r.scale.t_scale, slope * r.scale.y_scale / r.scale.t_scale, true};
@@ -152,7 +154,7 @@ void describe_pretest(const CleanRecord& r, DataQuality& quality) {
         std::to_string(n) + " samples before the first change of u give the operating point: u = " + text(quality.u0) +
         ", y = " + text(quality.y0) +
         (pretest.at_rest ? "."
-                         : "; y is not at rest there but moves by " + text(pretest.drift) + " per unit of time."));
+                         : "; y is not at rest there but changes by " + text(pretest.drift) + " per unit of time."));
 }
 
 void describe_input(const CleanRecord& r, DataQuality& quality) {
@@ -170,8 +172,8 @@ void describe_input(const CleanRecord& r, DataQuality& quality) {
     const bool differs = r.kind == RecordKind::relay ? found != RecordKind::relay
                                                      : r.kind == RecordKind::step && found != RecordKind::step;
     if (differs)
-        quality.notes.push_back(std::string("The record is said to be of kind ") + name_of(r.kind) +
-                                "; by its u and y it looks like " + name_of(found) + ".");
+        quality.notes.push_back(std::string("The record is stated to be of kind ") + name_of(r.kind) +
+                                ", but by its u and y it looks like " + name_of(found) + ".");
 }
 
 void describe_output(const CleanRecord& r, DataQuality& quality) {
@@ -186,11 +188,11 @@ void describe_output(const CleanRecord& r, DataQuality& quality) {
     quality.saturation = flat_tops(r, noise, grid);
     for (const Saturation& flat : quality.saturation) {
         quality.notes.push_back("y stands at " + text(flat.level) + " in " + text(100 * flat.fraction, 2) +
-                                " % of the samples, cut off flat; they were used as they are.");
+                                " % of the samples, cut off flat; they were used unchanged.");
     }
 }
 
-/// y on few levels while u moves all the time.
+/// True if y has few levels while u moves all the time.
 bool look_swapped(const CleanRecord& r) {
     int y_moves = 0;
     for (int i = 1; i < r.samples(); ++i) y_moves += r.y[i] != r.y[i - 1] ? 1 : 0;
@@ -214,7 +216,7 @@ double fastest(const CleanRecord& r, int samples) {
     return max;
 }
 
-/// Whether y goes up and down from sample to sample, as noise does and no response.
+/// True if y goes up and down from sample to sample, like noise and unlike a response.
 bool alternates(const CleanRecord& r) {
     int turns = 0, moves = 0;
     double before = 0;
@@ -225,16 +227,16 @@ bool alternates(const CleanRecord& r) {
         turns += d * before < 0 ? 1 : 0;
         before = d;
     }
-    constexpr double kMinTurningShare = 0.3;  // of the moves: white noise turns in two thirds
+    constexpr double kMinTurningShare = 0.3;  // of the moves: white noise reverses in two thirds of them
     return turns > kMinTurningShare * moves;
 }
 
-/// Whether y moved fast for some time before sample i: a jump of a sample or two is a fast process.
+/// True if y moved fast for some time before sample i: a jump over one or two samples is a fast process.
 bool arrives_fast(const CleanRecord& r, int i, int window, double min_speed) {
     return i > 2 * window && speed(r, i, window) > min_speed && speed(r, i - window, window) > min_speed;
 }
 
-/// Samples in runs at `level` that were entered at speed; every run counts where `noisy`.
+/// Samples in runs at `level` that were reached at speed; if `noisy`, every run counts.
 int samples_at(const CleanRecord& r, double level, double same, bool noisy, double min_speed, int window) {
     int count = 0;
     for (int i = 0; i < r.samples();) {
@@ -267,53 +269,54 @@ std::vector<Warning> record_warnings(const CleanRecord& r, const DataQuality& qu
     for (const Saturation& flat : quality.saturation) {
         warnings.push_back({"saturated-output",
                             "y is cut off at " + text(flat.level) + " in " + text(100 * flat.fraction, 2) +
-                                " % of the samples: a sensor or a valve stood at its end, which no linear model can "
-                                "follow. Repeat the test with a smaller step, or cut the record before that."});
+                                " % of the samples: a sensor or a valve was at its end, which no linear model can "
+                                "represent. Repeat the test with a smaller step, or use only the record before that."});
     }
     constexpr double kLongGap = 0.03, kManyMissing = 0.05;  // of the record's length; of its rows
     if (quality.gaps && quality.gaps->longest > kLongGap * r.scale.t_scale) {
         warnings.push_back({"gaps", "Nothing was recorded for " + text(quality.gaps->longest) +
                                         " from t = " + text(quality.gaps->at) + ", " +
                                         text(100 * quality.gaps->longest / r.scale.t_scale, 2) +
-                                        " % of the record: a change of u inside it would be unknown."});
+                                        " % of the record, so a change of u inside it would be unknown."});
     }
     if (quality.missing && (quality.missing->count > kManyMissing * (r.samples() + quality.missing->count) ||
                             quality.missing->longest > kLongGap * r.scale.t_scale)) {
         warnings.push_back({"missing-samples", "y is missing in " + std::to_string(quality.missing->count) + " of " +
                                                    std::to_string(r.samples() + quality.missing->count) +
                                                    " rows, for up to " + text(quality.missing->longest) + " from t = " +
-                                                   text(quality.missing->at) + "; the model rests on the others."});
+                                                   text(quality.missing->at) + "; the model is based on the others."});
     }
     if (quality.outliers) {
         warnings.push_back({"removed-outliers", std::to_string(quality.outliers->count) +
-                                                    " reading(s) of y that no process makes were left out: " +
-                                                    places_of_spikes(done) + ". Look whether they are false."});
+                                                    " physically impossible reading(s) of y were removed: " +
+                                                    places_of_spikes(done) + ". Check whether they are false."});
     }
     if (done.reversed)
         warnings.push_back({"reversed-time",
-                            "The times run backward from row to row; the record was turned round. Look "
-                            "whether it is the test that you mean."});
+                            "The times run backward from row to row; the record was reversed. Check whether it is the "
+                            "intended test."});
     if (quality.backward_times > 0) {
         warnings.push_back(
             {"misplaced-times", std::to_string(quality.backward_times) + " row(s) are out of order in time (first " +
                                     row_text(done, done.backward > 0 ? done.first_backward : done.first_early) +
-                                    ") and were left out."});
+                                    ") and were removed."});
     }
     constexpr int kMinSamples = 30;
     if (r.samples() < kMinSamples)
         warnings.push_back(
             {"few-samples", "The record has only " + std::to_string(r.samples()) +
-                                " samples: a model from so few follows every error of theirs. Record faster."});
+                                " samples, so every error of a sample affects the model. Record faster."});
     if (look_swapped(r))
         warnings.push_back({"columns-look-swapped",
-                            "y stays on a few levels while u moves from sample to sample: u and y "
-                            "look exchanged. Name them in columns."});
+                            "y stays on a few levels while u moves from sample to sample: u and y look exchanged. Set "
+                            "them in columns."});
     return warnings;
 }
 
 std::vector<Saturation> flat_tops(const CleanRecord& r, double noise, double grid) {
     constexpr double kValueTolerance = 1e-9;                  // of y's range: rounding in binary
-    constexpr double kMaxGrid = 1.0 / 30;                     // of y's range: on so few steps every y stands still
+    constexpr double kMaxGrid = 1.0 / 30;                     // of y's range: with so few steps y would always be
+                                                              // constant
     constexpr double kMinNoiseInGrids = 2, kMinNoise = 1e-3;  // steps of the grid; of y's range
     constexpr double kMinSpeedShare = 1.0 / 6;                // of y's fastest movement
     if (grid > kMaxGrid) return {};
@@ -331,8 +334,8 @@ std::vector<Saturation> flat_tops(const CleanRecord& r, double noise, double gri
 
 namespace {
 
-/// True if the limits hide more than a quarter of the moves from one level on which u stands still to the next: a test
-/// stepped it there.
+/// True if the limits hide more than a quarter of the moves between levels at which u is constant: then a test stepped
+/// it there.
 bool hides_steps(const Record& record, const InputLimits& limits) {
     constexpr std::size_t kMinStandingRows = 3;  // rows
     int moves = 0, hidden = 0;

@@ -8,10 +8,10 @@
 namespace tunewright {
 namespace {
 
-constexpr std::size_t kMinRows = 12;  // fewer samples show no usual move
+constexpr std::size_t kMinRows = 12;  // fewer samples do not show the usual movement
 
-/// Values that sensors and their amplifiers report in place of a reading; a process may pass through them: DS18B20 not
-/// yet read and not there (in C and in F), an open or shorted thermocouple, no signal.
+/// Values that sensors and their amplifiers report instead of a reading; a process may pass through them: DS18B20 not
+/// yet read and not connected (in C and in F), an open or shorted thermocouple, no signal.
 constexpr double kSensorFaults[] = {85, 185, -127, -196.6, 850, 1820, -999, 999, -999.9, 999.9, 0};
 
 double median_of_five(std::span<const double> y, std::size_t middle) {
@@ -20,7 +20,7 @@ double median_of_five(std::span<const double> y, std::size_t middle) {
     return v[2];
 }
 
-/// The value that stands apart; NaN if none does.
+/// The isolated value; NaN if there is none.
 double number_apart(std::span<const double> y) {
     constexpr double kMinRelativeGap = 5;
     double low = y[0], high = y[0];
@@ -73,7 +73,7 @@ std::vector<std::size_t> spikes(std::span<const double> y) {
     return found.size() <= max ? found : std::vector<std::size_t>{};
 }
 
-/// Indices of the numbers that stand apart, one value after the other.
+/// True for the samples with isolated values, which are found one after the other.
 std::vector<bool> apart(std::span<const double> y) {
     constexpr int kMaxValues = 3;
     std::vector<bool> found(y.size(), false);
@@ -83,7 +83,7 @@ std::vector<bool> apart(std::span<const double> y) {
             if (!found[i]) rest.push_back(y[i]);
         const double value = rest.size() < kMinRows ? std::nan("") : number_apart(rest);
         if (std::isnan(value)) break;
-        // After the first, a number that many samples hold is a level of y.
+        // After the first one, a value that many samples have is a level of y.
         const auto count = static_cast<std::size_t>(std::count(rest.begin(), rest.end(), value));
         if (pass > 0 && count > std::max<std::size_t>(3, rest.size() / 100)) break;
         for (std::size_t i = 0; i < y.size(); ++i) found[i] = found[i] || y[i] == value;
@@ -91,13 +91,13 @@ std::vector<bool> apart(std::span<const double> y) {
     return found;
 }
 
-/// A number that y holds to the digit for some rows, [first, end), between others.
+/// A value that y has exactly in the rows [first, end), but not in their neighbours.
 struct HeldRun {
     std::size_t first = 0, end = 0;
     double value = 0;
 };
 
-/// Finds runs that are a sensor's and not the process's.
+/// Finds the runs that a sensor fault causes.
 class FaultRuns {
 public:
     FaultRuns(const RecordRows& rows, const std::vector<bool>& known) : rows_(rows), y_(rows.y), known_(known) {
@@ -109,7 +109,7 @@ public:
             last = y_[i];
         }
         if (moves.empty()) return;
-        constexpr double kUsualQuantile = 0.75;  // of the moves: rounding makes many of none
+        constexpr double kUsualQuantile = 0.75;  // of the moves, because rounding makes many of them 0
         const auto usual =
             moves.begin() + static_cast<std::ptrdiff_t>(kUsualQuantile * static_cast<double>(moves.size() - 1));
         std::nth_element(moves.begin(), usual, moves.end());
@@ -117,7 +117,7 @@ public:
     }
 
     std::vector<HeldRun> find() const {
-        constexpr std::size_t kMinSamplesPerFault = 4;  // of the samples: a quarter
+        constexpr std::size_t kMinSamplesPerFault = 4;  // of the samples: at most a quarter
         std::vector<HeldRun> jumping;
         for (std::size_t i = 1; i < y_.size();) {
             const HeldRun run = run_at(i);
@@ -154,7 +154,7 @@ private:
         return !(u_moves_before(run.first) && u_moves_before(run.end));
     }
 
-    /// True if the row may answer a move of u: a process faster than its rows jumps so.
+    /// True if the row may be a response to a move of u: a process that is faster than the sampling jumps like this.
     bool u_moves_before(std::size_t row) const {
         constexpr std::size_t kRowsAround = 3, kMinRestlessRows = 5;
         if (kMinRestlessRows * rows_.change_time.size() > y_.size()) return false;
@@ -163,7 +163,7 @@ private:
         return move != rows_.change_time.end() && *move <= rows_.t[row];
     }
 
-    /// The least and the greatest y outside these runs, which are in ascending order.
+    /// The smallest and the largest y outside these runs, which are in ascending order.
     std::pair<double, double> range_without(const std::vector<HeldRun>& runs) const {
         double low = std::numeric_limits<double>::infinity(), high = -low;
         std::size_t next = 0;
@@ -196,7 +196,7 @@ private:
     double usual_move_ = 0;
 };
 
-/// Marks the spikes among the samples that are not marked yet.
+/// Marks the spikes among the samples that are not yet marked.
 void mark_spikes(std::span<const double> y, std::vector<bool>& found) {
     std::vector<double> rest;
     std::vector<std::size_t> place;
@@ -218,7 +218,7 @@ std::vector<bool> marked(const RecordRows& rows) {
     return found;
 }
 
-/// Takes the marked samples from index `from` on out of the rows, and out of the marks.
+/// Removes the marked samples from index `from` on from the rows, and their marks.
 void take_out(RecordRows& rows, std::vector<bool>& found, std::size_t from, Cleaning& cleaning) {
     std::size_t kept = 0;
     for (std::size_t i = 0; i < rows.y.size(); ++i) {
@@ -250,7 +250,7 @@ std::vector<std::size_t> false_readings(const RecordRows& rows) {
 }
 
 void drop_false_readings(RecordRows& rows, bool u0_given, Cleaning& cleaning) {
-    constexpr std::size_t kMaxStartRows = 4;  // rows that the start may be made of
+    constexpr std::size_t kMaxStartRows = 4;  // largest number of rows of such a start
     std::vector<bool> found = marked(rows);
     take_out(rows, found, kMaxStartRows, cleaning);
     const std::size_t before = rows.y.size();

@@ -8,12 +8,12 @@
 
 namespace tunewright {
 
-/// What kind of test a record is of, as the user says or as found (record_kind.h). `several_steps` is only ever found:
-/// fewer than 20 changes of u that are no relay's.
+/// The kind of test in a record, as given by the user or as found (record_kind.h). `several_steps` is only found, never
+/// given: fewer than 20 changes of u, without a relay.
 enum class RecordKind { automatic, step, several_steps, relay, general };
 
-/// Another measured input beside u that moves y: another heater, a measured disturbance. values[i] holds from t[i]
-/// until t[i+1], as u does (NaN: as before); as many as t has.
+/// A further measured input that moves y: another heater, a measured disturbance. values[i] holds from t[i] until
+/// t[i+1], like u (NaN: as before); as many values as t has.
 struct FurtherInput {
     std::string name;
     std::vector<double> values;
@@ -31,14 +31,14 @@ struct Record {
     RecordKind kind = RecordKind::automatic;
     std::optional<double> u0, y0;  ///< values before the first sample, in the record's units
 
-    /// low < high: the actuator goes no further, whatever u says.
+    /// low < high: the range of the actuator; u beyond it has no further effect.
     std::optional<std::array<double, 2>> u_limits = {};
 
     std::vector<FurtherInput> d = {};  ///< at most kMaxFurtherInputs
 
-    std::vector<int> line = {};  ///< of each sample in the file that it comes from, for sentences; empty: no file
+    std::vector<int> line = {};  ///< line of each sample in its file, for messages; empty: no file
 
-    /// The upper end of u's scale by its name or unit, such as 100 of percent: usual ends below it are never tried.
+    /// The upper end of u's scale by its name or unit, such as 100 of percent: usual limits below it are never tried.
     std::optional<double> u_full_scale = {};
 };
 

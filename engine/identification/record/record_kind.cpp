@@ -12,21 +12,21 @@ namespace tunewright {
 namespace {
 
 constexpr int kMinSwitches = 3;  ///< a whole period of a relay
-constexpr int kMaxSteps = 20;    ///< more moves are no steps that somebody made by hand
+constexpr int kMaxSteps = 20;    ///< more moves are not manual steps
 
 double spread(const std::vector<double>& x) {
     const auto [low, high] = std::minmax_element(x.begin(), x.end());
     return *high - *low;
 }
 
-/// y just before `time`: what a relay has seen when it switched.
+/// y just before `time`: the relay's input when it switched.
 double y_before(const CleanRecord& r, double time) {
     constexpr double kTimeTolerance = 1e-12;  // of the record's length
     const auto at = std::upper_bound(r.t.begin(), r.t.end(), time + kTimeTolerance);
     return r.y[static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, at - r.t.begin() - 1))];
 }
 
-/// Mean of y over the samples of [from, to], the value before `to` if there are none.
+/// Mean of y over the samples of [from, to], or the value before `to` if there are none.
 double y_mean(const CleanRecord& r, double from, double to) {
     const auto first = std::lower_bound(r.t.begin(), r.t.end(), from), last = std::upper_bound(first, r.t.end(), to);
     if (first == last) return y_before(r, to);
@@ -34,7 +34,8 @@ double y_mean(const CleanRecord& r, double from, double to) {
     return std::accumulate(start, start + (last - first), 0.0) / static_cast<double>(last - first);
 }
 
-/// Half periods between switches, apart for the two levels, without the first of each: the start is not steady.
+/// Half periods between switches, separately for the two levels, without the first of each, because the start is not
+/// steady.
 struct HalfPeriods {
     std::vector<double> of[2];
 };
@@ -55,9 +56,9 @@ bool regular(const HalfPeriods& halves, double tolerance) {
     });
 }
 
-/// Whether y is nearly the same at all switches up, and at all switches down.
+/// True if y is nearly the same at all switches up, and at all switches down.
 bool switched_by_y(const CleanRecord& r, const TwoLevels& u) {
-    constexpr double kTolerance = 0.2;  // of what y moves: hysteresis, noise and late samples
+    constexpr double kTolerance = 0.2;  // of the range of y: hysteresis, noise and late samples
     std::vector<double> seen[2];
     for (std::size_t k = 0; k < u.switch_time.size(); ++k) seen[k % 2].push_back(y_before(r, u.switch_time[k]));
     const auto first = std::lower_bound(r.t.begin(), r.t.end(), u.switch_time.front()) - r.t.begin();
@@ -66,10 +67,11 @@ bool switched_by_y(const CleanRecord& r, const TwoLevels& u) {
                        [&](const auto& y) { return y.empty() || deviation(y) <= kTolerance * moved; });
 }
 
-/// Whether y rests when u switches: in most half periods (of two, in one) its last fifth moves little beside the whole.
+/// True if y is at rest when u switches: in most half periods (in one of two) its last fifth moves little compared with
+/// the whole.
 bool rests_before_switches(const CleanRecord& r, const TwoLevels& u) {
     constexpr std::ptrdiff_t kMinHalfPeriod = 5;  // samples: a tenth of a half period needs some
-    constexpr double kAtRest = 0.03;              // of what y moves in the half period
+    constexpr double kAtRest = 0.03;              // of the movement of y in the half period
     int resting = 0, halves = 0;
     for (std::size_t k = 1; k < u.switch_time.size(); ++k) {
         const double from = u.switch_time[k - 1], to = u.switch_time[k], tenth = (to - from) / 10;
@@ -81,7 +83,7 @@ bool rests_before_switches(const CleanRecord& r, const TwoLevels& u) {
         if (late < kAtRest * spread({r.y.begin() + (first - r.t.begin()), r.y.begin() + (last - r.t.begin())}))
             ++resting;
     }
-    constexpr int kMaxFewHalves = 2;  // half periods: one that rests is no relay's
+    constexpr int kMaxFewHalves = 2;  // half periods: if one of them ends at rest there is no relay
     return halves <= kMaxFewHalves ? resting > 0 : 2 * resting > halves;
 }
 
@@ -90,13 +92,13 @@ bool is_relay(const CleanRecord& r, const TwoLevels& u) {
     const HalfPeriods halves = half_periods(u);
     constexpr std::size_t kTwoPeriods = 5;  // switches
     constexpr double kMaxRegularDeviation = 0.1,
-                     kMaxRoughDeviation = 0.5;  // deviation of the half periods over their mean
+                     kMaxRoughDeviation = 0.5;  // standard deviation of the half periods over their mean
     const bool repeats = u.switch_time.size() >= kTwoPeriods && regular(halves, kMaxRegularDeviation);
     const bool follows_y = regular(halves, kMaxRoughDeviation) && switched_by_y(r, u);
     return (repeats || follows_y) && !rests_before_switches(r, u);
 }
 
-/// The border between the two groups that `levels` fall into; the widest gap.
+/// The border between the two groups of `levels`: the widest gap.
 double widest_gap(std::vector<double> levels, double& gap) {
     std::sort(levels.begin(), levels.end());
     gap = 0;
@@ -109,7 +111,7 @@ double widest_gap(std::vector<double> levels, double& gap) {
     return border;
 }
 
-/// The levels [first, last) as two groups; false where they are not two.
+/// The levels [first, last) as two groups; false if there are not two.
 bool alternate(const InputLevels& levels, std::size_t first, std::size_t last, TwoLevels& out) {
     constexpr double kMinGapOverSpread = 10;  // gap between the groups over the spread inside them
     const std::vector<double> used(levels.level.begin() + static_cast<std::ptrdiff_t>(first),
@@ -127,7 +129,7 @@ bool alternate(const InputLevels& levels, std::size_t first, std::size_t last, T
     return true;
 }
 
-/// Whether u comes back to its first level, as that of a relay that is at work from the first row on does.
+/// True if u returns to its first level, like a relay that works from the first row.
 bool comes_back(const CleanRecord& r) {
     return r.changes() > 1 && std::any_of(r.v_level.begin(), r.v_level.end(), [](double v) { return v == 0; });
 }
@@ -166,7 +168,7 @@ std::vector<double> move_times(const CleanRecord& record) {
 TwoLevels two_levels(const InputLevels& levels) {
     TwoLevels best;
     const std::size_t n = levels.level.size();
-    // All of it, without the pre-test level, without the level after the test, without both.
+    // The whole record, or without the level before the test, without that after it, without both.
     for (const std::size_t before : {0u, 1u}) {
         for (const std::size_t after : {0u, 1u}) {
             if (n < before + after + 2) continue;
@@ -199,7 +201,7 @@ const char* name_of(RecordKind kind) {
 bool moves_at_first(std::span<const double> t, std::span<const double> values) {
     constexpr double kSlopeStandardErrors = 5;  // standard errors of the slope
     constexpr double kMinVisibleShare = 0.03;   // of the range, over these rows
-    constexpr double kMinScatterRatio = 4;      // what scatters about the line
+    constexpr double kMinScatterRatio = 4;      // multiple of the scatter around the line
     constexpr double kMinShareInTheEnd = 0.05;  // of the range, over the whole record
     const Line line = straight_line(t, values);
     const double slope = std::abs(line.slope), moved = slope * (t.back() - t.front());
@@ -218,7 +220,8 @@ RecordStart start_of(const CleanRecord& r, bool relay, double noise) {
         return input_levels(r).moves() == 1 ? RecordStart::at_rest : RecordStart::unseen;
     const std::span t(r.t.data(), n), y(r.y.data(), n);
     if (relay && comes_back(r)) {
-        constexpr double kMaxStillRange = 0.01, kTimesNoise = 6;  // of y's range; the span of some hundred readings
+        constexpr double kMaxStillRange = 0.01, kTimesNoise = 6;  // of y's range; range of about a hundred readings, in
+                                                                  // standard deviations
         const auto [low, high] = std::minmax_element(y.begin(), y.end());
         return *high - *low <= std::max(kMaxStillRange, kTimesNoise * noise) ? RecordStart::at_rest
                                                                              : RecordStart::unseen;

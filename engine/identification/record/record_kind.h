@@ -8,9 +8,8 @@
 
 namespace tunewright {
 
-/// u as the levels that it rests at, dimensionless: level[0] from time 0, level[j] from time[j] until time[j + 1] or
-/// the end. Jitter below 2 % of u's range is no move, and a slew within 1 % of the record, or over two samples,
-/// is one move.
+/// u as a sequence of levels, dimensionless: level[0] from time 0, level[j] from time[j] until time[j + 1] or the end.
+/// Jitter below 2 % of u's range is not a move, and a slew within 1 % of the record, or over two samples, is one move.
 struct InputLevels {
     std::vector<double> time, level;
 
@@ -30,37 +29,38 @@ struct TwoLevels {
     bool first_is_up = false;         ///< whether switch_time[0] goes to `high`
 };
 
-/// Empty switch_time where u does not alternate between two levels.
+/// switch_time is empty if u does not alternate between two levels.
 TwoLevels two_levels(const InputLevels& levels);
 
 /// `step`: one move. `relay`: at least three switches between two levels that follow y, as a relay's do: y is nearly
 /// the same at all switches of one direction, or the half periods are regular, and y still moves when u switches. A
-/// pseudo-random sequence fails the first two, a square wave that lets y settle the last. Else `several_steps` for
-/// fewer than 20 moves, `general` for more. Never `automatic`.
+/// pseudo-random sequence does not meet the first two conditions; a square wave with a settling y does not meet the
+/// last. Else `several_steps` for fewer than 20 moves, `general` for more. Never `automatic`.
 RecordKind found_kind(const CleanRecord& record);
 
 /// "step", "several_steps", "relay", "general", "auto".
 const char* name_of(RecordKind kind);
 
-/// What the rows before the first move of u say of the start.
+/// The state at the start of the record, from the rows before the first move of u.
 enum class RecordStart {
-    at_rest,  ///< y rests there, u0 is given, or u moves only once and nothing else is seen
-    unseen,   ///< too few rows to tell in a record in which u moves more than once, or a relay at work from the first
+    at_rest,  ///< y is at rest there, u0 is given, or u moves only once and there are no such rows
+    unseen,   ///< too few rows to decide in a record in which u moves more than once, or a relay works from the first
               ///< row
     moving,   ///< y moves there, or a controller was switched on with the first row
 };
 
-/// So many rows tell a slope from its error.
+/// Number of rows that distinguish a slope from its error.
 inline constexpr int kRestRows = 5;
 
-/// Whether what has a range of about 1 over a record of length 1 moves in these first rows of it: its slope exceeds
-/// five of its standard errors, and either takes it by 0.03 and four times what scatters about the line, or exceeds
-/// five errors with the correlation of that scatter counted and would take it by 0.05 until the end of the record.
+/// True if a signal with a range of about 1 over a record of length 1 moves in these first rows: its slope exceeds five
+/// standard errors, and either the change in these rows is 0.03 and four times the scatter around the line, or the
+/// slope also exceeds five errors that include the scatter's correlation and would change the signal by 0.05 until the
+/// end of the record.
 bool moves_at_first(std::span<const double> t, std::span<const double> values);
 
-/// y moves where moves_at_first() says so of the rows before the first change of u.
-/// In a relay test that is at work from the first row on, y may rest there for a dead time: it is at rest only where it
-/// stays within its noise until u first switches. `noise` is y's standard deviation from sample to sample.
+/// y moves if moves_at_first() is true for the rows before the first change of u. In a relay test that works from the
+/// first row, y may be constant there for a dead time: it counts as at rest only if it stays within its noise until u
+/// first switches. `noise` is y's standard deviation from sample to sample.
 RecordStart start_of(const CleanRecord& record, bool relay, double noise);
 
 }  // namespace tunewright

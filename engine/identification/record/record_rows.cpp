@@ -8,7 +8,7 @@
 namespace tunewright {
 namespace {
 
-/// How often the time rises, falls and stays from one row to the next.
+/// Number of times that the time rises, falls and stays equal from one row to the next.
 struct TimeMoves {
     std::size_t up = 0, down = 0, same = 0;
 
@@ -39,7 +39,7 @@ public:
     double time(std::size_t k) const { return spread_.empty() ? record_.t[row(k)] : spread_[k]; }
 
 private:
-    // A clock of whole seconds under faster samples: each run of equal times lasts until the next one.
+    // For a clock of whole seconds with faster samples: each run of equal times is spread until the next time.
     void spread(Cleaning& cleaning) {
         spread_.resize(size_);
         for (std::size_t k = 0; k < size_; ++k) spread_[k] = record_.t[row(k)];
@@ -77,7 +77,7 @@ void add_change(RecordRows& rows, double t, double u) {
     rows.change_level.push_back(u);
 }
 
-/// Whether row k's time is ahead of the two rows below, which go on from `latest`: it is the false one.
+/// True if row k's time is ahead of the two rows below, which continue from `latest`: then row k's time is false.
 bool is_early(const TimeOrder& order, std::size_t k, std::size_t size, double latest) {
     if (k + 2 >= size) return false;
     const double now = order.time(k), next = order.time(k + 1), second = order.time(k + 2);
@@ -88,7 +88,7 @@ void count_first(int& count, int& first, int row) {
     if (count++ == 0) first = row;
 }
 
-/// Keeps the longest stretch between two usable y with a missing one inside.
+/// Finds the longest interval between two usable y with a missing one inside.
 class HoleWatch {
 public:
     explicit HoleWatch(Cleaning& cleaning) : cleaning_(cleaning) {}
@@ -108,7 +108,7 @@ private:
     double last_ = 0;
 };
 
-/// u as it reaches the plant.
+/// u limited to the range of the actuator: the plant's input.
 double limited(const Record& r, double u, Cleaning& cleaning) {
     if (!r.u_limits || !std::isfinite(u)) return u;
     const double inside = std::clamp(u, (*r.u_limits)[0], (*r.u_limits)[1]);
@@ -178,7 +178,7 @@ void drop_first(RecordRows& rows, std::ptrdiff_t count) {
 
 void drop_unread_rows(RecordRows& rows, Cleaning& cleaning) {
     constexpr std::size_t kMaxLeadingRows = 3,
-                          kMinRows = 12;  // rows: left out; of a record that shows how far it moves
+                          kMinRows = 12;  // rows: number that may be removed; number that shows the usual movement
     if (rows.t.size() < kMinRows || rows.change_time.size() < 2) return;
     const auto range = [](auto from, auto to) {
         const auto [low, high] = std::minmax_element(from, to);
@@ -203,7 +203,7 @@ void drop_unread_rows(RecordRows& rows, Cleaning& cleaning) {
 }
 
 void drop_silent_rows(RecordRows& rows, Cleaning& cleaning) {
-    constexpr double kMinMoveRatio = 10;  // than y moves between any rows that follow
+    constexpr double kMinMoveRatio = 10;  // multiple of the movement of y between any later rows
     const auto held = std::adjacent_find(rows.y.begin(), rows.y.end(), std::not_equal_to<>());
     if (held == rows.y.end()) return;
     const auto first = held + 1 - rows.y.begin();

@@ -16,23 +16,23 @@ struct RecordRows {
     bool started = false;  ///< a row with a time and a u has been seen
 };
 
-/// True if the times fall from row to row, but for one in ten: from the newest row to the oldest, as the rows are taken
-/// to run, or counted down (time_direction.h).
+/// True if the times fall from row to row, with at most one exception in ten: the rows run from the newest to the
+/// oldest, which is assumed, or the times count down (time_direction.h).
 bool times_fall(const Record& record);
 
 /// The rows as clean_record() describes them, false readings included. The columns of `record` have equal lengths.
 RecordRows collect_rows(const Record& record, Cleaning& cleaning);
 
-/// Takes the first rows out, three at most, where u and y both jump away from what they hold with one row, each by more
-/// than it moves in all others together, and u moves later on too: a logger's rows of before its first reading.
+/// Removes the first rows, at most three, if u and y both jump after them, each by more than it moves in all other rows
+/// together, and u moves later too: rows of a logger before its first reading.
 void drop_unread_rows(RecordRows& rows, Cleaning& cleaning);
 
-/// Takes the first rows out whose y is one number to the digit, where the next row leaves it ten times as far as y
-/// moves between any that follow, while u stands still: a sensor that was not read yet.
+/// Removes the first rows if their y is exactly constant and then jumps ten times as far as it moves between any later
+/// rows, while u is constant: a sensor that had not been read yet.
 void drop_silent_rows(RecordRows& rows, Cleaning& cleaning);
 
-/// Takes changes of u out that come with the last sample or after it: nothing of the record shows what they do. A lone
-/// change stays, and so do all changes of an input that moves more than twice, as that of a relay or a loop does.
+/// Removes changes of u at the last sample or after it, because the record does not show their effect. A single change
+/// stays, and so do all changes of an input that moves more than twice, as with a relay or a loop.
 void drop_late_moves(RecordRows& rows, Cleaning& cleaning);
 
 }  // namespace tunewright

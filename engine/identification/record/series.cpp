@@ -50,8 +50,8 @@ double quantisation_step(std::span<const double> y) {
     boost::sort::spreadsort::float_sort(values.begin(), values.end());
     const double range = values.back() - values.front();
     constexpr double kEqualTolerance =
-        1e-9;                            // values this close, relative to the largest, differ by rounding in binary
-    constexpr double kMaxOffGrid = 0.1;  // of a step: printed digits and converters lie nearer to their grid
+        1e-9;                            // values this close, relative to the largest, differ only by binary rounding
+    constexpr double kMaxOffGrid = 0.1;  // of a step: printed digits and converters are closer to their grid
     const double same = kEqualTolerance * std::max(range, std::max(std::abs(values.front()), std::abs(values.back())));
     values.erase(std::unique(values.begin(), values.end(), [&](double a, double b) { return b - a <= same; }),
                  values.end());
@@ -79,7 +79,7 @@ double squares_about_mean(std::span<const double> y) {
 double correlation_time(std::span<const double> series) {
     constexpr std::size_t kMaxSummed = 3000;
     if (series.size() <= kMaxSummed) return summed_correlation_time(series);
-    // Means of batches: their variance tells the correlation inside them, the sum over batches the rest.
+    // Means of batches: their variance contains the correlation inside them, the sum over batches the rest.
     const std::size_t batch = (series.size() + kMaxSummed - 1) / kMaxSummed;
     std::vector<double> means;
     double squares = 0;

@@ -30,9 +30,9 @@ std::optional<Warning> contradiction(const CleanRecord& r, const std::vector<Set
                              "At u = " + u_text(r, a.u) + " y settles at " + y_text(r, a.y) +
                                  " (until t = " + t_text(r, a.until) + "), and at u = " + u_text(r, b.u) + " at " +
                                  y_text(r, b.y) + " (until t = " + t_text(r, b.until) +
-                                 "): u alone does not decide where y goes, so no gain K is right for the record. Look "
-                                 "whether column u is what reaches the plant, and add what else moves y as a measured "
-                                 "disturbance.",
+                                 "), so y does not depend on u alone, and no gain K fits the record. Check whether "
+                                 "column u is the input of the plant, and add other inputs that move y as measured "
+                                 "disturbances.",
                              WarningLevel::bad};
         }
     }
@@ -40,7 +40,7 @@ std::optional<Warning> contradiction(const CleanRecord& r, const std::vector<Set
 }
 
 std::optional<Warning> varying_gain(const CleanRecord& r, std::vector<SettledLevel> levels, double same) {
-    constexpr double kMaxGainRatio = 1.5;  // times the smallest gain
+    constexpr double kMaxGainRatio = 1.5;  // multiple of the smallest gain
     std::ranges::sort(levels, {}, &SettledLevel::u);
     std::string gains;
     double min = 0, max = 0;
@@ -57,9 +57,9 @@ std::optional<Warning> varying_gain(const CleanRecord& r, std::vector<SettledLev
                                                            kMaxGainRatio * std::min(std::abs(min), std::abs(max)));
     if (!varies) return std::nullopt;
     return Warning{"gain-varies",
-                   "The levels at which y settles give other gains over u's range: " + gains +
-                       ". One model holds at one of them: tune each part of the range by itself (from, to), or for the "
-                       "largest gain."};
+                   "The levels at which y settles give different gains over the range of u: " + gains +
+                       ". A single model is valid for only one of them: tune each part of the range separately (from, "
+                       "to), or tune for the largest gain."};
 }
 
 }  // namespace

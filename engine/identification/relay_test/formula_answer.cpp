@@ -11,7 +11,7 @@
 namespace tunewright {
 namespace {
 
-/// Every model that the formulas give and `asked` admits, the one that repeats y best first.
+/// Every model that the formulas give and `asked` allows, the one that reproduces y best first.
 std::vector<RelayModel> relay_models(const RecordedCycle& cycle, std::complex<double> shifted, double sigma,
                                      ModelChoice asked) {
     std::vector<RelayModel> models;
@@ -29,11 +29,11 @@ std::vector<RelayModel> relay_models(const RecordedCycle& cycle, std::complex<do
         if (const auto model = integrating_model(cycle)) models.push_back(*model);
     }
     if (asked == ModelChoice::ipdt_lag) add(unbiased_models(cycle, shifted, sigma, Structure::ipdt_lag));
-    // The request asks for the paper's first-order lag, unless the integrator repeats the oscillation twice as well, or
-    // as well where both repeat it: a lag without end is an integrator.
-    constexpr double kMaxRepeatError = 0.01;  // of half a swing: no more than sampling and noise leave
+    // The request has the paper's first-order lag, unless the integrator reproduces the oscillation twice as well, or
+    // both reproduce it within kMaxRepeatError: an infinite lag is an integrator.
+    constexpr double kMaxRepeatError = 0.01;  // of half a swing: about the error by sampling and noise
     constexpr double kFitRatioOfExact = 0.95,
-                     kTieBreak = 1e-5;  // so that of equal misfits the integrator's is the smaller
+                     kTieBreak = 1e-5;  // so that of equal misfits the integrator's is smaller
     constexpr double kMinFitRatio = 2;
     auto cost = [&](const RelayModel& model) {
         const bool integrator = any && model.shape.structure == Structure::ipdt;
@@ -48,52 +48,54 @@ std::vector<RelayModel> relay_models(const RecordedCycle& cycle, std::complex<do
 void warn_formula(const CleanRecord& r, const RecordedCycle& cycle, const RelayModel& chosen, double noise,
                   std::vector<Warning>& warnings) {
     if (cycle.rest.assumed) {
-        warnings.push_back({"rest-assumed", "The record starts under the relay: u is taken to rest at " +
-                                                text(r.scale.u_rest + r.scale.u_scale * cycle.rest.v) +
-                                                " and y at its first values, " +
-                                                text(r.scale.y_origin + r.scale.y_scale * cycle.rest.y) +
-                                                ". Give u0 and y0 if they are known."});
+        warnings.push_back({"rest-assumed",
+                            "The relay already works at the start of the record: u is assumed to be at "
+                            "rest at " +
+                                text(r.scale.u_rest + r.scale.u_scale * cycle.rest.v) + " and y at its first values, " +
+                                text(r.scale.y_origin + r.scale.y_scale * cycle.rest.y) +
+                                ". Give u0 and y0 if they are known."});
     }
     if (cycle.biased() && !chosen.by_static_gain && !is_integrating(chosen.shape.structure)) {
         warnings.push_back({"static-gain-contradiction",
                             "The mean of y over the mean of u is " +
                                 text(cycle.static_gain() * r.scale.y_scale / r.scale.u_scale) +
-                                ", which the phase at the oscillation contradicts: a load, a drift or a wrong rest "
-                                "level is in the record. Eq. 13 was used in place of Eq. 14; method output_error fits "
+                                ", which contradicts the phase at the oscillation: the record contains a load, a drift "
+                                "or a wrong level of rest. Eq. 13 was used instead of Eq. 14; method output_error fits "
                                 "such disturbances."});
     }
-    // Periods that differ blur the harmonics of their mean.
+    // Differences between periods affect the harmonics of their mean.
     const double scatter = noise / std::sqrt(static_cast<double>(std::max(1, r.samples()))) +
                            2 * cycle.period_scatter / cycle.period * cycle.y_half;
-    constexpr double kMinMisfitShare = 0.03, kScatterErrors = 4;  // of half a swing, and of what scatter explains
+    constexpr double kMinMisfitShare = 0.03, kScatterErrors = 4;  // of half a swing, and multiple of the scatter
     if (chosen.fit_rms > kMinMisfitShare * cycle.y_half + kScatterErrors * scatter) {
         warnings.push_back(
-            {"structure-mismatch", "The model repeats the steady oscillation only within " +
+            {"structure-mismatch", "The model reproduces the steady oscillation only within " +
                                        text(chosen.fit_rms * r.scale.y_scale, 3) + " (r.m.s., of a half swing of " +
                                        text(cycle.y_half * r.scale.y_scale, 3) +
-                                       "): the plant is not of this structure. Trust the measured frequency point; " +
-                                       (chosen.by_static_gain ? "the gain is the mean of y over the mean of u."
+                                       "), so the plant does not have this structure. Use only the measured frequency "
+                                       "point; " +
+                                       (chosen.by_static_gain ? "the gain is the ratio of the means of y and u."
                                                               : "the gain is not the plant's static gain.")});
     }
     if (std::abs(cycle.drift) > 0) {
         warnings.push_back(
-            {"drift", "The mean of y creeps from period to period by " +
+            {"drift", "The mean of y drifts from period to period by " +
                           text(cycle.drift * cycle.period * r.scale.y_scale, 3) +
-                          ": a load or a drift is in the record, and Eqs. 9 and 14 suffer from it. Method "
-                          "output_error fits it."});
+                          ": the record contains a load or a drift, which affects Eqs. 9 and 14. Method output_error "
+                          "fits it."});
     }
 }
 
 Error no_relay_model(const CleanRecord& r, const RecordedCycle& cycle, ModelChoice asked) {
     std::string why = "No ";
     why += asked == ModelChoice::ipdt || asked == ModelChoice::ipdt_lag ? "integrating" : "first-order";
-    why += " model with a dead time meets the oscillation (A_u = " +
+    why += " model with a dead time fits the oscillation (A_u = " +
            text(std::abs(cycle.harmonics.front().G) * r.scale.y_scale / r.scale.u_scale) +
            ", phi_u = " + text(std::arg(cycle.harmonics.front().G)) + ")";
     if (cycle.biased()) {
         why += "; the mean of y over the mean of u is " +
                text(cycle.static_gain() * r.scale.y_scale / r.scale.u_scale) +
-               ", which a load or a wrong rest level would explain";
+               ", which a load or a wrong level of rest would explain";
     }
     return {ErrorKind::not_identifiable, "identify/method", why + ". Use method output_error."};
 }
@@ -127,7 +129,7 @@ Expected<IdentifiedModel> by_relay_formulas(const CleanRecord& record, const Ide
                           (chosen.by_static_gain                       ? "(11), (12), (14)"
                            : chosen.shape.structure == Structure::ipdt ? "(4) of an integrator"
                                                                        : "(11) to (13)") +
-                          ": it repeats the steady oscillation best.";
+                          ": it reproduces the steady oscillation best.";
     add_cycle(record, *cycle, {*sigma / record.scale.t_scale, shifted}, model);
     model.limit_cycle->fit_rms = chosen.fit_rms * record.scale.y_scale;
     warn_formula(record, *cycle, chosen, noise, model.warnings);

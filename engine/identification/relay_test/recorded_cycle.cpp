@@ -32,7 +32,7 @@ public:
 
     /// The integral of (y - y0 - slope (t - from)) e^(-st) over [from, to] by trapezoids.
     Complex of_y(double from, double to, Complex s, double y0, double slope) const {
-        // e^(-s(t - from)) from sample to sample; evenly spaced ones share their factor.
+        // e^(-s(t - from)) from sample to sample; evenly spaced samples share their factor.
         constexpr double kStepTolerance = 1e-15;  // of the record: rounding of evenly spaced times
         Complex turned = 1, factor = 1;
         double factor_of = 0, last = from;
@@ -58,7 +58,7 @@ public:
 
     /// The integral of (v - v0) e^(-st) over [from, to], exactly.
     Complex of_v(double from, double to, Complex s, double v0) const {
-        constexpr double kMinPhase = 1e-8;  // below it (1 - e^(-sh))/s loses more digits than h is off
+        constexpr double kMinPhase = 1e-8;  // for a smaller phase (1 - e^(-sh))/s loses more digits than the error of h
         Complex sum = 0;
         auto piece = [&](double a, double b, double v) {
             const double h = b - a;
@@ -115,8 +115,8 @@ std::vector<Period> whole_periods(const Signals& signals, const std::vector<doub
     return periods;
 }
 
-/// The first of the last periods that repeat each other: length, mean and swing differ from those of the later half by
-/// no more than sampling and noise do. A steady creep of the mean is no reason to leave a period out.
+/// The first of the last periods that are equal: their length, mean and swing differ from those of the later half only
+/// by sampling and noise. A steady drift of the mean does not exclude a period.
 std::size_t first_steady(const std::vector<Period>& periods, double spacing, double noise, int samples_a_period) {
     const std::size_t n = periods.size(), later = n / 2;
     std::vector<double> lengths, halves, steps;
@@ -126,9 +126,9 @@ std::size_t first_steady(const std::vector<Period>& periods, double spacing, dou
         if (k > 0) steps.push_back(periods[k].mean - periods[k - 1].mean);
     }
     const double length = mean(lengths), half = mean(halves), step = mean(steps);
-    constexpr double kMaxSpacings = 1.5;                // both ends of a period are seen at the next sample
+    constexpr double kMaxSpacings = 1.5;                // the two ends of a period appear at the next sample
     constexpr double kNoiseDeviations = 4;              // standard deviations
-    constexpr double kOfLength = 2e-3, kOfHalf = 0.01;  // what a steady oscillation is known to at best
+    constexpr double kOfLength = 2e-3, kOfHalf = 0.01;  // best accuracy of a steady oscillation
     const double length_tolerance = kMaxSpacings * spacing + kNoiseDeviations * deviation(lengths) + kOfLength * length;
     const double half_tolerance = kOfHalf * half + 2 * noise + kNoiseDeviations * deviation(halves);
     const double step_tolerance = kOfHalf * half + kNoiseDeviations * noise / std::sqrt(std::max(1, samples_a_period)) +
@@ -145,7 +145,7 @@ std::size_t first_steady(const std::vector<Period>& periods, double spacing, dou
     return first;
 }
 
-/// How the mean of y moves from period to period; of three periods at least.
+/// The drift of the mean of y from period to period; for at least three periods.
 Line creep(const std::vector<Period>& periods, std::size_t first) {
     if (periods.size() - first < 3) return {};
     std::vector<double> middles, means;
@@ -156,12 +156,12 @@ Line creep(const std::vector<Period>& periods, std::size_t first) {
     return straight_line(middles, means);
 }
 
-/// What y may differ by without having moved: standard deviations of its noise, and a share of its swing.
+/// Largest change of y that does not count as movement: standard deviations of its noise, and a share of its swing.
 constexpr double kNoiseDeviations = 4, kOfSwing = 0.002;
 
-/// The mean of y before the plant has answered: up to the relay's start; or, where the record starts with it, of the
-/// earlier half of the first samples until one leaves their mean (an answer shows in noise only some time after it
-/// began).
+/// The mean of y before the plant responds: up to the relay's start; or, if the record starts with it, over the earlier
+/// half of the first samples until one leaves their mean (with noise a response is visible only some time after its
+/// beginning).
 double y_before_answer(const CleanRecord& r, double relay_start, double noise, double swing, int& n) {
     double sum = 0;
     n = 0;
@@ -185,7 +185,7 @@ RestPoint rest_point(const CleanRecord& r, const TwoLevels& u, double relay_star
     int n = 0;
     rest.y = r.y_rest ? *r.y_rest : y_before_answer(r, relay_start, noise, swing, n);
     if (relay_start > 0 || r.u0_given) return rest;
-    // Deviations are recorded around 0; else the middle of the levels is all there is.
+    // Deviations are recorded around 0; otherwise the middle of the levels is the only information.
     rest.assumed = true;
     const double zero = -r.scale.u_rest / r.scale.u_scale, y_zero = -r.scale.y_origin / r.scale.y_scale;
     const bool deviations = zero > u.low && zero < u.high;
@@ -196,10 +196,10 @@ RestPoint rest_point(const CleanRecord& r, const TwoLevels& u, double relay_star
     return rest;
 }
 
-/// Standard deviation of the mean of y over the rows at rest, n of them before the relay's start.
+/// Standard deviation of the mean of y over the rows at rest; n of them are before the relay's start.
 double rest_std(const CleanRecord& r, double relay_start, double noise) {
-    constexpr double kGivenRows = 10;          // that a given level of rest is taken to be the mean of
-    constexpr double kMinDitherInGrids = 0.3;  // of a step of y's grid: less noise leaves all rows with one error
+    constexpr double kGivenRows = 10;          // number of rows that a given level of rest counts as
+    constexpr double kMinDitherInGrids = 0.3;  // of a step of y's grid: with less noise all rows have the same error
     if (r.y_rest) return noise / std::sqrt(kGivenRows);
     const auto after = std::upper_bound(r.t.begin(), r.t.end(), relay_start);
     const std::span rest(r.y.data(), static_cast<std::size_t>(after - r.t.begin()));
@@ -222,7 +222,7 @@ double mean_std(const CleanRecord& r, const std::vector<Period>& periods, const 
     return std::hypot(rest_std(r, cycle.relay_start, noise), creep, walk);
 }
 
-/// Whole periods from `start` on, and the scatter of what they show.
+/// Whole periods from `start` on, and the scatter of their responses.
 struct Pooled {
     Complex U, Y;
     double scatter = 0;  ///< standard deviation of Y's parts
@@ -249,7 +249,7 @@ Pooled pool(const Signals& signals, const RecordedCycle& cycle, int order) {
 }
 
 void add_harmonics(const Signals& signals, double noise, RecordedCycle& cycle) {
-    constexpr int kHighest = 25, kSamplesAWave = 8;  // order; fewer samples do not show a harmonic
+    constexpr int kHighest = 25, kSamplesAWave = 8;  // order; with fewer samples a harmonic is not visible
     const int samples = signals.samples(cycle.start, cycle.start + cycle.period * cycle.periods);
     const double by_noise = noise / std::sqrt(2.0 * std::max(1, samples));
     for (int k = 1; k <= kHighest && k * kSamplesAWave * cycle.periods <= samples; ++k) {
@@ -282,8 +282,8 @@ void take_periods(const Signals& signals, const std::vector<Period>& periods, st
     cycle.y_mean = signals.of_y(cycle.start, cycle.start + length, 0, 0, 0).real() / length;
 }
 
-/// Of the periods that repeat each other, as many as make the pooled response most certain: one more period averages
-/// noise, one that is not steady yet adds scatter.
+/// Takes that number of the equal periods which makes the pooled response most accurate: an additional period averages
+/// noise, but one that is not yet steady adds scatter.
 void take_best_periods(const Signals& signals, const std::vector<Period>& periods, std::size_t steady, double noise,
                        RecordedCycle& cycle) {
     constexpr double kMaxShareOfOther = 0.7;
@@ -295,7 +295,8 @@ void take_best_periods(const Signals& signals, const std::vector<Period>& period
         const int samples = signals.samples(now.start, now.start + now.period * now.periods);
         const double n = now.periods, by_noise = noise / std::sqrt(2.0 * std::max(1, samples));
         const double uncertainty = std::max(pool(signals, now, 1).scatter, by_noise) * (1 + 1 / (n - 1));
-        // Only what is clearly more certain is worth fewer periods: the scatter of a few is itself uncertain.
+        // Fewer periods are used only if they are clearly more accurate, because the scatter of a few is itself
+        // uncertain.
         if (uncertainty < kMaxShareOfOther * min) min = uncertainty, best = now;
     }
     if (best.periods > 0)
@@ -307,7 +308,7 @@ void take_best_periods(const Signals& signals, const std::vector<Period>& period
 }  // namespace
 
 bool RecordedCycle::biased() const {
-    constexpr double kMinBias = 0.05;  // of half a swing: a level of rest is seldom known better
+    constexpr double kMinBias = 0.05;  // of half a swing: accuracy of a level of rest
     return std::abs(v_middle - rest.v) > kMinBias * v_half;
 }
 
@@ -354,10 +355,10 @@ Expected<RecordedCycle> find_cycle(const CleanRecord& r, double noise) {
     if (cycle.harmonics.empty()) {
         return Error{
             ErrorKind::not_identifiable, "record",
-            "The oscillation is sampled fewer than 8 times a period: when u switched, and with it the gain, is known "
-            "poorly. Record faster."};
+            "The oscillation is sampled fewer than 8 times per period, so the times of the switches, and the gain, are "
+            "inaccurate. Record faster."};
     }
-    // Under a relay that is not reversed the first harmonic lags by about half a turn.
+    // Without reversal, the first harmonic lags by about half a turn.
     const double phase = std::arg(cycle.harmonics.front().G);
     cycle.reversed = std::abs(phase) < 0.5 * std::numbers::pi;
     return cycle;

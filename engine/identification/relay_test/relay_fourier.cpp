@@ -12,8 +12,7 @@ namespace {
 using Complex = std::complex<double>;
 constexpr double kPi = std::numbers::pi;
 
-/// What a relay oscillation says once the sign of the plant is taken out: G = sign * A e^(-j lag) with lag in
-/// [0, 2 pi).
+/// A frequency response without the sign of the plant: G = sign * A e^(-j lag) with lag in [0, 2 pi).
 struct Polar {
     double A, lag, sign;
 };
@@ -37,14 +36,14 @@ Complex denominator(Structure structure, double T, Complex s) {
 
 ModelShape shape_of(Structure structure, double T, double L) { return {structure, {L, std::log(T), 0, 0}}; }
 
-/// The gain and dead time that meet Eqs. 11 and 12 at this T.
+/// The gain and dead time that satisfy Eqs. 11 and 12 for this T.
 struct Matched {
     double K, L;
 };
 
 Matched matched(const Polar& point, double omega, Structure structure, double T) {
     const Complex d = denominator(structure, T, Complex(0, omega));
-    // 1/(1 - j T omega) leads: with a negative gain, half a turn and that lead are the lag.
+    // 1/(1 - j T omega) has a phase lead: with a negative gain, the lag is half a turn plus that lead.
     const double sign = structure == Structure::unstable ? -point.sign : point.sign;
     const double own = structure == Structure::unstable ? kPi - std::atan(T * omega) : std::arg(d);
     return {sign * point.A * std::abs(d), (point.lag - own) / omega};
@@ -93,9 +92,9 @@ std::vector<RelayModel> unbiased_models(const RecordedCycle& cycle, Complex shif
     const Polar point = polar(cycle);
     const double omega = cycle.omega(), magnitude = std::abs(shifted);
     auto f = [&](double log_T) { return excess(point, omega, structure, std::exp(log_T), sigma, magnitude); };
-    constexpr int kIntervals = 400;                     // two roots of one structure lie farther apart
-    constexpr double kShortest = 1e-4, kLongest = 1e4;  // T omega: beyond, the lag is none, or an integrator
-    constexpr double kDeadTimeTolerance = 1e-9;         // a dead time of 0, of the record's length
+    constexpr int kIntervals = 400;                     // two roots of one structure are farther apart than an interval
+    constexpr double kShortest = 1e-4, kLongest = 1e4;  // T omega: beyond them the lag is 0, or an integrator
+    constexpr double kDeadTimeTolerance = 1e-9;         // of the record's length: a dead time that counts as 0
     constexpr double kLogRootTolerance = 1e-14;         // of ln T
     const double low = std::log(kShortest / omega), high = std::log(kLongest / omega);
     std::vector<RelayModel> models;

@@ -14,7 +14,8 @@ namespace {
 using Index = std::size_t;
 using Complex = std::complex<double>;
 
-constexpr double kMultipleTolerance = 1e-9;  // of a sample: a dead time that near to a multiple is one
+constexpr double kMultipleTolerance = 1e-9;  // of a sample: a dead time closer than this to a multiple counts as the
+                                             // multiple
 constexpr int kMaxCounted = 1'000'000'000;
 
 }  // namespace
@@ -25,7 +26,7 @@ std::optional<Error> refuse_sampling(const LinearPlant& plant, double sample_tim
     return Error{ErrorKind::invalid_argument, "implement/sample_time",
                  "Dead time and computation delay together are " + text(delay) + ", more than " +
                      std::to_string(kMaxDelaySamples) + " sample times of " + text(sample_time) +
-                     ". Give a longer sample_time; a twentieth of the dead time is short."};
+                     ". Give a longer sample_time; even a twentieth of the dead time is short."};
 }
 
 UnitCircle::UnitCircle(double angle) {

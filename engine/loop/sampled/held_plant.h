@@ -1,4 +1,4 @@
-// A linear plant behind a zero-order hold, seen once every sample time: exact, whatever the dead time is of the sample
+// A linear plant behind a zero-order hold, sampled once every sample time: exact for any ratio of dead time and sample
 // time.
 //
 //   x_{k+1} = Phi x_k + Gamma1 u_{k-d-1} + Gamma0 u_{k-d},   y_k = C x_k + D u_{k-d-1},   dead time = d Ts + delta,
@@ -26,16 +26,16 @@ struct UnitCircle {
     std::complex<double> minus_one;       ///< z - 1
 };
 
-/// Sample times that a dead time may last: more are no loop that anybody runs, and cost without end.
+/// Largest dead time in sample times: longer ones are no practical loop, and their cost would be unbounded.
 inline constexpr int kMaxDelaySamples = 100'000;
 
-/// An error at implement/sample_time where dead time and computation delay together last longer than that.
+/// An error at implement/sample_time if dead time and computation delay together are longer than that.
 std::optional<Error> refuse_sampling(const LinearPlant& plant, double sample_time, double computation_delay);
 
 class HeldPlant {
 public:
-    /// `plant` is kept and must outlive this. `sample_time` > 0; `computation_delay` >= 0 adds to the dead time, which
-    /// ends after 1e9 sample times.
+    /// `plant` must outlive this object. `sample_time` > 0; `computation_delay` >= 0 adds to the dead time, which ends
+    /// after 1e9 sample times.
     HeldPlant(const LinearPlant& plant, double sample_time, double computation_delay);
 
     const LinearPlant& plant() const { return *plant_; }
@@ -45,20 +45,21 @@ public:
 
     /// The pulse transfer function at z = e^(j omega Ts), 0 <= omega <= pi/Ts. Not finite at a pole on the circle.
     std::complex<double> at(double omega) const { return at(omega, UnitCircle(omega * Ts_)); }
-    std::complex<double> at(double omega, const UnitCircle& z) const;  ///< the same where z is known already
-    /// e^(p Ts) of every pole, those at 0 included.
+    std::complex<double> at(double omega, const UnitCircle& z) const;  ///< the same with z already known
+    /// e^(p Ts) of every pole, including those at 0.
     const std::vector<std::complex<double>>& poles() const { return poles_; }
 
 private:
     const LinearPlant* plant_;
     double Ts_, delta_ = 0;
     int d_ = 0;
-    std::vector<double> E_;  // Phi - I, from the integral: exact also for small sample times
+    std::vector<double> E_;  // Phi - I, from the integral: accurate also for small sample times
     std::vector<double> Gamma0_, Gamma1_;
     std::vector<std::complex<double>> poles_;
 };
 
-/// A dead time in whole samples, 1e9 at most, and a rest below one; what is a multiple to rounding counts as one.
+/// A dead time as whole samples, at most 1e9, and a rest shorter than one; a multiple up to rounding counts as a
+/// multiple.
 struct SampledDelay {
     int whole = 0;
     double rest = 0;

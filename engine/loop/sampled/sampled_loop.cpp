@@ -20,12 +20,12 @@ constexpr double kMinFrequencyShare = 1e-3;  // of 1/Ts: where the integral's ph
 constexpr double kLightDamping = 0.3;        // of a plant's pole: below it a resonance shows, also folded below pi/Ts
 constexpr double kMinWidth = 1e-6;           // of a folded resonance, relative
 
-constexpr double kFollowedTurn = 2;           // rad of z and of the dead time: below it no whole turn is missed
+constexpr double kFollowedTurn = 2;           // rad of z and of the dead time: in shorter turns no full turn is missed
 constexpr double kMaxModulusBelowOne = 0.99;  // of |L| at both ends: 1 + L stays in the right half-plane
-constexpr double kMaxAxisDistance = 1e-9;     // |1 + L| relative to 1 + |L|: closer to 0 counts as on the circle
-constexpr double kMinModulusAtPole =
-    1e10;                           // of 1 + |L|: there is nothing but rounding left of the distance to the pole
-constexpr double kMaxPole = 1e100;  // of a plant's pole: no law that is written in numbers holds it
+constexpr double kMaxAxisDistance = 1e-9;     // |1 + L| relative to 1 + |L|: a smaller value counts as a pole on the
+                                              // circle
+constexpr double kMinModulusAtPole = 1e10;    // of 1 + |L|: beyond it the distance to the pole is only rounding
+constexpr double kMaxPole = 1e100;            // of a plant's pole: no law with finite numbers can stabilise it
 constexpr int kMaxHalvings = 60;
 
 Complex integral_part(const SampledPid& law, Complex difference, Complex back) {
@@ -69,7 +69,7 @@ Complex filter_part(const SampledPid& law, Complex difference) {
     }
 }
 
-// s = w/q, q = 1 + z^-1, in P, I, D and the filter together: at pi/Ts q is 0 and D alone infinite.
+// s = w/q, q = 1 + z^-1, in P, I, D and the filter together: at pi/Ts q is 0, where D alone would be infinite.
 Complex whole_by_trapezoids_at(const SampledPid& law, Complex difference, Complex back) {
     const Complex q = 1.0 + back, w = 2.0 * difference / law.Ts, lag = law.gains.filter.Tf * w;
     Complex sum = law.gains.Kp;
@@ -78,7 +78,7 @@ Complex whole_by_trapezoids_at(const SampledPid& law, Complex difference, Comple
     return (sum * q + law.gains.Kd * w) * q / (q * q + lag * q + 0.5 * lag * lag);
 }
 
-// Of a derivative filter by the forward rule: outside the circle for Tf < Ts/2.
+// Pole of a derivative filter by the forward rule: outside the circle for Tf < Ts/2.
 double forward_pole(const SampledPid& law) {
     const bool runs = law.derivative == DerivativeRule::filtered_forward &&
                       law.gains.filter.type == FilterType::derivative && law.gains.Kd != 0;
@@ -157,7 +157,7 @@ bool SampledLoop::keeps(double limit) const {
 
 namespace {
 
-/// q = prod (1 - p/z) (1 + L) over the open loop's poles that do not lie well within the circle: the closed loop's
+/// q = prod (1 - p/z) (1 + L) over the open loop's poles that are outside the circle or close to it: the closed loop's
 /// characteristic polynomial over a power of z. From omega = 0 to pi/Ts its argument falls by pi for each of its zeros
 /// outside the circle.
 class Characteristic {
@@ -171,7 +171,7 @@ public:
         double omega;
         Complex open, returned, q;  // q = open (1 + L), returned = 1 + L
         double size;                // 1 + |L|
-        bool zero;                  // 1 + L is
+        bool zero;                  // true: 1 + L is 0
     };
     Value at(double omega) const { return at(omega, loop_.open_loop(omega)); }
     Value at(double omega, Complex L) const {
@@ -194,19 +194,18 @@ private:
     std::vector<Complex> poles_;
 };
 
-/// Follows q between two frequencies, halving the step until its turn is unmistakable. False: q is 0 there, or as good
-/// as that.
+/// Follows q between two frequencies, halving the step until its turn is unambiguous. False: q is 0 there, or nearly 0.
 bool follow(const Characteristic& q, Winding& winding, const Characteristic::Value& left,
             const Characteristic::Value& right, int depth = kMaxHalvings) {
     if (left.zero || right.zero) return false;
-    // A whole turn of the dead time in between would look like none.
+    // A full turn of the dead time in between would look like no turn.
     const bool followed = q.turn(left, right) <= kFollowedTurn;
     if (followed && Winding::is_short(left.q, right.q)) {
         winding.follow(right.q);
         return true;
     }
-    // Each factor's turn by itself may be unmistakable. Where |L| < 1 from end to end, 1 + L stays in the right
-    // half-plane however often the dead time turns it.
+    // The turn of each factor alone may be unambiguous. If |L| < 1 from end to end, 1 + L stays in the right half-plane
+    // whatever the dead time.
     const bool below_one = left.size < 1 + kMaxModulusBelowOne && right.size < 1 + kMaxModulusBelowOne;
     if ((below_one || (followed && Winding::is_short(left.returned, right.returned))) &&
         Winding::is_short(left.open, right.open)) {
@@ -228,7 +227,7 @@ StabilityCount count_unstable_poles(const SampledLoop& loop) {
 StabilityCount count_unstable_poles(const SampledLoop& loop, const LoopGrid& along) {
     const Characteristic q(loop);
     auto left = q.at(along.omega.front(), along.point.front().L);
-    // q is real at both ends: what its argument lacks there to a multiple of pi belongs to the turn.
+    // q is real at both ends: the part that its argument lacks there to a multiple of pi belongs to the turn.
     const double start = std::arg(left.q), beyond = start - std::numbers::pi * std::round(start / std::numbers::pi);
     Winding winding(left.q);
     StabilityCount count;
@@ -240,7 +239,7 @@ StabilityCount count_unstable_poles(const SampledLoop& loop, const LoopGrid& alo
     }
     for (std::size_t i = 1; i < along.omega.size() && !count.on_the_boundary; ++i) {
         const auto right = q.at(along.omega[i], along.point[i].L);
-        // At a pole of the plant on the circle q = 0 times infinity: its neighbours tell what it does.
+        // At a pole of the plant on the circle q is 0 times infinity: its neighbours decide.
         if (!(right.size < kMinModulusAtPole)) continue;
         count.on_the_boundary = !follow(q, winding, left, right);
         left = right;

@@ -1,5 +1,5 @@
-// A linear plant under a controller that computes once every sample time, over frequency: what the program's samples
-// see, 0 <= omega <= pi/Ts.
+// A linear plant with a controller that computes once every sample time, over frequency: the loop of the program's
+// samples, 0 <= omega <= pi/Ts.
 //
 //   L = P(z) C(z), S = 1/(1 + L), T = L/(1 + L), C S at z = e^(j omega Ts), P the plant behind its hold (held_plant.h),
 //   C = -u/y of the program with r = 0, its filter included.
@@ -23,7 +23,7 @@ inline std::complex<double> pulse_response(const SampledPid& law, double omega) 
 
 class SampledLoop {
 public:
-    /// The plant must outlive this. `law.Ts` > 0, gains finite.
+    /// The plant must outlive this object. `law.Ts` > 0, gains finite.
     SampledLoop(const LinearPlant& plant, const SampledPid& law)
         : plant_(plant, law.Ts, law.computation_delay), law_(law) {}
 
@@ -37,7 +37,7 @@ public:
 
     /// Of |S| alone, to 1e-9, at a third of the cost; infinite where the loop is unstable.
     Peak sensitivity_peak() const;
-    /// Whether the loop is stable with Ms <= `limit`, which is above 1; at a tenth of the cost.
+    /// True if the loop is stable with Ms <= `limit`, which is above 1; at a tenth of the cost.
     bool keeps(double limit) const;
 
     const HeldPlant& plant() const { return plant_; }

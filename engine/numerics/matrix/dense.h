@@ -1,6 +1,6 @@
-// Products, decompositions and solutions of dense matrices of any size, each compiled once behind this header: Eigen's
-// templates are most of what a source costs to compile that uses them itself. Small systems that are not Eigen's own
-// types: linear_algebra.h. Eigenvalues of any matrix: eigenvalues.h.
+// Products, decompositions and solutions of dense matrices of any size, each compiled once behind this header, because
+// Eigen's templates take most of the compile time of a source that uses them. Small systems without Eigen's types:
+// linear_algebra.h. Eigenvalues of any matrix: eigenvalues.h.
 //
 //   x = solve_symmetric(gram(J, J), transpose_times(J, e));   // least squares by normal equations
 #pragma once
@@ -15,26 +15,26 @@ Eigen::MatrixXd gram(const Eigen::Ref<const Eigen::MatrixXd>& A, const Eigen::Re
 /// A' b for A of n x m.
 Eigen::VectorXd transpose_times(const Eigen::Ref<const Eigen::MatrixXd>& A, const Eigen::Ref<const Eigen::VectorXd>& b);
 
-/// A x = b for A symmetric and positive semidefinite (LDL' with pivoting), of which the lower triangle is read.
+/// Solves A x = b for A symmetric and positive semidefinite (LDL' with pivoting); only the lower triangle is read.
 Eigen::VectorXd solve_symmetric(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 
-/// The same of at most this size, without any allocation.
+/// The same up to this size, without any allocation.
 inline constexpr int kMaxSmallSize = 8;
 using FewByFew = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMaxSmallSize, kMaxSmallSize>;
 using Few = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxSmallSize, 1>;
 Few solve_symmetric(const FewByFew& A, const Few& b);
 
-/// A x = b for any square A (LU with full pivoting): where A is singular, one of the x that leave the least.
+/// Solves A x = b for any square A (LU with full pivoting); if A is singular, an x with the least residual.
 Eigen::VectorXd solve_square(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 
-/// A^-1 by the same decomposition; not finite where A is singular.
+/// A^-1 by the same decomposition; not finite if A is singular.
 Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& A);
 
 /// The x with the least |A x - b| (QR with column pivoting): dependent columns get 0.
 Eigen::VectorXd least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 
-/// A P = Q R for A of n x m, n >= m, its columns in the order P: Q' B, of whose rows the last n - m are what no
-/// combination of A's columns reaches, and the diagonal of R.
+/// A P = Q R for A of n x m, n >= m, its columns in the order P. Contains Q' B, whose last n - m rows are the part that
+/// no combination of A's columns reaches, and the diagonal of R.
 struct Reflected {
     Eigen::MatrixXd B;
     Eigen::VectorXd diagonal;
@@ -46,8 +46,8 @@ struct PrincipalAxes {
     Eigen::VectorXd values;
     Eigen::MatrixXd vectors;
 };
-/// Of a symmetric matrix, of which the lower triangle is read. In eigenvalues.cpp, where the other eigenvalue solver
-/// is: here it would take the compile above 0.7 GB.
+/// For a symmetric matrix; only the lower triangle is read. Implemented in eigenvalues.cpp with the other eigenvalue
+/// solver: in dense.cpp the compile would need more than 0.7 GB.
 PrincipalAxes principal_axes(const Eigen::MatrixXd& A);
 
 }  // namespace tunewright

@@ -11,16 +11,16 @@ namespace tunewright {
 namespace {
 
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-using Matrix = Eigen::MatrixXd;  // column by column: the solvers' own order, a quarter quicker
+using Matrix = Eigen::MatrixXd;  // column by column: the order of the solvers, a quarter faster
 using Complex = std::complex<double>;
 
 constexpr double kWorthScaling =
-    0.95;  // of the norms: balancing stops where it lowers them by less (Parlett and Reinsch)
+    0.95;  // of the norms: balancing ends when it lowers them by less (Parlett and Reinsch)
 
 Matrix as_matrix(std::span<const double> values, int n) { return Eigen::Map<const Rows>(values.data(), n, n); }
 
-// Diagonal similarity by powers of two that makes row and column norms alike (Osborne 1960; Parlett and Reinsch 1969).
-// A few sweeps do in practice; numbers at the ends of the range may never come to an end.
+// Diagonal similarity by powers of two that makes row and column norms nearly equal (Osborne 1960; Parlett and Reinsch
+// 1969). A few sweeps are enough in practice; numbers at the ends of the range might never converge.
 void balance(Matrix& A) {
     constexpr int kMaxSweeps = 100;
     const auto n = A.rows();
@@ -77,7 +77,8 @@ PrincipalAxes principal_axes(const Matrix& A) {
 
 double balanced_norm(std::span<const double> matrix, int n) {
     Matrix A = as_matrix(matrix, n);
-    // A state without a way out or in can be given any unit: its couplings vanish, and with them those of the next.
+    // A state that does not affect others, or is not affected by others, can have any unit: its couplings vanish, and
+    // with them perhaps those of the next.
     bool removed = true;
     while (removed) {
         removed = false;

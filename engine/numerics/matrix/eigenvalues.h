@@ -9,12 +9,12 @@
 namespace tunewright {
 
 /// Eigenvalues of a real matrix after balancing; complex ones in exact conjugate pairs, positive imaginary part first.
-/// None where an entry is not finite.
+/// Empty if an entry is not finite.
 std::vector<std::complex<double>> eigenvalues(std::span<const double> matrix, int n);
 
-/// Largest row sum of absolute values that a diagonal similarity leaves about as small as any (balancing): whatever
-/// units the states of x' = M x have, a bound on the speed of what they do together. States that nothing comes back
-/// from, or nothing goes to, do not count; 0 for a nilpotent chain of them.
+/// Largest row sum of absolute values after balancing by a diagonal similarity, which makes it nearly as small as
+/// possible: an upper bound of the rates of x' = M x that does not depend on the units of the states. States without
+/// feedback (nothing depends on them, or they depend on nothing) do not count; 0 for a nilpotent chain of them.
 double balanced_norm(std::span<const double> matrix, int n);
 
 }  // namespace tunewright

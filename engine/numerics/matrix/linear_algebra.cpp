@@ -39,14 +39,13 @@ std::vector<double> matrix_product(std::span<const double> A, std::span<const do
 
 namespace {
 
-constexpr double kMaxUnscaledNorm =
-    5;  // of a matrix: up to this norm its exponential is a fraction, nothing is squared
+constexpr double kMaxUnscaledNorm = 5;  // norm of a matrix: up to it the exponential is a fraction without squaring
 constexpr int kMaxSweeps = 20;
 
 double power_of_two(double x) { return std::exp2(std::round(std::log2(x))); }
 
-/// Units of the states in which rows and columns are alike (Osborne 1960), powers of two. A state that nothing depends
-/// on, or that depends on nothing, gets one in which its row or column is at most 1.
+/// Units of the states, powers of two, that make row and column norms nearly equal (Osborne 1960). A state on which
+/// nothing depends, or that depends on nothing, has a unit in which its row or column is at most 1.
 Eigen::VectorXd alike(Matrix& A) {
     Eigen::VectorXd units = Eigen::VectorXd::Ones(A.rows());
     bool changed = true;
@@ -80,7 +79,8 @@ std::vector<double> matrix_exponential(std::span<const double> matrix, int n) {
         const Matrix result = A.exp();
         return {result.data(), result.data() + result.size()};
     }
-    // Squaring as often as the largest entry asks for would lose as many digits, whose unit it may be alone.
+    // The largest entry may be large only because of its unit: squaring as often as it requires would lose as many
+    // digits.
     const Eigen::VectorXd units = alike(A);
     const Matrix result = units.asDiagonal() * Matrix(A.exp()) * units.cwiseInverse().asDiagonal();
     return {result.data(), result.data() + result.size()};
@@ -111,9 +111,9 @@ namespace {
 
 using Index = std::size_t;
 
-constexpr double kCostOfZero = 1e9;  // the cost of a zero
+constexpr double kCostOfZero = 1e9;  // cost of a zero entry
 
-/// Rows join one by one along the shortest alternating path. Column n stands for "none yet".
+/// Rows are added one by one along the shortest alternating path. Column n stands for "none yet".
 class Assignment {
 public:
     Assignment(std::span<const double> matrix, Index n)
@@ -184,7 +184,7 @@ private:
 
     Index n_;
     std::vector<double> cost_, rows_, columns_;  // costs; potentials, cost - row - column >= 0
-    std::vector<Index> row_of_;                  // of each column
+    std::vector<Index> row_of_;                  // row of each column
     std::vector<double> distance_;
     std::vector<Index> before_;
     std::vector<bool> used_;

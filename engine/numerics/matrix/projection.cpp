@@ -10,11 +10,11 @@
 namespace tunewright {
 namespace {
 
-/// A column whose part outside the others' span is relatively below this is no independent one.
+/// A column is dependent if the part outside the others' span is relatively smaller than this.
 constexpr double kMinIndependentShare = 1e-9;
-/// With that share of its length left a column has lost one digit at most.
+/// A column that keeps this share of its length has lost at most one digit.
 constexpr double kMinShareWithoutRepeat = 0.1;
-constexpr double kMinColumnNorm = 1e-150;  // of a column: its square is still above 0
+constexpr double kMinColumnNorm = 1e-150;  // of a column: its square does not underflow
 constexpr double kRidge = 1e-12;           // dependent columns share their coefficient
 
 std::span<double> numbers(Eigen::MatrixXd& m, Eigen::Index column) {
@@ -26,8 +26,8 @@ std::span<const double> numbers(const Eigen::MatrixXd& m, Eigen::Index column) {
 std::span<double> numbers(Eigen::VectorXd& v) { return {v.data(), static_cast<std::size_t>(v.size())}; }
 std::span<const double> numbers(const Eigen::VectorXd& v) { return {v.data(), static_cast<std::size_t>(v.size())}; }
 
-/// Puts what the first k basis vectors leave of the column into the next one, not yet of length 1; gives its length.
-/// With one repetition where little is left (Giraud, Langou, Rozloznik 2005).
+/// Stores the part of the column outside the first k basis vectors as the next one, not yet of length 1, and returns
+/// its length. Repeats once if little is left (Giraud, Langou, Rozloznik 2005).
 double orthogonalise(std::span<const double> column, double length, Eigen::Index k, Eigen::MatrixXd& basis,
                      Eigen::MatrixXd& R) {
     const std::span<double> q = numbers(basis, k);
@@ -53,7 +53,7 @@ double orthogonalise(std::span<const double> column, double length, Eigen::Index
 
 double square_of(const Eigen::VectorXd& y) { return sum_of_products(numbers(y), numbers(y)); }
 
-// Gram-Schmidt; the first column comes last, so that its independence of the others is what is judged.
+// Gram-Schmidt; the first column is processed last, so that its independence of the others is checked.
 void project_on(const Eigen::MatrixXd& columns, const Eigen::VectorXd& y, double y_square, Projection& result) {
     const Eigen::Index m = columns.cols();
     result.basis.resize(columns.rows(), m);

@@ -1,4 +1,4 @@
-// Least squares on a few long columns: what of y they reach, and what of others.
+// Least squares on a few long columns: the part of y in their span and the residual, also for other columns.
 #pragma once
 
 #include <Eigen/Core>
@@ -6,24 +6,24 @@
 
 namespace tunewright {
 
-/// The columns' orthonormal basis and what they leave of y.
+/// The orthonormal basis of the columns, and the residual of y.
 struct Projection {
-    Eigen::MatrixXd basis;             ///< one column for each; 0 where it depends on those after it
+    Eigen::MatrixXd basis;             ///< one column for each; 0 if it depends on those after it
     Eigen::VectorXd residual, linear;  ///< y - columns linear
-    bool determined = true;            ///< the first column is independent of the others
+    bool determined = true;            ///< true: the first column is independent of the others
     double sse = std::numeric_limits<double>::max();
 };
 
 double square_of(const Eigen::VectorXd& y);
 
-/// y on the columns, of as many rows. `y_square`: square_of(y).
+/// Projects y onto the columns, which have as many rows. `y_square`: square_of(y).
 void project_on(const Eigen::MatrixXd& columns, const Eigen::VectorXd& y, double y_square, Projection& result);
 
-/// What is left of y_square, roughly: by normal equations, good to the square root of the precision. May be below 0 by
-/// rounding. At most kMaxSmallSize columns (dense.h).
+/// An estimate of the residual's square: by normal equations, accurate to the square root of the precision. May be
+/// below 0 by rounding. At most kMaxSmallSize columns (dense.h).
 double rough_rest(const Eigen::MatrixXd& columns, const Eigen::VectorXd& y, double y_square);
 
-/// Takes out of D's columns what the basis reaches.
+/// Subtracts from D's columns their part in the span of the basis.
 void take_out(const Eigen::MatrixXd& basis, Eigen::MatrixXd& D);
 
 /// D'D and D'e.

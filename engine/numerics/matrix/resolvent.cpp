@@ -8,11 +8,11 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// Solves (sI - A)' x = C'. Where it is known that there are at most kMaxStates states nothing is allocated: most
-/// plants are small, and a loop asks at hundreds of frequencies.
+/// Solves (sI - A)' x = C'. With at most kMaxStates states it allocates nothing, because most plants are small and a
+/// loop is evaluated at hundreds of frequencies.
 template <int kStates, int kMaxStates>
 std::vector<Complex> row_of(std::span<const double> A, std::span<const double> C, int n, Complex s) {
-    // A row by row is A' column by column.
+    // A in rows is A' in columns.
     Eigen::Matrix<Complex, kStates, kStates, Eigen::ColMajor, kMaxStates, kMaxStates> pencil =
         (-Eigen::Map<const Eigen::MatrixXd>(A.data(), n, n)).cast<Complex>();
     pencil.diagonal().array() += s;

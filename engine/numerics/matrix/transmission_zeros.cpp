@@ -11,16 +11,16 @@ namespace {
 using Matrix = Eigen::MatrixXd;
 using Complex = std::complex<double>;
 
-constexpr double kNoMarkovParameter = 1e-12;  // of the sum of its absolute terms: below it the parameter is rounding
-constexpr double kRealZero = 1e-14;           // of a zero's size: below it its imaginary part is rounding
+constexpr double kNoMarkovParameter = 1e-12;  // of the sum of its absolute terms: a smaller parameter is rounding
+constexpr double kRealZero = 1e-14;           // of a zero's size: a smaller imaginary part is rounding
 
 Matrix as_matrix(std::span<const double> rows, int n) {
     return Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(rows.data(), n, n);
 }
 
-// The finite ones, from the generalised Schur form (Golub and Van Loan 2013, section 7.7): quotients of the diagonals,
-// and of each block of two the eigenvalues of S/T. The library's own solver gives the same and costs twice as much to
-// compile.
+// The finite eigenvalues from the generalised Schur form (Golub and Van Loan 2013, section 7.7): quotients of the
+// diagonals, and for each 2 x 2 block the eigenvalues of S/T. The library's own solver gives the same but takes twice
+// as long to compile.
 std::vector<Complex> finite_eigenvalues(const Matrix& pencil, const Matrix& descriptor) {
     const Eigen::RealQZ<Matrix> qz(pencil, descriptor, false);
     const Matrix& S = qz.matrixS();
@@ -47,7 +47,7 @@ std::vector<Complex> finite_eigenvalues(const Matrix& pencil, const Matrix& desc
 
 std::optional<std::vector<Complex>> transmission_zeros(std::span<const double> A, std::span<const double> B,
                                                        std::span<const double> C, double D, int n) {
-    // The relative degree is that of the first Markov parameter that is not rounding.
+    // The relative degree is the index of the first Markov parameter that is not rounding.
     const Matrix a = as_matrix(A, n);
     const Eigen::VectorXd b = Eigen::Map<const Eigen::VectorXd>(B.data(), n);
     const Eigen::VectorXd c = Eigen::Map<const Eigen::VectorXd>(C.data(), n);
@@ -74,7 +74,7 @@ std::optional<std::vector<Complex>> transmission_zeros(std::span<const double> A
     descriptor.topLeftCorner(n, n).setIdentity();
     std::vector<Complex> finite = finite_eigenvalues(pencil, descriptor);
     for (Complex& zero : finite) zero *= a_scale;
-    // Infinite eigenvalues come out huge rather than infinite: as many as there are zeros are kept, the smallest.
+    // Infinite eigenvalues are computed as huge ones: the smallest are kept, as many as there are zeros.
     std::sort(finite.begin(), finite.end(), [](Complex x, Complex y) { return std::abs(x) < std::abs(y); });
     if (static_cast<int>(finite.size()) > n - relative_degree)
         finite.resize(static_cast<std::size_t>(n - relative_degree));

@@ -1,5 +1,4 @@
-// Zeros of a state space. Apart from eigenvalues.h, because Eigen's generalised solver takes as long to compile as all
-// others.
+// Zeros of a state space. In its own source, because Eigen's generalised solver takes as long to compile as all others.
 #pragma once
 
 #include <complex>

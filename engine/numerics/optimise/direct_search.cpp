@@ -11,7 +11,7 @@ namespace {
 
 using Objective = std::function<double(const std::vector<double>&, bool& stop)>;
 
-/// What NLopt hands to each evaluation: the function, and who keeps the points.
+/// The data that NLopt passes to each evaluation: the function and the collector of points.
 template <class Keep>
 struct Context {
     const Objective* f;
@@ -36,7 +36,8 @@ Optimiser optimiser_of(nlopt_algorithm algorithm, std::size_t unknowns) {
     return {nlopt_create(algorithm, static_cast<unsigned>(unknowns)), nlopt_destroy};
 }
 
-/// From `x` on. NLopt's return code says only why it stopped: what was kept counts in every case.
+/// Starts from `x`. NLopt's return code only gives the reason for the end: the collected points are valid in every
+/// case.
 template <class Keep>
 void minimise(const Objective& f, const Optimiser& optimiser, std::vector<double> x, Keep keep) {
     Context<Keep> context{&f, optimiser.get(), std::move(keep)};

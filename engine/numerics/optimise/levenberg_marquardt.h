@@ -1,11 +1,12 @@
-// Levenberg-Marquardt: sums of squares of residuals whose derivatives the problem gives (Marquardt 1963, J. SIAM 11,
+// Levenberg-Marquardt: minimises sums of squares of residuals with given derivatives (Marquardt 1963, J. SIAM 11,
 // 431-441).
 //
-//  1. Linearise: the problem computes its normal equations J'J d = -J'r at the present point.
-//  2. Damp: the diagonal grows by `damping` times itself, which shortens the step and turns it downhill.
-//  3. Try: the problem computes the sum at the step's end. Where it fell the damping falls and 1 follows, otherwise the
-//     damping rises and 2 follows.
-//  4. The problem ends it where a step changes or promises too little, and the damping where steps are rounding.
+//  1. Linearise: the problem computes its normal equations J'J d = -J'r at the current point.
+//  2. Damp: the diagonal grows by `damping` times itself, which shortens the step and turns it towards the gradient.
+//  3. Try: the problem computes the sum at the step's end. If it fell, the damping is lowered and 1 follows; otherwise
+//  the
+//     damping is raised and 2 follows.
+//  4. End: a step changes or promises too little (decided by the problem), or the damping reaches its maximum.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,30 +15,31 @@
 
 namespace tunewright::optimise {
 
-/// Marquardt's scheme; the factors are the fit's, found on recorded steps (bench/identify_bench measures it).
+/// Marquardt's scheme; the factors were found for the model fit on recorded steps (bench/identify_bench measures them).
 struct MarquardtDamping {
-    double first = 1e-3;         ///< of the diagonal: nearly Gauss and Newton's step
-    double min = 1e-9;           ///< below it steps are Gauss and Newton's
-    double max = 1e10;           ///< from it on steps are rounding
-    double ease = 8;             ///< divides it after a step that was taken
-    double tighten = 6;          ///< multiplies it after one that was not; unequal: no cycle between two dampings
-    double insensitive = 1e-12;  ///< of the largest diagonal entry: what nothing depends on is damped all the same
+    double first = 1e-3;         ///< of the diagonal: nearly a Gauss-Newton step
+    double min = 1e-9;           ///< below it steps are Gauss-Newton steps
+    double max = 1e10;           ///< above it steps are only rounding
+    double ease = 8;             ///< divides the damping after a successful step
+    double tighten = 6;          ///< multiplies it after a failed step; differs from `ease`, so that no cycle between
+                                 ///< two dampings occurs
+    double insensitive = 1e-12;  ///< of the largest diagonal entry: least damping, for unknowns that nothing depends on
 };
 
 enum class Trial {
-    better,  ///< the sum fell, and the problem moved there
+    better,  ///< the sum fell, and the problem moved to the new point
     worse,
-    end,  ///< nothing more is to be won, or the problem was asked to stop
+    end,  ///< no further improvement is possible, or the problem was asked to stop
 };
 
 template <class Problem>
 concept LeastSquaresProblem = requires(Problem& problem, double damping) {
-    /// False: there is nothing to step along.
+    /// False: there is no direction for a step.
     { problem.linearise() } -> std::same_as<bool>;
     { problem.try_step(damping) } -> std::same_as<Trial>;
 };
 
-/// The number of linearisations whose steps were taken.
+/// Returns the number of linearisations with a successful step.
 template <LeastSquaresProblem Problem>
 int levenberg_marquardt(Problem& problem, int max_iterations, const MarquardtDamping& constants = {}) {
     double damping = constants.first;

@@ -7,13 +7,13 @@ namespace {
 
 struct BrentConstants {
     double golden = 0.3819660112501051;  ///< (3 - sqrt 5)/2
-    double tolerance = 1e-8;             ///< of ln x: the root of the rounding, within which f is flat at a maximum
-    double flat = 1e-14;                 ///< of f: the search ends at a step that changes f by less
+    double tolerance = 1e-8;             ///< of ln x: the root of the rounding; within it f is flat at a maximum
+    double flat = 1e-14;                 ///< relative to f: the search ends at a step that changes f by less
     int max_iterations = 60;             ///< ten are usual; golden sections alone would need 40
 };
 
 constexpr double kMaxRise =
-    4;  // times that of a parabola: a hill that is sharper between two points of a grid is unknown
+    4;  // multiple of a parabola's height: a sharper maximum between two points of a grid is not found
 
 }  // namespace
 
@@ -26,15 +26,15 @@ bool may_exceed(double level, const Maximum& before, const Maximum& here, const 
     return here.value + kMaxRise * rise > level;
 }
 
-// Boost's brent_find_minima is not used: it starts from an end of the interval. Where dead time puts two maxima between
-// two points of a grid it ended on the lower one (|C S| of lambda tuning on 2 e^(-3s)/(10 s + 1): 6e-5 too low).
-// Starting from the known inner point keeps to its hill, at 1.2 times the time of find_peaks.
+// Boost's brent_find_minima is not used: it starts from an end of the interval. With two maxima between two points of a
+// grid, as a dead time causes, it ended on the lower one (|C S| of lambda tuning on 2 e^(-3s)/(10 s + 1): 6e-5 too
+// low). A start from the known inner point stays at its maximum, but find_peaks takes 1.2 times as long.
 //
 //  1. x is the best point, w the second and v the one before w; [a, b] encloses the maximum.
-//  2. A parabola through the three gives the step, if it is inside and shorter than half of the step before last.
+//  2. A parabola through the three gives the step, if it ends inside and is shorter than half of the step before last.
 //  3. Otherwise the step is a golden section of the longer part.
-//  4. f is computed at the step's end, at least `tolerance` away; the interval and the three points follow.
-//  5. It ends where the interval is within two tolerances, or a better point is better by rounding alone.
+//  4. f is computed at the step's end, at least `tolerance` away; the interval and the three points are updated.
+//  5. It ends when the interval is within two tolerances, or a better point is better only by rounding.
 Maximum log_maximum(const std::function<double(double)>& f, double left, const Maximum& known, double right) {
     constexpr BrentConstants k;
     double a = std::log(left), b = std::log(right), x = std::log(known.x), w = x, v = x;

@@ -1,5 +1,5 @@
-// Where a function of one unknown is largest or smallest, and where a property ends: Brent's method from a known point
-// on, golden sections, bisection.
+// Extrema of a function of one unknown, and the end of the range of a property: Brent's method from a known point,
+// golden sections, bisection.
 #pragma once
 
 #include <cmath>
@@ -14,17 +14,17 @@ struct Maximum {
     double value = 0;  ///< f(x)
 };
 
-/// Whether a hill with these three points, x ascending and `here` not below its neighbours, may reach above `level`:
-/// it does not if the parabola through them, four times as high above `here` as it is, does not.
+/// True if a maximum with these three points (x ascending, `here` not below its neighbours) may exceed `level`: if the
+/// parabola through them, with four times its height above `here`, exceeds it.
 bool may_exceed(double level, const Maximum& before, const Maximum& here, const Maximum& after);
 
 /// A maximum of f over [left, right], 0 < left < known.x < right, in ln x: Brent's method (Brent, Algorithms for
-/// Minimization without Derivatives, 1973, chapter 5) from the known point on, which is not below both ends. ln x is
-/// good to about 1e-8, the value to the square of that times f's curvature. The value is never below the known one.
+/// Minimization without Derivatives, 1973, chapter 5) from the known point, which is not below either end. The error of
+/// ln x is about 1e-8, that of the value its square times f's curvature. The value is never below the known one.
 Maximum log_maximum(const std::function<double(double)>& f, double left, const Maximum& known, double right);
 
-/// Where f, unimodal on [low, high], is least, to 0.618^sections of the interval: golden sections (Kiefer 1953, Proc.
-/// Amer. Math. Soc. 4, 502-506). Takes sections + 2 values; of a plateau the lower end.
+/// The minimum point of f, unimodal on [low, high], to 0.618^sections of the interval: golden sections (Kiefer 1953,
+/// Proc. Amer. Math. Soc. 4, 502-506). Needs sections + 2 values; on a plateau it returns the lower end.
 template <class Function>
 double golden_section(const Function& f, double low, double high, int sections) {
     constexpr double kGolden = 1 / std::numbers::phi;
@@ -43,15 +43,15 @@ double golden_section(const Function& f, double low, double high, int sections) 
     return 0.5 * (low + high);
 }
 
-/// A point at which a property holds and one, on either side of it, at which it does not.
+/// Two points: the property holds at `inside` and does not hold at `outside`, which may lie on either side.
 struct Bracket {
     double inside = 0, outside = 0;
 };
 
-constexpr int kMaxHalvings = 60;  ///< more than the 52 binary digits between two numbers of one size
+constexpr int kMaxHalvings = 60;  ///< more than the 52 binary digits between two numbers of the same size
 
-/// The bracket, in which a property ends, halved until close(inside, outside) or `max_halvings` times: one call of
-/// `holds` each.
+/// Halves the bracket that contains the end of a property until close(inside, outside), at most `max_halvings` times,
+/// with one call of `holds` each.
 template <class Property, class Close>
 Bracket bisect(Bracket bracket, const Property& holds, const Close& close, int max_halvings = kMaxHalvings) {
     for (int i = 0; i < max_halvings && !close(bracket.inside, bracket.outside); ++i) {
@@ -61,7 +61,7 @@ Bracket bisect(Bracket bracket, const Property& holds, const Close& close, int m
     return bracket;
 }
 
-/// The same, always with `halvings`.
+/// The same with exactly `halvings` halvings.
 template <class Property>
 Bracket bisect(const Bracket& bracket, const Property& holds, int halvings) {
     return bisect(

@@ -2,16 +2,17 @@
 // constraints:
 //
 //  1. H = L L'; J = L^-T and the empty triangle R. Throughout J' N = [R; 0], N the normals of the active constraints.
-//  2. The constraint that is exceeded most is to become active; if none is, the point is the minimum.
+//  2. The most violated constraint is chosen to become active; if none is violated, the point is the minimum.
 //  3. Two directions follow from d = J' n, n its normal: x moves along J2 d2, J2 the columns of J behind R, and the
 //     multipliers of the active constraints along -R^-1 d1.
-//  4. The step ends where the constraint holds, or before at the active constraint whose multiplier comes to 0 first;
+//  4. The step ends where the constraint holds, or earlier at the active constraint whose multiplier reaches 0 first;
 //     if neither end exists, no x meets all constraints.
-//  5. The former: the constraint joins the active set. The latter: that other one leaves it, and 3 again.
-//  6. x and the multipliers of the active set are computed anew from J and R (an addition to the published method):
-//     with H = diag(.., 1e-6) the free minimum lies 1e7 away and more, and steps from there would leave its rounding.
+//  5. In the first case the constraint joins the active set; in the second that other one leaves it, and 3 follows.
+//  6. x and the multipliers of the active set are recomputed from J and R (an addition to the published method):
+//     with H = diag(.., 1e-6) the free minimum lies 1e7 or more away, and the rounding there would remain in the steps.
 //
-// The value rises with each constraint that joins, so that no set comes twice; rounding is stopped by `max_changes`.
+// The value rises with each constraint that joins, so that no active set occurs twice; `max_changes` stops a cycle
+// through rounding.
 #include "engine/numerics/optimise/quadratic_program.h"
 
 #include <Eigen/Cholesky>
@@ -25,11 +26,11 @@ namespace {
 
 using Eigen::Index;
 
-/// All are rounding with room: none was found by trials.
+/// All values are rounding errors with a margin; none was found by trials.
 struct ActiveSetConstants {
-    double slack = 1e-9;        ///< of a constraint, absolute and relative to its b: less is no excess
-    double dependent = 1e-16;   ///< |d2|^2 over |d|^2: a normal within 1e-8 rad of the span of the active ones
-    double rounding = 1e-14;    ///< of the multipliers' direction: less than that of its largest entry is 0
+    double slack = 1e-9;        ///< of a constraint, absolute and relative to its b: a smaller violation counts as none
+    double dependent = 1e-16;   ///< |d2|^2/|d|^2: a normal within 1e-8 rad of the span of the active ones
+    double rounding = 1e-14;    ///< of the largest entry of the multipliers' direction: a smaller entry counts as 0
     int changes_per_size = 10;  ///< of the active set, times n + m; two to five are usual for n = 3, n + 5 for n = 30
 };
 
@@ -59,7 +60,7 @@ public:
 private:
     double excess(Index i) const { return program_.A.col(i).dot(x_) - program_.b[i]; }
 
-    /// -1: none is exceeded.
+    /// The most violated constraint; -1: none is violated.
     Index max_exceeded() const {
         Index max = -1;
         double largest = 0;
@@ -74,7 +75,7 @@ private:
 
     bool is_active(Index i) const { return std::find(active_.data(), active_.data() + q_, i) != active_.data() + q_; }
 
-    /// False: no x meets the constraints, or `left` changes did not do.
+    /// False: no x meets the constraints, or `left` changes were not enough.
     bool activate(Index i, int& left) {
         for (; left > 0; --left) {
             d_.noalias() = J_.transpose() * -program_.A.col(i);
@@ -148,7 +149,7 @@ private:
         }
     }
 
-    /// With the active constraints as equations: x = J y, where R' y1 = -b of the active ones and y2 = -J2' g.
+    /// Solves with the active constraints as equations: x = J y, where R' y1 = -b of the active ones and y2 = -J2' g.
     void move_to_minimum() {
         const auto R = R_.topLeftCorner(q_, q_).template triangularView<Eigen::Upper>();
         d_.noalias() = J_.transpose() * program_.g;
@@ -172,7 +173,7 @@ private:
     const Program& program_;
     Index n_, q_ = 0;   // unknowns, active constraints
     Matrix J_, R_;      // R in its first q rows and columns
-    Vector x_, y_, u_;  // u: the active constraints' multipliers
+    Vector x_, y_, u_;  // x, y as above; u: the multipliers of the active constraints
     Vector d_, r_;
     Eigen::Matrix<int, Eigen::Dynamic, 1, 0, N, 1> active_;
 };

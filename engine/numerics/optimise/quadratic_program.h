@@ -11,8 +11,8 @@
 
 namespace tunewright::optimise {
 
-/// N and M bound the unknowns and the constraints, so that nothing is allocated; Eigen::Dynamic: without bound, on the
-/// heap.
+/// N and M are the maximal numbers of unknowns and constraints, so that nothing is allocated; Eigen::Dynamic: no
+/// maximum, on the heap.
 template <int N, int M>
 struct QuadraticProgram {
     using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, N, 1>;
@@ -20,11 +20,11 @@ struct QuadraticProgram {
     using Normals = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, N, M>;
     using Bounds = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, M, 1>;
 
-    /// x'x/2 of `unknowns` entries, without constraints yet; there is room for `capacity` of them.
+    /// The objective x'x/2 with `unknowns` entries and no constraints; `capacity` is the maximal number of constraints.
     QuadraticProgram(Eigen::Index unknowns, Eigen::Index capacity)
         : H(Matrix::Identity(unknowns, unknowns)), g(Vector::Zero(unknowns)), A(unknowns, capacity), b(capacity) {}
 
-    /// normal'x <= bound; `normal` has as many entries as there are unknowns.
+    /// Adds normal'x <= bound; `normal` has as many entries as there are unknowns.
     template <class Derived>
     void add(const Eigen::MatrixBase<Derived>& normal, double bound) {
         A.col(constraints) = normal;
@@ -33,7 +33,7 @@ struct QuadraticProgram {
 
     Matrix H;   ///< n x n, symmetric, positive definite
     Vector g;   ///< n
-    Normals A;  ///< transposed: n x capacity, a constraint's normal in each of the first `constraints` columns
+    Normals A;  ///< transposed: n x capacity, each of the first `constraints` columns is the normal of a constraint
     Bounds b;   ///< capacity
     Eigen::Index constraints = 0;
 };
@@ -41,19 +41,19 @@ struct QuadraticProgram {
 template <int N, int M>
 struct QuadraticMinimum {
     typename QuadraticProgram<N, M>::Vector x;            ///< n
-    typename QuadraticProgram<N, M>::Bounds multipliers;  ///< one for each constraint, >= 0; 0 where it is not active
+    typename QuadraticProgram<N, M>::Bounds multipliers;  ///< one for each constraint, >= 0; 0 for an inactive one
 };
 
 /// The minimum. Active constraints hold to rounding, the others to 1e-9, relative to b where |b| > 1.
 ///
 /// Empty: no x meets all constraints, or H is not positive definite. Cost: a factorisation of H, then O(n (n + m)) for
-/// each constraint that joins or leaves the active set; two to five do with up to four unknowns.
+/// each constraint that joins or leaves the active set; two to five changes are usual with up to four unknowns.
 template <int N, int M>
 std::optional<QuadraticMinimum<N, M>> solve(const QuadraticProgram<N, M>& program);
 
-/// Up to four unknowns (the parameters of a PID and its filter) and 14 constraints: without the heap.
+/// For up to four unknowns (the parameters of a PID and its filter) and 14 constraints: without the heap.
 using SmallProgram = QuadraticProgram<4, 14>;
-/// Of any size: some tens of unknowns and some hundreds of constraints take a millisecond.
+/// For any size: some tens of unknowns and some hundreds of constraints take a millisecond.
 using LargeProgram = QuadraticProgram<Eigen::Dynamic, Eigen::Dynamic>;
 
 extern template std::optional<QuadraticMinimum<4, 14>> solve(const SmallProgram&);

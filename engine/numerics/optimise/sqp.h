@@ -1,18 +1,19 @@
-// Sequential quadratic programming in a trust region: a smooth objective under smooth constraints, of both of which the
-// problem gives values and gradients.
+// Sequential quadratic programming in a trust region: minimises a smooth objective under smooth constraints. The
+// problem gives values and gradients of both.
 //
 //  1. Step: the problem minimises its quadratic model, of matrix H, under its linearised constraints within the trust
 //     region (Fletcher 1987, Practical Methods of Optimization, section 14.4: the region is a box).
-//  2. Where there is no step the region grows, as the linearised constraints have no common point in it; with
-//     constraints that are elastic they always have one, and it shrinks: rounding stopped the step.
-//  3. The run has converged where the model promises less than `cost_tolerance`.
+//  2. If there is no step, the linearised constraints have no common point in the region, and it grows. With elastic
+//     constraints they always have one: then rounding stopped the step, and the region shrinks.
+//  3. The run has converged when the model promises less than `cost_tolerance`.
 //  4. Candidate: the problem moves the step's end back to the curved constraints (a second-order correction, Nocedal
 //     and Wright 2006, Numerical Optimization, section 18.3) and computes its merit function there.
-//  5. The ratio of what the merit function fell by to what the model promised decides (Nocedal and Wright, algorithm
-//     4.1): the candidate is taken or the region shrinks; after a good one it grows.
-//  6. H learns the curvature of the Lagrangian from the change of its gradient: BFGS with Powell's damping (Powell
-//  1978,
-//     Numerical Analysis, Dundee 1977, 144-157), positive definite where the constraints' curvature is not. Then 1.
+//  5. The ratio of the actual to the promised decrease of the merit function decides (Nocedal and Wright, algorithm
+//     4.1): the candidate is accepted or the region shrinks; after a good one it grows.
+//  6. H is updated by the curvature of the Lagrangian, from the change of its gradient: BFGS with Powell's damping
+//  (Powell 1978,
+//     Numerical Analysis, Dundee 1977, 144-157), which stays positive definite even if the constraints' curvature is
+//     not. Then 1.
 #pragma once
 
 #include <algorithm>
@@ -23,55 +24,56 @@
 
 namespace tunewright::optimise {
 
-/// Powell's damping is his own; the others are usual values (Nocedal and Wright: 0 to 0.25 and 0.75 for the ratios) at
-/// which the robust PID search and the search over a range both arrived. They affect the number of steps more than the
-/// answers: `bench/robust_batch` measures the one, `bench/robust_search` the other, on random plants.
+/// Powell's damping has his published value; the others are usual values (Nocedal and Wright: 0 to 0.25 and 0.75 for
+/// the ratios) and proved best both in the robust PID search and in the search over a range. They affect the number of
+/// steps more than the results: on random plants `bench/robust_batch` measures the steps, `bench/robust_search` the
+/// results.
 struct SqpConstants {
-    double min_ratio = 0.05;        ///< of what was won to what was promised, for a candidate to be taken
-    double good_ratio = 0.7;        ///< from it on the region grows: the model is right as far as it was followed
-    double shrink = 0.3;            ///< times the step that failed or the radius, whichever is shorter
-    double grow = 2;                ///< times the radius
-    double powell_damping = 0.2;    ///< of s'Hs, which s'y keeps at least
-    double first_curvature = 0.3;   ///< of ln(cost) over logarithms, before gradients have shown it
-    double min_curvature = 1e-300;  ///< of s'Hs and s'y: a smaller one cannot be divided by
+    double min_ratio = 0.05;        ///< actual over promised decrease: the least for a candidate to be accepted
+    double good_ratio = 0.7;        ///< above it the region grows: the model is accurate over the whole step
+    double shrink = 0.3;            ///< multiple of the failed step or of the radius, whichever is shorter
+    double grow = 2;                ///< multiple of the radius
+    double powell_damping = 0.2;    ///< of s'Hs: s'y is raised to at least this share
+    double first_curvature = 0.3;   ///< of ln(cost) over logarithms, before gradients give an estimate
+    double min_curvature = 1e-300;  ///< of s'Hs and s'y: a smaller one is no divisor
 };
 inline constexpr SqpConstants kSqp;
 
 struct TrustRegion {
-    double radius = 0.5;         ///< the first one, in the problem's measure of a step's length
-    double min_radius = 0;       ///< ends the run: nothing is left to win in it
+    double radius = 0.5;         ///< the initial one, in the problem's measure of a step's length
+    double min_radius = 0;       ///< ends the run: no improvement is possible within it
     double max_radius = 1;       ///< after good steps
-    double hopeless_radius = 4;  ///< ends the run: even in it the linearised constraints have no common point
+    double hopeless_radius = 4;  ///< ends the run: even within it the linearised constraints have no common point
 };
 
 struct SqpEnd {
     int iterations = 0;
-    bool converged = false;  ///< the model promises too little; else the problem, the region or the count ended it
+    bool converged = false;  ///< false: the problem, the region or the number of steps ended the run
 };
 
-/// What a problem is to `minimise`. Its state holds values and gradients at one point.
+/// The operations that `minimise` needs of a problem. The problem's state holds values and gradients at one point.
 template <class Problem>
 concept SqpProblem = requires(Problem& problem, typename Problem::State& state, const typename Problem::State& before,
                               const typename Problem::Step& step, double number) {
     /// Linearised constraints always have a common point.
     { Problem::kElastic } -> std::convertible_to<bool>;
-    /// The model's minimum in the region, and what it promises (`step.promised`); empty: there is none.
+    /// The model's minimum in the region, and its promised decrease (`step.promised`); empty: there is none.
     { problem.step(before, number) } -> std::same_as<std::optional<typename Problem::Step>>;
     { problem.length(step) } -> std::convertible_to<double>;
     /// False ends the run before the step is tried.
     { problem.worth_trying(before, step, number) } -> std::convertible_to<bool>;
-    /// The step's end, corrected; empty: it is no candidate.
+    /// The step's end, corrected; empty: there is no candidate.
     { problem.candidate(before, step, number) } -> std::same_as<std::optional<typename Problem::State>>;
     { problem.merit(before) } -> std::convertible_to<double>;
-    /// A candidate that won `number` is the state now; false ends the run.
+    /// A candidate that decreased the merit by `number` is the new state; false ends the run.
     { problem.accepted(before, number) } -> std::convertible_to<bool>;
     /// Adds the objective's gradient.
     problem.differentiate(state);
-    /// H from the change between two states.
+    /// Updates H by the change between two states.
     problem.learn(before, before, step);
 };
 
-/// Moves `here`, whose merit is finite and which has its gradients, to a local minimum of the merit function.
+/// Moves `here`, which has a finite merit and its gradients, to a local minimum of the merit function.
 template <SqpProblem Problem>
 SqpEnd minimise(Problem& problem, typename Problem::State& here, const TrustRegion& region, int max_iterations,
                 double cost_tolerance) {
@@ -102,8 +104,8 @@ SqpEnd minimise(Problem& problem, typename Problem::State& here, const TrustRegi
     return end;
 }
 
-/// BFGS with Powell's damping: H, n x n, learns from the Lagrangian's gradient having changed by y over the step s.
-/// Stays positive definite.
+/// BFGS with Powell's damping: updates H, n x n, by the change y of the Lagrangian's gradient over the step s. H stays
+/// positive definite.
 template <class Matrix, class Vector>
 void update_curvature(Matrix& H, const Vector& s, Vector y) {
     const Vector Hs = H * s;

@@ -11,7 +11,8 @@ namespace tunewright {
 
 template <int N>
 struct Dual {
-    /// One derivative is a plain number, so that a Dual<1> is passed in registers: Taylor series take half the time.
+    /// A single derivative is a plain number, so that a Dual<1> is passed in registers: Taylor series then take half
+    /// the time.
     using Derivatives = std::conditional_t<N == 1, double, Eigen::Array<double, N, 1>>;
     double v;
     Derivatives d;
@@ -44,8 +45,8 @@ double derivative(const Dual<N>& a, std::size_t direction) {
         return a.d[static_cast<Eigen::Index>(direction)];
 }
 
-/// value + slope (a - a.v): any function of one variable by its derivative. A direction that a does not depend on stays
-/// 0 where the slope is infinite.
+/// value + slope (a - a.v): any function of one variable, by its derivative. A direction on which a does not depend
+/// stays 0 even if the slope is infinite.
 template <int N>
 Dual<N> chain(const Dual<N>& a, double value, double slope) {
     if constexpr (N == 1)

@@ -1,4 +1,4 @@
-// What an expression can do.
+// The operations of an expression.
 #pragma once
 
 #include <cstdint>
@@ -6,18 +6,18 @@
 namespace tunewright {
 
 enum class Operation : std::uint8_t {
-    number,    ///< of syntax trees only
-    variable,  ///< of syntax trees only: a name
+    number,    ///< only in syntax trees
+    variable,  ///< only in syntax trees: a name
     add,
     subtract,
     multiply,
     divide,
     negate,
-    power,  ///< in programs: with a constant exponent that is no small integer
+    power,  ///< in programs: with a constant exponent that is not a small integer
     less,
     less_equal,
-    greater,        ///< of syntax trees only
-    greater_equal,  ///< of syntax trees only
+    greater,        ///< only in syntax trees
+    greater_equal,  ///< only in syntax trees
     equal,
     not_equal,
     select,  ///< a ? b : c
@@ -33,10 +33,10 @@ enum class Operation : std::uint8_t {
     max
 };
 
-/// As the user writes it: "+", "exp", "? :".
+/// The operation as the user writes it: "+", "exp", "? :".
 const char* spelling(Operation operation);
 
-/// How many operands it has: 0 to 3.
+/// Number of operands: 0 to 3.
 int operand_count(Operation operation);
 
 }  // namespace tunewright

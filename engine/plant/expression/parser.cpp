@@ -26,8 +26,8 @@ std::optional<Operation> comparison_of(std::string_view symbol) {
     return std::nullopt;
 }
 
-// Recursive descent; every function returns the node it made, or -1 after the first error. The depth of recursion is
-// bounded by the limit: each way around passes `deeper`.
+// Recursive descent; every function returns the node that it made, or -1 after the first error. The depth limit bounds
+// the recursion, because each cycle of calls passes through `deeper`.
 class Parser {
 public:
     Parser(std::string_view text, const ExpressionLimits& limits) : reader_(text), limits_(limits) {}
@@ -68,8 +68,10 @@ private:
         if (token_.kind == TokenKind::end)
             return fail(token_.position, "the expression ends where " + wanted + " belongs.");
         if (token_.kind == TokenKind::symbol && token_.text == "(" && previous_.kind == TokenKind::name)
-            return fail(previous_.position, quoted(previous_.text) + " is no function; there are " + kFunctionList +
-                                                ", and a product is written with *.");
+            return fail(previous_.position, quoted(previous_.text) +
+                                                " is not a function; the functions "
+                                                "are " +
+                                                kFunctionList + ". A product needs a *.");
         return fail(token_.position, quoted(token_.text) + " stands where " + wanted + " belongs.");
     }
 
@@ -192,7 +194,7 @@ private:
         advance();
         const int inner = expression();
         if (!error_ && !at(")") && token_.kind == TokenKind::end)
-            return fail(opened, "this parenthesis is never closed.");
+            return fail(opened, "this parenthesis is not closed.");
         if (!skip(")")) return error_ ? -1 : unexpected("an operator or \")\"");
         return inner;
     }
@@ -225,7 +227,7 @@ private:
         }
         if (error_) return -1;
         if (!at(")") && token_.kind == TokenKind::end)
-            return fail(name.position, "the parenthesis of " + quoted(name.text) + " is never closed.");
+            return fail(name.position, "the parenthesis of " + quoted(name.text) + " is not closed.");
         if (!skip(")")) return error_ ? -1 : unexpected("an operator or \")\"");
         if (several ? given < 2 : given != 1)
             return fail(name.position, quoted(name.text) + " takes " +

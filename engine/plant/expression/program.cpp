@@ -15,7 +15,9 @@ std::string Program::describe(int instruction, double a, double b, double result
                                                      : " has no finite derivative";
     std::string what;
     if (origin.written == Operation::power) {
-        what = operation == Operation::log                ? "a power of " + text(a) + " with an exponent that varies"
+        what = operation == Operation::log ? "a power of " + text(a) +
+                                                 " with an exponent that is not "
+                                                 "constant"
                : operation == Operation::power            ? text(a) + " ^ " + text(b)
                : operation == Operation::divide && b == 0 ? "a negative power of 0"
                                                           : "a power";
@@ -25,7 +27,7 @@ std::string Program::describe(int instruction, double a, double b, double result
     } else if (operand_count(operation) == 1) {
         what = name + " of " + text(a) + failure;
     } else {
-        what = text(a) + " " + name + " " + text(b) + " is beyond the range of numbers";
+        what = text(a) + " " + name + " " + text(b) + " is out of the number range";
     }
     return place(instruction) + ": " + what;
 }

@@ -41,7 +41,8 @@ int ProgramBuilder::instruction(Operation operation, int a, int b, int c, const 
     const auto number = [&](int at) { return value(at).operation == Operation::number; };
     if (operation == Operation::select && number(a)) return value(a).constant != 0 ? b : c;
     if (number(a) && number(b) && number(c)) {
-        // What fails is left to run time: it may stand in a branch that is never taken, and there it has a place.
+        // A constant operation that fails is left in the program: it may be in a branch that is never taken, and at run
+        // time its error has a place.
         const double folded = apply(operation, value(a).constant, value(b).constant, value(c).constant);
         if (std::isfinite(folded)) return constant(folded);
     }

@@ -1,5 +1,6 @@
-// From trees to a program: names become variables or constants, equal operations are done once (value numbering),
-// operations on constants are done now, small integer powers become multiplications, what no output needs is left out.
+// Compiles trees to a program: names become variables or constants, equal operations are computed once (value
+// numbering), operations on constants are evaluated at compile time, small integer powers become multiplications, and
+// unused operations are removed.
 #pragma once
 
 #include <array>
@@ -16,7 +17,7 @@
 
 namespace tunewright {
 
-/// What a name stands for: a variable (its index), a constant (its value), or an error (its sentence).
+/// The meaning of a name: a variable (its index), a constant (its value), or an error (its sentence).
 struct VariableIndex {
     int index = 0;
 };
@@ -52,7 +53,7 @@ private:
     bool is_constant(int value, double wanted) const;
 
     std::vector<std::string> variable_names_, sources_;
-    std::vector<Value> values_;  // operands stand before what uses them
+    std::vector<Value> values_;  // operands come before the operations that use them
     std::map<std::uint64_t, int> constants_;
     std::map<std::tuple<Operation, int, int, int>, int> known_;
     std::vector<int> outputs_;

@@ -1,5 +1,5 @@
-// How a program runs over a number type. Apart from its declaration, since the number types cost a source more time to
-// compile than all else, and only what runs a program needs them.
+// Runs a program over a number type. Separate from its declaration, because the number types take most of the compile
+// time and only sources that run programs need them.
 #pragma once
 
 #include <array>
@@ -48,7 +48,7 @@ std::string Program::fault(std::span<const T> variables, int count) const {
     for (int output = 0; output < count; ++output) {
         int at = output_register(output);
         if (finite(at)) continue;
-        // Down to an operation whose operands are finite; of a conditional only the branch taken counts.
+        // Goes back to an operation whose operands are finite; in a conditional only the chosen branch counts.
         while (at >= first) {
             const Instruction& i = instructions_[static_cast<std::size_t>(at - first)];
             const int operands = operand_count(i.operation);

@@ -1,5 +1,5 @@
-// What a number type must offer so that a program runs on it: its value part decides comparisons, `apply` does one
-// operation.
+// The operations that a number type must have to run a program: its value part decides comparisons, `apply` computes
+// one operation.
 #pragma once
 
 #include <cmath>
@@ -33,7 +33,7 @@ bool all_finite(const Dual<N>& x) {
     return finite;
 }
 
-/// 1 where it holds, 0 where not, not a number where one side is none.
+/// 1 if it holds, 0 if not, NaN if one side is NaN.
 template <class T>
 T truth(bool holds, const T& a, const T& b) {
     T result;
@@ -42,8 +42,8 @@ T truth(bool holds, const T& a, const T& b) {
     return result;
 }
 
-/// One operation of a program; `c` is used by `select` alone. Where a value is undefined the result is not finite.
-/// At the kink of abs, min and max the derivative is that from the right, or of the first operand.
+/// One operation of a program; only `select` uses `c`. An undefined value is not finite. At the kink of abs, min and
+/// max the derivative is that from the right, or that of the first operand.
 template <class T>
 T apply(Operation operation, const T& a, const T& b, const T& c) {
     using std::cos, std::exp, std::log, std::pow, std::sin, std::sqrt, std::tan, std::tanh;

@@ -33,10 +33,10 @@ public:
     TaylorTable(const TaylorTable&) = delete;
     TaylorTable& operator=(const TaylorTable&) = delete;
 
-    /// The coefficients of one register: of a variable, to be filled in up to the order that is asked for.
+    /// The coefficients of one register; for a variable, to be filled in up to the required order.
     T* series(int at) { return coefficients_ + static_cast<std::size_t>(at) * stride_; }
 
-    /// Coefficient k of the first `length` instructions; all lower ones must have been computed.
+    /// Computes coefficient k of the first `length` instructions; all lower ones must have been computed.
     void sweep(int k, int length) {
         const int first = program_.registers() - static_cast<int>(program_.instructions().size());
         const Instruction* instruction = program_.instructions().data();
@@ -107,7 +107,7 @@ private:
             case Operation::abs: r[k] = x < 0 ? -a[k] : a[k]; break;
             case Operation::min: r[k] = x <= y ? a[k] : b[k]; break;
             case Operation::max: r[k] = x >= y ? a[k] : b[k]; break;
-            default: r[k] = zero(); break;  // comparisons are constant between their jumps
+            default: r[k] = zero(); break;  // comparisons are piecewise constant
         }
     }
 

@@ -79,13 +79,14 @@ Expected<Token> TokenReader::number() {
     const auto [end, problem] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
     auto length = static_cast<std::size_t>(end - rest.data());
     if (problem == std::errc::result_out_of_range)
-        return syntax_error(position_, quoted(rest.substr(0, length)) + " is beyond the range of double precision.");
-    // "2x" and "1e" are slips of the pen, not a number and a name.
+        return syntax_error(position_, quoted(rest.substr(0, length)) + " is out of the range of double precision.");
+    // "2x" and "1e" are typing errors, not a number and a name.
     std::size_t word = length;
     while (word < rest.size() && (is_letter(rest[word]) || is_digit(rest[word]) || rest[word] == '.')) ++word;
     if (problem != std::errc{} || word != length)
         return syntax_error(position_, quoted(rest.substr(0, std::max<std::size_t>(word, 1))) +
-                                           " is no number; between a number and a name belongs an operator such as *.");
+                                           " is not a number; write an operator such as * between a number and a "
+                                           "name.");
     Token token = taken(TokenKind::number, length);
     token.number = value;
     return token;
@@ -104,9 +105,9 @@ Expected<Token> TokenReader::next() {
     }
     for (const std::string_view symbol : {"<=", ">=", "==", "!="})
         if (rest.starts_with(symbol)) return taken(TokenKind::symbol, 2);
-    if (rest.starts_with("**")) return syntax_error(position_, "\"**\" is no operator; a power is written with ^.");
+    if (rest.starts_with("**")) return syntax_error(position_, "\"**\" is not an operator; write a power with ^.");
     if (std::string_view("+-*/^()<>?:,").find(c) != std::string_view::npos) return taken(TokenKind::symbol, 1);
-    if (c == '=') return syntax_error(position_, "\"=\" is no operator; equality is written ==.");
+    if (c == '=') return syntax_error(position_, "\"=\" is not an operator; write equality as ==.");
     const std::size_t length = std::max<std::size_t>(sequence_length(rest), 1);
     return syntax_error(position_, quoted(rest.substr(0, length)) + " cannot be part of an expression.");
 }

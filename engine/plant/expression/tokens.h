@@ -1,4 +1,4 @@
-// The words of an expression, each with its place.
+// Splits an expression into tokens with their positions.
 #pragma once
 
 #include <string>
@@ -12,19 +12,19 @@ enum class TokenKind { number, name, symbol, end };
 
 struct Token {
     TokenKind kind = TokenKind::end;
-    std::string_view text;  ///< of the expression; empty at its end
+    std::string_view text;  ///< text of the token; empty at the end
     double number = 0;
-    int position = 1;  ///< of its first character, from 1
+    int position = 1;  ///< position of its first character, from 1
 };
 
-/// Reads a text token by token. Blanks, tabs and line breaks separate tokens and mean nothing else.
+/// Reads a text token by token. Blanks, tabs and line breaks only separate tokens.
 class TokenReader {
 public:
     /// `text` must outlive the reader and its tokens.
     explicit TokenReader(std::string_view text) : text_(text) {}
 
-    /// After the last one always TokenKind::end. Errors: a character that belongs to no token, a number that is
-    /// malformed or beyond double precision; the message begins with "character n: ".
+    /// The next token; after the last one always TokenKind::end. Errors: a character that belongs to no token, a number
+    /// that is malformed or out of the range of double precision; the message begins with "character n: ".
     Expected<Token> next();
 
 private:
@@ -39,10 +39,11 @@ private:
 /// An error of an expression's text: "character 17: <what>".
 Error syntax_error(int position, const std::string& what);
 
-/// In quotation marks and shortened where long; bytes that are no UTF-8 are spelt out, so that any text can be quoted.
+/// In quotation marks and shortened if long; bytes that are not UTF-8 are written as codes, so that any text can be
+/// quoted.
 std::string quoted(std::string_view piece);
 
-/// Letters, digits and underscores, not beginning with a digit.
+/// True for letters, digits and underscores that do not begin with a digit.
 bool is_identifier(std::string_view name);
 
 }  // namespace tunewright

@@ -17,21 +17,21 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double kMaxCancellationDistance =
-    1e-8;                             // of a pole's size: a zero so near cancels it, both being computed eigenvalues
-constexpr double kMinModulus = 1e-4;  // of the largest entry of A: poles below it are known absolutely, not relatively
+constexpr double kMaxCancellationDistance = 1e-8;  // of a pole's size: a zero closer than this cancels it, because both
+                                                   // are computed eigenvalues
+constexpr double kMinModulus = 1e-4;  // of the largest entry of A: smaller poles have an absolute, not a relative error
 constexpr double kStabilityTolerance = 1e-10;  // of the largest entry of A: a real part above minus this may be 0
-constexpr double kMaxOriginModulus = 1e-13;    // of the largest entry of A: an eigenvalue below it is 0 and rounding
-constexpr double kMinDivisor = 1e-300;         // stands for 0 in a divisor
+constexpr double kMaxOriginModulus = 1e-13;    // of the largest entry of A: a smaller eigenvalue is 0 with rounding
+constexpr double kMinDivisor = 1e-300;         // stands for 0 as a divisor
 
 Error invalid(const std::string& field, const std::string& message) {
     return {ErrorKind::invalid_argument, "plant/" + field, message};
 }
 
-/// A value that the user gave, with the digits that people give.
+/// A given value with the usual number of digits.
 std::string as_given(double value) { return text(value, 6); }
 
-/// K/(T s + 1) in factors: T = 0 leaves a gain.
+/// K/(T s + 1) as factors: T = 0 leaves only a gain.
 void add_lag(Factors& factors, double T) {
     if (T == 0) return;
     factors.gain /= T;
@@ -60,7 +60,7 @@ Expected<Factors> factor_of(const OscillatorySopdt& p) {
     Factors factors{.gain = p.K, .integrators = 0, .zeros = {}, .poles = {}};
     factors.gain /= p.T * p.T;
     if (std::abs(p.zeta) >= 1) {
-        // The larger root directly, the other by their product: no cancellation.
+        // The larger root directly, the other one by their product, to avoid cancellation.
         const double large = -(p.zeta + std::copysign(std::sqrt(p.zeta * p.zeta - 1), p.zeta)) / p.T;
         factors.poles = {Complex(large), Complex(1 / (p.T * p.T) / large)};
     } else {
@@ -75,7 +75,7 @@ Expected<Factors> factor_of(const Ipdt& p) {
     return factors;
 }
 
-/// Drops leading zeros and counts trailing ones.
+/// Removes leading zeros and counts trailing ones.
 int trim(std::vector<double>& coefficients) {
     const auto first = std::find_if(coefficients.begin(), coefficients.end(), [](double c) { return c != 0; });
     coefficients.erase(coefficients.begin(), first);
@@ -97,7 +97,7 @@ Expected<Factors> factor_of(const TransferFunction& p) {
     return factors;
 }
 
-/// Conjugate pairs as neighbours, made exact; returns how many lie at the origin, which are left out.
+/// Makes conjugate pairs exact and neighbouring. Returns the number of roots at the origin, which are removed.
 int sort_pairs(const std::vector<Complex>& given, std::vector<Complex>& sorted) {
     int at_origin = 0;
     for (const Complex value : given) {
@@ -119,7 +119,7 @@ Expected<Factors> factor_of(const Zpk& p) {
     return factors;
 }
 
-/// Removes poles that zeros cancel. An unstable one is a mode that the loop cannot see or move.
+/// Removes poles that zeros cancel. An unstable one is an error: the loop can neither measure nor move such a mode.
 std::optional<Error> cancel_hidden_modes(Factors& factors, double scale) {
     for (auto zero = factors.zeros.begin(); zero != factors.zeros.end();) {
         const auto pole = std::find_if(factors.poles.begin(), factors.poles.end(), [&](Complex p) {
@@ -158,7 +158,7 @@ Expected<Factors> factor_of(const StateSpace& p) {
     const auto at_origin = [scale](Complex value) { return std::abs(value) <= kMaxOriginModulus * scale; };
     factors.integrators = static_cast<int>(std::erase_if(factors.poles, at_origin));
     factors.integrators -= static_cast<int>(std::erase_if(factors.zeros, at_origin));
-    // The gain from the response at a point away from every zero and pole.
+    // The gain from the response at a point far from every zero and pole.
     double radius = scale;
     for (const Complex value : factors.zeros) radius = std::max(radius, std::abs(value));
     for (const Complex value : factors.poles) radius = std::max(radius, std::abs(value));
@@ -223,7 +223,7 @@ private:
     void gain(double K) {
         if (finite("K", K) && K == 0) fault("K", "K is 0; it must not be 0. A plant with gain 0 cannot be controlled.");
     }
-    /// Of each number, at the first that is not finite.
+    /// Error at the first number that is not finite.
     bool all_finite(const std::string& field, const std::vector<double>& values) {
         const auto at = std::ranges::find_if_not(values, [](double x) { return std::isfinite(x); });
         if (at != values.end()) fault(field + "/" + std::to_string(at - values.begin()), "The number must be finite.");
@@ -251,8 +251,8 @@ void Rules::of(const TransferFunction& p) {
     if (below >= 0 && above > below)
         fault("num",
               "num has degree " + std::to_string(above) + " and den degree " + std::to_string(below) +
-                  "; the plant must be proper (degree of num <= degree of den). Coefficients stand in descending "
-                  "powers of s.");
+                  "; the plant must be proper (degree of num <= degree of den). Coefficients are in descending powers "
+                  "of s.");
 }
 
 void Rules::conjugates(const std::string& field, const std::vector<std::complex<double>>& roots) {
@@ -285,7 +285,7 @@ void Rules::of(const Zpk& p) {
 void Rules::length(const std::string& field, std::size_t size, std::size_t states) {
     if (size != states)
         fault(field, field + " has " + std::to_string(size) + " numbers and A " + std::to_string(states) +
-                         " rows; they must be equally many.");
+                         " rows; their numbers must be equal.");
 }
 
 void Rules::of(const StateSpace& p) {

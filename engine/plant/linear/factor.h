@@ -1,5 +1,4 @@
-// From a linear plant as the user describes it to gain, zeros, poles and integrators, and what its numbers must keep
-// before that.
+// Converts a linear plant from the user's form to gain, zeros, poles and integrators, and checks its numbers.
 #pragma once
 
 #include <complex>
@@ -21,12 +20,12 @@ struct Factors {
 /// Checks every number of the plant and factors it. Errors: as LinearPlant::make.
 Expected<Factors> factor(const Plant& plant);
 
-/// Complex zeros and poles count as conjugates where they differ by no more than this, relative: roots that a program
-/// has computed differ in their last digits.
+/// Relative difference within which complex zeros and poles count as conjugates: computed roots differ in their last
+/// digits.
 constexpr double kConjugateTolerance = 1e-9;
 
-/// Every fault at once, invalid_argument with `where` = "plant/<field>": numbers that are not finite, K = 0, L < 0, T
-/// <= 0 beside zeta, ranges of uncertainty that leave the nominal value out, empty or zero num or den, more zeros than
+/// All errors at once, invalid_argument with `where` = "plant/<field>": numbers that are not finite, K = 0, L < 0, T <=
+/// 0 together with zeta, ranges of uncertainty without the nominal value, empty or zero num or den, more zeros than
 /// poles, complex values without a conjugate, shapes of A, B, C.
 std::vector<Error> plant_faults(const Plant& plant);
 

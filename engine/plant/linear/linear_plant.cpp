@@ -15,8 +15,8 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double kMinRelativeRealPart = 1e-10;  // real part over size: computed roots on the axis come out with less
-constexpr double kMinDivisor = 1e-300;          // stands for 0 in a divisor
+constexpr double kMinRelativeRealPart = 1e-10;  // of a root's size: computed roots on the axis have a smaller real part
+constexpr double kMinDivisor = 1e-300;          // stands for 0 as a divisor
 
 /// (b2 s^2 + b1 s + b0)/(s^2 + a1 s + a0) of order 2, or (b1 s + b0)/(s + a0) of order 1.
 struct Section {
@@ -50,7 +50,8 @@ double take_nearest(std::vector<double>& from, double magnitude) {
     return value;
 }
 
-/// Denominators: complex pairs, then as many real pairs as complex zeros still need, then single real poles.
+/// Denominators: complex pairs, then as many pairs of real poles as the complex zeros still need, then single real
+/// poles.
 std::vector<Section> denominators(Roots poles, std::size_t zero_pairs) {
     std::vector<Section> sections;
     for (const Complex pole : poles.pairs)
@@ -65,7 +66,7 @@ std::vector<Section> denominators(Roots poles, std::size_t zero_pairs) {
     return sections;
 }
 
-/// Numerators: complex zero pairs to second-order sections, real zeros to the nearest section that has room.
+/// Numerators: complex zero pairs go to second-order sections, real zeros to the nearest section with room.
 void give_zeros(std::vector<Section>& sections, Roots zeros) {
     std::vector<int> room;
     room.reserve(sections.size());
@@ -90,7 +91,7 @@ void give_zeros(std::vector<Section>& sections, Roots zeros) {
             }
         }
         Section& section = sections[best];
-        // Multiply the numerator so far by (s - zero).
+        // Multiplies the numerator by (s - zero).
         section.b2 = section.b1;
         section.b1 = section.b0 - zero * section.b1;
         section.b0 = -zero * section.b0;
@@ -98,7 +99,7 @@ void give_zeros(std::vector<Section>& sections, Roots zeros) {
     }
 }
 
-/// Scales the numerator so that the static gain is one (where finite and non-zero); returns the factor taken out.
+/// Scales the numerator so that the static gain is one (if finite and non-zero); returns the factor that was removed.
 double normalise(Section& section) {
     if (section.a0 == 0 || section.b0 == 0) return 1;
     const double factor = section.b0 / section.a0;
@@ -120,7 +121,7 @@ SectionStates states_of(const Section& section) {
     SectionStates states;
     states.n = section.order;
     if (section.order == 1) {
-        // w = b1 v + (b0 - b1 a0)/(s + a0) v; the state carries the scale of the input.
+        // w = b1 v + (b0 - b1 a0)/(s + a0) v; the state has the scale of the input.
         const double scale = section.a0 != 0 ? std::abs(section.a0) : 1;
         states.F = {-section.a0, 0, 0, 0};
         states.g = {scale, 0};
@@ -138,7 +139,7 @@ SectionStates states_of(const Section& section) {
     return states;
 }
 
-/// Plain loops: with blocks of Eigen a plant takes 2 to 20 % longer to make (orders 1 to 8).
+/// It uses plain loops: with blocks of Eigen a plant takes 2 to 20 % longer to make (orders 1 to 8).
 void append(Realisation& whole, const SectionStates& part) {
     const int n = whole.n + part.n;
     std::vector<double> A(static_cast<std::size_t>(n * n), 0.0), B(static_cast<std::size_t>(n)),

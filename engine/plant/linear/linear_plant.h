@@ -1,5 +1,4 @@
-// The form in which every linear plant is computed with: gain, zeros and poles, dead time, and a state-space
-// realisation.
+// The form in which every linear plant is computed: gain, zeros and poles, dead time, and a state-space realisation.
 #pragma once
 
 #include <complex>
@@ -11,16 +10,16 @@
 
 namespace tunewright {
 
-/// x' = A x + B v, y = C x + D v with v(t) = u(t - L). A row by row, n x n.
+/// x' = A x + B v, y = C x + D v with v(t) = u(t - L). A is stored row by row, n x n.
 struct Realisation {
     int n = 0;
     std::vector<double> A, B, C;
     double D = 0;
 };
 
-/// P(s) = gain s^(-integrators) prod(s - z)/prod(s - p) e^(-Ls), proper. Poles and zeros at the origin are in
-/// `integrators` alone (negative: zeros at s = 0). Complex ones come in conjugate pairs, neighbours in the list,
-/// positive imaginary part first.
+/// P(s) = gain s^(-integrators) prod(s - z)/prod(s - p) e^(-Ls), proper. Poles and zeros at the origin appear only in
+/// `integrators` (negative: zeros at s = 0). Complex ones come in conjugate pairs, neighbours in the list, positive
+/// imaginary part first.
 class LinearPlant {
 public:
     /// Errors: invalid_argument with `where` = "plant/<field>": non-finite numbers, K = 0, L < 0, empty or zero `den`,
@@ -30,7 +29,7 @@ public:
 
     std::complex<double> at(std::complex<double> s) const;        ///< P(s), dead time included
     std::complex<double> rational(std::complex<double> s) const;  ///< without the dead time
-    /// P(j omega) at many frequencies, several times as quick; the same to 1e-12.
+    /// P(j omega) at many frequencies, several times as fast; each value agrees to 1e-12.
     std::vector<std::complex<double>> at(std::span<const double> omega) const;
 
     double gain() const { return gain_; }
@@ -43,13 +42,13 @@ public:
     int order() const { return static_cast<int>(poles_.size()) + (integrators_ > 0 ? integrators_ : 0); }
     int pole_excess() const;     ///< poles minus zeros, >= 0
     double direct_term() const;  ///< P(infinity) without the dead time: gain if the pole excess is 0, else 0
-    int unstable_poles() const;  ///< in the open right half-plane
+    int unstable_poles() const;  ///< number in the open right half-plane
     bool has_right_half_plane_zero() const;
     /// The first non-zero term: lim s^integrators P(s) for s -> 0 (static gain, or slope for one integrator).
     double low_frequency_gain() const;
     /// Sum of the lags minus the leads (stable ones: -1/p, -1/z) without the dead time.
     double lag_sum() const;
-    /// Dead time plus 1/|p| of every pole except those at 0; 0 where there is neither.
+    /// Dead time plus 1/|p| of every pole except those at 0; 0 if it has neither.
     double time_scale() const;
 
 private:

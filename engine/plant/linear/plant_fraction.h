@@ -1,5 +1,5 @@
-// A plant's rational part as a fraction: the formula that it is evaluated by, for one frequency or for two at a time.
-// `Number`: std::complex<double> or PairComplex.
+// A plant's rational part as a fraction: the formula with which it is evaluated, for one frequency or for two at a
+// time. `Number`: std::complex<double> or PairComplex.
 #pragma once
 
 #include <cmath>
@@ -11,7 +11,7 @@
 
 namespace tunewright {
 
-/// Of the plant without its dead time; finite for a finite s.
+/// For the plant without its dead time; finite for a finite s.
 template <class Number>
 FractionOf<Number> plant_fraction(const LinearPlant& plant, Number s) {
     FractionOf<Number> p{plant.gain(), 1.0};

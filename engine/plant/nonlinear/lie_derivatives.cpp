@@ -17,8 +17,8 @@ namespace {
 
 enum class InputDegree { absent, affine, nonlinear };
 
-// How the input enters the equations, read off their structure: the degree of every register by abstract interpretation
-// of the operations alone, so that (u + 1)^2 - u^2 counts as nonlinear.
+// Degree in the input of every register, from the structure of the equations: abstract interpretation of the operations
+// alone, so that (u + 1)^2 - u^2 counts as nonlinear.
 class DegreeAnalysis {
 public:
     explicit DegreeAnalysis(const Program& program)
@@ -71,8 +71,8 @@ private:
     std::vector<InputDegree> degrees_;
 };
 
-/// Why x' = f(x) + g(x) u does not hold: unsupported, `where` = "plant/equations/T", with the operation and its place.
-/// Empty where it holds.
+/// The error if x' = f(x) + g(x) u does not hold: unsupported, `where` = "plant/equations/T", with the operation and
+/// its place. Empty if it holds.
 std::optional<Error> not_affine(const NonlinearSystem& system) {
     const Program& program = system.program();
     const DegreeAnalysis analysis(program);
@@ -83,18 +83,22 @@ std::optional<Error> not_affine(const NonlinearSystem& system) {
         return Error{ErrorKind::unsupported, "plant/equations/" + state,
                      program.place(analysis.culprit(at)) + ": the input " + system.description().input.name +
                          " enters nonlinearly; this needs equations of the form f(x) + g(x) " +
-                         system.description().input.name + ". An actuator state makes them so."};
+                         system.description().input.name +
+                         ". Add the actuator as a state to bring them into this "
+                         "form."};
     }
     return std::nullopt;
 }
 
-// Values are compared with the sum of the terms' sizes that make them up, and with their values around.
-constexpr double kRelativeTermRounding = 1e-10;  // of the terms' sizes: no more than a derivative of order 20 loses
-constexpr double kMaxVanishingShare = 1e-8;      // of the largest value around: 0 at the operating point
-constexpr double kNeighbourhood = 0.02;  // of the states: far enough to see a zero as one, near enough to be valid
+// Values are compared with the sum of the sizes of their terms, and with the values in the neighbourhood.
+constexpr double kRelativeTermRounding = 1e-10;  // of the terms' sizes: at least the accuracy of a derivative of order
+                                                 // 20
+constexpr double kMaxVanishingShare = 1e-8;      // of the largest value in the neighbourhood: 0 at the operating point
+constexpr double kNeighbourhood = 0.02;  // of the states: large enough to show that a zero is isolated, small enough to
+                                         // stay valid
 constexpr int kNeighbours = 12;
 
-// |C| |A|^(r-1) |B|: what L_g L_f^(r-1) h is made of at x, without cancellation. Below 0 outside the domain.
+// |C| |A|^(r-1) |B|: the size of the terms of L_g L_f^(r-1) h at x, without cancellation. Negative outside the domain.
 std::vector<double> term_sizes(const NonlinearSystem& system, std::span<const double> x, int highest) {
     const auto n = x.size();
     std::vector<double> A(n * n), B(n), C(n), sizes;
@@ -131,7 +135,7 @@ struct InputEffect {
     bool anywhere = false, at_the_operating_point = false;
 };
 
-// Whether L_g L_f^(r-1) h vanishes identically or only at the operating point.
+// Decides whether L_g L_f^(r-1) h vanishes identically or only at the operating point.
 InputEffect input_effect(const NonlinearSystem& system, int r, const std::vector<std::vector<double>>& points,
                          const std::vector<std::vector<double>>& sizes) {
     InputEffect effect;
@@ -161,7 +165,7 @@ bool lie_derivatives(const NonlinearSystem& system, int r, std::span<const doubl
     TaylorTable<Coefficient> flow(rates, r);
     for (int i = 0; i < n; ++i) flow.series(i)[0] = constant_dual<1>(x[static_cast<std::size_t>(i)]);
     Coefficient* u = flow.series(n);
-    u[0] = variable_dual<1>(0, 0);  // f affine in u: at u = 0 the value is of f, the slope of g
+    u[0] = variable_dual<1>(0, 0);  // f is affine in u: at u = 0 the value is f, the slope is g
     for (int k = 1; k <= r; ++k) u[k] = constant_dual<1>(0);
     for (int k = 0; k < r; ++k) {
         flow.sweep(k, length);
@@ -200,11 +204,11 @@ Expected<int> relative_degree(const NonlinearSystem& system) {
         if (effect.anywhere)
             return unsupported("The relative degree is undefined at the operating point: " + u +
                                " enters the derivative of order " + std::to_string(r) +
-                               " of the output around it, but its coefficient is 0 there. Choose another operating "
-                               "point or output.");
+                               " of the output near it, but its coefficient is 0 at the operating point. Choose "
+                               "another operating point or output.");
     }
     return unsupported("The input " + u + " enters no derivative of the output up to the order " +
-                       std::to_string(system.order()) + " of the plant: it cannot move this output.");
+                       std::to_string(system.order()) + " of the plant, so it cannot move this output.");
 }
 
 ZeroDynamics zero_dynamics(const NonlinearSystem& system) {

@@ -14,7 +14,7 @@ Expected<LinearPlant> linearised_plant(const NonlinearSystem& system) {
     const auto degree = relative_degree(system);
     if (!degree && degree.error().where == "plant/output") return degree.error();
     return Error{linear.error().kind, "plant/equations",
-                 "The linearisation at the operating point cannot be worked with. " + linear.error().message};
+                 "The linearisation at the operating point is not supported. " + linear.error().message};
 }
 
 OperatingPoint operating_point(const NonlinearSystem& system) {
@@ -29,7 +29,7 @@ std::string coefficient(double x) { return "(" + exact_text(x) + ")"; }
 
 std::string state(int i) { return "x" + std::to_string(i + 1); }
 
-// "(0.5)*x1 + (-2)*x3"; empty where every coefficient is 0.
+// "(0.5)*x1 + (-2)*x3"; empty if every coefficient is 0.
 std::string weighted_states(std::span<const double> row) {
     std::string result;
     for (std::size_t i = 0; i < row.size(); ++i)
@@ -46,7 +46,7 @@ Expected<NonlinearSystem> as_equations(const LinearPlant& plant) {
     if (realisation.D != 0 || n == 0)
         return Error{ErrorKind::unsupported, "plant",
                      "The plant has a direct term: its output jumps with its input. This method needs a plant whose "
-                     "output follows from its states; add the actuator's or the sensor's lag."};
+                     "output depends only on its states; add the lag of the actuator or of the sensor."};
     NonlinearPlant written{.states = {},
                            .parameters = {},
                            .equations = {},

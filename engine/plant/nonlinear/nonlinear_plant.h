@@ -1,5 +1,5 @@
 // A plant described by differential equations in text: x' = f(x, u(t - L)), y = h(x). All values are absolute, in the
-// user's units; everything linear works on the linearisation about the steady state (nonlinear_system.h).
+// user's units; linear methods use the linearisation about the steady state (nonlinear_system.h).
 #pragma once
 
 #include <optional>
@@ -18,7 +18,7 @@ struct NamedExpression {
     std::string name, text;
 };
 
-/// A number, or an expression in numbers and other parameters (in any order, without circles).
+/// A number, or an expression of numbers and other parameters (in any order, without circular definitions).
 struct Parameter {
     std::string name;
     std::variant<double, std::string> value;
@@ -33,9 +33,9 @@ struct ManipulatedInput {
 struct NonlinearPlant {
     std::vector<NamedValue> states;  ///< values near the operating point
     std::vector<Parameter> parameters;
-    std::vector<NamedExpression> equations;  ///< d/dt of each state, in states, parameters and the input
+    std::vector<NamedExpression> equations;  ///< d/dt of each state as a function of states, parameters and the input
     ManipulatedInput input;
-    std::string output;  ///< in states and parameters
+    std::string output;  ///< a function of states and parameters
     double L = 0;        ///< dead time of the input, >= 0
 };
 

@@ -17,12 +17,12 @@ namespace tunewright {
 namespace {
 
 constexpr int kMaxIterations = 100, kMaxHalvings = 40;
-constexpr double kStateRounding = 1e-16;  // of the largest state: what a state at 0 may be off by
-constexpr double kSufficientFall = 1e-4;  // of the fall that Newton's step promises (Armijo's rule)
-constexpr double kNearFloor = 1e-6;       // of the largest state: moves below it are near whatever a state's own size
+constexpr double kStateRounding = 1e-16;  // of the largest state: the rounding error of a state at 0
+constexpr double kSufficientFall = 1e-4;  // of the decrease that Newton's step promises (Armijo's rule)
+constexpr double kNearFloor = 1e-6;       // of the largest state: smaller moves count as near for any state
 constexpr double kSingularCutoff = 1e-11, kMaxStep = 0.1, kConvergedStep = 1e-9, kConvergedRates = 1e-10;
 
-/// Seven digits: a steady state is meant to be copied into a request.
+/// Seven digits, because users copy a steady state into a request.
 std::string precise(double x) { return text(x, 7); }
 
 /// States and their rates.
@@ -62,7 +62,7 @@ private:
         return result;
     }
 
-    // The sizes of the states and of the terms of each rate.
+    // Sets the sizes of the states and of the terms of each rate.
     void measure(const std::vector<double>& x, const std::vector<double>& A, const std::vector<double>& B) {
         state_size_.assign(n_, 0);
         for (std::size_t i = 0; i < n_; ++i)
@@ -86,8 +86,8 @@ private:
         return result;
     }
 
-    // A state that is 0, such as a speed, has no size of its own: it is what would weigh as much as the others do in
-    // one of the rates; 1 where there is none.
+    // The size of a state that is 0, such as a speed: the value that would weigh as much as the other states in one of
+    // the rates; 1 if there is none.
     double size_beside(const std::vector<double>& others, const std::vector<double>& A, std::size_t j) const {
         double size = std::numeric_limits<double>::infinity();
         for (std::size_t i = 0; i < n_; ++i)
@@ -101,7 +101,7 @@ private:
         return result;
     }
 
-    // In sizes of the states.
+    // The step relative to the sizes of the states.
     std::vector<double> newton_step(std::vector<double> A, const std::vector<double>& rates) const {
         std::vector<double> right(n_);
         for (std::size_t i = 0; i < n_; ++i) {
@@ -111,7 +111,7 @@ private:
         return least_norm_solution(A, right, static_cast<int>(n_), kSingularCutoff);
     }
 
-    // Along the step as far as the rates fall; false where they do not.
+    // Moves along the step as far as the rates decrease; false if they do not.
     bool advance(Iterate& now, const std::vector<double>& step, double step_size) const {
         const double before = norm(now.rates);
         double length = std::min(1.0, kMaxStep / step_size);
@@ -163,8 +163,8 @@ private:
 
     Error too_far(const Iterate& found) const {
         return invalid("There is no steady state near these states for " + system_.description().input.name + " = " +
-                       precise(u_) + ": the next one found is " + states(found.x) +
-                       ". Give these states if it is meant, or change input.nominal.");
+                       precise(u_) + ": the next one is " + states(found.x) +
+                       ". Give these states if you mean that one, or change input.nominal.");
     }
 
     const NonlinearSystem& system_;
@@ -174,10 +174,10 @@ private:
 };
 
 /// f(x, u_nominal) = 0 by Newton's method from `start`: scaled by the states' sizes, least-norm steps where the
-/// Jacobian is singular (an integrating tank keeps the level that was given), damped until the rates fall. Accepted
-/// where Newton's step has come down to rounding, the rates are 0 to 1e-10 of their terms, and no state has left the
-/// factor of two around its start (a state given as 0: the distance 1).
-/// Errors, invalid_argument: not finite on the start or the way (names the operation); none near (says how far it got).
+/// Jacobian is singular (an integrating tank keeps the given level), damped until the rates decrease. The result is
+/// accepted if Newton's step has fallen to rounding, the rates are 0 to 1e-10 of their terms, and no state has changed
+/// by more than a factor of two (a state given as 0: by more than 1). Errors, invalid_argument: not finite at the start
+/// or on the way (names the operation); no steady state near (reports the last iterate).
 Expected<std::vector<double>> steady_state_near(const NonlinearSystem& system, std::span<const double> start) {
     return SteadyStateSearch(system, start).run();
 }
@@ -199,7 +199,7 @@ Variables<double> variables(std::span<const double> x, double u) {
     return result;
 }
 
-// With derivatives in N directions, the first of them `first`.
+// With derivatives in N directions, beginning with direction `first`.
 template <int N>
 Variables<Dual<N>> dual_variables(std::span<const double> x, double u, std::size_t first) {
     Variables<Dual<N>> result;
@@ -256,7 +256,7 @@ Expected<NonlinearSystem> NonlinearSystem::with(const std::vector<NamedValue>& p
                                         [&](const Parameter& parameter) { return parameter.name == given.name; });
         if (found == plant.parameters.end())
             return Error{ErrorKind::invalid_argument, given.name,
-                         quoted(given.name) + " is no parameter of this plant."};
+                         quoted(given.name) + " is not a parameter of this plant."};
         found->value = given.value;
     }
     for (std::size_t i = 0; i < plant.states.size(); ++i) plant.states[i].value = x_steady_[i];
@@ -278,7 +278,7 @@ double NonlinearSystem::u_max() const { return plant_.input.max.value_or(std::nu
 
 bool NonlinearSystem::rates(std::span<const double> x, double u, std::span<double> dx) const {
     program_->joint.evaluate<double>(variables(x, u), dx.first(x.size()));
-    double sum = 0;  // one test for all: 0 * inf is not a number
+    double sum = 0;  // one test for all: 0 * inf is NaN
     for (std::size_t i = 0; i < x.size(); ++i) sum += 0 * dx[i];
     return sum == 0;
 }

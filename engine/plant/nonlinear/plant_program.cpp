@@ -19,10 +19,10 @@
 namespace tunewright {
 namespace {
 
-/// Parameters as numbers: those given as expressions are worked out from the others.
+/// The values of the parameters; those given as expressions are computed from the others.
 struct ParameterValues {
     std::map<std::string, double> values;  // all finite
-    int nodes = 0;                         // numbers, names and operations of the expressions among them
+    int nodes = 0;                         // numbers, names and operations of the parameters' expressions
 };
 
 class Resolution {
@@ -63,7 +63,7 @@ private:
             std::string circle;
             for (auto at = begin; at != path_.end(); ++at) circle += *at + " -> ";
             return Error{ErrorKind::invalid_argument, "plant/parameters/" + name,
-                         "The parameters are defined in a circle: " + circle + name + "."};
+                         "The definitions of the parameters are circular: " + circle + name + "."};
         }
         path_.push_back(name);
         const SyntaxTree& tree = trees_.at(name);
@@ -79,7 +79,7 @@ private:
         auto error = builder.add_output(tree, "parameter " + name, [this](const std::string& other) -> NameMeaning {
             if (const auto found = result_.values.find(other); found != result_.values.end()) return found->second;
             return UnknownName{quoted(other) +
-                               " is no parameter; parameters are made of numbers and other parameters."};
+                               " is not a parameter; a parameter may use only numbers and other parameters."};
         });
         if (error) return failed(name, error->message);
         const Program program = builder.finish();
@@ -105,13 +105,13 @@ Error invalid(const std::string& where, const std::string& message) {
 
 std::optional<Error> check_name(const std::string& name, const std::string& room, std::set<std::string>& taken) {
     if (!is_identifier(name))
-        return invalid(
-            room, quoted(name) + " cannot be a name: letters, digits and underscores, not beginning with a digit.");
+        return invalid(room, quoted(name) +
+                                 " cannot be a name. A name has letters, digits and underscores, and does not begin "
+                                 "with a digit.");
     const std::string where = room == "input" ? room : room + "/" + name;
     if (is_function_name(name)) return invalid(where, quoted(name) + " is a function and cannot be a name.");
     if (!taken.insert(name).second)
-        return invalid(where,
-                       quoted(name) + " is named twice: states, parameters and the input have names of their own.");
+        return invalid(where, quoted(name) + " is used twice: states, parameters and the input need different names.");
     return std::nullopt;
 }
 
@@ -128,7 +128,7 @@ std::optional<Error> check_input(const ManipulatedInput& input) {
 }
 
 std::optional<Error> check_numbers_and_names(const NonlinearPlant& plant) {
-    if (plant.states.empty()) return invalid("states", "A nonlinear plant has at least one state.");
+    if (plant.states.empty()) return invalid("states", "A nonlinear plant needs at least one state.");
     if (plant.states.size() > kMaxStates)
         return invalid("states", std::to_string(plant.states.size()) + " states; at most " +
                                      std::to_string(kMaxStates) + " are possible.");
@@ -167,7 +167,7 @@ Expected<std::vector<const NamedExpression*>> equations_in_order(const Nonlinear
     }
     if (!by_name.empty())
         return invalid("equations", "The equation of " + quoted(by_name.begin()->first) +
-                                        " belongs to no state: name a state of that name with its operating value.");
+                                        " belongs to no state: add a state of that name with its operating value.");
     return result;
 }
 
@@ -205,7 +205,7 @@ private:
         if (const auto variable = variables_.find(name); variable != variables_.end())
             return VariableIndex{static_cast<int>(variable->second)};
         if (const auto value = parameters_.find(name); value != parameters_.end()) return value->second;
-        return UnknownName{quoted(name) + " is no state, parameter or input of this plant."};
+        return UnknownName{quoted(name) + " is not a state, parameter or input of this plant."};
     }
 
     std::optional<Error> add(ProgramBuilder& builder, const std::string& where, const std::string& source,
@@ -224,10 +224,10 @@ private:
         if (used[n])
             return invalid("output",
                            "The output contains the input " + plant_.input.name +
-                               ": y = h(x) must follow from the states alone. Make the actuator or sensor a state.");
+                               ", but y = h(x) must depend only on the states. Make the actuator or sensor a state.");
         for (std::size_t i = 0; i < n; ++i)
             if (used[i]) return std::nullopt;
-        return invalid("output", "The output contains no state: it would never move.");
+        return invalid("output", "The output contains no state, so it would never change.");
     }
 
     const NonlinearPlant& plant_;

@@ -1,5 +1,4 @@
-// A nonlinear plant's texts checked and compiled: everything that can be said about them without evaluating the
-// equations.
+// Checks and compiles a nonlinear plant's texts: all checks that do not need an evaluation of the equations.
 #pragma once
 
 #include "engine/expected.h"
@@ -8,16 +7,16 @@
 
 namespace tunewright {
 
-/// `joint` for rates and derivatives, `output` where the output is needed alone, which is quicker.
+/// `joint` for rates and derivatives, `output` for the output alone, which is faster.
 struct PlantProgram {
     Program joint;   ///< outputs 0 to n - 1: d/dt of the states; output n: y. Variables: the states, then the input
-    Program output;  ///< y alone, of the same variables
+    Program output;  ///< y alone, with the same variables
 };
 
 /// At most 20 states, 200 parameters, and 5000 numbers, names and operations in all texts together. Parameters given as
-/// expressions are worked out first, in any order. The cost is linear in the lengths of the texts.
+/// expressions are computed first, in any order. The cost is linear in the lengths of the texts.
 ///
-/// Errors, the first fault met, invalid_argument with `where` =
+/// Errors: the first one found, invalid_argument with `where` =
 ///   "plant/states/T", "plant/parameters/k", "plant/input", "plant/input/nominal", "plant/input/min", "plant/L": a name
 ///       that is none or is taken, a number that is not finite, an empty range of the input, no or too many states;
 ///   "plant/parameters/k": a text that is no expression, a name that is no parameter, a circle (which the message
@@ -25,7 +24,7 @@ struct PlantProgram {
 ///   "plant/equations", "plant/equations/T": a state without an equation or with two, an equation without a state, a
 ///       text that is no expression (with its place), an unknown name;
 ///   "plant/output": the same of the output; an output that contains the input, or no state.
-/// Whether the equations can be evaluated at the states is NonlinearSystem::make's to say.
+/// NonlinearSystem::make checks whether the equations can be evaluated at the states.
 Expected<PlantProgram> compile_plant(const NonlinearPlant& plant);
 
 }  // namespace tunewright

@@ -34,11 +34,11 @@ void append(std::vector<Polynomial>& to, const std::vector<Polynomial>& from) {
     to.insert(to.end(), from.begin(), from.end());
 }
 
-/// a s^2 + b s + c, c != 0, as the lags (T1 s + 1)(T2 s + 1) or with a damping.
+/// a s^2 + b s + c, c != 0, as the lags (T1 s + 1)(T2 s + 1), or with a damping.
 Plant second_order(double gain, const Polynomial& p, double L) {
     const double K = gain / p[2], a = p[0] / p[2], b = p[1] / p[2];
     double discriminant = b * b - 4 * a;
-    // Coefficients are typed in decimals: a double root is one, whatever their last digit.
+    // Coefficients are typed as decimals: a double root must be recognised despite their last digits.
     if (std::abs(discriminant) <= 8 * std::numeric_limits<double>::epsilon() * b * b) discriminant = 0;
     if (discriminant < 0) {
         const double T = std::sqrt(a);
@@ -60,7 +60,7 @@ Plant transfer_function(const Formula& f) {
     return plant;
 }
 
-/// Of a factor of first or second degree.
+/// Adds the roots of a factor of first or second degree.
 void add_roots(std::vector<Complex>& roots, const Polynomial& p) {
     if (p.size() == 2) {
         roots.emplace_back(p[1] == 0 ? 0 : -p[1] / p[0]);
@@ -84,7 +84,7 @@ Plant zeros_and_poles(const Formula& f) {
     return plant;
 }
 
-/// The plant without zeros and of at most second order, where it has a type of its own.
+/// A plant without zeros and of at most second order, if it has a type of its own.
 std::optional<Plant> simple_plant(const Formula& f) {
     const std::size_t order = degree(f.den);
     if (!f.num.empty() || order > 2) return std::nullopt;
@@ -128,7 +128,7 @@ Formula quotient_of(double gain, std::vector<Polynomial> num, std::vector<Polyno
     return out;
 }
 
-/// s - r, and (s - r)(s - r*) where the next root is the conjugate.
+/// s - r, or (s - r)(s - r*) if the next root is the conjugate.
 std::vector<Polynomial> root_factors(const std::vector<Complex>& roots) {
     std::vector<Polynomial> out;
     std::vector<bool> used(roots.size());
@@ -139,7 +139,7 @@ std::vector<Polynomial> root_factors(const std::vector<Complex>& roots) {
             out.push_back({1, r.real() == 0 ? 0 : -r.real()});
             continue;
         }
-        // Where two programs differ in the last digits, the conjugate is the nearest one of the other sign.
+        // Computed conjugates may differ in the last digits: the partner is the nearest root with the other sign.
         std::size_t partner = roots.size();
         for (std::size_t j = i + 1; j < roots.size(); ++j)
             if (!used[j] && (partner == roots.size() ||
@@ -157,7 +157,7 @@ Formula formula(const OscillatorySopdt& p) { return quotient_of(p.K, {}, {{p.T *
 Formula formula(const Ipdt& p) { return quotient_of(p.K, {}, {{1, 0}, {p.T, 1}}, p.L); }
 Formula formula(const TransferFunction& p) { return quotient_of(1, {p.num}, {p.den}, p.L); }
 Formula formula(const Zpk& p) { return quotient_of(p.K, root_factors(p.zeros), root_factors(p.poles), p.L); }
-Error formula(const StateSpace&) { return refusal("a state space has no formula in s of its own."); }
+Error formula(const StateSpace&) { return refusal("a state space has no formula in s."); }
 
 }  // namespace
 
@@ -208,8 +208,7 @@ Expected<Formula> sum(const Formula& a, const Formula& b) {
     if (b.gain == 0) return a;
     if (a.L != b.L)
         return refusal("the terms of a sum have different dead times, " + text(a.L, 6) + " and " + text(b.L, 6) +
-                       "; a linear plant here has one dead time for all of it. Approximate one of them, or leave it "
-                       "out.");
+                       "; a linear plant can have only one dead time here. Approximate one of them, or omit it.");
     const auto scaled = [](const Formula& f, const std::vector<Polynomial>& others) {
         Polynomial out = times(expanded(f.num), expanded(others));
         for (double& c : out) c *= f.gain;
@@ -226,15 +225,14 @@ Expected<Formula> sum(const Formula& a, const Formula& b) {
 
 Expected<Plant> plant_of(const Formula& f) {
     if (!finite(f)) return refusal("the numbers are too large to be computed with.");
-    if (f.gain == 0) return refusal("the formula is 0: the input would not move the measurement.");
+    if (f.gain == 0) return refusal("the formula is 0, so the input would not move the measurement.");
     if (f.L < 0)
-        return refusal("the formula looks " + text(-f.L, 6) +
-                       " into the future; a dead time has a minus sign, as in e^(-3s).");
+        return refusal("the formula has a dead time of -" + text(-f.L, 6) +
+                       ", which is not causal; write a dead time with a minus sign, as in e^(-3s).");
     const std::size_t zeros = degree(f.num), poles = degree(f.den);
     if (zeros > poles)
         return refusal("the numerator is of degree " + std::to_string(zeros) + ", the denominator of " +
-                       std::to_string(poles) +
-                       ": such a plant would differentiate its input without limit. Is a bracket missing?");
+                       std::to_string(poles) + ", so the plant would be improper. Is a bracket missing?");
     if (auto plant = simple_plant(f)) return *std::move(plant);
     return of_small_factors(f) ? zeros_and_poles(f) : transfer_function(f);
 }

@@ -24,7 +24,7 @@ void read_separator(Cursor& cursor) {
     if (!cursor.failed() && !cursor.skip(",")) cursor.unexpected("\",\" and the next argument");
 }
 
-/// What stands behind the last argument, up to the closing bracket: 0 or a delay.
+/// Reads the part after the last argument, up to the closing bracket: nothing or a delay.
 double read_delay_and_end(Cursor& cursor, const Word& opened) {
     double L = 0;
     while (!cursor.failed() && cursor.skip(",")) {
@@ -32,9 +32,9 @@ double read_delay_and_end(Cursor& cursor, const Word& opened) {
         const bool named = word.kind == Word::Kind::quoted || word.kind == Word::Kind::name;
         if (!named || !is_delay_word(lower(word.text))) {
             cursor.fail(word.position, word.kind == Word::Kind::number
-                                           ? "a further number would be a sample time; the plant must be in "
+                                           ? "another number would be a sample time, but the plant must be in "
                                              "continuous time."
-                                           : "known here is 'InputDelay' with its value.");
+                                           : "only 'InputDelay' with its value is known here.");
             return 0;
         }
         cursor.advance();
@@ -56,7 +56,7 @@ Formula refused(Cursor& cursor, int position, const std::string& what) {
     return {};
 }
 
-std::string order_fault() { return "the order is beyond " + std::to_string(kMaxOrder) + "."; }
+std::string order_fault() { return "the order is above " + std::to_string(kMaxOrder) + "."; }
 
 Formula polynomial_call(Cursor& cursor, const Word& opened) {
     const int position = cursor.now().position;
@@ -90,11 +90,11 @@ Formula root_call(Cursor& cursor, const Word& opened) {
     return *formula_of(plant);
 }
 
-/// Whether a name in lower case is one of the calls, tf or zpk or another name of them.
+/// True if a name in lower case is one of the calls: tf, zpk or a synonym.
 bool is_matrix_call(const std::string& name) { return is_polynomial_call(name) || is_root_call(name); }
 
-/// The call whose name is at the cursor, a bracket behind it. Lists are written [1 2], [1, 2] or [1; 2]; the delay may
-/// be written InputDelay=L too.
+/// Reads the call whose name is at the cursor, followed by a bracket. Lists are written [1 2], [1, 2] or [1; 2]; the
+/// delay may also be written InputDelay=L.
 Formula read_matrix_call(Cursor& cursor) {
     const std::string name = lower(cursor.now().text);
     cursor.advance();
@@ -126,8 +126,11 @@ private:
     void refuse_rest() {
         const Word& word = cursor_.now();
         if (word.text == ")" || word.text == "]" || word.text == "}")
-            return cursor_.fail(word.position, "this bracket closes nothing.");
-        if (word.text == "=") return cursor_.fail(word.position, "\"=\" stands in a formula; write the formula alone.");
+            return cursor_.fail(word.position, "this closing bracket has no opening one.");
+        if (word.text == "=")
+            return cursor_.fail(word.position,
+                                "\"=\" is not allowed in a formula; write only the "
+                                "formula.");
         cursor_.unexpected("an operator or the end");
     }
 
@@ -140,7 +143,7 @@ private:
         const Level level(depth_);
         if (depth_ > kMaxDepth) {
             cursor_.fail(cursor_.now().position,
-                         "brackets stand more than " + std::to_string(kMaxDepth) + " deep in one another.");
+                         "brackets are nested more than " + std::to_string(kMaxDepth) + " deep.");
             return {};
         }
         Formula left = product_of_factors();
@@ -188,8 +191,8 @@ private:
             } else if (begins_factor()) {
                 if (divided && !at_dead_time()) {
                     cursor_.fail(position,
-                                 "what does the division before this divide by? a/b c may be a/(b c) or (a/b) c; put "
-                                 "brackets around what belongs together.");
+                                 "the division before this is ambiguous: a/b c may be a/(b c) or (a/b) c. Add "
+                                 "brackets.");
                     return {};
                 }
                 left = product(std::move(left), factor());
@@ -283,7 +286,7 @@ private:
         if (small != std::string::npos && word.text[small + 1] == '-' && next.text == "s" && !next.after_blank) {
             cursor_.fail(word.position, word.text + "s may be " + exact_text(word.number) + " s or " +
                                             word.text.substr(0, small) + " e^(" + word.text.substr(small + 1) +
-                                            " s); write the one that is meant.");
+                                            " s); write the one that you mean.");
             return {};
         }
         const double value = read_number(cursor_, Commas::decimal);
@@ -292,7 +295,7 @@ private:
         return unit ? number_with_unit(value, *unit) : Formula{.gain = value};
     }
 
-    // 10 min s: the unit belongs to the time that s is multiplied with.
+    // 10 min s: the unit belongs to the time that multiplies s.
     Formula number_with_unit(double value, double unit) {
         const Word word = cursor_.now();
         cursor_.advance();
@@ -302,10 +305,10 @@ private:
         const Word& s = cursor_.peek(sign ? 1 : 0);
         if (!cursor_.failed() && (s.kind != Word::Kind::name || s.text != "s" || times < 1))
             cursor_.fail(word.position,
-                         "a unit of time stands between its number and s, as in (10 " + word.text + " s + 1).");
+                         "write a unit of time between its number and s, as in (10 " + word.text + " s + 1).");
         if (!cursor_.failed() && own_time_ <= 0)
             cursor_.fail(word.position,
-                         "units.time is no unit of time that is known; write the times without " + word.text + ".");
+                         "units.time is not a known unit of time; write the times without " + word.text + ".");
         if (cursor_.failed()) return {};
         if (sign) cursor_.advance();
         for (int i = 0; i < times; ++i) value = in_own_time(value, unit, own_time_);
@@ -329,16 +332,17 @@ private:
     void refuse_name(const Word& word) {
         const std::string name = quoted(word.text);
         if (lower(word.text) == "ss" || lower(word.text) == "statespace")
-            return cursor_.fail(word.position,
-                                "a state space is given by its matrices, as a plant of type state_space.");
-        if (word.text == "e") return cursor_.fail(word.position, "e stands for a dead time, as in e^(-3s).");
+            return cursor_.fail(word.position, "give a state space by its matrices, as a plant of type state_space.");
+        if (word.text == "e") return cursor_.fail(word.position, "e is only allowed in a dead time, as in e^(-3s).");
         if (word.text == "p" || word.text == "z" || word.text == "q")
-            return cursor_.fail(word.position, name + " is no variable here; write s, in continuous time.");
+            return cursor_.fail(word.position, name + " is not a variable here; write s, in continuous time.");
         if (seconds_of_unit(word.text))
             return cursor_.fail(word.position, name +
-                                                   " is a unit of time: it stands behind its number, as in (10 min s "
-                                                   "+ 1).");
-        cursor_.fail(word.position, name + " is not known; a formula has numbers, s and e^(-3s). Write its value in.");
+                                                   " is a unit of time; write it after its number, as in (10 min s + "
+                                                   "1).");
+        cursor_.fail(word.position, name +
+                                        " is unknown; a formula has numbers, s and e^(-3s). Write its value "
+                                        "instead.");
     }
 
     Formula fraction() {
@@ -368,7 +372,7 @@ private:
         return dead_time_of(exponent, word.position);
     }
 
-    /// -3s: what is written without a sign.
+    /// An exponent without brackets, such as -3s: the factors up to the next sign.
     Formula bare_exponent() {
         const double sign = cursor_.skip("-") ? -1 : 1;
         if (sign > 0) cursor_.skip("+");
@@ -388,8 +392,8 @@ private:
         if (exponent.gain == 0) return {};
         if (!proportional) {
             cursor_.fail(position, exponent.is_number()
-                                       ? "the exponent has no s; a dead time of 3 is e^(-3s), with its brackets."
-                                       : "only a dead time can stand in an exponent, as in e^(-3s).");
+                                       ? "the exponent has no s; write a dead time of 3 as e^(-3s), with the brackets."
+                                       : "only a dead time is allowed in an exponent, as in e^(-3s).");
             return {};
         }
         return {.gain = 1, .L = -exponent.gain * exponent.num[0][0]};

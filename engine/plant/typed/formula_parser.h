@@ -1,6 +1,6 @@
-// The grammar of a plant that is typed as a formula of s. The reader takes words from a cursor; where the cursor has
-// failed, what it answers means nothing. `own_time`: seconds of the unit that times are answered in; 0: not known,
-// units are refused.
+// The grammar of a plant that is typed as a formula of s. The reader takes words from a cursor; if the cursor has
+// failed, the result is meaningless. `own_time`: seconds of the unit of the resulting times; 0: unknown, units are
+// refused.
 #pragma once
 
 #include "engine/plant/typed/formula.h"
@@ -19,8 +19,8 @@ namespace tunewright::typed {
 ///
 ///   call:     tf(num, den [, 'InputDelay', L]) | zpk(zeros, poles, gain [, ...]) and their names in Python
 ///
-/// e^-3s needs no brackets: its exponent goes on over what is written without a sign. After a division a factor without
-/// a sign is refused (1/2s is 1/(2s) to some and s/2 to others), but for a dead time.
+/// e^-3s needs no brackets: its exponent extends to the next sign. After a division a factor without an operator is
+/// refused, because some read 1/2s as 1/(2s) and others as s/2; a dead time is allowed.
 Formula read_formula(Cursor& cursor, double own_time);
 
 }  // namespace tunewright::typed

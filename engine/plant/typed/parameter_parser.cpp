@@ -35,13 +35,13 @@ std::optional<ParameterForm> kind_of(const Word& word) {
     return std::nullopt;
 }
 
-/// What a name stands for; empty: nothing here. Two words may be one: dead time, time constant.
+/// The meaning of a name; empty: unknown. Two words may form one name: dead time, time constant.
 std::string meaning(const Word& word, const Word& next, bool& both) {
     const std::string name = lower(word.text), joined = name + lower(next.text);
     both = next.kind == Word::Kind::name && (joined == "deadtime" || joined == "timeconstant");
     for (const Name& known : kNames)
         if ((both ? joined : name) == known.written) return known.meant;
-    // Single letters as matrix programs have them, where capitals mean something else.
+    // Single letters as in matrix programs, where capitals have another meaning.
     if (word.text == "z") return "zeros";
     if (word.text == "p") return "poles";
     return "";
@@ -81,8 +81,10 @@ private:
         bool both = false;
         const std::string name = meaning(word, cursor_.peek(1), both);
         if (name.empty()) {
-            return cursor_.fail(word.position, quoted(word.text) + " is no parameter of a plant; known are " + kKnown +
-                                                   ", each with its value, as in K=2 T=10 L=3.");
+            return cursor_.fail(word.position, quoted(word.text) +
+                                                   " is not a parameter of a plant; known "
+                                                   "are " +
+                                                   kKnown + ", each with a value, as in K=2 T=10 L=3.");
         }
         cursor_.advance();
         if (both) cursor_.advance();
@@ -109,7 +111,7 @@ private:
         const Word& word = cursor_.peek(slope ? 1 : 0);
         bool both = false;
         const Word& behind = cursor_.peek(slope ? 2 : 1);
-        // What is followed by = is the next name, known or not.
+        // A word before = is the next name, known or not.
         if (word.kind != Word::Kind::name || is_assigned(behind) || (!slope && !meaning(word, behind, both).empty()))
             return value;
         value.unit = word.text == "s" ? 1.0 : seconds_of_unit(word.text);
@@ -118,7 +120,7 @@ private:
                                             " is neither a parameter nor a unit of time (ms, s, min, h, "
                                             "d); units of K belong to units.u and units.y.");
         } else if ((name == "K" && !slope) || name == "zeta" || name == "w0") {
-            cursor_.fail(word.position, "a unit of time belongs to a time, not to " + name + ".");
+            cursor_.fail(word.position, "a unit of time is only allowed after a time, not after " + name + ".");
         }
         if (slope) cursor_.advance();
         cursor_.advance();
@@ -148,14 +150,14 @@ private:
     Plant zeros_and_poles() {
         for (const auto& [name, value] : values_)
             if (name != "K" && name != "L") {
-                cursor_.fail(value.position, name + " does not belong to zeros and poles; gain and delay do.");
+                cursor_.fail(value.position, name + " is not allowed with zeros and poles; only gain and delay are.");
                 return Fopdt();
             }
         for (const auto& [name, value] : values_)
             if (value.unit && name == "L" && zeros_.value_or(Roots()).size() + poles_.value_or(Roots()).size() > 0) {
                 cursor_.fail(value.position,
-                             "zeros and poles have no unit here; write the delay without one, in the "
-                             "same unit of time.");
+                             "zeros and poles have no unit here; write the delay in the same unit of time, without the "
+                             "unit.");
                 return Fopdt();
             }
         return Zpk{.K = values_.contains("K") ? values_.at("K").number : 1,
@@ -166,7 +168,7 @@ private:
 
     bool is_time(const std::string& name) const { return name[0] == 'T' || name == "L"; }
 
-    // One unit at the end may have been meant for all: it is asked for.
+    // A single unit at the end may have been meant for all times: the error asks for it.
     void check_units() {
         const std::string *with = nullptr, *without = nullptr;
         for (const auto& [name, value] : values_) {
@@ -183,7 +185,7 @@ private:
         }
         if (with && own_time_ <= 0)
             cursor_.fail(values_.at(*with).position,
-                         "units.time is no unit of time that is known; write the times without units.");
+                         "units.time is not a known unit of time; write the times without units.");
     }
 
     void convert() {
@@ -211,7 +213,7 @@ private:
         if (given("zeta") || given("w0")) return oscillatory(K, L);
         if (given("T1") || given("T2")) {
             if (given("T") || integrating())
-                return missing("T1 and T2 make a second order; T does not stand beside them.");
+                return missing("T1 and T2 define a second order; T is not allowed with them.");
             return Sopdt{.K = K, .T1 = number("T1"), .T2 = number("T2"), .L = L};
         }
         if (integrating()) return Ipdt{.K = K, .L = L, .T = number("T")};
@@ -224,9 +226,9 @@ private:
 
     Plant oscillatory(double K, double L) {
         if (!given("zeta")) return missing("zeta is missing, the damping that goes with w0.");
-        if (given("T") == given("w0")) return missing("beside zeta either T or w0 = 1/T belongs, one of them.");
+        if (given("T") == given("w0")) return missing("zeta needs either T or w0 = 1/T, not both.");
         if (given("w0") && number("w0") == 0) return missing("w0 must not be 0.");
-        if (given("T1") || given("T2")) return missing("zeta goes with T, not with T1 and T2.");
+        if (given("T1") || given("T2")) return missing("zeta is allowed with T, not with T1 and T2.");
         return OscillatorySopdt{
             .K = K, .T = given("T") ? number("T") : 1 / number("w0"), .zeta = number("zeta"), .L = L};
     }
@@ -244,7 +246,7 @@ private:
 
 namespace {
 
-/// True if a formula stands behind "K =" at the cursor, as in K = 3/(10s+1): a bracket, or a number with one behind it.
+/// True if a formula follows "K =" at the cursor, as in K = 3/(10s+1): a bracket, or a number with a bracket after it.
 bool names_a_formula(const Cursor& cursor) {
     constexpr std::size_t kLongestSymbol = 2;  // "poles = (-1+2i)" is a list
     if (cursor.now().text.size() > kLongestSymbol || !is_assigned(cursor.peek(1))) return false;

@@ -1,6 +1,6 @@
-// The grammar of a plant that is typed as its parameters. The reader takes words from a cursor; where the cursor has
-// failed, what it answers means nothing. `own_time`: seconds of the unit that times are answered in; 0: not known,
-// units are refused.
+// The grammar of a plant that is typed as its parameters. The reader takes words from a cursor; if the cursor has
+// failed, the result is meaningless. `own_time`: seconds of the unit of the resulting times; 0: unknown, units are
+// refused.
 #pragma once
 
 #include "engine/plant/plant.h"
@@ -8,7 +8,7 @@
 
 namespace tunewright::typed {
 
-/// Whether a text is one of parameters: it begins with one of their words and what belongs behind.
+/// True if a text consists of parameters: it begins with one of their names and its value.
 bool is_parameter_text(const Cursor& cursor);
 
 /// Parameters by name (K=2 T=10 L=3 min), in the order of their kind (FOPDT 2 10 3), or lists of zeros and poles (zeros
@@ -16,7 +16,7 @@ bool is_parameter_text(const Cursor& cursor);
 ///
 ///   text:    [kind] { name ["=" | ":"] value }       kind: fopdt, sopdt, ipdt or integrating; "," ";" between pairs
 ///   kind:    fopdt K T L, sopdt K T1 T2 L, ipdt K L [T] in brackets or without
-///   names:   K, T, T1, T2, tau, L, theta, zeta, w0, zeros, poles, gain, delay and what else is usual for them
+///   names:   K, T, T1, T2, tau, L, theta, zeta, w0, zeros, poles, gain, delay and usual synonyms
 Plant read_parameters(Cursor& cursor, double own_time);
 
 }  // namespace tunewright::typed

@@ -20,7 +20,7 @@ bool is_plain(const std::string& digits) { return digits.find_first_not_of("0123
 
 bool is_number(const Word& word) { return word.kind == Word::Kind::number; }
 
-/// Whether the number at the cursor, a comma and the number behind it are written without a blank.
+/// True if the number at the cursor, a comma and the next number are written without a blank.
 bool joined_by_comma(const Cursor& cursor, std::size_t ahead) {
     const Word &comma = cursor.peek(ahead + 1), &next = cursor.peek(ahead + 2);
     return Cursor::is(comma, ",") && !comma.after_blank && is_number(next) && !next.after_blank &&
@@ -38,14 +38,14 @@ bool skip_imaginary(Cursor& cursor) {
     return true;
 }
 
-/// Whether a sign at the cursor goes on with the root before it.
+/// True if a sign at the cursor continues the root before it.
 bool goes_on(const Cursor& cursor) {
     if (cursor.at("+-")) return true;
     if (!cursor.at("+") && !cursor.at("-")) return false;
     return !cursor.now().after_blank || cursor.peek(1).after_blank;
 }
 
-/// |Im| with its j; the cursor stands behind the sign.
+/// |Im| with its j; the cursor is after the sign.
 double read_imaginary_part(Cursor& cursor, Commas commas) {
     double size = 1;
     const int position = cursor.now().position;
@@ -77,7 +77,10 @@ void read_root(Cursor& cursor, Commas commas, std::vector<std::complex<double>>&
         if (pair_of_axis) roots.emplace_back(0, -value);
         return;
     }
-    if (pair_of_axis) return cursor.fail(cursor.now().position, "after ± an imaginary part belongs, such as ±4i.");
+    if (pair_of_axis)
+        return cursor.fail(cursor.now().position,
+                           "± must be followed by an imaginary part, such as "
+                           "±4i.");
     if (cursor.at("/") && is_number(cursor.peek(1))) {
         cursor.advance();
         value /= read_number(cursor, commas);
@@ -95,7 +98,7 @@ bool begins_root(const Cursor& cursor) {
            (cursor.at_name() && (cursor.now().text == "i" || cursor.now().text == "j"));
 }
 
-/// In brackets, up to the closing one; else up to what cannot be a root.
+/// Reads roots up to the closing bracket, or without brackets up to the first word that cannot be a root.
 void read_root_list(Cursor& cursor, Commas commas, std::vector<std::complex<double>>& roots) {
     while (!cursor.failed() && begins_root(cursor)) {
         read_root(cursor, commas, roots);
@@ -132,15 +135,15 @@ double read_number(Cursor& cursor, Commas commas) {
     const bool whole = fraction.text.find('.') == std::string::npos;
     if (commas == Commas::refused || several || !whole) {
         const std::string both = word.text + "," + fraction.text;
-        cursor.fail(word.position, both + " may be one number or several; write " + word.text + "." + fraction.text +
-                                       " for one, and a blank after a comma between two.");
+        cursor.fail(word.position, both + " may be one number or two; write " + word.text + "." + fraction.text +
+                                       " for one, or a blank after the comma for two.");
         return 0;
     }
     const std::string joined = word.text + "." + fraction.text;
-    constexpr std::size_t kThousandsDigits = 3;  // digits of a thousand
+    constexpr std::size_t kThousandsDigits = 3;  // digits between separators of thousands
     if (fraction.text.size() == kThousandsDigits && word.text.size() <= kThousandsDigits && word.text.front() != '0') {
         cursor.fail(word.position, word.text + "," + fraction.text + " may be " + joined + " or " + word.text +
-                                       fraction.text + "; write it with a point, or without a sign.");
+                                       fraction.text + "; write it with a decimal point, or without a separator.");
         return 0;
     }
     double value = 0;
@@ -161,7 +164,7 @@ double read_value(Cursor& cursor, Commas commas) {
     double value = sign * read_number(cursor, commas);
     while ((cursor.at("*") || cursor.at("/") || cursor.at("^")) && is_number(cursor.peek(1)) && !cursor.failed()) {
         if (cursor.at("^")) {
-            cursor.fail(cursor.now().position, "write this number without a power.");
+            cursor.fail(cursor.now().position, "write this number without an exponent.");
             return 0;
         }
         const bool divided = cursor.at("/");

@@ -1,4 +1,4 @@
-// Numbers, lists, roots and units of time as they are typed.
+// Reads numbers, lists, roots and units of time as they are typed.
 #pragma once
 
 #include <complex>
@@ -10,27 +10,28 @@
 
 namespace tunewright::typed {
 
-/// Of "ms", "min", "hours", ...; not of "s", which is the Laplace variable in a formula.
+/// Seconds of "ms", "min", "hours", ...; not of "s", which is the Laplace variable in a formula.
 std::optional<double> seconds_of_unit(std::string_view name);
 
-/// `value` given in a unit of `unit` seconds, in the request's unit of `own` seconds.
+/// `value` in a unit of `unit` seconds, converted to the request's unit of `own` seconds.
 double in_own_time(double value, double unit, double own);
 
-/// What stands between the numbers of a list.
+/// The role of a comma between digits.
 enum class Commas {
-    separate,  ///< inside brackets of matrix programs, where 1,2 are two numbers
-    decimal,   ///< where at most one number is expected: 2,5 is 2.5
-    refused,   ///< a list of numbers without brackets, where 1,2 may be either
+    separate,  ///< inside brackets of matrix programs: 1,2 is two numbers
+    decimal,   ///< if at most one number is expected: 2,5 is 2.5
+    refused,   ///< in a list of numbers without brackets: 1,2 may be either
 };
 
-/// The number at the cursor, which is one, its decimal comma taken as `commas` says; the cursor stands behind it.
+/// Reads the number at the cursor (there must be one) with the decimal comma of `commas`; the cursor is then after it.
 double read_number(Cursor& cursor, Commas commas);
 
-/// The same with a sign before it, and with / or * and another number behind it, as in -1/3.
+/// The same with an optional sign, and with / or * and another number, as in -1/3.
 double read_value(Cursor& cursor, Commas commas);
 
-/// Numbers or complex roots up to what cannot be one: -1, -3+4i, -3±4j for a pair. A sign after a blank and before none
-/// begins a new one, as matrix programs read it. With `commas` separate the list stands in [ ] or is one number.
+/// Numbers or complex roots up to what cannot be one: -1, -3+4i, -3±4j for a pair. A sign that follows a blank and is
+/// not followed by one begins a new root, as in matrix programs. With `commas` separate the list is in [ ] or is one
+/// number.
 std::vector<std::complex<double>> read_roots(Cursor& cursor, Commas commas);
 std::vector<double> read_coefficients(Cursor& cursor);
 

@@ -14,7 +14,7 @@ namespace {
 
 using namespace typed;
 
-// "P(s) =", "G ="; and "s = tf('s');", with which programs begin.
+// Skips "P(s) =", "G ="; and "s = tf('s');", with which programs begin.
 void skip_name(Cursor& cursor) {
     if (cursor.at_name() && cursor.now().text == "s" && Cursor::is(cursor.peek(1), "=")) {
         while (!cursor.at_end() && !cursor.at(";")) cursor.advance();
@@ -48,7 +48,7 @@ Expected<TypedPlant> of_formula(Cursor& cursor, double own_time) {
     return TypedPlant{*std::move(plant), std::move(formula)};
 }
 
-/// At most 15 digits: as many as a decimal keeps through a change of units, so 253 is no 252.99999999999997.
+/// At most 15 digits, which a decimal keeps through a change of units: 253 does not become 252.99999999999997.
 std::string as_typed(double x) { return text(x, 15); }
 
 std::string polynomial_text(const Polynomial& p) {
@@ -67,7 +67,7 @@ std::string polynomial_text(const Polynomial& p) {
 
 std::string delay_text(double L) { return L == 0 ? "" : L == 1 ? "e^(-s)" : "e^(-" + as_typed(L) + " s)"; }
 
-/// `top` e^(-Ls) over the factors.
+/// `top` e^(-Ls) divided by the factors.
 std::string quotient_text(std::string top, double L, const std::vector<Polynomial>& bottom) {
     const std::string delay = delay_text(L);
     std::string out = top == "1" && !delay.empty() ? delay : delay.empty() ? std::move(top) : top + " " + delay;

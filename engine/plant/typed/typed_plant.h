@@ -1,4 +1,4 @@
-// A linear plant from one line of text, as a person types it, and back.
+// Reads a linear plant from one line of typed text, and writes it as such.
 //
 //   read_plant("2 e^(-3s)/((10s+1)(2s+1))")        second order, K 2, T1 10, T2 2, L 3
 //   read_plant("K=2 T=10 min L=30 s")              first order, T 600 and L 30
@@ -17,20 +17,19 @@ namespace tunewright {
 
 struct TypedPlant {
     Plant plant;
-    typed::Formula formula;  ///< as it was written, in its own factors
+    typed::Formula formula;  ///< in the factors in which it was written
 };
 
-/// `seconds_per_time`: of the unit of time in which the plant is answered, into which a unit in the text is converted;
-/// 0 where that unit is not known, which makes units in the text a fault. Numbers without a unit are taken as they are.
+/// `seconds_per_time`: seconds of the plant's unit of time, into which units in the text are converted; 0 if that unit
+/// is unknown, then a unit in the text is an error. Numbers without a unit are not converted.
 ///
-/// A text is read by the grammar of formula_parser.h or parameter_parser.h; a name such as "P(s) =" may
-/// stand before. Every spelling of one plant gives the same plant. Errors (invalid_argument): "position 7: <what,
-/// cure>"; a plant that is improper, not causal or 0; numbers that no plant may have; a text longer than
-/// typed::kMaxLength.
+/// A text is read by the grammar of formula_parser.h or parameter_parser.h; a name such as "P(s) =" may come first.
+/// Every spelling of one plant gives the same plant. Errors (invalid_argument): "position 7: <what, cure>"; a plant
+/// that is improper, not causal or 0; numbers that plant_faults refuses; a text longer than typed::kMaxLength.
 Expected<TypedPlant> read_plant(std::string_view text, double seconds_per_time = 1);
 
-/// The shortest text that read_plant reads as this plant (as an equal one, where it is of a simpler type than it is
-/// written in). Empty for a state space, which has none. What is uncertain is left out.
+/// The shortest text that read_plant reads as this plant (or as an equal one of a simpler type). Empty for a state
+/// space, which has no such text. Uncertainty is omitted.
 std::string plant_text(const Plant& plant);
 
 }  // namespace tunewright

@@ -14,7 +14,7 @@ using Kind = Word::Kind;
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 
-/// What a character that is no ASCII stands for.
+/// The meaning of a character that is not ASCII.
 struct Spelling {
     const char* written;
     const char* meant;
@@ -29,7 +29,7 @@ constexpr Spelling kSuperscripts[] = {{"⁰", "0"}, {"¹", "1"}, {"²", "2"}, {"
                                       {"⁵", "5"}, {"⁶", "6"}, {"⁷", "7"}, {"⁸", "8"}, {"⁹", "9"},
                                       {"⁺", "+"}, {"⁻", "-"}, {"ˢ", "s"}};
 
-/// The spelling whose written form `rest` begins with; null: none.
+/// The spelling with which `rest` begins; null: none.
 template <std::size_t n>
 const Spelling* spelling_at(const Spelling (&known)[n], std::string_view rest) {
     for (const Spelling& spelling : known)
@@ -43,7 +43,7 @@ std::size_t length_of_character(std::string_view rest) {
     return std::min(length, rest.size());
 }
 
-/// Cuts a text; positions count characters.
+/// Splits a text into words; positions count characters.
 class WordCutter {
 public:
     explicit WordCutter(std::string_view text) : text_(text) {}
@@ -109,14 +109,14 @@ private:
         const auto [end, problem] = std::from_chars(rest().data(), rest().data() + rest().size(), value);
         const auto length = static_cast<std::size_t>(end - rest().data());
         if (problem != std::errc{}) {
-            fault_ = fault_at(position_, quoted(rest().substr(0, length)) + " is beyond the range of numbers here.");
+            fault_ = fault_at(position_, quoted(rest().substr(0, length)) + " is out of the number range.");
             return;
         }
         add(Kind::number, std::string(rest().substr(0, length)), position_, value);
         take(length);
     }
 
-    // A dot joins names, as in control.tf; the last one counts.
+    // A dot joins names, as in control.tf; only the last one is used.
     void name() {
         const int position = position_;
         std::string name;
@@ -150,7 +150,7 @@ private:
         }
         auto words = WordCutter(inside).cut();
         if (!words) {
-            fault_ = fault_at(position, "this power cannot be read; write it with ^, as in s^2.");
+            fault_ = fault_at(position, "this power is not readable; write it with ^, as in s^2.");
             return;
         }
         add(Kind::symbol, "^", position);
@@ -174,7 +174,7 @@ private:
         const std::size_t begin = at_;
         while (at_ < text_.size() && !at_quote()) take(1);
         if (at_ == text_.size()) {
-            fault_ = fault_at(position, "a quotation mark is open since here; close it.");
+            fault_ = fault_at(position, "the quotation mark here is not closed; close it.");
             return;
         }
         add(Kind::quoted, std::string(text_.substr(begin, at_ - begin)), position);
@@ -225,7 +225,7 @@ void Cursor::unexpected(const std::string& wanted) {
     const int position = opened_.back();
     if (!fault_)
         fault_ = Error{ErrorKind::invalid_argument, "",
-                       "a bracket is open since position " + std::to_string(position) + "; close it."};
+                       "a bracket is not closed; it opens at position " + std::to_string(position) + "; close it."};
 }
 
 bool opens(const Word& word) { return Cursor::is(word, "(") || Cursor::is(word, "[") || Cursor::is(word, "{"); }

@@ -1,4 +1,4 @@
-// A typed plant's text in words, each with its place; what is spelt in several ways has one spelling afterwards.
+// The words of a typed plant's text with their positions; different spellings of the same word become one.
 #pragma once
 
 #include <optional>
@@ -15,20 +15,21 @@ constexpr int kMaxLength = 2000;  ///< bytes of a text
 struct Word {
     enum class Kind { number, name, quoted, symbol, end };
     Kind kind = Kind::end;
-    std::string text;          ///< one spelling: - * / ^ +- ( ) [ ] , ; = : for symbols, Greek letters spelt out
-    double number = 0;         ///< of a number
-    int position = 1;          ///< of its first character, from 1
-    bool after_blank = false;  ///< white space stands before it
+    std::string text;          ///< one spelling: - * / ^ +- ( ) [ ] , ; = : for symbols, Greek letters as words
+    double number = 0;         ///< value of a number
+    int position = 1;          ///< position of its first character, from 1
+    bool after_blank = false;  ///< white space precedes it
 };
 
 /// The words of the text; the last is of kind `end`. Minus signs and dots of every alphabet, ** and superscripts are
-/// what they mean: s² is s ^ ( 2 ). Errors: too long, no UTF-8, a character or number that means nothing here.
+/// converted: s² becomes s ^ ( 2 ). Errors: too long, not valid UTF-8, an unknown character, or a number out of range.
 Expected<std::vector<Word>> words_of(std::string_view text);
 
 /// invalid_argument with "position 7: <what>".
 Error fault_at(int position, const std::string& what);
 
-/// Where a reader of words is, and the first fault, after which nothing more is read: every look then finds the end.
+/// The position of a reader of words, and the first error. After an error nothing more is read: every further word is
+/// the end.
 class Cursor {
 public:
     explicit Cursor(std::vector<Word> words) : words_(std::move(words)) {}
@@ -45,12 +46,12 @@ public:
     bool at_number() const { return now().kind == Word::Kind::number; }
     bool at_name() const { return now().kind == Word::Kind::name; }
     bool skip(std::string_view symbol);
-    /// The opening brackets that are open, so that an end inside one can name it.
+    /// Records an opened bracket, so that an unexpected end can name it.
     void open(const Word& bracket) { opened_.push_back(bracket.position); }
     void close() { opened_.pop_back(); }
 
     void fail(int position, const std::string& what);
-    /// The word that is now where `wanted` belongs; an end inside a bracket is that bracket's fault.
+    /// Reports the current word where `wanted` is expected; at an end inside a bracket it reports the bracket.
     void unexpected(const std::string& wanted);
     bool failed() const { return fault_.has_value(); }
     const Error& fault() const { return *fault_; }
@@ -62,11 +63,11 @@ private:
     std::optional<Error> fault_;
 };
 
-/// A bracket of any kind that opens, and the one that closes it.
+/// True for an opening bracket of any kind, and the bracket that closes it.
 bool opens(const Word& word);
 const char* closing(const Word& bracket);
 
-/// The word in lower case: "InputDelay" and "FOPDT" are spelt in many ways.
+/// The word in lower case, because "InputDelay" and "FOPDT" have several spellings.
 std::string lower(std::string_view name);
 
 }  // namespace tunewright::typed

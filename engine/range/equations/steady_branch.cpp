@@ -12,11 +12,12 @@ namespace tunewright::range {
 namespace {
 
 constexpr int kMaxSteps = 2000;
-constexpr double kFirstLength = 0.02, kMinLength = 1e-7, kMaxLength = 0.2;  // of the unknowns' sizes
-constexpr double kMaxTurn = 0.25;                                           // rad of the tangent in one step
-constexpr double kMaxRangeStep = 0.04;                                      // of the range, in one step
-constexpr int kQuickNewton = 4;       // iterations: after them the next step is longer
-constexpr double kFoldExact = 1e-10;  // of the unknowns' sizes: how closely a fold is bracketed
+constexpr double kFirstLength = 0.02, kMinLength = 1e-7, kMaxLength = 0.2;  // relative to the unknowns' sizes
+constexpr double kMaxTurn = 0.25;                                           // rad by which the tangent may turn in one
+                                                                            // step
+constexpr double kMaxRangeStep = 0.04;                                      // share of the range in one step
+constexpr int kQuickNewton = 4;       // iterations: after at most this number the next step is longer
+constexpr double kFoldExact = 1e-10;  // relative to the unknowns' sizes: accuracy of a fold
 constexpr int kFoldBisections = 40;
 
 std::string where_word(const EquationsRange& range) {
@@ -25,20 +26,20 @@ std::string where_word(const EquationsRange& range) {
 
 }  // namespace
 
-/// A walk along the curve from the operating point to one end of the range.
+/// Follows the curve from the operating point to one end of the range.
 class BranchWalk {
 public:
     BranchWalk(const SteadyBranch& branch, const SteadyCurve& curve)
         : branch_(branch), range_(branch.range_), curve_(curve) {}
 
     struct Result {
-        std::vector<SteadyState> states;  ///< from the start on
-        std::vector<Fold> folds;          ///< of the scheduling variable
+        std::vector<SteadyState> states;  ///< from the start of the walk
+        std::vector<Fold> folds;          ///< folds of the scheduling variable
         std::vector<Fold> input_folds;
-        std::optional<Error> ended;  ///< before the end was reached
+        std::optional<Error> ended;  ///< the error, if the walk ended before the end of the range
     };
 
-    /// `up`: towards larger places at first. Ends where the place passes `end` on that side.
+    /// `up`: initially towards larger values. Ends when the value passes `end` on that side.
     Result run(const SteadyState& start, bool up, double end) {
         Result result;
         z_ = curve_.z(start);
@@ -68,7 +69,7 @@ public:
 
 private:
     std::optional<std::vector<double>> first_tangent(bool up) const {
-        // Across which row the tangent is asked for does not matter, unless it happens to be at a right angle.
+        // The tangent is the same for every choice of this row, unless the row is orthogonal to it.
         for (std::size_t i = 0; i < curve_.unknowns(); ++i) {
             std::vector<double> row(curve_.unknowns(), 0.0);
             row[curve_.unknowns() - 1 - i] = 1;
@@ -94,7 +95,7 @@ private:
         return t[curve_.unknowns() - (range_.along == Along::parameter ? 2 : 1)];
     }
 
-    /// The point of the curve a length along the tangent, and the tangent there.
+    /// The point of the curve at a distance along the tangent, and the tangent there.
     bool step_to(double length, std::vector<double>& z, std::vector<double>& t, int& iterations) const {
         z = z_;
         for (std::size_t i = 0; i < z.size(); ++i) z[i] += length * tangent_[i] * sizes_[i];
@@ -142,7 +143,7 @@ private:
         tangent_ = std::move(t);
     }
 
-    /// Between the present point and the one a length on, where the slope changes its sign.
+    /// Finds the point between the present one and one further on at which the slope changes its sign.
     template <class Slope>
     Fold fold(double length, const Slope& slope) const {
         const double before = slope(z_, tangent_);
@@ -172,9 +173,10 @@ private:
         const std::string fault = system.derivative_fault(x, last.u);
         return {ErrorKind::invalid_argument, "range",
                 "The steady states cannot be followed beyond " + described(last) +
-                    (fault.empty() ? ": the equations end just ahead, or the input does not move the output there."
+                    (fault.empty() ? ": the equations are not defined beyond it, or the input does not move the output "
+                                     "there."
                                    : ": " + fault + ".") +
-                    " Give a range that ends before."};
+                    " Give a range that ends before that point."};
     }
 
     const SteadyBranch& branch_;
@@ -185,23 +187,25 @@ private:
 
 namespace {
 
-/// The range from the sentence's point of view: what a fold means and how to go round it.
+/// Error of a fold inside the range: its meaning and how to avoid it.
 Error folded(const SteadyBranch& branch, Fold fold) {
     const auto& range = branch.range();
     const std::string name = branch.scheduling_name();
-    std::string message = "The steady states turn back at " + name + " = " + text(fold.state.at, 6) +
+    std::string message = "The branch of steady states turns back at " + name + " = " + text(fold.state.at, 6) +
                           " (y = " + text(fold.state.y, 6) + ", " + range.plant.input.name + " = " +
                           text(fold.state.u, 6) + "): with a " + (fold.upper ? "larger " : "smaller ") + name +
                           " there is none near";
     message += fold.jumps.empty() ? ", and the plant leaves this branch. "
                                   : ", and the plant jumps to y = " + text(fold.jumps.front(), 6) + ". ";
     message += range.along == Along::output
-                   ? "The output is largest or smallest there, so the gain changes its sign. Give a range on one side."
-                   : "Give a range that ends before, or let it go along the output, which the loop holds.";
+                   ? "The output has a maximum or a minimum there, so the gain changes its sign. Give a range on one "
+                     "side of it."
+                   : "Give a range that ends before that point, or choose a range along the output, which the loop "
+                     "controls.";
     return {ErrorKind::invalid_argument, "range/" + std::string(fold.upper ? "to" : "from"), message};
 }
 
-/// Where else the walk passes a fold's place.
+/// Finds the other points at which the walk passes the value of a fold.
 void find_jumps(Fold& fold, const std::vector<SteadyState>& walk) {
     const double size = std::abs(walk.back().y - walk.front().y);
     for (std::size_t i = 1; i < walk.size(); ++i) {
@@ -218,18 +222,19 @@ std::optional<Error> fault_of(const EquationsRange& range) {
     };
     if (!std::isfinite(range.from) || !std::isfinite(range.to) || !(range.from < range.to))
         return invalid("range/from", "The range goes from " + text(range.from) + " to " + text(range.to) +
-                                         "; from must be below to.");
+                                         "; from must be less than to.");
     if (range.along != Along::parameter) return std::nullopt;
     for (const Parameter& parameter : range.plant.parameters)
         if (parameter.name == range.parameter) {
             if (std::holds_alternative<double>(parameter.value)) return std::nullopt;
             return invalid("range/parameter", "Parameter " + range.parameter +
-                                                  " is an expression; only a number can vary over the range.");
+                                                  " is an expression; only a parameter given as a number can vary over "
+                                                  "the range.");
         }
-    return invalid("range/parameter", "\"" + range.parameter + "\" is no parameter of this plant.");
+    return invalid("range/parameter", "\"" + range.parameter + "\" is not a parameter of this plant.");
 }
 
-/// The plant with its parameter as one more state, the last, whose rate is 0.
+/// The plant with its parameter as an additional last state, whose rate is 0.
 NonlinearPlant with_parameter_state(NonlinearPlant plant, const std::string& name) {
     const auto found = std::ranges::find(plant.parameters, name, &Parameter::name);
     plant.states.push_back({name, std::get<double>(found->value)});
@@ -252,7 +257,7 @@ std::optional<Error> SteadyBranch::prepare() {
         if (!extended)
             return Error{ErrorKind::invalid_argument, "range/parameter",
                          "Parameter " + range_.parameter + " cannot vary: " + extended.error().message +
-                             " Where other parameters are computed from it, write them into the equations."};
+                             " If other parameters depend on it, write their expressions into the equations."};
         start_.p = plant.states.back().value;
         system = std::move(extended);
     }
@@ -314,7 +319,7 @@ Expected<SteadyState> SteadyBranch::at(double place) const {
     for (std::size_t i = 0; i < z.size(); ++i) z[i] = a[i] + share * (b[i] - a[i]);
     const auto sizes = curve.sizes(z, largest);
     if (curve.correct_to_place(z, sizes, place)) return curve.state(z);
-    // Nearer to one neighbour the start may do.
+    // Near one of the neighbours, that neighbour is a good start.
     z = share < 0.5 ? a : b;
     if (curve.correct_to_place(z, sizes, place)) return curve.state(z);
     return Error{ErrorKind::numerical_failure, "range",

@@ -15,49 +15,51 @@ namespace tunewright::range {
 
 enum class Along { input, output, parameter };
 
-/// Which steady states a range of equations goes through.
+/// The steady states over which a range of equations extends.
 struct EquationsRange {
-    NonlinearPlant plant;  ///< its operating point is where the continuation begins; it may lie outside the range
+    NonlinearPlant plant;  ///< its operating point is the start of the continuation; it may be outside the range
     Along along = Along::output;
-    std::string parameter = {};  ///< its name; a number, in no other parameter's expression
+    std::string parameter = {};  ///< its name; it is given as a number and no other parameter depends on it
     double from = 0, to = 0;     ///< from < to: of u, y or the parameter, absolute
-    bool hold_output = true;     ///< along a parameter: the input keeps y at the operating point; false: u stays
+    bool hold_output = true;     ///< along a parameter: true: the input keeps y at its operating value; false: u is
+                                 ///< constant
 };
 
 struct SteadyState {
-    double at = 0;          ///< of the scheduling variable
+    double at = 0;          ///< value of the scheduling variable
     std::vector<double> x;  ///< the plant's states, absolute
     double u = 0, y = 0, p = 0;
 };
 
-/// A place where the branch turns back: beyond it there is no steady state near, and the plant jumps.
+/// A point at which the branch turns back: beyond it there is no steady state nearby, and the plant jumps.
 struct Fold {
     SteadyState state;
-    bool upper = false;         ///< the scheduling variable is largest here, else smallest
-    std::vector<double> jumps;  ///< y of the other steady states at the same place that the branch was followed to
+    bool upper = false;         ///< true: the scheduling variable has its maximum here, else its minimum
+    std::vector<double> jumps;  ///< y of the other steady states at the same value on the followed branch
 };
 
 /// z = (x, u, p) on F(z) = 0, one equation fewer than unknowns: f(x, u, p) = 0, with y or u held along a parameter.
 /// Pseudo-arclength continuation (Keller 1977; Allgower and Georg, Introduction to Numerical Continuation Methods,
-/// 2003, chapter 6): the tangent predicts, Newton's method corrects in the plane across it; exact Jacobians. Steps
-/// follow how far the tangent turns.
+/// 2003, chapter 6): the tangent predicts, Newton's method corrects in the plane orthogonal to it, with exact
+/// Jacobians. The step lengths depend on how far the tangent turns.
 class SteadyBranch {
 public:
     /// Errors: those of NonlinearSystem::make; invalid_argument, `where` = "range/from", "range/to", "range/parameter",
     /// "range": an empty range; an unknown parameter or one that others are computed from; a fold inside the range (the
-    /// sentence says where, what happens there and how the range may be given); the branch ends because the equations
-    /// do (with the operation that fails) or is longer than 2000 steps; a steady input beyond its limits.
+    /// message has its place, its effect and a possible range); the branch leaves the domain of the equations (with the
+    /// operation that fails) or is longer than 2000 steps; a steady input beyond its limits.
     static Expected<SteadyBranch> follow(const EquationsRange& range);
 
     double low() const { return low_; }
     double high() const { return high_; }
     /// Ascending in `at`, from one end of the range to the other.
     const std::vector<SteadyState>& states() const { return states_; }
-    /// Where the input turns back along the branch, if the range is not along it: between two such places the plant is
-    /// unstable, or held by no constant input.
+    /// Folds of the input along the branch, if the range is not along the input: between two of them the plant is
+    /// unstable, or no constant input holds it.
     const std::vector<Fold>& input_folds() const { return input_folds_; }
 
-    /// The steady state at a place of the range, to rounding (about 1e-12 of the states). Error: numerical_failure.
+    /// The steady state at a value of the scheduling variable, to rounding (about 1e-12 of the states). Error:
+    /// numerical_failure.
     Expected<SteadyState> at(double place) const;
 
     /// The linearisation there, exact, with the dead time.
@@ -67,9 +69,9 @@ public:
     NonlinearPlant plant_at(const SteadyState& state) const;
 
     const EquationsRange& range() const { return range_; }
-    /// The equations; along a parameter with one more state, the last, that stands for it and whose rate is 0.
+    /// The equations; along a parameter with an additional last state, which is the parameter and has the rate 0.
     const NonlinearSystem& system() const { return *system_; }
-    /// "CA", "Tj", ...: of the scheduling variable.
+    /// Name of the scheduling variable: "CA", "Tj", ...
     std::string scheduling_name() const;
 
 private:

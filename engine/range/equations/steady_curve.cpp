@@ -9,8 +9,8 @@ namespace tunewright::range {
 namespace {
 
 constexpr int kMaxNewton = 12;
-constexpr double kConverged = 1e-11;  // of the unknowns' sizes: Newton's last step
-constexpr double kMinSize = 1e-3;     // of the largest size that an unknown has had
+constexpr double kConverged = 1e-11;  // relative to the unknowns' sizes: Newton's last step
+constexpr double kMinSize = 1e-3;     // relative to the largest size that an unknown has had
 
 }  // namespace
 
@@ -82,7 +82,8 @@ bool SteadyCurve::equations(std::span<const double> z, std::vector<double>& F, s
 
 namespace {
 
-/// Rows divided by their largest entry once the columns are in sizes of the unknowns: (m - 1) x m, and F with them.
+/// Divides the rows by their largest entry, once the columns are in sizes of the unknowns: (m - 1) x m, and F with
+/// them.
 bool scale(std::vector<double>& J, std::vector<double>& F, std::span<const double> sizes) {
     const std::size_t m = sizes.size();
     for (std::size_t i = 0; i < F.size(); ++i) {

@@ -27,7 +27,8 @@ void for_each_number(PlantType& plant, F f) {
     }
 }
 
-/// Descending lags, so that the slower one of a plant belongs to the slower one of its neighbour.
+/// Sorts the lags in descending order, so that the slower one of a plant is interpolated with the slower one of its
+/// neighbour.
 Plant in_order(Plant plant) {
     if (auto* two = std::get_if<Sopdt>(&plant); two && two->T1 < two->T2) std::swap(two->T1, two->T2);
     return plant;

@@ -16,8 +16,8 @@ namespace tunewright::range {
 namespace {
 
 constexpr int kResponsePoints = 160;
-constexpr double kBelowCorners = 1e-2;  // times the slowest corner: where the static gain shows
-constexpr double kMaxDelayTurns = 4;    // of a dead time, in turns: what lies above forbids no gain any more
+constexpr double kBelowCorners = 1e-2;  // multiple of the slowest corner: frequency at which the static gain is read
+constexpr double kMaxDelayTurns = 4;    // turns of the dead time: higher frequencies no longer limit the gain
 
 std::string point_name(std::size_t k) { return "points/" + std::to_string(k); }
 
@@ -38,7 +38,7 @@ std::optional<Error> fault_of_points(const std::vector<RangePoint>& points) {
     return std::nullopt;
 }
 
-/// What all models of points share: the points themselves, checked and factored.
+/// The data that all models of points share: the points themselves, checked and factored.
 class PointsModel : public RangeModel {
 public:
     Expected<PointModel> at(double place) const final {
@@ -63,8 +63,8 @@ protected:
                 return at_point(k, "plant",
                                 "The gain changes its sign between " + text(points[k - 1].at) + " and " +
                                     text(points[k].at) +
-                                    ": somewhere between the input does not move the output, and no controller of one "
-                                    "sign serves both. Part the range there.",
+                                    ", so between them the input does not move the output, and no controller with one "
+                                    "sign is stable at both. Split the range there.",
                                 ErrorKind::no_feasible_controller);
             models_.push_back(std::move(*made));
             points_.push_back(points[k].at);
@@ -94,7 +94,7 @@ protected:
 
 using LogRatios = std::vector<double>;
 
-/// The cosine between two ways off the nominal plants.
+/// The cosine of the angle between two deviations from the nominal plants.
 double alike(const LogRatios& a, const LogRatios& b) {
     double ab = 0, aa = 1e-300, bb = 1e-300;
     for (std::size_t i = 0; i < a.size(); ++i) {
@@ -105,14 +105,14 @@ double alike(const LogRatios& a, const LogRatios& b) {
     return ab / std::sqrt(aa * bb);
 }
 
-/// In some number the one lies above its nominal plant and the other below.
+/// True if some number is above its nominal value in one and below in the other.
 bool opposed(const LogRatios& a, const LogRatios& b) {
     for (std::size_t i = 0; i < a.size(); ++i)
         if (a[i] * b[i] < 0) return true;
     return false;
 }
 
-/// Between its nominal plant and the other member.
+/// True if it lies between its nominal plant and the other member.
 bool inside(const LogRatios& a, const LogRatios& b) {
     for (std::size_t i = 0; i < a.size(); ++i)
         if (std::abs(a[i]) > std::abs(b[i])) return false;
@@ -131,9 +131,10 @@ bool uncertain_in(const std::vector<LogRatios>& members, std::size_t number) {
     return std::ranges::any_of(members, [&](const LogRatios& member) { return member[number] != 0; });
 }
 
-/// Each member of one family with that of the other that lies off its nominal plant most alike; of a family without
-/// members the nominal plant. Where a number is uncertain in one family alone, likeness says nothing about it: then all
-/// outermost members of both that are not opposed go together too, so that what lies between is enclosed.
+/// Pairs each member of one family with the member of the other whose deviation from its nominal plant is most similar;
+/// a family without members contributes its nominal plant. If a number is uncertain in one family only, similarity
+/// cannot decide: then all outermost members of both that are not opposed are paired too, so that the plants between
+/// are enclosed.
 std::vector<std::pair<LogRatios, LogRatios>> paired(const std::vector<LogRatios>& left,
                                                     const std::vector<LogRatios>& right, std::size_t size) {
     std::vector<std::pair<LogRatios, LogRatios>> pairs;
@@ -185,7 +186,7 @@ public:
     }
 
 private:
-    /// Why nothing can be interpolated between two points.
+    /// The reason why two points cannot be interpolated.
     static std::optional<std::string> fault_between(const RangePoint& left, const RangePoint& right) {
         const Plant &one = left.family.nominal(), &other = right.family.nominal();
         const std::string places = text(left.at) + " and " + text(right.at);
@@ -196,17 +197,17 @@ private:
             return "The plants at " + places +
                    " are given by zeros and poles or as state spaces, whose numbers are not interpolated." + cure;
         if (!same_structure(one, other))
-            return "The plants at " + places +
-                   " differ in structure, so their parameters say nothing about the plants between." + cure;
+            return "The plants at " + places + " differ in structure, so their parameters cannot be interpolated." +
+                   cure;
         const auto* rational = std::get_if<TransferFunction>(&one);
         const double a = structure_numbers(one).front(), b = structure_numbers(other).front();
         if ((rational != nullptr && rational->num.size() > 1) || a * b > 0) return std::nullopt;
         return "The plant's " + std::string(rational != nullptr ? "numerator" : "K") + " goes from " + text(a) +
                " to " + text(b) + " between " + places +
-               ": where it passes 0 the input does not move the output. Part the range there.";
+               "; where it is 0 the input does not move the output. Split the range there.";
     }
 
-    /// Of the members of the nominal plant's structure: others say nothing about plants between.
+    /// Only members with the nominal plant's structure: others cannot be interpolated.
     static std::vector<LogRatios> ratios(const PlantFamily& family) {
         std::vector<LogRatios> result;
         for (const Plant& member : members_beside_nominal(family))
@@ -214,7 +215,7 @@ private:
         return result;
     }
 
-    std::vector<std::vector<std::pair<LogRatios, LogRatios>>> pairs_;  // of each two neighbours
+    std::vector<std::vector<std::pair<LogRatios, LogRatios>>> pairs_;  // pairs of each two neighbours
 };
 
 /// ln |P| and the unwrapped phase at the model's frequencies.
@@ -230,22 +231,23 @@ public:
             const LinearPlant &plant = *models_[k].nominal, &first = *models_[0].nominal;
             if (!points[k].family.single())
                 return bad_point(k, "plant",
-                                 "Frequency responses carry no uncertain parameters: between points nothing would hold "
-                                 "them. Interpolate the parameters, or leave the uncertainty out.");
+                                 "Frequency responses have no uncertain parameters, so the uncertainty cannot be "
+                                 "interpolated. Interpolate the parameters, or omit the uncertainty.");
             if (plant.integrators() != first.integrators() || plant.unstable_poles() != first.unstable_poles())
                 return bad_point(k, "plant",
                                  "The plant has " + std::to_string(plant.integrators()) + " integrators and " +
                                      std::to_string(plant.unstable_poles()) + " unstable poles, the first one " +
                                      std::to_string(first.integrators()) + " and " +
                                      std::to_string(first.unstable_poles()) +
-                                     ": no frequency response lies between them. Part the range where that changes.");
+                                     ", so their frequency responses cannot be interpolated. Split the range where "
+                                     "that number changes.");
         }
         has_responses_ = false;
         choose_frequencies();
         for (const PointModel& model : models_) curves_.push_back(curve(*model.nominal));
         stated_ =
             "Between the points the logarithm of |P| and the unwrapped phase are linear in the scheduling variable; "
-            "such a plant has no response over time, so over the range Ti/Kp stands for the IAE.";
+            "such a plant has no response over time, so Ti/Kp is used in place of the IAE over the range.";
         return std::nullopt;
     }
 
@@ -297,8 +299,8 @@ private:
         for (const double omega : omega_) {
             const std::complex<double> value = plant.rational({0, omega});
             const double wrapped = std::arg(value);
-            // The first one near that of the model before, so that two that lie about a negative real axis, one above
-            // and one below, are not a turn apart; the dead time's share is known without unwrapping.
+            // Makes the first phase close to that of the previous model, so that two values above and below the
+            // negative real axis do not differ by a turn; the dead time's part is known without unwrapping.
             if (result.phase.empty()) before = curves_.empty() ? wrapped : first_phase_;
             const double unwrapped = before + std::remainder(wrapped - before, 2 * std::numbers::pi);
             if (result.phase.empty()) first_phase_ = unwrapped;
@@ -311,7 +313,7 @@ private:
 
     std::vector<double> omega_;
     std::vector<ResponseCurve> curves_;
-    double first_phase_ = 0;  // at the lowest frequency, of the model whose curve was made last
+    double first_phase_ = 0;  // at the lowest frequency of the previous model
 };
 
 template <class Model>
@@ -334,8 +336,8 @@ std::vector<Error> place_faults(const std::vector<double>& places) {
         } else if (k > 0 && !(places[k] > places[k - 1])) {
             faults.push_back(bad_point(k, "at",
                                        "at is " + text(places[k]) + " after " + text(places[k - 1]) +
-                                           "; the points must ascend, each place once. Sort them, and keep one of "
-                                           "those at the same place."));
+                                           "; the points must be in ascending order, each place once. Sort them, and "
+                                           "keep one of those at the same place."));
         }
     }
     return faults;
@@ -361,9 +363,9 @@ public:
         for (const Fold& fold : branch_->input_folds())
             warnings_.push_back(
                 {"input-folds",
-                 "The input turns back along the steady states at " + branch_->scheduling_name() + " = " +
+                 "Along the steady states the input has a turning point at " + branch_->scheduling_name() + " = " +
                      text(fold.state.at, 6) + " (" + branch_->range().plant.input.name + " = " + text(fold.state.u, 6) +
-                     "): on one side of it the plant has a pole in the right half-plane and only the loop holds it."});
+                     "): on one side of it the plant has a pole in the right half-plane and only feedback holds it."});
     }
 
     Expected<PointModel> at(double place) const override {
@@ -373,7 +375,7 @@ public:
         if (!linear)
             return Error{linear.error().kind, "plant/equations",
                          "The linearisation at " + branch_->scheduling_name() + " = " + text(place, 6) +
-                             " cannot be worked with. " + linear.error().message};
+                             " is not supported. " + linear.error().message};
         PointModel model{.at = place, .nominal = std::move(*linear), .members = {}, .measured = {}};
         model.u = state->u;
         model.y = state->y;

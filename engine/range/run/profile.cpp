@@ -24,7 +24,7 @@ std::optional<Error> profile_fault(const Profile& profile) {
         if (!std::isfinite(profile[k].t) || !std::isfinite(profile[k].value) || profile[k].t < 0)
             return fault("Point " + std::to_string(k) + " of the profile is not finite, or before t = 0.");
         if (k > 0 && profile[k].t < profile[k - 1].t)
-            return fault("The profile's times must ascend; " + text(profile[k].t) + " follows " +
+            return fault("The profile's times must be in ascending order; " + text(profile[k].t) + " follows " +
                          text(profile[k - 1].t) + ".");
     }
     return std::nullopt;

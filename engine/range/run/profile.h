@@ -1,4 +1,4 @@
-// Profiles of the set point or the parameter over time: as a run reads them, and the usual ones across a range.
+// Profiles of the set point or the parameter over time for a run, and the usual ones across a range.
 #pragma once
 
 #include <algorithm>
@@ -14,10 +14,10 @@
 
 namespace tunewright::range {
 
-/// Empty, not ascending in t, before t = 0, or not finite.
+/// Error if it is empty, not ascending in t, begins before t = 0, or is not finite.
 std::optional<Error> profile_fault(const Profile& profile);
 
-/// Where a run that begins at this value rests: the place itself; along the input the first place with this y.
+/// The steady state with this initial value: that of the value itself; along the input the first one with this y.
 Expected<SteadyState> rest_at(const SteadyBranch& branch, double value);
 
 /// The profile's value just after (or before) a time, and its slope there.
@@ -44,7 +44,7 @@ public:
     }
 
 private:
-    /// The first point behind t; with `before` the first that is not before it.
+    /// The first point after t; with `before` the first that is not before t.
     std::size_t after(double t, bool before) const {
         const auto it = before ? std::ranges::lower_bound(profile_, t, {}, &ProfilePoint::t)
                                : std::ranges::upper_bound(profile_, t, {}, &ProfilePoint::t);
@@ -61,11 +61,11 @@ struct Passage {
     double horizon = 0;
 };
 
-/// One step from end to end either way, stairs of four steps, and a slow ramp there and back, with times from the rows'
-/// slowest integral time and the dead time.
+/// One step from end to end in each direction, stairs of four steps, and a slow ramp up and down. The times depend on
+/// the rows' slowest integral time and on the dead time.
 Expected<std::vector<Passage>> standard_passages(const SteadyBranch& branch, const Schedule& schedule);
 
-/// The schedule of one row that is this controller.
+/// The schedule with this controller as its only row.
 Schedule one_row(const IdealPid& controller, double at);
 
 }  // namespace tunewright::range

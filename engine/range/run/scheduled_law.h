@@ -1,4 +1,4 @@
-// The PID law with settings that move: what run_schedule integrates.
+// The PID law with settings that change, as run_schedule integrates it.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace tunewright::range {
 
-/// States s: I, y_f, Tf y_f'. Of settings without filter y_f is y, and there is no derivative.
+/// States s: I, y_f, Tf y_f'. Without a filter y_f is y, and there is no derivative.
 class ScheduledLaw {
 public:
     static constexpr int kStates = 3;
@@ -20,19 +20,19 @@ public:
     double place(std::span<const double> s, double y, double parameter) const {
         return along_ == Along::output ? y : along_ == Along::input ? s[0] : parameter;
     }
-    /// Of `steps` those of the present row.
+    /// The settings at this value; for `steps` those of the present row.
     IdealPid settings(double place) const;
 
     double command(const IdealPid& pid, double r, double y, std::span<const double> s) const;
     void rates(const IdealPid& pid, double r, double r_slope, double y, double excess, std::span<const double> s,
                std::span<double> ds) const;
 
-    /// Is the row left at this place?
+    /// True if the row is left at this value.
     bool leaves_row(double place) const {
         return schedule_.interpolation == Interpolation::steps && row_after(schedule_, row_, place) != row_;
     }
     void enter_row(double place) { row_ = row_after(schedule_, row_, place); }
-    /// The row whose part holds a place, for the start.
+    /// Sets the row that contains this value, at the start.
     void begin_at(double place);
 
 private:

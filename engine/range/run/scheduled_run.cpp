@@ -21,11 +21,11 @@ namespace tunewright::range {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kMinShare = 1e-3;      // of what a state moves by over the range: the least size that errors refer to
-constexpr int kEchoes = 4;              // passages of a jump through the dead time that steps end at
-constexpr double kSettledShare = 0.01;  // of the profile's size
-constexpr double kMinReportedCoupling = 0.3;  // of the gain from y to u, added by the settings' motion
-constexpr double kTimeTolerance = 1e-12;      // of the time: two times that are one
+constexpr double kMinShare = 1e-3;            // of a state's range: its least size for relative errors
+constexpr int kEchoes = 4;                    // passages of a jump through the dead time at which steps end
+constexpr double kSettledShare = 0.01;        // relative to the profile's size
+constexpr double kMinReportedCoupling = 0.3;  // relative change of the gain from y to u by the moving settings
+constexpr double kTimeTolerance = 1e-12;      // relative to the time: two times within it are equal
 
 /// Sizes of the plant's states, u and y over the range.
 struct Sizes {
@@ -77,7 +77,7 @@ public:
     ScheduledRun run() {
         std::vector<double> z = start_.x;
         z.insert(z.end(), {start_.u, start_.y, 0.0, 0.0});
-        // A jump at t = 0 finds the loop at rest before it.
+        // At a jump at t = 0 the loop was at rest before.
         law_.begin_at(law_.place(std::span<const double>(z).subspan(n_), start_.y, start_.p));
         for (const ProfilePoint& point : profile_) echoes_.add(point.t, 0, slack(point.t));
         jump(z, 0);
@@ -88,8 +88,8 @@ public:
         for (int steps = 0; integrator_.t() < options_.horizon; ++steps) {
             if (options_.stop.stop_requested()) return ended("The simulation was stopped.");
             if (steps == options_.max_steps)
-                return ended("At t = " + text(integrator_.t()) + " the run has taken the " +
-                             std::to_string(options_.max_steps) + " steps that it may.");
+                return ended("At t = " + text(integrator_.t()) + " the run has reached the limit of " +
+                             std::to_string(options_.max_steps) + " steps.");
             if (!advance()) return std::move(result_);
         }
         return finish();
@@ -139,7 +139,7 @@ private:
         return true;
     }
 
-    /// The set point's jump at t moves I by what its weight leaves out.
+    /// At a jump of the set point at t, I moves by the part that its weight leaves out.
     void jump(std::vector<double>& z, double t) {
         const double step = set_point(t, false) - (t > 0 ? set_point(t, true) : profile_start());
         if (step == 0) return;
@@ -181,7 +181,7 @@ private:
         return true;
     }
 
-    /// Where in the last step the row is left first.
+    /// The first time in the last step at which the row is left.
     std::optional<double> switch_time() {
         std::vector<double> z(integrator_.x().begin(), integrator_.x().end());
         const auto leaves = [&](double t) {
@@ -194,7 +194,7 @@ private:
         return bisect({integrator_.t_before(), integrator_.t()}, stays, close).outside;
     }
 
-    /// I takes up what the other parts lose.
+    /// I changes by as much as the other parts, in the other direction.
     void change_row(std::vector<double>& z) {
         const Signals before = signals(integrator_.t(), z);
         law_.enter_row(before.place);
@@ -222,7 +222,7 @@ private:
         sample();
     }
 
-    /// What the settings' motion adds to the gain from y to u, as a part of it: Kp'(y) e/Kp.
+    /// Change of the gain from y to u by the moving settings, relative to that gain: Kp'(y) e/Kp.
     void note_coupling(const Signals& s) {
         if (schedule_.interpolation == Interpolation::steps || schedule_.rows.size() < 2 || along_parameter_) return;
         const double span = schedule_.rows.back().at - schedule_.rows.front().at, d = 1e-4 * span;
@@ -258,7 +258,7 @@ private:
             (void)left_domain();
             return false;
         }
-        (void)ended("At t = " + text(integrator_.t()) + " the steps needed are too short to go on.");
+        (void)ended("At t = " + text(integrator_.t()) + " the required steps are too short to continue.");
         return false;
     }
 
@@ -281,10 +281,10 @@ private:
         if (coupling_ > kMinReportedCoupling)
             result_.warnings.push_back(
                 {"schedule-coupling",
-                 "The schedule follows a variable of the loop itself. At rest the loop is as designed, but on the way "
-                 "the settings' motion changes the gain from y to u by up to " +
+                 "The scheduling variable is a variable of the loop itself. In steady state the loop is as designed, "
+                 "but during changes the moving settings change the gain from y to u by up to " +
                      figure_text(100 * coupling_, 2) + " %, at " + text(coupled_at_) +
-                     ": the limits hold for slow passages; make large steps as ramps."});
+                     ". The limits hold for slow changes; replace large steps by ramps."});
     }
 
     ScheduledRun finish() {
@@ -325,7 +325,7 @@ Expected<ScheduledRun> run_schedule(const SteadyBranch& branch, const Schedule& 
 
 namespace {
 
-constexpr double kSettledStepShare = 0.01;  // of the step
+constexpr double kSettledStepShare = 0.01;  // share of the step
 
 Error none(std::string why) { return {ErrorKind::unsupported, "", std::move(why)}; }
 
@@ -369,9 +369,9 @@ ScheduledRun run_of(LinearisingResponse response, const NonlinearSystem& system,
 Expected<LinearisingPassage> run_linearising(const SteadyBranch& branch, const Schedule& schedule,
                                              const Profile& profile, const RunOptions& options) {
     if (branch.range().along == Along::parameter)
-        return none("A parameter moves, which the nonlinear controller knows.");
+        return none("A parameter changes, and the nonlinear controller knows it.");
     if (profile.size() != 2 || profile[0].t != 0 || profile[1].t != 0)
-        return none("It is run through single steps of the set point.");
+        return none("Only single steps of the set point are simulated with it.");
     const auto start = rest_at(branch, profile.front().value);
     if (!start) return start.error();
     const auto system = NonlinearSystem::make(branch.plant_at(*start));

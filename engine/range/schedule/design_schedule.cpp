@@ -21,18 +21,18 @@
 namespace tunewright::range {
 namespace {
 
-constexpr int kPointsInsidePart = 3;      // places of a part that a search knows from the beginning
-constexpr double kAimedLogMargin = 3e-5;  // of ln of a limit: aimed at, so that places between hold it as well
-constexpr double kLogCostReserve = 1e-3;  // of ln of the cost: kept free for what lies between the search's places
-constexpr int kRounds = 8;                // of adding places that exceed
-constexpr double kMaxLayoutErrorShare =
-    0.6;                                 // of ln of the cost allowed, of the layout's error: fewer rows are not tried
-constexpr double kMinStepShare = 0.15;   // of what is left to the cost allowed
-constexpr double kMaxNearbyShare = 0.3;  // of the distance of a search's places inside a part
+constexpr int kPointsInsidePart = 3;          // points inside a part that a search has from the beginning
+constexpr double kAimedLogMargin = 3e-5;      // of ln of a limit: aimed at, so that points between keep it as well
+constexpr double kLogCostReserve = 1e-3;      // of ln of the cost: reserve for points between the search's points
+constexpr int kRounds = 8;                    // rounds in which exceeding points are added
+constexpr double kMaxLayoutErrorShare = 0.6;  // share of ln of the allowed cost: with a larger error of the layout,
+                                              // fewer rows are not tried
+constexpr double kMinStepShare = 0.15;        // share of the distance to the allowed cost
+constexpr double kMaxNearbyShare = 0.3;       // share of the distance between a search's points inside a part
 constexpr int kIterations = 14;
-constexpr int kNearestRows[] = {kMaxRows, 10, 5, 2};  // where no number of rows stays within the allowance
+constexpr int kNearestRows[] = {kMaxRows, 10, 5, 2};  // if no number of rows stays within the allowance
 
-/// The limits first, then the cost.
+/// Compares by the limits first, then by the cost.
 bool nearer(const ScheduleDesign& one, const std::optional<ScheduleDesign>& other) {
     if (!other || one.holds_limits != other->holds_limits) return !other || one.holds_limits;
     return one.worst_relative_IAE < other->worst_relative_IAE;
@@ -43,9 +43,9 @@ public:
     LinearDesign(PointDesigns& places, OwnOptima& own, const RangeOptions& options, const std::optional<IdealPid>& one)
         : places_(places), own_(own), options_(options), one_(one), allowed_(std::log1p(options.allowance)) {}
 
-    /// With so many rows, from the own optima. Empty: the search ended without holding the limits, or above the cost
-    /// wanted. For the least cost the search begins again from the one setting where that was in vain: it keeps the
-    /// limits at the points at least, which settings interpolated between few optima need not.
+    /// A schedule with this number of rows, from the own optima. Empty: the search ended without keeping the limits, or
+    /// above the wanted cost. If it fails for the least cost, the search starts again from the one setting, which keeps
+    /// the limits at least at the points; settings interpolated between few optima may not.
     Expected<std::optional<ScheduleDesign>> with(int rows, bool min_cost) {
         auto at = own_.layout(rows, options_.interpolation).at;
         if (min_cost) fill_up(at, rows, places_.model().high());
@@ -87,7 +87,7 @@ private:
             const bool held = verified->excess <= limits::kMaxRelativeExcessVerified;
             const bool good = held && verified->worst.empty();
             if (end.stopped || (good && !add_worst_inside(schedule, joint.places))) return best;
-            if (good) best.reset();  // plants inside a region have joined, on which it does not hold
+            if (good) best.reset();  // plants inside a region were added, on which it exceeds a limit
             if (!held && verified->worst.empty()) search.margin += 1.2 * verified->excess;
             for (const double at : verified->worst) {
                 const auto place = places_.at(at);
@@ -100,8 +100,8 @@ private:
         return best;
     }
 
-    /// The rows' places, where the cost is largest, and some inside every part, where the limits are nearest; inside,
-    /// what is known nearby serves.
+    /// The points of the rows, where the cost is largest, and some inside every part, where the limits are nearest;
+    /// inside a part, known points nearby are used.
     Expected<std::vector<PointDesign*>> places_of(const std::vector<double>& rows) {
         std::vector<PointDesign*> result;
         for (std::size_t k = 0; k < rows.size(); ++k) {
@@ -121,8 +121,8 @@ private:
         return result;
     }
 
-    /// At every place with a region of uncertainty: did plants inside it join on which the schedule exceeds a limit?
-    /// The place then joins the search.
+    /// At every point with a region of uncertainty: true if plants inside it were added on which the schedule exceeds a
+    /// limit. The point is then added to the search.
     bool add_worst_inside(const Schedule& schedule, std::vector<const PointDesign*>& searched) {
         bool added = false;
         for (PointDesign* place : places_.known()) {
@@ -174,11 +174,11 @@ void tell(const PointDesigns& places, int rows) {
 
 Error no_schedule(const PointDesigns& places) {
     return {places.control().stop.stop_requested() ? ErrorKind::cancelled : ErrorKind::numerical_failure, "",
-            "No schedule was found whose limits hold between its rows. Narrow the range, or part it where its plants "
+            "No schedule was found whose limits hold between its rows. Narrow the range, or split it where its plants "
             "change most."};
 }
 
-/// The fewest rows within the allowance. Empty: no number of rows that is worth trying has led there.
+/// The fewest rows within the allowance. Empty: none of the tried numbers of rows succeeded.
 Expected<std::optional<ScheduleDesign>> fewest_rows(LinearDesign& linear, const PointDesigns& places,
                                                     const OwnOptima& own, const RangeOptions& options) {
     const double hopeless = kMaxLayoutErrorShare * std::log1p(options.allowance);
@@ -193,7 +193,7 @@ Expected<std::optional<ScheduleDesign>> fewest_rows(LinearDesign& linear, const 
     return best;
 }
 
-/// What comes nearest to the allowance: the most rows, fewer only where those lead nowhere.
+/// The schedule nearest to the allowance: with the largest number of rows, or with fewer if that fails.
 Expected<std::optional<ScheduleDesign>> nearest(LinearDesign& linear, const PointDesigns& places,
                                                 std::optional<ScheduleDesign> best) {
     for (const int rows : kNearestRows) {
@@ -219,7 +219,7 @@ Expected<ScheduleDesign> linear_schedule(PointDesigns& places, OwnOptima& own, c
     return **design;
 }
 
-/// The one setting in as many rows as are asked for, else in one.
+/// The one setting in as many rows as requested, else in one.
 Expected<ScheduleDesign> same_everywhere(const PointDesigns& places, const OwnOptima& own, const RangeOptions& options,
                                          const IdealPid& one) {
     const double low = places.model().low(), width = places.model().high() - low;
@@ -271,11 +271,10 @@ void remark_cost(ScheduleDesign& design, double allowance) {
     const double more = 100 * (design.worst_relative_IAE - 1), allowed = 100 * allowance;
     int digits = 3;
     while (digits < 9 && text(more, digits) == text(allowed, digits)) ++digits;
-    design.warnings.push_back({"schedule-over-allowance", "With " + std::to_string(design.schedule.rows.size()) +
-                                                              " rows the schedule costs up to " + text(more, digits) +
-                                                              " % more IAE than a place's own optimum, and " +
-                                                              text(allowed, 3) +
-                                                              " % is allowed. Allow more rows, or a larger price."});
+    design.warnings.push_back({"schedule-over-allowance",
+                               "With " + std::to_string(design.schedule.rows.size()) + " rows the schedule has up to " +
+                                   text(more, digits) + " % more IAE than the optimum at that point, but only " +
+                                   text(allowed, 3) + " % is allowed. Allow more rows or a larger cost."});
 }
 
 namespace {

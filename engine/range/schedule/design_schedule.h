@@ -1,4 +1,4 @@
-// The schedule with the fewest rows that keeps the limits everywhere and costs no more than is allowed.
+// The schedule with the fewest rows that keeps the limits everywhere and stays within the allowed cost.
 #pragma once
 
 #include <optional>
@@ -15,27 +15,27 @@ namespace tunewright::range {
 
 struct ScheduleDesign {
     Schedule schedule;
-    bool holds_limits = false;                       ///< at every place that was looked at
-    bool within_allowance = false;                   ///< IAE everywhere within the allowance of the place's own optimum
-    double worst_relative_IAE = 0;                   ///< over all places that were looked at
+    bool holds_limits = false;                       ///< at every evaluated point
+    bool within_allowance = false;                   ///< IAE everywhere within the allowance over the point's own
+                                                     ///< optimum
+    double worst_relative_IAE = 0;                   ///< over all evaluated points
     std::optional<double> longest_sample_time = {};  ///< below
     bool partial = false;                            ///< stopped early
     std::vector<Warning> warnings;                   ///< "schedule-over-allowance"
 };
 
-/// The rows' places are those of OwnOptima::layout. Their settings are designed together: all are unknowns of one
-/// search (search_jointly) for the least of the worst cost over the range, the limits held at the rows and at three
-/// places of every part, and verified between (verify()); the worst of the places met join the search, or the limits
-/// are tightened by what is exceeded, until nothing exceeds a limit by more than 2e-5, or the allowance. Of `steps`
-/// each part is one setting that serves its places and half the hysteresis beyond (steps_schedule).
+/// OwnOptima::layout gives the rows' places. Their settings are designed together: all are unknowns of one search
+/// (search_jointly) for the least worst cost over the range, with the limits kept at the rows and at three points of
+/// every part. verify() checks the points between; the worst of them are added to the search, or the limits are
+/// tightened by the excess, until no limit is exceeded by more than 2e-5 and the cost stays within the allowance. For
+/// `steps` each part has one setting for its points and half the hysteresis beyond (steps_schedule).
 ///
-/// Without `options.rows` the fewest rows, from 1 on; where no number of them stays within the allowance, those that
-/// come nearest: 20, or fewer where 20 lead nowhere. `own` learns the places that are looked at.
+/// Without `options.rows` the fewest rows, from 1 upwards; if no number of rows stays within the allowance, the nearest
+/// to it: 20, or fewer if the search with 20 fails. The evaluated points are added to `own`.
 ///
-/// `one`: the one setting for the range, where there is one. A search that leads nowhere from the own optima begins
-/// again from it, and where it keeps the limits everywhere and nothing better is found, it is the schedule: in
-/// `options.rows` equal rows, else in one.
-/// Errors: those of PointDesigns::at; cancelled where nothing was found before the stop.
+/// `one`: the one setting for the range, if there is one. A search that fails from the own optima starts again from it;
+/// if it keeps the limits everywhere and nothing better is found, it becomes the schedule, in `options.rows` equal rows
+/// or else in one. Errors: those of PointDesigns::at; cancelled if it was stopped before anything was found.
 Expected<ScheduleDesign> design_schedule(PointDesigns& places, OwnOptima& own, const RangeOptions& options,
                                          const std::optional<IdealPid>& one);
 
@@ -45,10 +45,10 @@ Expected<ScheduleDesign> design_schedule(PointDesigns& places, OwnOptima& own, c
 Expected<std::optional<double>> longest_sample_time(const RangeModel& model, const Schedule& schedule,
                                                     const std::stop_token& stop = {});
 
-/// Rows in the middles of the widest parts, until there are so many; the last part ends at `high`.
+/// Adds rows in the middles of the widest parts up to this number; the last part ends at `high`.
 void fill_up(std::vector<double>& at, int rows, double high);
 
-/// The warning where the schedule costs more than is allowed.
+/// Adds the warning if the schedule exceeds the allowed cost.
 void remark_cost(ScheduleDesign& design, double allowance);
 
 }  // namespace tunewright::range

@@ -11,7 +11,7 @@ namespace tunewright::range {
 namespace {
 
 constexpr double kFirstStep = 0.25;  // of a logarithm
-constexpr double kUnbounded = 700;   // of a logarithm: what a double can hold
+constexpr double kUnbounded = 700;   // of a logarithm: the range of a double
 constexpr double kPiTdFactor = 1.01;
 
 }  // namespace
@@ -61,7 +61,7 @@ robust::DesignPoint Knots::settings(const Eigen::VectorXd& v, double at, Setting
     if (slope != nullptr) slope->setZero(3, unknowns());
     robust::DesignPoint x{};
     for (Index i = 0; i < dimension_; ++i) {
-        // 1/Ti is what `linear_in_gains` mixes: its logarithm is the negative one of Ti.
+        // `linear_in_gains` interpolates 1/Ti, whose logarithm is the negative of that of Ti.
         const double sign = i == 1 && interpolation_ == Interpolation::linear_in_gains ? -1 : 1;
         const auto end = [&](Index row) { return absent(row, i) ? 0 : std::exp(sign * v[dimension_ * row + i]); };
         const double a = end(left), b = end(left + 1);

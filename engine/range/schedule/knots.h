@@ -11,20 +11,20 @@
 namespace tunewright::range {
 
 /// Unknowns: ln Kp, ln Ti (and ln Td) of each row in turn, for the kinds that are linear between rows. The rows' places
-/// stay where they are: moved, they would pass the search's own places, where costs have kinks.
+/// are fixed: if they moved past the search's own points, the cost would have kinks.
 class Knots {
 public:
     Knots(const PointDesigns& places, Interpolation interpolation, std::vector<double> at);
 
-    /// The row there is a PI, if there is one: Td is 0 at it, whatever its unknown.
+    /// Makes the row at this value, if there is one, a PI: its Td is 0, whatever the unknown.
     void leave_out_derivative(double at);
 
-    /// The own optima of the rows' places.
+    /// The own optima at the rows' values.
     Eigen::VectorXd start(const OwnOptima& own) const;
     /// The same setting for all rows.
     Eigen::VectorXd constant(const robust::DesignPoint& x) const;
     robust::DesignPoint settings(const Eigen::VectorXd& v, double at, SettingsSlope* slope) const;
-    /// Bounds and steps; settings. The places are left empty.
+    /// Bounds, steps and settings. The points are left empty.
     JointProblem problem() const;
     Schedule schedule(const Eigen::VectorXd& v, const DesignRules& rules, double b) const;
 
@@ -35,7 +35,7 @@ private:
 
     Interpolation interpolation_;
     std::vector<double> at_;
-    std::vector<bool> PI_;  ///< of each row
+    std::vector<bool> PI_;  ///< true for each row that is a PI
     double fastest_ = 0, slowest_ = 0;
     Eigen::Index dimension_;
 };

@@ -9,10 +9,10 @@ namespace tunewright::range {
 namespace {
 
 constexpr std::size_t kMinRangePoints = 7;
-constexpr double kMaxLogStep = 0.3;                // of ln Kp, ln Ti, ln IAE between neighbours
-constexpr int kGridPoints = 161;                   // of a layout
-constexpr int kHalvings = 14;                      // of its error
-constexpr double kMinRelativeSpacing = 1.0 / 512;  // of the range: nothing is looked at between nearer neighbours
+constexpr double kMaxLogStep = 0.3;                // difference of ln Kp, ln Ti, ln IAE between neighbours
+constexpr int kGridPoints = 161;                   // points of a layout
+constexpr int kHalvings = 14;                      // halvings of its error
+constexpr double kMinRelativeSpacing = 1.0 / 512;  // of the range: closer neighbours are not divided further
 
 double difference(const PointDesign& a, const PointDesign& b) {
     return std::max({std::abs(a.optimum()[0] - b.optimum()[0]), std::abs(a.optimum()[1] - b.optimum()[1]),
@@ -35,7 +35,7 @@ Expected<OwnOptima> OwnOptima::over(PointDesigns& places, std::size_t max_places
         if (const auto place = places.at(at); !place) return place.error();
     const double min = kMinRelativeSpacing * (model.high() - model.low());
     for (std::size_t count = places.known().size(); count < max_places; ++count) {
-        // Between the neighbours that differ most; the widest gap while there are few.
+        // Next point: between the neighbours that differ most, or in the widest gap while there are few.
         const auto known = places.known();
         double max = 0, middle = 0;
         for (std::size_t i = 1; i < known.size(); ++i) {
@@ -92,7 +92,7 @@ OwnOptima::Grid OwnOptima::fine_grid() const {
 
 namespace {
 
-/// What one part's settings lie off the optima between grid places i and j.
+/// Errors of a part's settings against the optima between grid points i and j.
 class Parts {
 public:
     Parts(const std::vector<double>& at, const std::vector<robust::DesignPoint>& x, Interpolation interpolation)
@@ -123,7 +123,7 @@ public:
         return 0.5 * std::log(std::max(high[0] / low[0], high[1] / low[1]));
     }
 
-    /// The farthest grid place that one part from i on reaches with no more than this error.
+    /// The farthest grid point that one part from i reaches with at most this error.
     std::size_t reach(std::size_t i, double error) const {
         std::size_t good = i + 1, bad = at_.size();
         while (bad - good > 1) {
@@ -133,7 +133,7 @@ public:
         return good;
     }
 
-    /// The ends of as few parts as this error allows; more than `max` parts: empty.
+    /// The ends of the fewest parts with at most this error; empty if they are more than `max`.
     std::vector<std::size_t> cover(double error, std::size_t max) const {
         std::vector<std::size_t> ends = {0};
         while (ends.back() + 1 < at_.size()) {
@@ -160,7 +160,8 @@ OwnOptima::Layout OwnOptima::layout(int rows, Interpolation interpolation) const
     const double high = bisect({parts.spread(0, grid.at.size() - 1), 0}, covers, kHalvings).inside;
     Layout layout{.at = {}, .error = high};
     auto ends = parts.cover(high, max);
-    // The spread need not grow with a part: then the halving of a part's length misses that the whole range serves.
+    // The error need not grow with the part: then halving the part's length misses that one part covers the whole
+    // range.
     if (ends.empty()) ends = {0, grid.at.size() - 1};
     for (const std::size_t end : ends) layout.at.push_back(grid.at[end]);
     if (steps) layout.at.pop_back();

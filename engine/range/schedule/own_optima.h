@@ -1,5 +1,5 @@
-// Every place's own optimum over the range, as a table between whose rows it is interpolated: what a schedule would
-// follow, and what its cost is measured against.
+// The own optimum of every point over the range, as a table that is interpolated between its rows: the settings that a
+// schedule approximates, and the reference of its cost.
 #pragma once
 
 #include <optional>
@@ -15,26 +15,26 @@ class OwnOptima {
 public:
     static constexpr std::size_t kMaxRangePoints = 48;
 
-    /// Looks at the points of the model, and between them until neighbours differ by no more than 30 % or so in Kp,
-    /// Ti and IAE, at most `max` places (3 or more; points beyond it are looked at all the same). Errors: those of
-    /// PointDesigns::at.
+    /// Searches the optima at the points of the model, and between them until neighbours differ by at most about 30 %
+    /// in Kp, Ti and IAE, at most `max` points (3 or more; all points of the model are used in any case). Errors: those
+    /// of PointDesigns::at.
     static Expected<OwnOptima> over(PointDesigns& places, std::size_t max = kMaxRangePoints);
 
-    /// The table from all places that are known by now.
+    /// Updates the table from all points that are known now.
     void renew(const PointDesigns& places);
 
     const std::vector<double>& at() const { return at_; }
     const std::vector<robust::DesignPoint>& x() const { return rows_; }
 
-    /// ln of a place's own least IAE: cubic between the rows, with slopes of the parabola through three.
+    /// ln of a point's own least IAE: cubic between the rows, with the slopes of parabolas through three rows.
     double log_IAE(double at) const;
 
-    /// The optimum of a place, in logarithms: cubic between the rows in the same way.
+    /// The optimum at a value, in logarithms: cubic between the rows in the same way.
     robust::DesignPoint optimum(double at) const;
 
-    /// The best places for `rows` rows, ends included, judged by how far the settings that the controller interpolates
-    /// lie from the optima in ln Kp and ln(Kp/Ti): every part as long as one common error lets it be, and the least
-    /// such error. `error`: half the spread over a part.
+    /// The best places for `rows` rows, ends included: they minimise the largest error of the interpolated settings
+    /// against the optima, in ln Kp and ln(Kp/Ti). Every part is as long as the common error allows. `error`: half the
+    /// spread over a part.
     struct Layout {
         std::vector<double> at;
         double error = 0;

@@ -12,8 +12,8 @@
 namespace tunewright::range {
 namespace {
 
-constexpr double kMinLogRatioOfAll = -5;       // of ln of a limit's ratio: every peak counts
-constexpr double kMinLogRatioOfHigh = -0.05;   // of it: only what may exceed the limit somewhere near
+constexpr double kMinLogRatioOfAll = -5;       // ln of a limit's ratio: every peak counts
+constexpr double kMinLogRatioOfHigh = -0.05;   // ln of a limit's ratio: only peaks near the limit count
 constexpr double kEvaluationTolerance = 3e-4;  // of the simulations
 constexpr double kFineTolerance = 1e-5;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -28,7 +28,7 @@ void add_setting(PointEvaluation& look, const PointDesign& place, const robust::
     }
     look.stable = look.stable && robust::is_stable(place.problem(), x);
     double log_IAE = look.stable ? robust::log_cost(place.problem(), x, kEvaluationTolerance) : kInfinity;
-    // A run that is coarse may miss that a slow tail has settled.
+    // A coarse run may miss that a slow tail has settled.
     if (look.stable && !std::isfinite(log_IAE)) log_IAE = robust::log_cost(place.problem(), x, kFineTolerance);
     look.log_cost_ratio = std::max(look.log_cost_ratio, log_IAE - log_own_IAE);
 }
@@ -71,12 +71,13 @@ Expected<PointEvaluation> evaluate_between(const PointDesigns& places, const Own
 
 namespace {
 
-constexpr int kRangeEvaluations = 48;            // places over the range at which a schedule is verified first
-constexpr int kPartEvaluations = 9;              // and between two places where plant or settings bend
-constexpr double kMaxSmallLogExcess = 5e-4;      // of it: all limits are tightened by it, rather than a place added
-constexpr double kMinLogRatioNearLimit = -5e-3;  // of it: tops above it are looked at more closely
-constexpr double kMaxLogCostGap = 0.01;          // of ln of the cost, below what is allowed: the same
-constexpr std::size_t kMaxPointsPerRound = 6;    // places a round
+constexpr int kRangeEvaluations = 48;            // points over the range at which a schedule is verified first
+constexpr int kPartEvaluations = 9;              // and between two points at which plant or settings have a kink
+constexpr double kMaxSmallLogExcess = 5e-4;      // ln of the excess: a smaller one tightens all limits, a larger one
+                                                 // adds a point
+constexpr double kMinLogRatioNearLimit = -5e-3;  // ln of a limit's ratio: higher maxima are refined
+constexpr double kMaxLogCostGap = 0.01;          // of ln of the cost, below the allowed one: the same
+constexpr std::size_t kMaxPointsPerRound = 6;    // points added per round
 
 std::vector<double> looked_at(const PointDesigns& places, const Schedule& schedule) {
     const double low = places.model().low(), high = places.model().high();
@@ -93,7 +94,7 @@ std::vector<double> looked_at(const PointDesigns& places, const Schedule& schedu
     return at;
 }
 
-/// Looks over the range, ascending, and more of them where they are near a limit or the cost allowed.
+/// Evaluations over the range, ascending, with more of them near a limit or the allowed cost.
 class Looks {
 public:
     Looks(const PointDesigns& places, const OwnOptima& own, const Schedule& schedule)
@@ -107,7 +108,8 @@ public:
         return std::nullopt;
     }
 
-    /// One more look at the top of the parabola through each local maximum above the threshold and its neighbours.
+    /// Adds one evaluation at the maximum of the parabola through each local maximum above the threshold and its
+    /// neighbours.
     std::optional<Error> refine(double PointEvaluation::*value, double threshold) {
         std::vector<double> wanted;
         for (std::size_t i = 1; i + 1 < looks_.size(); ++i) {

@@ -12,9 +12,9 @@
 namespace tunewright::range {
 namespace {
 
-constexpr double kStepsLogMargin = 3e-5;  // of ln of a limit: aimed at, so that places between hold it as well
+constexpr double kStepsLogMargin = 3e-5;  // of ln of a limit: aimed at, so that points between keep it as well
 constexpr int kMaxStepsRounds = 4;        // of tightening
-constexpr int kMinPointsOfPart = 3;       // that each part's search knows at least, ends included
+constexpr int kMinPointsOfPart = 3;       // points of each part's search at least, ends included
 
 class StepsDesign {
 public:
@@ -58,7 +58,7 @@ public:
     }
 
 private:
-    /// The places of a part with the hysteresis beyond its ends.
+    /// The points of a part, with the hysteresis beyond its ends.
     Expected<std::vector<PointDesign*>> places_of(double from, double to) {
         const double begin = std::max(low_, from - 0.5 * hysteresis_), end = std::min(high_, to + 0.5 * hysteresis_);
         for (int i = 0; i < kMinPointsOfPart; ++i) {
@@ -71,7 +71,8 @@ private:
         return inside;
     }
 
-    /// Did plants that the searches left out come back, on which a setting in use at their place exceeds a limit?
+    /// True if plants that the searches had set aside were added again, because a setting in use at their point exceeds
+    /// a limit on them.
     bool take_back_exceeded(const Schedule& schedule) {
         bool added = false;
         for (PointDesign* place : places_.known())
@@ -80,7 +81,7 @@ private:
         return added;
     }
 
-    /// Empty: no setting that holds the limits was found.
+    /// Empty: no setting was found that keeps the limits.
     Expected<std::optional<ScheduleRow>> serve(double from, double to) {
         const auto inside = places_of(from, to);
         if (!inside) return inside.error();
@@ -132,7 +133,7 @@ Expected<ScheduleDesign> steps_schedule(PointDesigns& places, OwnOptima& own, co
     if (options.rows) {
         if (auto error = attempt(*options.rows)) return *error;
     } else {
-        // The most rows first: where even they do not do, none fewer will.
+        // Tries the largest number of rows first: if it fails, no smaller number succeeds.
         int enough = kMaxRows, few = 0;
         if (auto error = attempt(enough)) return *error;
         while (suffices(best) && enough - few > 1) {
@@ -145,8 +146,8 @@ Expected<ScheduleDesign> steps_schedule(PointDesigns& places, OwnOptima& own, co
     }
     if (best) return *best;
     return Error{places.control().stop.stop_requested() ? ErrorKind::cancelled : ErrorKind::no_feasible_controller, "",
-                 "No steps of settings were found that keep the limits: over some part of the range no one setting "
-                 "does. Allow more rows, or let the settings move linearly between them."};
+                 "No stepwise schedule was found that keeps the limits: in some part of the range no single setting "
+                 "keeps them. Allow more rows, or let the settings move linearly between them."};
 }
 
 }  // namespace tunewright::range

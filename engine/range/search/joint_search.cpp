@@ -20,22 +20,22 @@ using robust::DesignPoint;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Those of the iteration are `optimise::SqpConstants`. They were set while the search was made, on ranges of
-/// first-order plants, the conical tank and the reactor; tests/engine/range holds what they reach.
+/// Constants of the problem; those of the iteration are `optimise::SqpConstants`. They were chosen during development
+/// on ranges of first-order plants, the conical tank and the reactor; tests/engine/range checks the results.
 struct JointSqpConstants {
-    double penalty = 40;             ///< of ln of the cost for one of ln of a limit: above most multipliers
-    double max_penalty = 4e4;        ///< next to the least limits that any design keeps they grow without bound
-    double harder = 10;              ///< times the penalty, where the limits were not held
-    double near = -0.25;             ///< limits below it cannot become active within a step
-    double near_price = 0.5;         ///< costs so far below the largest cannot become it within a step
-    double aim_below = 1e-6;         ///< feasibility is aimed this far inside
-    std::size_t max_peaks = 6;       ///< of a place, the largest ones, as constraints of a step
-    double slack_curvature = 1e-6;   ///< of the two unknowns that enter linearly: H must be positive definite
-    double slack_size = 60;          ///< bound of theirs: beyond any logarithm
+    double penalty = 40;             ///< d ln(cost)/d ln(limit): larger than most multipliers
+    double max_penalty = 4e4;        ///< near the tightest limits of any design the multipliers are unbounded
+    double harder = 10;              ///< factor of the penalty if the limits were not kept
+    double near = -0.25;             ///< ln of a limit's ratio: smaller ones cannot become active within a step
+    double near_price = 0.5;         ///< in ln of the cost: smaller ones cannot become the largest within a step
+    double aim_below = 1e-6;         ///< feasibility is aimed at by this margin
+    std::size_t max_peaks = 6;       ///< of each point, the largest ones, as constraints of a step
+    double slack_curvature = 1e-6;   ///< of the two unknowns that enter linearly, because H must be positive definite
+    double slack_size = 60;          ///< bound of these two: larger than any logarithm
     int max_corrections = 3;         ///< Newton steps back to the curved limits
-    double max_corrected_radii = 3;  ///< what a correction moved further is another design
+    double max_corrected_radii = 3;  ///< a correction that moves further gives another design
     double min_radius = 1e-4, max_radius = 4;  ///< of `step`
-    int slow_steps_to_end = 2;                 ///< in a row
+    int slow_steps_to_end = 2;                 ///< successive slow steps that end the search
 };
 constexpr JointSqpConstants k_;
 
@@ -50,7 +50,7 @@ struct Layout {
 struct PointState {
     DesignPoint x{};
     double cost = kInfinity;
-    std::optional<robust::EvaluatedDesign> evaluated;  // the runs behind the cost
+    std::optional<robust::EvaluatedDesign> evaluated;  // the simulations of the cost
     std::vector<ActivePeak> peaks;
     SettingsSlope slope;
     Eigen::Vector3d cost_gradient = Eigen::Vector3d::Zero();
@@ -65,13 +65,13 @@ struct State {
 
 Eigen::Vector3d as_vector(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
 
-/// As `optimise::minimise` wants it.
+/// Implements the problem of `optimise::minimise`.
 class JointSqp {
 public:
     using State = tunewright::range::State;
     struct Step {
         VectorXd p;
-        double promised = 0;  // of the merit function
+        double promised = 0;  // promised decrease of the merit function
         VectorXd multipliers;
     };
     static constexpr bool kElastic = true;
@@ -160,7 +160,7 @@ public:
 private:
     bool done(const State& now) const { return now.cost <= options_.enough && now.excess <= 0; }
 
-    /// Settings and peaks at every place; the cost is not known yet.
+    /// Settings and peaks at every point; the cost is not computed yet.
     State with_limits(const VectorXd& v) const {
         State state{.v = v, .places = {}, .cost = kInfinity, .excess = -kInfinity};
         for (const PointDesign* place : problem_.places) {
@@ -183,7 +183,7 @@ private:
         return result;
     }
 
-    /// Infinite where a loop is unstable.
+    /// Computes the cost; infinite if a loop is unstable.
     void ask_cost(State& state) const {
         state.cost = kInfinity;
         for (std::size_t k = 0; k < state.places.size(); ++k)
@@ -203,12 +203,12 @@ private:
         return one.slope.transpose() * local;
     }
 
-    /// Of the mean: each place's share of the sum.
+    /// For the mean: each point's share of the sum.
     double share(const State& state, const PointState& one) const {
         return std::exp(one.cost - state.cost) / double(state.places.size());
     }
 
-    /// The limits' linear models at every place, with `excess` as the last unknown.
+    /// Adds the limits' linear models at every point, with `excess` as the last unknown.
     void add_limits(const State& state, LargeProgram& program) const {
         VectorXd normal = VectorXd::Zero(program.g.size());
         normal[normal.size() - 1] = -1;
@@ -236,7 +236,7 @@ private:
         return program;
     }
 
-    /// The places' costs first, whose multipliers `learn` finds there, then the limits.
+    /// The costs of the points come first, because `learn` reads their multipliers there, then the limits.
     LargeProgram step_program(const State& now, double radius) const {
         LargeProgram program = empty_program(layout_.size());
         const auto unit = [&](Index i) { return VectorXd::Unit(layout_.size(), i); };
@@ -260,14 +260,14 @@ private:
         return program;
     }
 
-    /// What the model says the merit will be.
+    /// The merit that the model predicts.
     double model_merit(const State& now, const VectorXd& z, const VectorXd& g) const {
         const VectorXd p = z.head(layout_.n);
         const double linear = problem_.aim == Aim::worst ? z[layout_.cost()] : double(g.head(layout_.n).dot(p));
         return now.cost + linear + 0.5 * p.dot(H_ * p) + penalty_ * std::max(0.0, z[layout_.excess()]);
     }
 
-    /// The step, and after it back to the curved limits along the shortest way.
+    /// The step, corrected back to the curved limits along the shortest way.
     State corrected(const State& now, const VectorXd& p, double radius) const {
         State next = with_limits(kept_in(now.v + p));
         for (int k = 0; k < k_.max_corrections && next.excess > 0; ++k) {

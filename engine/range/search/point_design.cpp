@@ -13,10 +13,10 @@ namespace {
 
 using robust::DesignPoint;
 
-constexpr int kMaxRounds = 10;                    // of adding the worst plant found inside a region
-constexpr std::size_t kMaxUnfilteredMembers = 4;  // all of them are kept
-constexpr double kMinActiveLogRatio = -0.02;      // of ln of a limit's ratio: a member below it is not active
-constexpr double kPiTdFactor = 1.01;              // times the least Td: where a PI stands in for a PID
+constexpr int kMaxRounds = 10;                    // rounds in which the worst plant inside a region is added
+constexpr std::size_t kMaxUnfilteredMembers = 4;  // up to this number all members are kept
+constexpr double kMinActiveLogRatio = -0.02;      // ln of a limit's ratio: a member below it is not active
+constexpr double kPiTdFactor = 1.01;              // multiple of the least Td that a PID has in place of a PI
 
 }  // namespace
 
@@ -50,7 +50,7 @@ std::optional<Error> PointDesign::find_optimum(const RunControl& control, const 
         look_about(*problem.reference);
         optimum_ = found->x;
         optimum_log_cost_ = found->log_cost;
-        // A PI that does better than any PID has ln Td = -infinity, which no search over logarithms can start from.
+        // A PI that is better than any PID has ln Td = -infinity, from which no search over logarithms can start.
         const double min = std::log(kPiTdFactor * robust::kMinTd / sweep_->reference());
         optimum_is_PI_ = problem_.pid && !std::isfinite(optimum_[2]);
         if (problem_.pid) optimum_[2] = std::max(optimum_[2], min);
@@ -61,7 +61,7 @@ std::optional<Error> PointDesign::find_optimum(const RunControl& control, const 
     return std::nullopt;
 }
 
-/// What follows looks where the optimum was found: its loop may live far below the usual reference.
+/// Adapts the frequency grids to the optimum: its loop may be much slower than the usual reference.
 void PointDesign::look_about(double reference) {
     if (sweep_->reference() == reference) return;
     problem_.reference = reference;
@@ -69,7 +69,7 @@ void PointDesign::look_about(double reference) {
 }
 
 /// The searches that follow move the settings by a few percent: members far from every limit at the optimum would only
-/// cost time. Looks over the range form their places anew, with all members.
+/// cost time. Evaluations over the range make their points again, with all members.
 void PointDesign::keep_active_members() {
     if (model_.members.size() <= kMaxUnfilteredMembers) return;
     std::vector<double> nearest(model_.members.size(), kMinActiveLogRatio);
@@ -101,7 +101,7 @@ bool PointDesign::add_worst_inside(const DesignPoint& x, const std::stop_token& 
     return true;
 }
 
-/// A setting that differs much from the place's own optimum comes near other limits than that does.
+/// A setting that differs much from the point's own optimum may come near other limits.
 bool PointDesign::take_back_exceeded(const DesignPoint& x) {
     const auto exceeded = std::ranges::stable_partition(set_aside_, [&](const LinearPlant& plant) {
         return robust::excess_on(plant, problem_, x, {}) <= limits::kMaxRelativeExcessJudged;

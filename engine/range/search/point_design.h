@@ -1,4 +1,4 @@
-// One place of a range as the searches see it: its plants, the limits over frequency, and its own optimum.
+// One point of a range for the searches: its plants, the limits over frequency, and its own optimum.
 #pragma once
 
 #include <optional>
@@ -12,16 +12,16 @@
 
 namespace tunewright::range {
 
-/// What all places share.
+/// The rules that all points share.
 struct DesignRules {
     bool pid = true;
     robust::FilterRule filter;
     PeakLimits limits;
     double sign = 1;          ///< of Kp
-    bool integrated = false;  ///< Ti/Kp in place of the IAE, also where a response could be computed
+    bool integrated = false;  ///< use Ti/Kp in place of the IAE, even if a response could be simulated
 };
 
-/// Neither copied nor moved: the design problem points into it.
+/// Neither copied nor moved, because the design problem refers to it.
 class PointDesign {
 public:
     PointDesign(PointModel model, const DesignRules& rules);
@@ -33,35 +33,37 @@ public:
     const robust::DesignProblem& problem() const { return problem_; }
     const robust::Sweep& sweep() const { return *sweep_; }
 
-    /// The design with the least IAE here within the limits, on every member. `before`: the optimum of a neighbour,
-    /// from which it is searched. Regions of uncertainty are held inside. Errors: as robust::verified_search.
+    /// Finds the design with the least IAE here that keeps the limits on every member. `before`: the optimum of a
+    /// neighbour, where the search starts. The limits also hold inside regions of uncertainty. Errors: as
+    /// robust::verified_search.
     std::optional<Error> find_optimum(const RunControl& control, const robust::DesignPoint* before);
 
-    /// Where searches begin: of a PI that does better than any PID with the least Td, at which the limits need not
+    /// The start of searches: for a PI that is better than any PID it has the least Td, and then the limits need not
     /// hold.
     const robust::DesignPoint& optimum() const { return optimum_; }
-    /// The optimum itself: ln Td is -infinity where it is a PI.
+    /// The optimum itself: ln Td is -infinity if it is a PI.
     robust::DesignPoint own_design() const;
     bool optimum_is_PI() const { return optimum_is_PI_; }
     double optimum_log_cost() const { return optimum_log_cost_; }
 
-    /// ln of IAE over that of the own optimum; infinite where it does not settle. The loop must be stable.
+    /// ln of IAE over that of the own optimum; infinite if it does not settle. The loop must be stable.
     double log_cost_ratio(const robust::DesignPoint& x, double tolerance) const;
     double log_cost_ratio(const robust::EvaluatedDesign& design) const { return design.log_cost() - optimum_log_cost_; }
-    /// The runs behind a cost, from which its gradient follows.
+    /// The simulations of a cost, from which its gradient follows.
     robust::EvaluatedDesign evaluated(const robust::DesignPoint& x, double tolerance) const {
         return {problem_, x, tolerance};
     }
 
-    /// The largest relative excess over a limit, on grids that no search sees; infinite where the loop is unstable.
+    /// The largest relative excess over a limit, on grids that the searches do not use; infinite if the loop is
+    /// unstable.
     double excess(const robust::DesignPoint& x) const;
 
-    /// The plants inside the region of uncertainty on which x exceeds a limit join the members: true if there are any.
+    /// Adds the plants inside the region of uncertainty on which x exceeds a limit: true if there are any.
     bool add_worst_inside(const robust::DesignPoint& x, const std::stop_token& stop);
-    /// The same of the members that were set aside.
+    /// The same for the members that were set aside.
     bool take_back_exceeded(const robust::DesignPoint& x);
 
-    /// Members that were far from every limit at the optimum: the searches leave them out, judgements do not.
+    /// Members that are far from every limit at the optimum: the searches omit them, evaluations do not.
     const std::vector<LinearPlant>& set_aside() const { return set_aside_; }
 
 private:
@@ -74,7 +76,7 @@ private:
     robust::DesignProblem problem_;
     std::optional<robust::Sweep> sweep_;
     robust::DesignPoint optimum_{};
-    bool optimum_is_PI_ = false;  // although a PID was asked for
+    bool optimum_is_PI_ = false;  // true although a PID was requested
     double optimum_log_cost_ = 0;
 };
 

@@ -71,14 +71,15 @@ Expected<PointDesign*> PointDesigns::find(double at, bool from_neighbour) {
     const auto after = places_.lower_bound(at);
     if (after != places_.end() && after->first == at) return after->second.get();
     if (control_.stop.stop_requested())
-        return Error{ErrorKind::cancelled, "", "The design was stopped before all places were looked at."};
+        return Error{ErrorKind::cancelled, "", "The design was stopped before all points of the range were searched."};
     auto model = model_.at(at);
     if (!model) return model.error();
     auto place = std::make_unique<PointDesign>(std::move(*model), rules_);
     if (place->model().nominal && robust::first_sign(*place->model().nominal) != rules_.sign)
         return Error{ErrorKind::no_feasible_controller, "",
-                     "The plant's gain has another sign at " + named(at) + " than at " + named(model_.low()) +
-                         ": no controller of one sign serves both. Part the range where the gain changes its sign."};
+                     "The plant's gain has the opposite sign at " + named(at) + " than at " + named(model_.low()) +
+                         ", so no controller with one sign is stable at both. Split the range where the gain changes "
+                         "its sign."};
     if (!place->problem().measured)
         if (auto error = robust::without_optimum(place->problem())) {
             error->message = "At " + named(at) + ": " + error->message;

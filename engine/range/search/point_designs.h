@@ -1,4 +1,4 @@
-// The places of a range that have been looked at, each with its own optimum.
+// The searched points of a range, each with its own optimum.
 #pragma once
 
 #include <map>
@@ -11,12 +11,12 @@
 
 namespace tunewright::range {
 
-/// What the options ask at every place: the sign of Kp of the first point; the filter that is given, else none for PI,
-/// Tf = 0.1 Td where any point has it by robust::filter_rule, else the shortest Tf that the rule
-/// gives at a point. Errors: as robust::filter_rule, and unstable_plant for a zero at s = 0.
+/// The rules that the options give for every point: the sign of Kp of the first point; the given filter, else none for
+/// PI, Tf = 0.1 Td if any point has it by robust::filter_rule, else the shortest Tf that the rule gives at a point.
+/// Errors: as robust::filter_rule, and unstable_plant for a zero at s = 0.
 Expected<DesignRules> design_rules(const RangeModel& model, const RangeOptions& options);
 
-/// An error of a design at one plant, with the place that its filter has in a range.
+/// Moves the place of a design's error to that of the filter in the request of a range.
 Error placed_in_options(Error error);
 
 class PointDesigns {
@@ -25,15 +25,14 @@ public:
                  const RunControl& control)
         : model_(model), scheduling_(scheduling), rules_(rules), control_(control) {}
 
-    /// The place with its optimum, found once; from the neighbours that are known already, else by the whole search.
-    /// Errors: those of the model and of PointDesign::find_optimum, with the place in the sentence; unbounded_optimum;
-    /// cancelled.
+    /// The point with its optimum, searched once: from known neighbours, else by the full search. Errors: those of the
+    /// model and of PointDesign::find_optimum, with the place in the message; unbounded_optimum; cancelled.
     Expected<PointDesign*> at(double at);
 
-    /// The same without looking at neighbours.
+    /// The same without using neighbours.
     Expected<PointDesign*> at_point(double at) { return find(at, false); }
 
-    /// Ascending.
+    /// In ascending order.
     std::vector<PointDesign*> known() const;
 
     const RangeModel& model() const { return model_; }

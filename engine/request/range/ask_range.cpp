@@ -15,10 +15,10 @@ namespace {
 using range::RangeDesign;
 using range::Verdict;
 
-constexpr double kIdentified = 0.3, kDesigned = 0.9;  // of the progress, where there are records, and runs
+constexpr double kIdentified = 0.3, kDesigned = 0.9;  // shares of the progress, with records and with runs
 constexpr std::size_t kRunSamples = 401;
 
-/// A part of the work sees 0 to 1 as its own.
+/// Gives a part of the work the range `from` to `to` of the progress.
 RunControl share_of(const RunControl& control, double from, double to) {
     RunControl part{.stop = control.stop, .progress = {}, .now_ms = control.now_ms};
     if (control.progress)
@@ -95,7 +95,7 @@ public:
         if (auto error = look_at_places()) return *error;
         if (auto error = run_across()) return *error;
         if (control_.now_ms) result_.compute_ms = control_.now_ms() - started;
-        tell("The range is answered.");
+        tell("The range is complete.");
         return std::move(result_);
     }
 

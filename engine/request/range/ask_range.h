@@ -1,5 +1,5 @@
-// A loop over its whole operating range: points with their plants or records, or equations, in; one setting, a
-// schedule, their curves and their runs out.
+// Designs and evaluates a loop over its whole operating range. Input: points with their plants or records, or
+// equations. Output: one setting, a schedule, their curves and their runs.
 #pragma once
 
 #include <memory>
@@ -19,7 +19,7 @@
 
 namespace tunewright {
 
-/// What is asked of a range: exactly one of `points` and `branch`.
+/// The request of a range: exactly one of `points` and `branch`.
 struct RangeQuestion {
     struct Point {
         double at = 0;
@@ -28,33 +28,34 @@ struct RangeQuestion {
     range::Scheduling scheduling;
     std::vector<Point> points;
     std::shared_ptr<const range::SteadyBranch> branch;
-    IdentifyOptions identify;  ///< of every record
+    IdentifyOptions identify;  ///< for every record
     bool over_region = false;  ///< limits hold over each record's 95 % confidence region
     range::RangeOptions options;
-    std::vector<ScheduleRow> given;  ///< a schedule to judge in place of a design, ascending; empty: none
-    bool runs = true;                ///< of equations: simulate passages across the range
+    std::vector<ScheduleRow> given;  ///< a schedule to evaluate in place of a design, ascending; empty: none
+    bool runs = true;                ///< for equations: simulate passages across the range
 };
 
-/// The plant at a point of the range, and how it is known.
+/// The plant at a point of the range, with the model or steady state that it comes from.
 struct RangePointPlant {
     double at = 0;
     Plant plant;
-    std::optional<IdentifiedModel> model;  ///< of a record
-    std::optional<double> u, y;            ///< of equations: the steady state, absolute
+    std::optional<IdentifiedModel> model;  ///< the identified model, if the point has a record
+    std::optional<double> u, y;            ///< for equations: the steady state, absolute
 };
 
-/// What varies over the range. K: static gain, the slope of an integrating plant; T: sum of the lags less the leads;
-/// L: dead time; empty where only the frequency response is known.
+/// Plant parameters that vary over the range.
+/// K: static gain, or the slope of an integrating plant; T: sum of the lags less the leads; L: dead time. Empty if only
+/// the frequency response is known.
 struct RangePlace {
     double at = 0;
     std::optional<double> K, T, L, u, y;
 };
 
-/// One passage across the range, by each of the two that exist.
+/// One passage across the range, simulated with each of the two controllers that exist.
 struct RangePassage {
     range::Passage passage;
     std::optional<range::ScheduledRun> one, schedule;
-    OrReason<range::LinearisingPassage> nonlinear;  ///< by a controller that knows the equations and their states
+    OrReason<range::LinearisingPassage> nonlinear;  ///< with a controller that knows the equations and their states
 };
 
 struct RangeResult {
@@ -70,11 +71,11 @@ struct RangeResult {
 };
 
 /// Errors: those of identification, with the point in `where` ("points/2/record"); of model_of_points and
-/// model_of_branch; of design_range and judge_schedule, whose "options/..." become "schedule/..."; cancelled where
-/// nothing was found before the stop. Progress: "identify", "tune", "schedule", "evaluate".
+/// model_of_branch; of design_range and judge_schedule, whose "options/..." become "schedule/..."; cancelled if it was
+/// stopped before anything was found. Progress: "identify", "tune", "schedule", "evaluate".
 Expected<RangeResult> ask_range(const RangeQuestion& question, const RunControl& control);
 
-/// Where a range's plants lie in the request that a fault is about.
+/// Moves an error's place from a plant of the range to its place in the request.
 Error in_range_request(Error error, const RangeQuestion& question);
 
 }  // namespace tunewright

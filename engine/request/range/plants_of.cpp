@@ -1,4 +1,4 @@
-// The plants of a range's points, records identified.
+// The plants of a range's points, with records identified.
 #include "engine/request/range/plants_of.h"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 struct Structure {
     ModelChoice choice;
     const char* name;
-    /// Whether a model that was found is of it.
+    /// true if an identified model has this structure
     bool (*holds)(const Plant& plant);
 };
 
@@ -42,7 +42,7 @@ class Identification {
 public:
     Identification(const RangeQuestion& question, const RunControl& control) : question_(question), control_(control) {}
 
-    /// The model of a point's record; `share` of the progress is done before it.
+    /// The model of a point's record; `share` of the progress lies before it.
     Expected<IdentifiedModel> model(std::size_t k, const IdentifyOptions& options, double share) const {
         if (control_.progress)
             control_.progress({.fraction = share,
@@ -60,8 +60,8 @@ public:
         return error;
     }
 
-    /// All that have a record once more, in the structure in which they lose least together; what was there before
-    /// where no structure suits all.
+    /// Identifies all records again, in the structure whose total loss is least; keeps the models as they are if no
+    /// structure suits all.
     std::optional<Error> in_one_structure(std::vector<RangePointPlant>& plants, std::vector<Warning>& warnings) const {
         const Structure* best = nullptr;
         double min = std::numeric_limits<double>::infinity();
@@ -89,15 +89,15 @@ public:
             point.plant = point.model->plant;
         }
         warnings.push_back({"common-structure",
-                            "The records alone would give models of different structure; all are of " +
+                            "The records alone would give models of different structure; all were identified as " +
                                 std::string(best->name) +
-                                ", in which they lose least together, so that parameters can be followed from point "
-                                "to point. identify.model chooses another."});
+                                ", the structure with the least total loss, so that parameters can be compared from "
+                                "point to point. Set identify.model to choose another."});
         return std::nullopt;
     }
 
 private:
-    /// The sum of the information criteria; infinite where some point has no such model.
+    /// The sum of the information criteria; infinite if some point has no such model.
     static double loss_in(const Structure& structure, const std::vector<RangePointPlant>& plants) {
         constexpr double kNone = std::numeric_limits<double>::infinity();
         double sum = 0;
@@ -152,7 +152,7 @@ Expected<std::vector<RangePointPlant>> plants_of(const RangeQuestion& question, 
             auto region = identified_region(*plants[k].model);
             if (!region)
                 return Error{region.error().kind, "points/" + std::to_string(k) + "/record", region.error().message};
-            // A plant of another structure says nothing about the plants between the points.
+            // A plant of another structure cannot be interpolated between the points.
             region->regions.erase(region->regions.begin() + 1, region->regions.end());
             point.family = std::move(*region);
         }

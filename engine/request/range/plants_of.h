@@ -7,8 +7,8 @@
 
 namespace tunewright {
 
-/// Records find their plants, and all of them one structure where their records allow it: of structures that differ,
-/// the one in which all together lose least. `warnings` says which.
+/// Identifies the records, in one structure for all of them if their data allow it: if the structures differ, the one
+/// with the least total loss. `warnings` names it.
 Expected<std::vector<RangePointPlant>> plants_of(const RangeQuestion& question, const RunControl& control,
                                                  std::vector<range::RangePoint>& points,
                                                  std::vector<Warning>& warnings);

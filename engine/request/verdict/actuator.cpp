@@ -7,25 +7,25 @@
 namespace tunewright::verdict {
 namespace {
 
-/// The u that a step needs at rest, and how much of the step its limits carry.
+/// The steady-state u that a step needs, and the part of the step that the limits of u allow.
 struct Need {
     double u = 0;        ///< deviation from the operating point
-    double carried = 0;  ///< of the step, with its sign; the largest at rest
+    double carried = 0;  ///< part of the step, with its sign: the largest that u can carry in steady state
 };
 
 bool carries(const ActuatorLimits& limits, double u) { return u >= limits.min && u <= limits.max; }
 
-/// A load is at the plant's input: u has to take all of it back.
+/// A load acts at the plant's input: in steady state u must cancel all of it.
 Need of_load(const ActuatorLimits& limits, double d) { return {-d, d > 0 ? -limits.min : -limits.max}; }
 
-/// With a static gain u has to be r/K; a plant that integrates comes to rest with u at 0.
+/// With a static gain u must be r/K in steady state; a plant that integrates comes to rest with u at 0.
 std::optional<Need> of_setpoint(const LinearPlant& plant, const ActuatorLimits& limits, double r) {
     if (plant.integrators() != 0) return {};
     const double K = plant.low_frequency_gain(), u = r / K;
     return Need{u, K * (u > 0 ? limits.max : limits.min)};
 }
 
-/// For equations: the y at rest with u at the limit that it needs to exceed.
+/// For equations: the steady-state y with u at the limit that it would have to exceed.
 std::optional<Need> of_setpoint(const VerdictInput& c, const NonlinearSystem& system, const ActuatorLimits& limits) {
     const SetpointPerformance& p = c.performance().setpoint;
     if (!c.warned_of("actuator-limited") || c.warned_of("does-not-settle") || p.settling_time || p.IAE) return {};
@@ -86,20 +86,22 @@ OptionalFinding actuator_too_small(const VerdictInput& c) {
     const bool asked = (setpoint_fails && c.context.given_steps.setpoint) || (load_fails && c.context.given_steps.load);
     FindingBuilder draft("actuator-too-small", !asked ? Level::note : bounded ? Level::warning : Level::bad);
     const bool upper = (setpoint_fails ? setpoint->u : load.u) > limits.max;
-    draft.say(bounded ? "u rests at its limit of " : "y is unbounded, with u at its limit of ")
+    draft.say(bounded ? "u stays at its limit of " : "y is unbounded, with u at its limit of ")
         .number("u_limit", upper ? limits.max : limits.min, printed_unit(labels.u))
         .say(": ");
     if (setpoint_fails)
-        draft.say("it carries a set-point step of ")
+        draft.say("it can follow a set-point step of ")
             .number("largest_setpoint_step", setpoint->carried, printed_unit(labels.y))
-            .say(" and not of ")
+            .say(", not of ")
             .number("setpoint_step", options.setpoint_step, printed_unit(labels.y));
     if (load_fails)
-        draft.say(setpoint_fails ? ", and a load step of " : "it carries a load step of ")
+        draft.say(setpoint_fails ? ", and can reject a load step of " : "it can reject a load step of ")
             .number("largest_load_step", load.carried, printed_unit(labels.u))
-            .say(" and not of ")
+            .say(", not of ")
             .number("load_step", options.load_step, printed_unit(labels.u));
-    return draft.say(asked ? ". No controller changes that." : ". That size was assumed: give the steps that occur.");
+    return draft.say(asked ? ". No controller can change that."
+                           : ". That size was assumed: give the steps that occur "
+                             "in your loop.");
 }
 
 OptionalFinding at_its_limits(const VerdictInput& c) {

@@ -10,7 +10,7 @@ namespace {
 
 double degrees(double radians) { return radians * 180 / std::numbers::pi; }
 
-/// The phase that a filter of the measurement takes at omega, in degrees >= 0.
+/// The phase lag of a measurement filter at omega, in degrees >= 0.
 double filter_degrees(const Filter& filter, double omega) {
     const double x = omega * filter.Tf;
     if (filter.type == FilterType::measurement_first_order) return degrees(std::atan(x));
@@ -28,12 +28,12 @@ OptionalFinding PI_or_PID(const VerdictInput& c) {
     FindingBuilder draft(as_good ? "PI-as-good" : "derivative-pays", Level::note);
     draft.figure("ratio", ratio);
     if (as_good)
-        return draft.say("PI does as well here: within the same limits its load IAE is ")
+        return draft.say("A PI is as good here: within the same limits its load IAE is ")
             .number("PI_load_IAE", *c.entry.best_PI_load_IAE)
             .say(" against ")
             .number("load_IAE", *IAE)
             .say(" of this PID.");
-    return draft.say("Derivative action pays: without it the best load IAE within the same limits is ")
+    return draft.say("Derivative action helps: without it the best load IAE within the same limits is ")
         .number("PI_load_IAE", *c.entry.best_PI_load_IAE)
         .say(" instead of ")
         .number("load_IAE", *IAE)
@@ -54,7 +54,7 @@ OptionalFinding dead_time_rules(const VerdictInput& c) {
     const LinearPlant* plant = c.context.subject.linear();
     if (plant == nullptr || plant->integrators() != 0 || plant->unstable_poles() > 0) return {};
     const double L = plant->dead_time();
-    // The sum of the lags says little of poles that swing: a resonance of no damping has none.
+    // The sum of the lags is no measure of an oscillating plant: an undamped resonance has none.
     const double lags = std::max(plant->lag_sum(), plant->time_scale() - L);
     const bool alone = plant->poles().empty();
     if (!(L > 0) || (!alone && !(lags > 0 && L >= kMinDeadTimeOverLags * lags))) return {};
@@ -100,7 +100,7 @@ OptionalFinding filter_rules(const VerdictInput& c) {
         .number("shorter_load_IAE", *shorter->load_IAE)
         .say(" instead of ")
         .number("load_IAE", *IAE)
-        .say(", and a noise gain Mks of ")
+        .say(" and a noise gain Mks of ")
         .number("shorter_Mks", shorter->Mks, quotient_unit(labels.u, labels.y))
         .say(" instead of ")
         .number("Mks", *r.Mks, quotient_unit(labels.u, labels.y))
@@ -115,7 +115,7 @@ OptionalFinding sample_time(const VerdictInput& c) {
     return FindingBuilder("sample-time", Level::warning)
         .say("A sample time of ")
         .number("sample_time", Ts, unit)
-        .say(" costs margin or speed: at most ")
+        .say(" reduces the margin or the speed: a sample time of at most ")
         .number("longest_sample_time", **longest, unit)
         .say(" keeps Ms within 5 % of the continuous loop's.")
         .figure("percent", 5);
@@ -123,7 +123,7 @@ OptionalFinding sample_time(const VerdictInput& c) {
 
 namespace {
 
-/// Says what the filter does to the same gains, if it leaves the loop its margins.
+/// Reports Mks with a filter and the same gains, if the filter leaves the loop its margins.
 void say_filtered(FindingBuilder& draft, const VerdictInput& c, const Filter& filter) {
     const auto peaks = peaks_with_filter(c, filter);
     const Figure& Ms = c.evaluation.robustness.Ms;
@@ -140,7 +140,7 @@ void say_filtered(FindingBuilder& draft, const VerdictInput& c, const Filter& fi
 
 Finding no_filter(const VerdictInput& c) {
     FindingBuilder draft("no-filter", Level::warning);
-    draft.say("The derivative has no filter: nothing bounds what noise does to the controller output.");
+    draft.say("The derivative has no filter: the effect of measurement noise on the controller output is unbounded.");
     const auto pid = to_ideal(c.evaluation.controller);
     if (pid) say_filtered(draft, c, {FilterType::derivative, std::abs(pid->Td) / kUsualN});
     return draft;
@@ -164,9 +164,9 @@ OptionalFinding noise(const VerdictInput& c) {
     }
     if (!r.Mks || !(Kp > 0) || *r.Mks < kMinNoisyMksOverKp * Kp || !noise_gain_peaks_beyond(c)) return {};
     FindingBuilder draft("noise-gain", Level::warning);
-    draft.say("Noise reaches the controller output up to ")
+    draft.say("Measurement noise reaches the controller output amplified up to ")
         .number("ratio", *r.Mks / Kp)
-        .say(" times as strong as by the proportional gain (Mks ")
+        .say(" times as much as by the proportional gain (Mks ")
         .number("Mks", *r.Mks, quotient_unit(labels.u, labels.y))
         .say(").");
     if (const auto pid = to_ideal(c.evaluation.controller); pid && pid->filter.type != FilterType::none)

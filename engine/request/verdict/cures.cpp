@@ -18,10 +18,10 @@
 namespace tunewright::verdict {
 namespace {
 
-constexpr int kDoublings = 10, kHalvings = 6;  // of a lag that the loop that runs needs longer
-constexpr double kOwnTolerance = 0.01;         // percentage points, of a response that was simulated another way
+constexpr int kDoublings = 10, kHalvings = 6;  // doublings and halvings in the search for a lag
+constexpr double kOwnTolerance = 0.01;  // percentage points: tolerance for a response that was simulated another way
 
-/// Overshoot in percent of the loop that runs with this weight and lag; infinite if it does not settle.
+/// Overshoot in percent of the implemented loop with this weight and lag; infinite if it does not settle.
 double overshoot_with(const VerdictInput& c, const LinearPlant& plant, const SetpointCure& cure) {
     const EvaluateOptions& options = c.context.options;
     const double r = options.setpoint_step;
@@ -65,7 +65,7 @@ std::optional<SetpointCure> overshoot_cure(const VerdictInput& c, double percent
     const auto pid =
         c.on_device() ? Expected<IdealPid>(c.entry.on_device->fitted.controller) : to_ideal(c.evaluation.controller);
     if (plant == nullptr || !pid || std::holds_alternative<Npid>(c.evaluation.controller)) return std::nullopt;
-    // The weights of a series form are its own, and those of a product are settled by its design.
+    // The series form has weights of its own, and the design of a product decides its weights.
     const bool may_weigh = !product && std::holds_alternative<IdealPid>(c.evaluation.controller);
     const auto stopped = [&] { return c.context.control.stop.stop_requested(); };
     const auto kept = [&](const SetpointCure& cure) {
@@ -90,7 +90,7 @@ std::optional<SetpointCure> overshoot_cure(const VerdictInput& c, double percent
 std::optional<double> min_load_IAE(const VerdictInput& c) {
     const LinearPlant* plant = only_linear(c);
     if (plant == nullptr || c.context.options.horizon || !(plant->dead_time() > 0)) return std::nullopt;
-    // x' = A x + B, and the integral of h = C x + D as one more state.
+    // x' = A x + B, and the integral of h = C x + D as an additional state.
     const Realisation& of = plant->realisation();
     const auto n = static_cast<std::size_t>(of.n), m = n + 1;
     std::vector<double> F(m * m, 0.0), b(m, 0.0);
@@ -137,7 +137,7 @@ std::optional<OtherDesign> designed_with_filter(const VerdictInput& c, double Tf
         entry.method != "robust" || entry.options.text("objective") != "load_iae")
         return std::nullopt;
     RunControl control = c.context.control;
-    control.progress = {};  // it has come to its end already
+    control.progress = {};  // this entry's progress is complete
     const auto design = find_method(entry.method)->tune(*problem, with_filter_time(entry.options, Tf), control);
     if (!design || design->partial) return std::nullopt;
     EvaluateOptions figures = c.context.options;

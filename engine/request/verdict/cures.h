@@ -1,5 +1,5 @@
-// Advice is tried before it is given, on the loop of the entry: no figure here is guessed. Each is
-// asked only where its finding is made, and is empty where the request was stopped.
+// Cures are tried on the entry's loop before they are suggested: no figure here is estimated. Each is computed only if
+// its finding is made, and is empty if the request was stopped.
 #pragma once
 
 #include <optional>
@@ -9,9 +9,9 @@
 
 namespace tunewright::verdict {
 
-/// A lower b or a lag of the set point with which a set-point step of the loop that runs overshoots by at most
-/// `percent`: its sampled law and the actuator's limits included. Empty: unknown, or there is none; always on equations
-/// and for a nonlinear integral.
+/// A lower b or a set-point lag with which the implemented loop overshoots by at most `percent` after a set-point step,
+/// with its sampled law and the actuator's limits. Empty: unknown, or there is none; always empty for equations and for
+/// a nonlinear integral.
 std::optional<SetpointCure> overshoot_cure(const VerdictInput& c, double percent);
 
 /// The least load IAE that any controller can have, in y times time: the load has moved y for one dead time before the
@@ -23,12 +23,12 @@ struct FilteredPeaks {
     double Ms = 0, Mks = 0;
 };
 
-/// The entry's gains with another filter, on the nominal linear plant. Empty where that loop is unstable, or on
+/// The entry's gains with another filter, on the nominal linear plant. Empty where that loop is unstable, or for
 /// equations.
 std::optional<FilteredPeaks> peaks_with_filter(const VerdictInput& c, const Filter& filter);
 
-/// True if |C S| peaks at a higher frequency than |S|: below it is what holds y, such as 1/K at rest, and no noise.
-/// True for a plant known by points alone.
+/// True if |C S| peaks at a higher frequency than |S|: at lower frequencies u must hold y, such as 1/K at rest, and
+/// noise is not the cause. True for a plant known by points alone.
 bool noise_gain_peaks_beyond(const VerdictInput& c);
 
 struct OtherDesign {
@@ -36,8 +36,8 @@ struct OtherDesign {
     double Mks = 0;
 };
 
-/// The method robust once more, with the entry's options and this filter time. Empty where the entry is not such a
-/// design for the load IAE on one linear plant and the ideal law, or where there is none.
+/// The method robust once more, with the entry's options and this filter time. Empty if the entry is not such a design
+/// (for the load IAE, one linear plant, the ideal law), or if there is none.
 std::optional<OtherDesign> designed_with_filter(const VerdictInput& c, double Tf);
 
 }  // namespace tunewright::verdict

@@ -11,7 +11,7 @@
 
 namespace tunewright::verdict {
 
-/// In ascending severity. `bad`: what it belongs to is not to be used as it stands.
+/// In ascending severity. `bad`: the controller or result must not be used as it is.
 enum class Level : std::uint8_t { good, note, warning, bad };
 
 struct Finding {
@@ -19,16 +19,16 @@ struct Finding {
     Level level = Level::note;
     std::string text;                       ///< one or two sentences; its numbers have three digits
     std::map<std::string, double> figures;  ///< every number of the text, in full precision
-    bool head = false;                      ///< says what the loop is: counts where one of several is chosen
+    bool head = false;                      ///< a statement on the whole loop, which decides the choice between several
 };
 
-/// The user's names of the units; empty: not known.
+/// The user's names of the units; empty: unknown.
 struct Labels {
     std::string time = "s", u, y;
 };
 
-/// Which steps of an evaluation the request names. A step whose size is assumed is nobody's: that an actuator cannot
-/// carry it says nothing of the loop.
+/// Which steps of an evaluation the request sets. If a step's size was only assumed, an actuator that is too small for
+/// it is no fault of the loop.
 struct GivenSteps {
     bool setpoint = false, load = false;
 };
@@ -42,12 +42,12 @@ public:
         finding_.text += words;
         return *this;
     }
-    /// With three digits, the unit behind it, and in full precision among the figures.
+    /// Writes the value with three digits and its unit, and adds it in full precision to the figures.
     FindingBuilder& number(const std::string& name, double value, const std::string& unit = "") {
         finding_.figures[name] = value;
         return say(figure_text(value)).say(unit.empty() ? unit : " " + unit);
     }
-    /// Among the figures alone.
+    /// Adds it to the figures only.
     FindingBuilder& figure(const std::string& name, double value) {
         finding_.figures[name] = value;
         return *this;
@@ -62,7 +62,7 @@ private:
     Finding finding_;
 };
 
-/// "degC s" and "%/degC", degrees as they are printed; the empty unit where none is known.
+/// Products of units: "degC s" and "%/degC", with degrees as printed; empty if a unit is unknown.
 std::string product_unit(const std::string& a, const std::string& b);
 std::string quotient_unit(const std::string& top, const std::string& bottom);
 std::string printed_unit(const std::string& unit);

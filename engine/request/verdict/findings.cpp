@@ -14,7 +14,7 @@ std::optional<double> above(std::optional<double> value, double floor) {
 std::string words_of(PeakLoop loop) {
     switch (loop) {
         case PeakLoop::ideal: return "";
-        case PeakLoop::on_device: return " on your controller as it is built";
+        case PeakLoop::on_device: return " on your controller";
         case PeakLoop::worst_plant: return " on the worst plant";
         case PeakLoop::ideal_on_worst_plant: return " of the ideal loop on the worst plant";
     }

@@ -1,4 +1,4 @@
-// One entry of an answer as its findings look at it, and all findings: each a function of its figures.
+// The findings on one entry of an answer, each a function of its figures, and the input that they share.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace tunewright::verdict {
 
-/// What a design was asked to keep; empty: nothing.
+/// The limits that were set for a design; empty: none.
 struct RequestedLimits {
     std::optional<double> Ms, Mt, Mks;
 };
@@ -21,11 +21,11 @@ std::string words_of(PeakLoop loop);
 /// An entry that has an evaluation.
 struct VerdictInput {
     const TuningEntry& entry;
-    const TuningEntry* today;  ///< of the settings in use, with an evaluation, if it is another entry; else null
+    const TuningEntry* today;  ///< today's settings, if they have an evaluation and are another entry; else null
     const Context& context;
     const Evaluation& evaluation = *entry.evaluation;
 
-    /// What runs is judged: the loop as it is built, where that is known.
+    /// The implemented loop where it is known, else the ideal one.
     const Robustness& robustness() const;
     const Performance& performance() const;
     bool on_device() const { return entry.on_device.has_value(); }
@@ -38,13 +38,13 @@ struct VerdictInput {
     std::optional<PlacedPeak> worst_Mt() const { return tunewright::worst_Mt(entry); }
 };
 
-/// The loop of an entry that runs; null where there is none.
+/// Performance of the implemented loop where it is known, else of the ideal one.
 const Performance& performance_of(const TuningEntry& entry);
 
-// primary_findings.cpp: what the loop is
+// primary_findings.cpp: statements on the whole loop
 
 /// All that apply, the most severe first; at least one. `good` only where every plant that the answer knows of and the
-/// loop as it is built are stable and settle, with Ms at most 1.7 and within its limit.
+/// implemented loop are stable and settle, with Ms at most 1.7 and within its limit.
 std::vector<Finding> primary_findings(const VerdictInput& c);
 
 /// "Ms = 1.40 at 0.21 rad/s", "Mks = 12.0 %/degC": a limit that the design touches, and on which loop.
@@ -56,47 +56,45 @@ struct ActiveLimit {
 };
 std::vector<ActiveLimit> active_limits(const VerdictInput& c);
 
-// What else follows of a loop that is stable; empty where there is nothing to say.
+// Further findings on a stable loop; empty if they do not apply.
 
 using OptionalFinding = std::optional<Finding>;
 
 // margins.cpp
-OptionalFinding on_device(const VerdictInput& c);          ///< the loop as it is built beside the ideal one
-OptionalFinding active_limit(const VerdictInput& c);       ///< which limit stops the design, and where; else the peaks
-OptionalFinding all_members(const VerdictInput& c);        ///< the worst of several plants
-OptionalFinding margins(const VerdictInput& c);            ///< what may change before the loop oscillates
-OptionalFinding nonlinear_margins(const VerdictInput& c);  ///< what margins mean where plant or controller is nonlinear
-OptionalFinding large_errors(
-    const VerdictInput& c);  ///< whether the nonlinear integral lets errors of every size die out
+OptionalFinding on_device(const VerdictInput& c);     ///< the implemented loop against the ideal one
+OptionalFinding active_limit(const VerdictInput& c);  ///< which limit stops the design, and where; else the peaks
+OptionalFinding all_members(const VerdictInput& c);   ///< the worst of several plants
+OptionalFinding margins(const VerdictInput& c);  ///< how much gain or dead time may grow before the loop oscillates
+OptionalFinding nonlinear_margins(const VerdictInput& c);  ///< the meaning of margins in a nonlinear loop
+OptionalFinding large_errors(const VerdictInput& c);       ///< whether large errors decay under the nonlinear integral
 
 // responses.cpp
-OptionalFinding load_error(const VerdictInput& c);  ///< IAE of the load step, against today's
-OptionalFinding overshoot(const VerdictInput& c);   ///< of a set-point step, what was asked for, and what keeps it
-std::optional<Level> overshoot_level(
-    const VerdictInput& c);                       ///< of that finding, known without the search for what keeps it
-OptionalFinding movement(const VerdictInput& c);  ///< of u, against today's
+OptionalFinding load_error(const VerdictInput& c);            ///< IAE of the load step, compared with today's
+OptionalFinding overshoot(const VerdictInput& c);             ///< overshoot after a set-point step, with its cure
+std::optional<Level> overshoot_level(const VerdictInput& c);  ///< its level, without its cure
+OptionalFinding movement(const VerdictInput& c);              ///< movement of u, compared with today's
 
 // actuator.cpp
-/// Steps for which u has to be beyond its limits at rest, whatever the controller.
+/// Steps that would need a steady-state u beyond its limits, with any controller.
 struct StepsBeyondActuator {
     bool setpoint = false, load = false;
 };
 StepsBeyondActuator steps_beyond_actuator(const VerdictInput& c);
 
-/// u rests at its limit: the steps that it carries. A note where the request names the size of none of those that it
-/// does not.
+/// u stays at its limit: reports the steps that are possible. A note if the request sets the size of none of the
+/// others.
 OptionalFinding actuator_too_small(const VerdictInput& c);
-OptionalFinding at_its_limits(const VerdictInput& c);  ///< u reaches the actuator's ends
+OptionalFinding at_its_limits(const VerdictInput& c);  ///< u reaches the actuator's limits
 
 // causes.cpp
 OptionalFinding PI_or_PID(const VerdictInput& c);
-OptionalFinding excess(const VerdictInput& c);  ///< over the least IAE at the same Ms
+OptionalFinding excess(const VerdictInput& c);  ///< excess over the least IAE at the same Ms
 OptionalFinding dead_time_rules(const VerdictInput& c);
 OptionalFinding filter_rules(const VerdictInput& c);
 OptionalFinding sample_time(const VerdictInput& c);
 OptionalFinding noise(const VerdictInput& c);
 
-/// "about a quarter of", "about the same as", "2.4 times"; the ratio goes into the figures.
+/// "about a quarter of", "about the same as", "2.4 times"; adds the ratio to the figures.
 void say_ratio(FindingBuilder& draft, double ratio);
 
 }  // namespace tunewright::verdict

@@ -45,7 +45,7 @@ OptionalFinding on_device(const VerdictInput& c) {
     const bool worse = on_device.Ms_percent.value_or(0) > kWorsePercent_Ms ||
                        on_device.load_IAE_percent.value_or(0) > kWorsePercent_IAE;
     FindingBuilder draft("as-built", worse ? Level::warning : Level::note);
-    draft.say("On your controller as it is built Ms is ")
+    draft.say("On your controller Ms is ")
         .number("Ms", *runs.Ms)
         .say(" (")
         .number("Ms_ideal", *ideal.Ms)
@@ -91,14 +91,14 @@ OptionalFinding all_members(const VerdictInput& c) {
     if (region->worst_Ms && region->stable_fraction >= 1)
         return FindingBuilder("members", Level::note)
             .say(record ? "Stable over the whole identified uncertainty, with Ms "
-                        : "Stable on every plant that it must serve, with Ms ")
+                        : "Stable on all the plants, with Ms ")
             .number("worst_Ms", *region->worst_Ms)
             .say(" at worst.");
-    // Never all for less than all.
+    // Rounded down, so that a part is never reported as 100 %.
     const double percent = std::min(99.9, std::floor(1000 * region->stable_fraction) / 10);
     FindingBuilder draft("members", Level::note);
     draft.say("Stable on ").number("stable_percent", percent, "%");
-    return draft.say(record ? " of the identified uncertainty." : " of the plants that it must serve.");
+    return draft.say(record ? " of the identified uncertainty." : " of the plants.");
 }
 
 OptionalFinding margins(const VerdictInput& c) {
@@ -114,7 +114,7 @@ OptionalFinding margins(const VerdictInput& c) {
     if (falls) draft.say("fall to ").number("gain_low", *low).say(" of itself");
     if (falls && high) draft.say(" or ");
     if (high && *high > kUnlimitedGainMargin)
-        draft.say("grow more than ")
+        draft.say("grow by more than ")
             .number("gain_more_than", kUnlimitedGainMargin)
             .say("-fold")
             .figure("gain_high", *high);
@@ -133,13 +133,12 @@ OptionalFinding nonlinear_margins(const VerdictInput& c) {
     if (std::holds_alternative<Npid>(c.evaluation.controller))
         return FindingBuilder("linear-part", Level::note)
             .say(
-                "Ms and the margins belong to the controller's linear part, where errors are small against delta_r; "
-                "the "
-                "responses are those of these steps and change with their size.");
+                "Ms and the margins belong to the controller's linear part, which acts alone while errors are small "
+                "against delta_r; the responses hold for these steps and change with their size.");
     if (c.context.subject.equations() == nullptr) return {};
     const bool far = c.warned_of("far-from-linear");
     return FindingBuilder("linearisation", far ? Level::warning : Level::note)
-        .say(far ? "Ms and the margins are those of the linearisation, from which the plant is far for these steps."
+        .say(far ? "Ms and the margins are those of the linearisation; with these steps the plant is far from it."
                  : "Ms and the margins are those of the linearisation; the responses are the plant's own.");
 }
 

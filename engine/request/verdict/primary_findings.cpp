@@ -17,12 +17,12 @@ OptionalFinding unstable(const VerdictInput& c) {
     if (c.evaluation.robustness.stable) return {};
     return FindingBuilder("unstable", Level::bad)
         .say(c.is_today() ? "Today's settings are unstable on this plant."
-                          : "This loop is unstable: do not enter these settings.");
+                          : "The loop is unstable: do not use these settings.");
 }
 
 OptionalFinding unstable_on_device(const VerdictInput& c) {
     if (!c.on_device() || c.robustness().stable || !c.evaluation.robustness.stable) return {};
-    return FindingBuilder("unstable-as-built", Level::bad).say("Unstable on your controller as it is built.");
+    return FindingBuilder("unstable-as-built", Level::bad).say("Unstable on your controller.");
 }
 
 OptionalFinding unstable_member(const VerdictInput& c) {
@@ -31,29 +31,29 @@ OptionalFinding unstable_member(const VerdictInput& c) {
     if (c.context.model != nullptr)
         return FindingBuilder("model-too-uncertain", Level::bad)
             .say(
-                "The model is too uncertain for these settings: unstable on a part of what the record leaves "
-                "possible.");
-    return FindingBuilder("unstable-member", Level::bad).say("Unstable on a part of what the plant may be.");
+                "The model is too uncertain for these settings: the loop is unstable for a part of its confidence "
+                "region.");
+    return FindingBuilder("unstable-member", Level::bad).say("Unstable for a part of the plant's uncertainty.");
 }
 
-/// True if both responses come to rest, but for steps that no controller can carry.
+/// True if both responses settle at their targets, except for steps that no controller can follow or reject.
 bool rests(const Performance& p, const StepsBeyondActuator& beyond) {
     return (p.setpoint.settling_time || beyond.setpoint) && (p.load.recovery_time || beyond.load);
 }
 
-/// With a horizon the responses may only have been cut off.
+/// A response that is cut off by the horizon may still settle.
 OptionalFinding not_settling(const VerdictInput& c) {
     const Performance& p = c.evaluation.performance;
     if (!c.evaluation.robustness.stable || c.context.subject.measured() != nullptr) return {};
     if (c.warned_of("left-domain"))
-        return FindingBuilder("not-settling", Level::bad).say("A response leaves what the equations describe.");
+        return FindingBuilder("not-settling", Level::bad).say("A response leaves the domain of the equations.");
     if (!c.has_integral()) return {};
     const StepsBeyondActuator beyond = steps_beyond_actuator(c);
     const bool excused = beyond.setpoint || beyond.load;
     if (rests(p, beyond) && (excused || !c.warned_of("does-not-settle"))) return {};
     if (c.context.options.horizon)
         return FindingBuilder("short-horizon", Level::warning)
-            .say("The responses are not at rest at the end of the time asked for.");
+            .say("The responses have not settled at the end of the requested time.");
     return FindingBuilder("not-settling", Level::bad).say("The response does not settle.");
 }
 
@@ -61,7 +61,7 @@ OptionalFinding too_sharp(const VerdictInput& c) {
     const auto worst = c.worst_Ms();
     if (!worst || worst->value <= kTooSharpMs * (1 + kRelativeRounding)) return {};
     return FindingBuilder("too-sharp", Level::bad)
-        .say("Too sharp for a plant that changes: Ms ")
+        .say("Too little margin for a plant that changes: Ms ")
         .number("Ms", worst->value)
         .say(words_of(worst->loop) + ".");
 }
@@ -71,7 +71,7 @@ OptionalFinding above_limit(const VerdictInput& c) {
     const auto worst = c.worst_Ms(), Mt = c.worst_Mt();
     const auto broken = [](const char* name, const PlacedPeak& peak, double limit) -> Finding {
         return FindingBuilder("above-limit", Level::warning)
-            .say(std::string("Above the limit that was asked for: ") + name + " ")
+            .say(std::string("Above the requested limit: ") + name + " ")
             .number(name, peak.value)
             .say(words_of(peak.loop) + " instead of ")
             .number(std::string(name) + "_limit", limit)
@@ -106,10 +106,9 @@ OptionalFinding doubtful_model(const VerdictInput& c) {
     const auto doubt = c.context.model != nullptr ? reason_of_doubt(*c.context.model) : std::nullopt;
     if (!doubt) return {};
     if (*doubt == DoubtReason::warning)
-        return FindingBuilder("doubtful-model", Level::warning)
-            .say("A doubtful model to tune on: the warnings about it say why.");
+        return FindingBuilder("doubtful-model", Level::warning).say("The model is doubtful: see its warnings.");
     return FindingBuilder("doubtful-model", Level::warning)
-        .say("A doubtful model to tune on: it explains ")
+        .say("The model is doubtful: it explains only ")
         .number("fit_percent", c.context.model->fit_percent, "%")
         .say(" of the record's movement.");
 }
@@ -117,19 +116,18 @@ OptionalFinding doubtful_model(const VerdictInput& c) {
 OptionalFinding costly_region(const VerdictInput& c) {
     if (!c.entry.region_cost || *c.entry.region_cost <= kMaxRegionCost) return {};
     return FindingBuilder("costly-region", Level::warning)
-        .say("The record leaves much open: holding the limit on all of it costs ")
+        .say("The record leaves a large uncertainty: a design that keeps the limit for all of it has ")
         .number("region_cost", *c.entry.region_cost)
-        .say(" times the load error of a design for the model alone. A better test gains that.");
+        .say(" times the load error of a design for the model alone. A better test would reduce it.");
 }
 
 OptionalFinding restless_on_device(const VerdictInput& c) {
     if (!c.on_device() || !c.robustness().stable || c.context.options.horizon || !c.has_integral()) return {};
     if (rests(c.performance(), steps_beyond_actuator(c))) return {};
-    return FindingBuilder("restless-as-built", Level::warning)
-        .say("On your controller as it is built the response does not come to rest.");
+    return FindingBuilder("restless-as-built", Level::warning).say("On your controller the response does not settle.");
 }
 
-/// As a note it stands behind the primary_findings.
+/// As a note it follows after the primary findings.
 OptionalFinding actuator_too_small_as_asked(const VerdictInput& c) {
     auto finding = actuator_too_small(c);
     return finding && finding->level >= Level::warning ? finding : OptionalFinding{};
@@ -142,12 +140,15 @@ OptionalFinding large_overshoot(const VerdictInput& c) {
 OptionalFinding not_on_device(const VerdictInput& c) {
     if (!c.warned_of("not-as-built")) return {};
     return FindingBuilder("not-as-built", Level::warning)
-        .say("Not known on your controller as it is built; only the ideal loop is.");
+        .say("The loop on your controller is unknown; only the ideal loop was evaluated.");
 }
 
 OptionalFinding no_integral(const VerdictInput& c) {
     if (!c.evaluation.robustness.stable || c.has_integral()) return {};
-    return FindingBuilder("no-integral", Level::warning).say("Without integral action a load leaves a lasting error.");
+    return FindingBuilder("no-integral", Level::warning)
+        .say(
+            "Without integral action, a load leaves a steady-state "
+            "error.");
 }
 
 OptionalFinding margin_unknown(const VerdictInput& c) {
@@ -161,8 +162,8 @@ Finding robust(const VerdictInput& c) {
     const auto active = active_limits(c);
     if (active.empty()) return FindingBuilder("robust", Level::good).say("Robust.");
     return FindingBuilder("robust", Level::good)
-        .say(active.front().name == "Mks" ? "Robust, limited by the noise gain you asked for."
-                                          : "Robust, limited by the margin you asked for.");
+        .say(active.front().name == "Mks" ? "Robust, limited by the requested noise gain."
+                                          : "Robust, limited by the requested margin.");
 }
 
 }  // namespace

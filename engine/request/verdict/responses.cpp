@@ -13,7 +13,7 @@ struct RatioPhrase {
     const char* words;
 };
 
-/// Ranges of a ratio that plain words are right for.
+/// Ranges of a ratio that are put into words.
 constexpr RatioPhrase kRatioPhrases[] = {{0.09, 0.11, "about a tenth of"},
                                          {0.18, 0.22, "about a fifth of"},
                                          {0.22, 0.285, "about a quarter of"},
@@ -25,7 +25,7 @@ constexpr RatioPhrase kRatioPhrases[] = {{0.09, 0.11, "about a tenth of"},
                                          {1.9, 2.1, "about twice"},
                                          {2.85, 3.15, "about three times"}};
 
-/// Says what keeps the overshoot within so many percent, tried on the loop that runs.
+/// Says what keeps the overshoot within `percent`, as tried on the implemented loop.
 void say_cure(FindingBuilder& draft, const VerdictInput& c, double percent) {
     const auto cure = overshoot_cure(c, percent);
     if (!cure) return;
@@ -77,7 +77,7 @@ OptionalFinding load_error(const VerdictInput& c) {
     if (today == nullptr) return draft.say(".");
     const Robustness& runs = c.today->on_device ? c.today->on_device->loop.robustness : c.today->evaluation->robustness;
     if (!runs.stable) return draft.say("; today's settings are unstable.");
-    if (!today->load.IAE || !(*today->load.IAE > 0)) return draft.say("; today's settings have none that is finite.");
+    if (!today->load.IAE || !(*today->load.IAE > 0)) return draft.say("; that of today's settings is infinite.");
     const double ratio = *IAE / *today->load.IAE;
     draft
         .level(ratio > kMaxNegligibleRatio       ? Level::warning
@@ -94,7 +94,7 @@ OptionalFinding overshoot(const VerdictInput& c) {
     if (!level) return {};
     const auto asked = c.entry.asked_overshoot, limit = setpoint_options(c.entry.options).overshoot;
     FindingBuilder draft("overshoot", *level);
-    draft.say("A set-point step overshoots by ").number("overshoot_percent", *percent, "%");
+    draft.say("The response to a set-point step overshoots by ").number("overshoot_percent", *percent, "%");
     if (asked)
         draft.say(", more than the ").number("asked_percent", *asked, "%").say(" asked for");
     else if (limit)
@@ -114,7 +114,7 @@ OptionalFinding movement(const VerdictInput& c) {
     FindingBuilder draft("movement", ratio > kMinRatioMovesMuchMore ? Level::warning : Level::note);
     draft.say("The controller output moves ")
         .number("ratio", ratio)
-        .say(" times as much as today on a set-point step (TV ");
+        .say(" times as much as today after a set-point step (TV ");
     return draft.number("TV", *TV, unit).say(" against ").number("TV_today", *today->setpoint.TV, unit).say(").");
 }
 

@@ -1,6 +1,5 @@
-// Every threshold on which a finding or its level depends, with its reason; when a limit holds stands in
-// tuning/limits.h, the grade of a record's model is concluded in identification/model_grade.h. docs/verdicts.md lists
-// them for users.
+// Every threshold on which a finding or its level depends, with its reason. Two are elsewhere: tuning/limits.h decides
+// when a limit holds, identification/model_grade.h grades the model of a record. docs/verdicts.md lists them for users.
 #pragma once
 
 #include "engine/evaluation/performance_figures.h"
@@ -9,50 +8,52 @@ namespace tunewright::verdict {
 
 // Margins
 
-/// Above this Ms little margin is left, and above the second the loop is too sharp for a plant that changes. Åström
-/// and Hägglund, Advanced PID Control (2006), section 4.6: reasonable Ms lie between 1.2 and 2.
+/// First value: above this Ms little margin is left. Second: the loop has too little margin for a plant that changes.
+/// Åström and Hägglund, Advanced PID Control (2006), section 4.6: reasonable Ms lie between 1.2 and 2.
 inline constexpr double kLittleMarginMs = 1.7, kTooSharpMs = 2;
-/// The response rings as a second-order loop with a damping of 0.26 does.
+/// The response oscillates like a second-order loop with a damping of 0.26.
 inline constexpr double kOscillatoryMt = 2;
 
-/// Load IAE of a design over a record's region, in times that of the one for the model alone, above which the record's
-/// doubt sets the speed and not the plant.
+/// Load IAE of a design over a record's region, as a multiple of that for the model alone. Above it the record's
+/// uncertainty limits the speed, not the plant.
 inline constexpr double kMaxRegionCost = 5;
-/// A gain margin beyond it is as good as none.
+/// A larger gain margin counts as unlimited.
 inline constexpr double kUnlimitedGainMargin = 100;
-/// Excess of the loop as built over the ideal one that is a warning: beyond what an identified gain is known to.
+/// Excess of the implemented loop over the ideal one that gives a warning: more than the uncertainty of an identified
+/// gain.
 inline constexpr double kWorsePercent_Ms = 5, kWorsePercent_IAE = 20;
 
 // Set points
 
-/// Overshoot worth a word, and from where on the loop is not called good: a quarter of the step, as a second-order loop
-/// with a damping of 0.4 has it.
+/// First value: overshoot that is reported. Second: the loop is not called good, because it overshoots by a quarter of
+/// the step, like a second-order loop with a damping of 0.4.
 inline constexpr double kOvershootPercent = 15, kLargeOvershootPercent = 25;
-/// Percentage points of overshoot above the limit of a design: worth a word from what prints as another figure. Where
-/// the request set the limit, not good from the band on within which a response counts as settled.
+/// Percentage points of overshoot above the limit of a design. First value: reported, because it prints as another
+/// figure. Second: not good, if the request set the limit; it is the band within which a response counts as settled.
 inline constexpr double kOvershootAbove = 0.05, kOvershootFarAbove = 100 * kSettlingBand;
 
 // Against today's settings
 
-inline constexpr double kMaxNegligibleRatio = 1.15;  ///< ratios between its inverse and itself are no difference
-inline constexpr double kMaxIaeOverToday = 0.95;     ///< of today's load IAE: less is worth a change
-inline constexpr double kMinRatioMovesMore = 1.5;    ///< times the movement of u today
+inline constexpr double kMaxNegligibleRatio = 1.15;  ///< ratios from 1/1.15 to 1.15 are no difference
+inline constexpr double kMaxIaeOverToday =
+    0.95;  ///< share of today's load IAE: a smaller one makes a change worthwhile
+inline constexpr double kMinRatioMovesMore = 1.5;  ///< multiple of today's movement of u
 inline constexpr double kMinRatioMovesMuchMore = 3;
 
 // Causes and cures
 
-inline constexpr double kMaxCostRatioAsGood = 1.05;   ///< another design may cost so much more and be as good
-inline constexpr double kExcessPercent = 10;          ///< over the optimum, worth a word
-inline constexpr double kMinDeadTimeOverLags = 2;     ///< times the lags: L/(L + T) above 2/3
-inline constexpr double kMinFilterPhaseDegrees = 20;  ///< of phase at the peak of |S|
-inline constexpr double kMinNoisyMksOverKp = 20;      ///< Mks over |Kp|: beyond the usual derivative gains N of 2 to 20
-inline constexpr double kUsualN = 10;               ///< Td/Tf of the filter that a derivative without one is tried with
+inline constexpr double kMaxCostRatioAsGood = 1.05;   ///< a design with at most this cost ratio is as good
+inline constexpr double kExcessPercent = 10;          ///< over the optimum; more is reported
+inline constexpr double kMinDeadTimeOverLags = 2;     ///< multiple of the lags: L/(L + T) above 2/3
+inline constexpr double kMinFilterPhaseDegrees = 20;  ///< phase lag at the peak of |S|
+inline constexpr double kMinNoisyMksOverKp = 20;      ///< Mks/|Kp|: beyond the usual derivative gains N of 2 to 20
+inline constexpr double kUsualN = 10;               ///< Td/Tf of the filter that is tried for a derivative without one
 inline constexpr double kMinNoiseOverRange = 0.02;  ///< standard deviation of u over the actuator's range
 
 // Which to take
 
-/// A controller that costs more than so many times the load IAE of another that keeps the limits too is not taken,
-/// however good its level: margins from Ms 2 down to 1.4 cost less than that.
+/// A controller whose load IAE is more than this multiple of that of another one is not chosen, if both keep the
+/// limits, whatever its level: a step from Ms 2 down to 1.4 costs less.
 inline constexpr double kManyFold = 3;
 
 }  // namespace tunewright::verdict

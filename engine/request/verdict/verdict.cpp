@@ -18,12 +18,12 @@ const TuningEntry* todays(const std::vector<TuningEntry>& entries) {
     return nullptr;
 }
 
-/// A large one is among the primary_findings.
+/// Reports a small overshoot; a large one is among the primary_findings.
 OptionalFinding small_overshoot(const VerdictInput& c) {
     return overshoot_level(c) == Level::note ? overshoot(c) : OptionalFinding{};
 }
 
-/// The note; for steps that were asked for the finding is among the primary_findings.
+/// Gives the note; for steps that the request sets, the finding is among the primary_findings.
 OptionalFinding actuator_too_small_as_assumed(const VerdictInput& c) {
     auto finding = actuator_too_small(c);
     return finding && finding->level == Level::note ? finding : OptionalFinding{};
@@ -57,7 +57,7 @@ std::vector<Finding> verdict_on(const TuningEntry& entry, const TuningEntry* tod
 
 Level level_of(const TuningEntry& entry) { return entry.verdict.front().level; }
 
-/// An entry that may be taken, and what decides.
+/// An entry that may be chosen, with the quantities that decide.
 struct Candidate {
     int index = 0;
     bool held = false, valid = false;
@@ -71,7 +71,7 @@ bool has(const std::vector<Finding>& findings, const char* code) {
     return std::ranges::any_of(findings, [&](const Finding& finding) { return finding.code == code; });
 }
 
-/// The loosest limit on Ms that was asked of a design; 0: none was.
+/// The loosest limit on Ms that was set for a design; 0: none.
 double asked_limit(const std::vector<TuningEntry>& entries) {
     double loosest = 0;
     for (const TuningEntry& entry : entries)
@@ -79,7 +79,7 @@ double asked_limit(const std::vector<TuningEntry>& entries) {
     return loosest;
 }
 
-/// Little margin is nothing against an entry where it was asked for.
+/// Little margin is no disadvantage if the request allowed it for this entry.
 Level level_for_choice(const TuningEntry& entry, double asked_Ms) {
     const bool as_asked = entry.standing && entry.standing->Ms && !worst_Ms(entry)->exceeds(asked_Ms);
     Level level = Level::good;
@@ -97,9 +97,8 @@ Candidate candidate(const TuningEntry& entry, int index, double asked_Ms) {
             .load_IAE = performance_of(entry).load.IAE.value_or(INFINITY)};
 }
 
-/// The one to take; -1 where none may be entered. The first group has what keeps the limits and is within its rule's
-/// validity. What costs many times as much as another of its group leaves it; of the rest the best by level, and then
-/// by rank.
+/// The entry to choose; -1 if none is usable. The first group keeps the limits and is within its rule's validity. An
+/// entry that costs many times as much as another of its group drops out; the rest is ordered by level, then by rank.
 int choice(const std::vector<TuningEntry>& entries, const std::vector<int>& ranking) {
     std::vector<Candidate> left;
     for (const int index : ranking) {
@@ -125,10 +124,10 @@ Finding none_to_take(const std::vector<TuningEntry>& entries, const std::vector<
         const auto own = std::ranges::find_if(entries, [](const TuningEntry& e) { return !is_baseline(e); });
         return FindingBuilder("none", Level::bad).say(own->verdict.front().text);
     }
-    return FindingBuilder("none", Level::bad).say("None of these controllers should be entered.");
+    return FindingBuilder("none", Level::bad).say("None of these controllers should be used.");
 }
 
-/// Today's settings are kept where nothing is gained by a change and they are as safe.
+/// Today's settings are kept if they are as safe and a change gains nothing.
 bool keeps_today(const TuningEntry& best, const TuningEntry* today) {
     if (today == nullptr || today->verdict.empty() || level_of(*today) > level_of(best)) return false;
     const Figure &IAE = performance_of(best).load.IAE, &before = performance_of(*today).load.IAE;
@@ -156,7 +155,7 @@ std::vector<Finding> of_all(const std::vector<TuningEntry>& entries, const std::
         const std::string words = best.verdict.front().text;
         if (keep)
             verdict.push_back(FindingBuilder("keep-today", Level::good)
-                                  .say("No controller here is better for loads: keep today's settings.")
+                                  .say("No controller here rejects loads better: keep today's settings.")
                                   .figure("entry", index));
         else
             verdict.push_back(Finding{"take", level_of(best), "Take " + name_of(best, index) + ". " + words,
@@ -166,8 +165,9 @@ std::vector<Finding> of_all(const std::vector<TuningEntry>& entries, const std::
         if (auto error = load_error(c)) verdict.push_back(std::move(*error));
     }
     if (partial)
-        verdict.push_back(
-            FindingBuilder("stopped-early", Level::note).say("Stopped early: this is the best found until then."));
+        verdict.push_back(FindingBuilder("stopped-early", Level::note)
+                              .say("Stopped early: this is the best controller found so "
+                                   "far."));
     return verdict;
 }
 
@@ -183,15 +183,15 @@ std::optional<int> proposed(const std::vector<TuningEntry>& entries, const std::
 std::vector<Finding> no_controller(const Error& error) {
     const bool limits = error.kind == ErrorKind::no_feasible_controller;
     return {FindingBuilder("no-controller", Level::bad)
-                .say(limits ? "No controller meets these limits." : "This method has no answer here."),
+                .say(limits ? "No controller meets these limits." : "This method gives no controller here."),
             FindingBuilder("reason", Level::note).say(error.message)};
 }
 
 std::vector<Finding> without_loop(const Controller& controller, double Ku, const std::vector<Warning>& remarks) {
     FindingBuilder unknown("robustness-unknown", Level::warning);
     unknown.say(
-        "How robust this loop is cannot be known from Ku and Pu alone: Ms, margins and responses need a model of the "
-        "plant or a recorded test.");
+        "The robustness of this loop is unknown: Ms, margins and responses need more than Ku and Pu, namely a model of "
+        "the plant or a recorded test.");
     if (const auto* pid = std::get_if<IdealPid>(&controller))
         unknown.say(" Kp is ").number("Kp_over_Ku", pid->Kp / Ku).say(" of Ku, the gain at which the loop oscillates.");
     std::vector<Finding> verdict{unknown};
@@ -201,8 +201,8 @@ std::vector<Finding> without_loop(const Controller& controller, double Ku, const
 
 std::vector<Finding> of_all_without_loop() {
     return {FindingBuilder("robustness-unknown", Level::warning)
-                .say("Ku and Pu alone give settings and no figure of the loop. Record the test, or give a model of the "
-                     "plant, to know which of them is robust.")};
+                .say("Ku and Pu alone give settings but no figures of the loop. Record the test, or give a model of "
+                     "the plant, to see which settings are robust.")};
 }
 
 }  // namespace tunewright::verdict

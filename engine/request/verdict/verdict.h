@@ -1,4 +1,4 @@
-// The verdict on each entry and on the whole answer, and where there is no loop to judge.
+// The verdict on each entry and on the whole answer, also for entries without a loop to evaluate.
 #pragma once
 
 #include <vector>
@@ -14,41 +14,42 @@
 
 namespace tunewright::verdict {
 
-/// What is the same for all entries of an answer.
+/// The inputs that all entries of an answer share.
 struct Context {
     const AnalysedPlant& subject;
     const EvaluateOptions& options;
     Labels labels;
-    double sample_time = 0;                  ///< of the user's controller; 0: continuous or not known
-    const IdentifiedModel* model = nullptr;  ///< of a record
-    const TuningProblem* problem = nullptr;  ///< that methods work on; null: nothing is designed
+    double sample_time = 0;                  ///< of the user's controller; 0: continuous or unknown
+    const IdentifiedModel* model = nullptr;  ///< the model that was identified from a record; null: none
+    const TuningProblem* problem = nullptr;  ///< the input of the methods; null: nothing is designed
     GivenSteps given_steps = {};
-    RunControl control = {};  ///< of the request: a cure whose search is stopped is none
+    RunControl control = {};  ///< of the request: a stopped search gives no cure
 };
 
-/// Writes every entry's verdict. The first finding says what the loop is, and its level is the entry's; what belongs to
-/// it follows by severity and then in the order in which an engineer reads a loop.
+/// Writes every entry's verdict. The first finding is the main statement on the loop, and its level is the entry's. The
+/// others follow by severity, and then in the order in which an engineer examines a loop.
 void judge(std::vector<TuningEntry>& entries, const Context& context);
 
-/// The verdict on an entry that has no controller: that there is none, and the reason.
+/// The verdict on an entry without a controller, with the reason.
 std::vector<Finding> no_controller(const Error& error);
 
-/// The verdict on settings from Ku and Pu alone: how they stand to `Ku` (u/y), and the rule's own `remarks`.
+/// The verdict on settings from Ku and Pu alone: their gain relative to `Ku` (u/y), and the rule's own `remarks`.
 std::vector<Finding> without_loop(const Controller& controller, double Ku, const std::vector<Warning>& remarks);
 
-/// The verdict on all of them.
+/// The verdict on the whole answer to Ku and Pu alone.
 std::vector<Finding> of_all_without_loop();
 
-/// Over all entries, which have their verdicts: which to take, against today's. `ranking`: indices of entries, best
-/// first; those left out are not taken. `partial`: somebody stopped the search. Empty without entries.
+/// The verdict on all entries, which have their own verdicts already: which one to choose, compared with today's
+/// settings. `ranking`: indices of entries, best first; entries that are not in it are not chosen. `partial`: the
+/// search was stopped. Empty without entries.
 ///
-/// Taken is an entry that is not bad, in this order: it keeps the limits that were asked for; its rule is within its
+/// The chosen entry is not bad, and comes first in this order: it keeps the requested limits; its rule is within its
 /// validity; no other such entry costs less than a third of its load IAE; its level; its rank.
 std::vector<Finding> of_all(const std::vector<TuningEntry>& entries, const std::vector<int>& ranking,
                             const Context& context, bool partial);
 
-/// The entry to show first: the one that the verdict over all names, else the first that has a controller. Empty: none
-/// has one.
+/// The entry to show first: the one that the verdict on the whole names, else the first that has a controller. Empty if
+/// none has one.
 std::optional<int> proposed(const std::vector<TuningEntry>& entries, const std::vector<Finding>& of_all);
 
 }  // namespace tunewright::verdict

@@ -18,21 +18,21 @@ namespace tunewright {
 namespace {
 
 constexpr double kTolerance = 1e-9;
-constexpr int kRows = 1001, kRowsAtRest = 100;  // before the step: they tell where y was
+constexpr int kRows = 1001, kRowsAtRest = 100;  // rows, and rows before the step that show the initial y
 constexpr int kMaxSteps = 60000;
-constexpr double kMaxSettledMovement = 1e-3;  // of y's movement, over the last quarter of the time
+constexpr double kMaxSettledMovement = 1e-3;  // of the range of y, over the last quarter of the time
 constexpr double kSettledFromShare = 0.75;
-constexpr double kAtRest = 0.02;               // times the slowest mode: what the states still move
-constexpr double kMaxTimes = 60;               // of the plant's own time, until a stable plant must have settled
-constexpr double kRampTimes = 12;              // of the dead time and the lags: an integrating plant's test
-constexpr double kGrowthTimes = 3;             // of an unstable mode's time
-constexpr double kMaxRelativeRealPart = 1e-7;  // of the fastest pole: an integrator
+constexpr double kAtRest = 0.02;               // multiple of the slowest mode's movement: the states are at rest
+constexpr double kMaxTimes = 60;               // multiple of the plant's own time in which a stable plant must settle
+constexpr double kRampTimes = 12;              // multiple of dead time and lags: length of an integrating plant's test
+constexpr double kGrowthTimes = 3;             // multiple of an unstable mode's time constant
+constexpr double kMaxRelativeRealPart = 1e-7;  // relative to the fastest pole: below it a pole is an integrator
 constexpr double kMinMovement = 1e-12;
 
-/// What the plant's modes ask of a step test.
+/// Times of the plant's modes that decide the length of a step test.
 struct Modes {
-    double lags = 0;     ///< dead time and lags of the stable modes, summed
-    double slowest = 0;  ///< the longest of them
+    double lags = 0;     ///< dead time and sum of the lags of the stable modes
+    double slowest = 0;  ///< the slowest stable lag
     double growth = 0;   ///< time constant of the fastest unstable mode; 0: none
     bool settles = true;
 };
@@ -58,7 +58,7 @@ double cut_to_limits(const NonlinearSystem& system, double du) {
     return std::clamp(du, system.u_min() - system.u_nominal(), system.u_max() - system.u_nominal());
 }
 
-/// y, recorded until it has settled or for as long as the modes ask.
+/// Records y until it has settled, or for the time that the modes require.
 class Record {
 public:
     void add(const StepPolynomial& y) {
@@ -68,7 +68,7 @@ public:
     double largest() const { return largest_; }
     double end() const { return steps_.back().end(); }
 
-    /// y has stayed near its last value over the last quarter.
+    /// True if y has stayed near its last value over the last quarter.
     bool settled() const {
         const double last = steps_.back().at(1), from = kSettledFromShare * end();
         for (auto step = steps_.rbegin(); step != steps_.rend() && step->end() > from; ++step)
@@ -107,8 +107,8 @@ Expected<StepTest> simulate_step_test(const NonlinearSystem& system, double du, 
     if (test.du == 0 || !std::isfinite(test.du))
         return Error{ErrorKind::unsupported, "plant/input",
                      "A step test of " + text(du) +
-                         " cannot be made: the input's limits leave no room on that side of its nominal value. Step to "
-                         "the other side."};
+                         " is not possible: the input's nominal value is at its limit on that side. Step to the other "
+                         "side."};
     const Modes modes = modes_of(system);
     const double longest = modes.settles      ? kMaxTimes * std::max(modes.lags, system.dead_time())
                            : modes.growth > 0 ? system.dead_time() + kGrowthTimes * (modes.growth + modes.lags)
@@ -122,8 +122,8 @@ Expected<StepTest> simulate_step_test(const NonlinearSystem& system, double du, 
         if (control.stop.stop_requested()) return Error{ErrorKind::cancelled, "", "The step test was stopped."};
         if (steps == kMaxSteps)
             return Error{ErrorKind::unsupported, "plant",
-                         "A step test needs more steps than are allowed: the plant's "
-                         "dead time and modes are too far apart."};
+                         "A step test needs more than the allowed number of steps: the plant's dead time and modes "
+                         "have too different time scales."};
         if (!run.step(longest)) return Error{ErrorKind::unsupported, "plant", "The step test ends early. " + run.why()};
         record.add(run.last());
         settled = modes.settles && !run.nothing_arrived() && run.t() > 4 * system.dead_time() &&
@@ -132,7 +132,7 @@ Expected<StepTest> simulate_step_test(const NonlinearSystem& system, double du, 
     if (!(record.largest() > kMinMovement * std::abs(system.y_steady())) || record.largest() == 0)
         return Error{ErrorKind::unsupported, "plant/output",
                      "The output does not move after a step of the input of " + text(test.du) +
-                         ": it does not depend on the input at this operating point."};
+                         ", because it does not depend on the input at this operating point."};
     test.settled = settled;
     record.rows(record.end(), test.du, test);
     return test;
@@ -141,19 +141,19 @@ Expected<StepTest> simulate_step_test(const NonlinearSystem& system, double du, 
 namespace {
 
 constexpr int kMinCycles = 6, kMaxCycles = 40, kSteadyCycles = 2;
-constexpr double kSteadyTolerance = 1e-6;        // relative change of period and swing from one cycle to the next
-constexpr double kNearlySteadyTolerance = 1e-2;  // after the most cycles
+constexpr double kSteadyTolerance = 1e-6;        // relative change of period and swing between two cycles
+constexpr double kNearlySteadyTolerance = 1e-2;  // after the largest number of cycles
 constexpr int kRelayRows = 1600;
-constexpr int kProbesPerStep = 16;                 // for the extremes of y within a step
-constexpr double kMinSwingOverHysteresis = 1.001;  // of the hysteresis: swings that say something about the plant
-constexpr double kMaxTimesWithoutSwitch = 100;     // of the plant's own time without a switch
-constexpr double kRowTolerance = 1e-9;             // of the rows' spacing: nearer instants are one row
+constexpr int kProbesPerStep = 16;                 // evaluations for the extremes of y within a step
+constexpr double kMinSwingOverHysteresis = 1.001;  // multiple of the hysteresis: larger swings depend on the plant
+constexpr double kMaxTimesWithoutSwitch = 100;     // multiple of the plant's own time without a switch
+constexpr double kRowTolerance = 1e-9;             // of the rows' spacing: closer times are one row
 constexpr double kCrossingRounding =
-    1e-13;  // of the output's own size: crossings of the threshold below it are rounding
+    1e-13;  // of the output's own size: smaller crossings of the threshold are rounding
 
 Error unsupported(std::string message) { return {ErrorKind::unsupported, "plant", std::move(message)}; }
 
-/// One test: the plant's run and the relay that looks at it.
+/// One test: the plant's run and the relay.
 class RelayTest {
 public:
     RelayTest(const NonlinearSystem& system, const LinearPlant& plant, const RelayLevels& levels, double direction)
@@ -178,10 +178,10 @@ public:
                 return steady(kNearlySteadyTolerance)
                            ? std::nullopt
                            : std::optional(unsupported("After " + std::to_string(kMaxCycles) +
-                                                       " cycles the relay and the plant have not found a steady "
-                                                       "oscillation. Try another hysteresis or amplitude."));
+                                                       " cycles the oscillation is still not steady. Try another "
+                                                       "hysteresis or amplitude."));
         }
-        return unsupported("The relay switches too fast for the steps allowed. Give a larger hysteresis.");
+        return unsupported("The relay switches too fast for the allowed number of steps. Give a larger hysteresis.");
     }
 
     Expected<NonlinearRelayTest> result() const {
@@ -190,9 +190,9 @@ public:
         test.Pu = periods_[last];
         const double a = swings_[last], d = 0.5 * (levels_.u_plus - levels_.u_minus), h = levels_.hysteresis;
         if (a < kMinSwingOverHysteresis * h)
-            return unsupported("The output turns as soon as the relay switches, at y = " + text(h) +
-                               ": the hysteresis alone makes the period, which shows no ultimate gain. Plants that "
-                               "answer at once, without dead time, have none.");
+            return unsupported("The output reverses as soon as the relay switches, at y = " + text(h) +
+                               ", so only the hysteresis determines the period, and the test shows no ultimate gain. "
+                               "Plants that respond at once, without dead time, have none.");
         test.Ku = 4 * d / (std::numbers::pi * std::sqrt(a * a - h * h));
         test.reversed = direction_ < 0;
         record(test.record);
@@ -206,7 +206,7 @@ private:
 
     int cycles() const { return int(periods_.size()); }
 
-    /// The relay's switches within the last step.
+    /// Finds the relay's switches within the last step.
     bool look() {
         double from = 0;
         while (!run_.nothing_arrived() && run_.t() > held_) {
@@ -217,7 +217,7 @@ private:
                 first_crossing([&](double at) { return sign * y.at(at) - levels_.hysteresis - noise_; }, from, 1);
             if (!s) break;
             const double t = *s < 1 ? y.t + *s * y.h : run_.t();
-            // The plant would get it within this step.
+            // The switch would reach the plant within this step.
             const bool at_once = t + system_.dead_time() <= run_.t();
             if (at_once && t < run_.t() && !run_.shorten(t)) return false;
             note_extremes(from, at_once ? 1 : *s);
@@ -268,13 +268,13 @@ private:
         const double y = direction_ * run_.y();
         return unsupported("With u at " + text(run_.u()) + " from its nominal value y is " + text(y) + " after " +
                            text(run_.t() - inputs_.back().t) +
-                           " without the relay switching again: there is no oscillation. " +
+                           " and the relay has not switched again, so there is no oscillation. " +
                            (std::abs(y) < levels_.hysteresis
                                 ? "Lower the hysteresis below " + text(0.8 * std::abs(y)) + ", or raise the amplitude."
-                                : "The plant cannot be held by this relay."));
+                                : "This relay cannot stabilise the plant."));
     }
 
-    /// Rows at equal distances and at every switch, to the last switch.
+    /// Rows at equal distances and at every switch, up to the last switch.
     void record(RelayRecord& out) const {
         const double end = inputs_.back().t;
         std::size_t step = 0, input = 0;
@@ -316,9 +316,8 @@ Expected<NonlinearRelayTest> simulate_relay_test(const NonlinearSystem& system, 
     const RelayLevels levels{std::min(std::abs(amplitude), system.u_max() - system.u_nominal()),
                              std::max(-std::abs(amplitude), system.u_min() - system.u_nominal()), std::abs(hysteresis)};
     if (!(levels.u_plus > 0 && levels.u_minus < 0))
-        return Error{
-            ErrorKind::unsupported, "plant/input",
-            "A relay test needs room on both sides of the input's nominal value; its limits leave none on one."};
+        return Error{ErrorKind::unsupported, "plant/input",
+                     "A relay test changes the input to both sides of its nominal value, which is at a limit."};
     const double direction = relay_direction(*plant);
     if (auto error = switches_without_end(*plant, levels, direction)) {
         error->kind = ErrorKind::unsupported;

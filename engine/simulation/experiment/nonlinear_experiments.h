@@ -1,4 +1,4 @@
-// Step and relay tests made on a nonlinear plant by simulation: records that identification reads like measured ones.
+// Simulated step and relay tests on a nonlinear plant: identification reads their records like measured ones.
 #pragma once
 
 #include <string>
@@ -12,20 +12,20 @@
 namespace tunewright {
 
 struct StepTest {
-    std::vector<double> t, u, y;  ///< deviations; u[i] holds from t[i]; t[0] < 0: some rows at rest come first
+    std::vector<double> t, u, y;  ///< deviations; u[i] holds from t[i]; t[0] < 0: the first rows are at rest
     double du = 0;                ///< the step of u at t = 0
     bool settled = true;
 };
 
 /// From the operating point until y has settled (integrating and unstable plants: until it has moved enough): some
-/// thousand rows at equal distances, exact. `du` is cut to the input's limits. Errors: unsupported where the states
+/// thousand exact rows at equal distances. `du` is limited to the input's limits. Errors: unsupported if the states
 /// leave the model's domain or y does not move; cancelled.
 Expected<StepTest> simulate_step_test(const NonlinearSystem& system, double du, const RunControl& control);
 
-/// Until periods and swings repeat to 1e-6, at least six: some thousand rows at equal distances and at every switch.
-/// Switches at the instant of crossing; amplitude and hysteresis as deviations (relay.h). Errors: unsupported where
-/// there is no oscillation (without dead time a hysteresis is needed; where y turns at it at once there is no Ku) or
-/// the states leave the model's domain; cancelled.
+/// From the operating point until periods and swings repeat to 1e-6, at least six: some thousand rows at equal
+/// distances and at every switch. The relay switches at the time of crossing; amplitude and hysteresis are deviations
+/// (relay.h). Errors: unsupported if there is no oscillation (without dead time a hysteresis is needed; if y reverses
+/// at once at it there is no Ku) or the states leave the model's domain; cancelled.
 struct NonlinearRelayTest {
     RelayRecord record;
     double Pu = 0,

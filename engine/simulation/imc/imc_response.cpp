@@ -16,12 +16,13 @@ using Index = std::size_t;
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 constexpr double kStepsPerLambda = 16, kStepsPerDeadTime = 10;
-constexpr double kUsualTolerance = 1e-6;    // at which these hold
+constexpr double kUsualTolerance = 1e-6;    // the tolerance for which these values hold
 constexpr double kStepsPerResonance = 4;    // per 1/|p| of a complex pole
-constexpr double kInstantTolerance = 1e-9;  // of a step: nearer instants, and parts of steps, are rounding
-constexpr int kCorrections = 6;             // of a step that is longer than a dead time and sees its own end
+constexpr double kInstantTolerance = 1e-9;  // of a step: closer times, and shorter parts of steps, are rounding
+constexpr int kCorrections = 6;             // iterations for a step that is longer than a dead time and depends on its
+                                            // own end
 
-/// The outputs without their dead times, kept until the dead times have passed.
+/// The outputs without their dead times, stored until the dead times have passed.
 struct Memory {
     double t = 0;
     Signal y, y_model;  ///< slopes just after t
@@ -37,16 +38,16 @@ Signal cubic(double h, double s, Signal a, Signal b) {
     return {value_at(c, s), slope_at(c, s)};
 }
 
-/// x' = F x + G e + b, u = M x + N e: plant states, the model's, Q's two, the integral of y without dead time. e is
-/// what Q sees; without a dead time of the plant, what it sees except for -y.
+/// x' = F x + G e + b, u = M x + N e: plant states, the model's, Q's two, the integral of y without dead time. e is the
+/// input of Q; without a dead time of the plant, that input without -y.
 struct ImcSystem {
     int n = 0, plant_states = 0;
     std::vector<double> F, G, b, M;
     double N = 0;
     std::vector<double> output;       // of y without dead time
-    std::vector<double> output_rate;  // of its slope, from x; and from e, and constant
+    std::vector<double> output_rate;  // rows of its slope: from x, from e, and constant
     double output_rate_e = 0, output_rate_1 = 0;
-    std::vector<double> slope;  // of u's slope, likewise; N e' comes on top
+    std::vector<double> slope;  // of u's slope, in the same way; N e' is added
     double slope_e = 0, slope_1 = 0;
 };
 
@@ -112,12 +113,12 @@ public:
           stopping_(options.settled, L_ + theta_) {
         response_.y_final = in.r;
         response_.u_final = in.r / plant.low_frequency_gain() - in.d;
-        // C = 1/(kp d0 s) + ...: what the integral of the error must come to.
+        // C = 1/(kp d0 s) + ...: gives the final integral of the error.
         const double x = c.lambda / c.tau - 1;
         const double d0 = c.lambda * c.lambda / c.tau + c.theta + c.tau * x * x * std::expm1(-c.theta / c.tau);
         response_.error_integral_final = response_.u_final * c.kp * d0;
-        // Once what dead times bring back is smooth, only lambda and resonances say how far a cubic reaches: its error
-        // is of order 4.
+        // Once the delayed signals are smooth, only lambda and resonances limit the length of a cubic, whose error is
+        // of order 4.
         const double shorter = std::pow(options.tolerance / kUsualTolerance, 0.25);
         long_step_ = c.lambda / kStepsPerLambda;
         for (const auto pole : plant.poles())
@@ -169,7 +170,7 @@ private:
         return at->second;
     }
 
-    /// y or y_m as it was `t` from the start without dead time; 0 before.
+    /// y or y_m without dead time, `t` after the start; 0 before.
     Memory past(double t, bool after) {
         if (memory_.empty() || t < -slack_ || (t <= slack_ && !after)) return {};
         const auto right = std::ranges::upper_bound(memory_, t + slack_, {}, &Memory::t);
@@ -183,7 +184,7 @@ private:
                 cubic(h, s, a.integral_y, a.y.value, b.integral_y, b.y.value)};
     }
 
-    /// Beyond what is known: along the last slope, to be corrected.
+    /// Beyond the known part: along the last slope, to be corrected.
     Memory ahead(double t) const {
         const Memory& a = memory_.back();
         const double s = t - a.t;
@@ -193,7 +194,7 @@ private:
                 a.integral_y + s * a.y.value};
     }
 
-    /// What Q sees at t; without a dead time of the plant without -y.
+    /// The input of Q at t; if the plant has no dead time, without -y.
     Signal seen(double t, bool after) {
         const Signal model = past(t - theta_, after).y_model;
         const Signal plant = L_ > 0 ? past(t - L_, after).y : Signal{};

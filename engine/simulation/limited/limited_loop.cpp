@@ -14,10 +14,10 @@ namespace {
 using Index = std::size_t;
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-constexpr double kLimitTolerance = 1e-12;  // relative distance at which the slope decides
+constexpr double kLimitTolerance = 1e-12;  // relative distance from a limit within which the slope decides
 constexpr double kRestLimitTolerance =
-    1e-9;  // of u at rest: the linear solution's rounding; nearer to a limit it is at it
-constexpr double kTrackingTimeShare = 0.1;  // of a time without an integral time of its own: the tracking time
+    1e-9;  // of u at rest: rounding of the linear solution; closer to a limit u counts as being at it
+constexpr double kTrackingTimeShare = 0.1;  // of the plant's time: the tracking time for pure integral action
 
 }  // namespace
 
@@ -64,7 +64,7 @@ LimitedLoop::Equations LimitedLoop::equations(Region region) const {
         b[row] += tracking_gain_ * (u - s.R * in_.r);
     }
     if (delayed()) return e;
-    // v = u + d at once: constant at a limit, (M x + R r + d)/(1 - N) within them.
+    // v = u + d follows at once: constant at a limit, (M x + R r + d)/(1 - N) within the limits.
     const double g = region == Region::inside ? 1 / (1 - s.N) : 0;
     const double v0 = region == Region::inside ? g * (s.R * in_.r + in_.d) : u + in_.d;
     F.leftCols(n) += (g * G) * M;
@@ -113,7 +113,7 @@ Region LimitedLoop::region(const std::vector<double>& x, Signal v) const {
 }
 
 Region LimitedLoop::region_after(Region before, bool at_max) const {
-    // With N > 1 the algebraic loop has no solution beyond the limit that is crossed, but one at the other.
+    // With N > 1 the algebraic loop has no solution beyond the limit that is crossed, but one at the other limit.
     if (!delayed() && system_.N > 1) return at_max ? Region::below : Region::above;
     if (before != Region::inside) return Region::inside;
     return at_max ? Region::above : Region::below;

@@ -1,4 +1,4 @@
-// A loop with actuator limits as three linear systems (below, within and above the limits), and where it comes to rest.
+// A loop with actuator limits as three linear systems (below, within and above the limits), and its state of rest.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,7 @@
 
 namespace tunewright {
 
-/// Where the controller's command lies.
+/// Position of the controller's command relative to the limits.
 enum class Region { below, inside, above };
 
 /// The loop's outputs at one instant.
@@ -33,14 +33,15 @@ public:
     bool delayed() const { return system_.L > 0; }
     const DelaySystem& system() const { return system_; }
 
-    /// Region for states x and delayed signal v (not used without dead time). On a limit the command's slope decides.
+    /// The region for states x and delayed signal v (not used without dead time). At a limit the command's slope
+    /// decides.
     Region region(const std::vector<double>& x, Signal v) const;
     /// The region after the command has crossed a limit.
     Region region_after(Region before, bool at_max) const;
     double limit(Region region) const { return region == Region::above ? limits_.max : limits_.min; }
 
     LoopOutput output(Region region, const std::vector<double>& x, Signal v) const;
-    /// The exact step of length h; without dead time its Gamma is 0: the delayed signal is inside.
+    /// The exact step of length h; without dead time its Gamma is 0, because the delayed signal is part of the system.
     ExactStep step(Region region, double h) const;
 
 private:

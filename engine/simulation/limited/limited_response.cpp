@@ -21,22 +21,25 @@ using Index = std::size_t;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr int kRetardedEchoes = 4;                 // a jump's echoes: smoothed by the plant at each passage
-constexpr double kTimeResolution = 128;            // in units of rounding of t: shorter steps are not taken
-constexpr double kRestRounding = 1e-5;             // times `settled`, of the value at rest: deviations below are none
-constexpr double kMinTimeShareForRounding = 1e-3;  // of the first step: the t that rounding is measured by near t = 0
-constexpr double kLengthTolerance = 1e-9;          // relative: a stride no longer than the dead time but for rounding
-constexpr double kStepShareToStop = 0.75;          // of the distance to the next stop: the step goes there instead
-constexpr int kMaxLevel = 200;                     // lengths stay finite
-constexpr double kCommandRounding =
-    1e-11;                       // of the largest command: how far beyond a limit it must go to have crossed it
-constexpr int kCorrections = 3;  // by exact steps of a crossing found on the cubic: each squares its error
-constexpr double kMaxCorrectionShare = 0.1;  // of the stride: a longer correction shows a command without a clear slope
-constexpr double kCrossingTolerance = 1e-14;         // of the largest command: rounding
-constexpr double kErrorFloor = 2e-3;                 // of the largest deviation: errors are relative to at least that
-constexpr double kMaxErrorShareToDouble = 1.0 / 40;  // of the tolerance: the step's doubled length would still be fine
+constexpr int kRetardedEchoes = 4;                 // echoes of a jump: the plant smooths it at each passage
+constexpr double kTimeResolution = 128;            // multiple of the rounding of t: the shortest step
+constexpr double kRestRounding = 1e-5;             // multiple of `settled`, of the value at rest: smaller deviations
+                                                   // count as 0
+constexpr double kMinTimeShareForRounding = 1e-3;  // of the first step: least t for the rounding near t = 0
+constexpr double kLengthTolerance = 1e-9;          // relative: a stride equals the dead time up to rounding
+constexpr double kStepShareToStop = 0.75;          // of the distance to the next stop: a longer step goes exactly to
+                                                   // the stop
+constexpr int kMaxLevel = 200;                     // keeps lengths finite
+constexpr double kCommandRounding = 1e-11;  // of the largest command: it must exceed a limit by this to have crossed it
+constexpr int kCorrections = 3;  // exact steps that refine a crossing found on the cubic; each squares its error
+constexpr double kMaxCorrectionShare = 0.1;   // of the stride: a longer correction means that the command has no clear
+                                              // slope
+constexpr double kCrossingTolerance = 1e-14;  // of the largest command: rounding
+constexpr double kErrorFloor = 2e-3;          // of the largest deviation: the least reference of relative errors
+constexpr double kMaxErrorShareToDouble = 1.0 / 40;  // of the tolerance: below it a step of twice the length is still
+                                                     // accurate enough
 
-/// |y| of a response that grows without bound: the actuator may do all that it can.
+/// |y| of a response that grows without bound: more than the actuator can cause.
 double beyond_bounds(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& in,
                      const ActuatorLimits& limits, double y_rest) {
     StepInputs all{in.r, std::abs(in.d)};
@@ -45,7 +48,7 @@ double beyond_bounds(const LinearPlant& plant, const ParallelPid& controller, co
     return kMaxResponseRatio * std::max(std::abs(y_rest), loop_sizes(own_gain(plant, controller), controller, all).y);
 }
 
-/// How far the cubic through a and c misses b halfway, in value and slope.
+/// Error of the cubic through a and c at the midpoint b, in value and slope.
 double miss(double h, Signal a, Signal b, Signal c) {
     const double value = hermite_midpoint(h, a, c);
     const double slope = 1.5 * (c.value - a.value) / h - 0.25 * (a.slope + c.slope);
@@ -68,7 +71,7 @@ struct LoopInstant {
     LoopOutput out;
 };
 
-/// The run: chooses step lengths, finds the crossings of the limits, keeps the nodes, knows when to stop.
+/// The run: chooses step lengths, finds the crossings of the limits, stores the nodes, and decides when to stop.
 class LimitedRun {
 public:
     LimitedRun(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& in,
@@ -106,7 +109,7 @@ private:
 
     double slack() const { return kTimeResolution / 4 * kEpsilon * std::max(now_.t, loop_.dead_time()); }
 
-    /// A jump or kink of the delayed signal to come.
+    /// Adds a future jump or kink of the delayed signal.
     void add_echo(double t, int passages) {
         if (loop_.delayed()) echoes_.add(t, passages, slack());
     }
@@ -129,7 +132,8 @@ private:
         largest_y_ = std::max(largest_y_, dy);
         largest_u_ = std::max(largest_u_, du);
         largest_command_ = std::max(largest_command_, std::abs(p.out.command.value));
-        // Rest reached from the first instant on (u at a limit, say) leaves rounding alone as its largest deviation.
+        // If the loop is at rest from the beginning (for example with u at a limit), the largest deviation is only
+        // rounding.
         const double size_y = std::max(largest_y_, kRestRounding * std::abs(rest_.y)),
                      size_u = std::max(largest_u_, kRestRounding * std::abs(rest_.u));
         stopping_.note(p.t, dy, size_y, du, size_u);
@@ -156,7 +160,7 @@ private:
         return !options_.tail || tail_.little_is_left(*remaining, error, now_.t, *options_.tail);
     }
 
-    /// To infinity, once the loop stays within the limits: what the integral's state has yet to change.
+    /// For an infinite horizon, once the loop stays within the limits: the remaining change of the integral's state.
     std::optional<double> remaining_error_integral() const {
         if (!rest_.error_integral || region_ != Region::inside) return std::nullopt;
         return *rest_.error_integral - error_integral_in_states(loop_.system(), filter_, now_.x);
@@ -196,7 +200,8 @@ private:
         return kept.emplace(level, make_stride(std::ldexp(h0_, level))).first->second;
     }
 
-    /// From `from` one stride on in the present region. Returns how far the delayed signal's cubic misses it halfway.
+    /// Takes one stride from `from` in the present region. Returns the error of the delayed signal's cubic at its
+    /// midpoint.
     double advance(const LoopInstant& from, const Stride& stride, LoopInstant& to) {
         to.t = from.t + stride.h;
         to.x = from.x;
@@ -216,7 +221,7 @@ private:
             return missed;
         }
         tunewright::advance(stride.whole, hermite_taylor(first, v0, v1), to.x);
-        // At a limit what the plant gets is constant.
+        // At a limit the plant's input is constant.
         if (stride.longer_than_L) tunewright::advance(stride.rest, {w0.value, 0, 0, 0}, to.x);
         to.out = loop_.output(region_, to.x, stride.longer_than_L ? Signal{w0.value, 0} : v1);
         return missed;
@@ -246,7 +251,7 @@ private:
         return distance;
     }
 
-    /// False where no finite step is possible.
+    /// False if no finite step is possible.
     bool take_step() {
         const double distance = distance_to_next_stop();
         const double shortest = kTimeResolution * kEpsilon * std::max(now_.t, kMinTimeShareForRounding * h0_);
@@ -304,7 +309,7 @@ private:
         return std::nullopt;
     }
 
-    /// Steps from `from` to the crossing before `to`, found on the cubic and refined with exact steps.
+    /// Steps from `from` to the crossing before `to`, which is found on the cubic and refined with exact steps.
     bool cross(const LoopInstant& from, const LoopInstant& to, double h) {
         const Crossing crossing = *crosses(from, to);
         const double limit = crossing.at_max ? limits_.max : limits_.min;
@@ -330,7 +335,7 @@ private:
         return true;
     }
 
-    /// At an echo the delayed signal may jump, and with it the command.
+    /// At an echo the delayed signal may jump, and so may the command.
     void pass_echo() {
         const auto passages = echoes_.pass(now_.t + slack());
         if (!passages) return;

@@ -8,11 +8,11 @@
 
 namespace tunewright {
 
-constexpr double kSameInstant = 1e-9;  // of the shortest step: nearer instants are one
+constexpr double kSameInstant = 1e-9;  // of the shortest step: closer times are equal
 
 class DelayedSignal {
 public:
-    /// `L`: the dead time. `h0`: the shortest step. `nodes`: of the run, which they must outlive; `d`: its load.
+    /// `L`: the dead time. `h0`: the shortest step. `nodes`: of the run, which must outlive this; `d`: its load.
     DelayedSignal(const std::vector<ResponseNode>& nodes, double d, double L, double h0)
         : history_(nodes, d), L_(L), slack_(kSameInstant * h0) {}
 
@@ -33,7 +33,7 @@ public:
 private:
     InputHistory history_;
     double L_, slack_;
-    double looked_up_ = -std::numeric_limits<double>::infinity();  // the last end
+    double looked_up_ = -std::numeric_limits<double>::infinity();  // end of the last step
     Signal after_;                                                 // there
 };
 

@@ -9,10 +9,11 @@ namespace {
 
 using Index = std::size_t;
 
-constexpr double kZeroTolerance = 1e-8;  // of Newton's last way to a zero, in parts of a step: its square is left
+constexpr double kZeroTolerance = 1e-8;  // of a step: length of Newton's last step to a zero; the remaining error is
+                                         // its square
 constexpr int kMaxIterations = 50;
 
-// A division takes as long as all else that is done at a node.
+// Factors instead of divisions: a division takes as long as the rest of the work at a node.
 constexpr double kThird = 1.0 / 3, kFifth = 1.0 / 5, kSeventh = 1.0 / 7;
 
 /// c0 + c1 s + c2 s^2 + c3 s^3 over s in [0, 1], through values and slopes at both ends.
@@ -26,14 +27,14 @@ struct UnitCubic {
     double at(double s) const { return c0 + s * (c1 + s * (c2 + s * c3)); }
     double slope(double s) const { return c1 + s * (2 * c2 + 3 * s * c3); }
     double integral(double s) const { return s * (c0 + s * (c1 / 2 + s * (c2 * kThird + s * c3 / 4))); }
-    /// Of s times it.
+    /// Integral of s times the cubic.
     double moment(double s) const { return s * s * (c0 / 2 + s * (c1 * kThird + s * (c2 / 4 + s * c3 * kFifth))); }
-    /// Of its square, over [0, 1].
+    /// Integral of its square over [0, 1].
     double square() const {
         return c0 * (c0 + c1) + (c1 * c1 + 2 * c0 * c2 + c2 * c3) * kThird + (c0 * c3 + c1 * c2) / 2 +
                (c2 * c2 + 2 * c1 * c3) * kFifth + c3 * c3 * kSeventh;
     }
-    /// Rises or falls from end to end: a bound, which holds without roots.
+    /// True if it certainly rises or falls from end to end, by a bound that needs no roots.
     bool plainly_monotone() const {
         const double rise = c1 + c2 + c3, end = c1 + 2 * c2 + 3 * c3;
         return c1 * rise >= 0 && end * rise >= 0 && std::max(std::abs(c1), std::abs(end)) <= 3 * std::abs(rise);
@@ -56,7 +57,7 @@ struct UnitCubic {
         return count;
     }
 
-    /// The zero between s = a and s = b of opposite signs: Newton's method kept between them.
+    /// The zero between s = a and s = b, where the signs differ: Newton's method, limited to that interval.
     double zero(double a, double b) const {
         double fa = at(a), s = a - fa * (b - a) / (at(b) - fa);
         for (int i = 0; i < kMaxIterations; ++i) {
@@ -108,19 +109,20 @@ void signed_pieces(const UnitCubic& e, Piece&& piece) {
 bool may_change_sign(const ResponseNode& a, const ResponseNode& b, double target, double h) {
     const double ea = target - a.y, eb = target - b.y;
     if ((ea < 0) != (eb < 0)) return true;
-    // The cubic's control values bound it: all of one sign, no zero.
+    // The cubic's control values bound it: if all have the same sign, there is no zero.
     const double third = h * kThird, first = ea - a.y_slope * third, second = eb + b.y_slope * third;
     return (first < 0) != (ea < 0) || (second < 0) != (ea < 0);
 }
 
-/// The same bound for a band around the target.
+/// The same bound, for a band around the target.
 bool stays_within(const ResponseNode& a, const ResponseNode& b, double target, double band, double h) {
     const double third = h * kThird;
     return std::abs(a.y - target) <= band && std::abs(b.y - target) <= band &&
            std::abs(a.y + a.y_slope * third - target) <= band && std::abs(b.y - b.y_slope * third - target) <= band;
 }
 
-/// Calls act(SignChange) for each change of the error's sign: no list of them, as searches ask thousands of times.
+/// Calls act(SignChange) for each change of the error's sign: without a list, because searches call this thousands of
+/// times.
 template <class Act>
 void for_each_change_of_sign(const std::vector<ResponseNode>& nodes, double target, const Act& act) {
     for (Index i = 1; i < nodes.size(); ++i) {
@@ -154,7 +156,7 @@ double change_near(const ResponseNode& a, const ResponseNode& b, double target, 
 double error_integral_at(const ResponseNode& a, const ResponseNode& b, double target, double part) {
     const UnitCubic e = cubic_of_error(a, b, target);
     const double h = b.t - a.t;
-    // From the nearer end, so that the interpolation's error stays smallest.
+    // From the nearer end, which keeps the interpolation error smallest.
     return part < 0.5 ? a.error_integral + h * e.integral(part)
                       : b.error_integral - h * (e.integral(1) - e.integral(part));
 }
@@ -180,7 +182,7 @@ ErrorIntegrals error_integrals(const std::vector<ResponseNode>& nodes, double ta
         if (h <= 0) continue;
         const UnitCubic e = cubic_of_error(a, b, target);
         result.ISE += h * e.square();
-        // The integral of t e from the step's start on, t = a.t + s h.
+        // The integral of t e from the start of the step, t = a.t + s h.
         const auto first_moment = [&](double s) { return h * (a.t * e.integral(s) + h * e.moment(s)); };
         double so_far = 0;
         const auto add_until = [&](double, double s) {
@@ -287,7 +289,7 @@ std::vector<std::pair<double, double>> sampled(const std::vector<ResponseNode>& 
     std::vector<std::pair<double, double>> values(static_cast<Index>(points));
     Index at = 0, drawn = nodes.size();  // `drawn`: the node before the cubics
     UnitCubic y{}, u{};
-    double inverse = 0;  // of the time between the two nodes
+    double inverse = 0;  // 1/time between the two nodes
     for (int i = 0; i < points; ++i) {
         const double t = horizon * i / (points - 1);
         while (at + 1 < nodes.size() && nodes[at + 1].t <= t) ++at;

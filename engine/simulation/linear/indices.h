@@ -1,5 +1,5 @@
-// Performance indices from a response's nodes: integrals exact for the cubic between nodes, the tail closed by the
-// exact integral of error.
+// Performance indices from a response's nodes: integrals are exact for the cubics between nodes; the tail is known from
+// the exact integral of the error.
 #pragma once
 
 #include <cstddef>
@@ -16,25 +16,26 @@ struct ErrorIntegrals {
     double IAE = 0, ISE = 0, ITAE = 0;
 };
 
-/// `error_integral_final` closes the IAE's tail, in which e keeps its sign; absent: the integrals end with the nodes.
+/// `error_integral_final` gives the tail of the IAE, in which e keeps its sign; if it is absent, the integrals end with
+/// the nodes.
 ErrorIntegrals error_integrals(const std::vector<ResponseNode>& nodes, double target,
                                std::optional<double> error_integral_final);
 
-/// Where the error changes its sign: in the step that ends with this node, after this part of it, 0 to 1.
+/// A change of the error's sign: in the step that ends with this node, after this fraction of the step, 0 to 1.
 struct SignChange {
     std::size_t node;
     double part;
 };
 std::vector<SignChange> changes_of_sign(const std::vector<ResponseNode>& nodes, double target);
 
-/// The error's integral from 0 to a part of the step from a to b.
+/// The error's integral from 0 to a fraction of the step from a to b.
 double error_integral_at(const ResponseNode& a, const ResponseNode& b, double target, double part);
 
-/// The part of a step after which the error changes its sign, where that of a similar response does after `part`: by
-/// one Newton step, at most a hundredth of the step.
+/// The fraction of a step after which the error changes its sign, if that of a similar response does so after `part`:
+/// by one Newton step of at most a hundredth of the step.
 double change_near(const ResponseNode& a, const ResponseNode& b, double target, double part);
 
-/// The same IAE alone, as searches need it thousands of times.
+/// The same IAE alone, because searches need it thousands of times.
 double integral_of_absolute_error(const std::vector<ResponseNode>& nodes, double target,
                                   std::optional<double> error_integral_final);
 
@@ -46,7 +47,7 @@ struct Extremes {
 };
 Extremes extremes_of_y(const std::vector<ResponseNode>& nodes);
 
-/// First time at which y reaches `level` going away from 0 (sign of level decides); empty if never.
+/// First time at which y reaches `level`, moving away from 0 (the sign of level decides); empty if never.
 std::optional<double> first_reached(const std::vector<ResponseNode>& nodes, double level);
 
 /// Last time at which |y - target| > band; 0 if it never leaves the band, empty if it is outside at the end.

@@ -1,4 +1,4 @@
-// A run step by step: chooses their lengths, keeps the nodes, knows when to stop. How a step is taken, `Steps` knows
+// A run step by step: chooses step lengths, stores the nodes, and decides when to stop. `Steps` computes a step
 // (mapped_steps.h, scaled_steps.h).
 #pragma once
 
@@ -16,7 +16,7 @@ namespace tunewright {
 template <class Steps>
 class LinearRun {
 public:
-    /// `setup` and `options` must outlive this. `own`: what else these steps need.
+    /// `setup` and `options` must outlive this. `own`: further arguments of these steps.
     template <class... Own>
     LinearRun(const RunSetup& setup, const ResponseOptions& options, const Own&... own)
         : setup_(setup),
@@ -28,7 +28,7 @@ public:
                    .echoes = echoes_that_count(std::abs(setup.system.s.N), options.tolerance, kRetardedEchoes),
                    .longest = setup.longest}),
           stopping_(options.settled, setup.system.s.L),
-          // Before t = 0 everything is 0: that is the first deviation from where the loop comes to rest.
+          // Before t = 0 all signals are 0, which is the first deviation from the final rest.
           largest_y_(std::abs(setup.steady.y)),
           largest_u_(std::abs(setup.steady.u)) {
         response_.y_final = setup.steady.y;
@@ -60,13 +60,13 @@ public:
     }
 
 private:
-    static constexpr int kRetardedEchoes = 4;    // jumps at 0, L, 2L, ...: smoothed by the plant at each passage
-    static constexpr double kErrorFloor = 2e-3;  // of the largest deviation: errors are relative to at least that
+    static constexpr int kRetardedEchoes = 4;    // jumps at 0, L, 2L, ...; the plant smooths them at each passage
+    static constexpr double kErrorFloor = 2e-3;  // of the largest deviation: the least reference of relative errors
     static constexpr std::size_t kUsualSteps = 120, kUsualJumps = 16;  // of a run
 
     double time() const { return levels_.ticks() * setup_.h0; }
 
-    /// What the run keeps in mind of the node that was added last.
+    /// Updates the run's state for the node that was added last.
     void note_node() {
         const SteadyState& rest = setup_.steady;
         const ResponseNode& node = response_.nodes.back();
@@ -92,8 +92,8 @@ private:
         return std::move(response_);
     }
 
-    /// Whether a step of the present level ends on the horizon or beyond it. Steps longer than the dead time, which
-    /// have only some lengths, give way to shorter ones there.
+    /// True if a step of the present level ends at or beyond the horizon. Steps longer than the dead time have only
+    /// certain lengths, so they are replaced by shorter ones there.
     bool reaches_horizon() {
         if (!options_.horizon) return false;
         const double left = (*options_.horizon - time()) / setup_.h0;
@@ -101,7 +101,7 @@ private:
         return std::ldexp(1.0, levels_.level()) * (1 + kSameInstant) >= left;
     }
 
-    /// The last steps, which end exactly there: one, or as many as a repetition asks for.
+    /// The last steps, which end exactly at the horizon: one, or the number that a repetition requires.
     void go_to_horizon() {
         if (!options_.horizon) return;
         const double from = time(), left = *options_.horizon - from;
@@ -121,7 +121,8 @@ private:
         const Smoothness found = smoothness();
         const bool long_ones = levels_.longer_than_L();
         levels_.choose(found);
-        // The way to rest becomes smoother: what is rough there, long steps have made of a resonance, and would again.
+        // Near rest the response becomes smoother: if it is rough there, long steps have made it so from a resonance,
+        // and would do so again.
         if (found == Smoothness::rough && long_ones && near_rest()) levels_.go_no_higher();
     }
 
@@ -131,7 +132,7 @@ private:
                std::abs(now.u - setup_.steady.u) < kErrorFloor * largest_u_;
     }
 
-    /// Of the cubic over the last two steps, relative to the local distance from rest.
+    /// Smoothness of the cubic over the last two steps, relative to the local distance from rest.
     Smoothness smoothness() const {
         const auto& nodes = response_.nodes;
         if (levels_.equal_steps() < 2 || nodes.size() < 3) return Smoothness::unknown;

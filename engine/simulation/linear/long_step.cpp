@@ -24,7 +24,7 @@ LongStep::LongStep(const ResponseSystem& system, ExactStep over_L, ExactStep res
 
 void LongStep::work_out_rows() {
     std::vector<double> row = system_->s.M;
-    row.resize(Index(system_->n), 0.0);  // the error's integral is no part of the output
+    row.resize(Index(system_->n), 0.0);  // the error's integral does not affect the output
     for (Index j = 0; j < 4; ++j) rest_moments_[j] = dot(row, rest_.Gamma(j));
     row = carried_over(rest_, row);
     rest_G_ = dot(row, system_->G);
@@ -38,8 +38,8 @@ void LongStep::work_out_rows() {
     to_curvature_ = row_times(to_slope_, system_->F);
 }
 
-/// What the output at the end gets from what comes in, but for what the states bring with them; `constant`: times the
-/// inputs that are constant.
+/// The contribution of the inputs to the output at the end, without that of the states; `constant`: factor of the
+/// constant inputs.
 LongStep::Jet LongStep::end_of(const Cubic& over_L, const Cubic& known, Signal v0, Signal w0, double constant) const {
     Jet end = through_cubic(known);
     // x' = F x + G v0 + b at the start, then x'' = F x' + G v'; v' jumps to the cubic's where the rest begins.
@@ -61,7 +61,7 @@ void LongStep::start(Signal v0, Signal w0, const std::vector<double>& x, Start& 
     start.x = x;
     advance(over_L_, over_L, start.x);
     advance(rest_, known, start.x);
-    // The value from the states themselves: the input over the rest is in them.
+    // The value follows from the states themselves: they contain the input over the rest.
     start.w_end[0] += output_of(start.x.data());
 }
 
@@ -80,7 +80,7 @@ LongStep::Jet LongStep::solved(const Jet& known) const {
     return w;
 }
 
-/// Adds what the output at the end, w, h w' and h^2 w'', leaves to the states and to the delayed signal there.
+/// Adds the effects of the output at the end (w, h w' and h^2 w'') to the states and to the delayed signal there.
 Signal LongStep::with_effects(const Jet& w, Signal v, double* x) const {
     for (Index k = 0; k < 3; ++k) {
         for (Index i = 0; i < rest_.n; ++i) x[i] += effects_[k].x[i] * w[k];
@@ -98,7 +98,7 @@ Signal LongStep::finish(const Start& start, const Jet& added, std::vector<double
 
 StepMap LongStep::map() const {
     const Index n = rest_.n, length = rest_.length();
-    // What the dead time leaves, carried over the rest: by the states, by the cubic's coefficients and by 1.
+    // The columns over the dead time, propagated over the rest: by the states, by the cubic's coefficients and by 1.
     std::vector<double> carried(over_L_.columns.size());
     multiply_columns(carried_over(rest_, over_L_, carried.data()));
     StepMap map(*system_, h_);
@@ -143,7 +143,7 @@ Signal LongStep::delayed_end(const Cubic& c) const {
     return {value_at(c, s), slope_at(c, s)};
 }
 
-/// What w, w' and w'' at the end get from the delayed signal over the rest of the step.
+/// Contribution of the delayed signal over the rest of the step to w, w' and w'' at the end.
 LongStep::Jet LongStep::through_cubic(const Cubic& c) const {
     const auto& m = rest_moments_;
     const Signal v = delayed_end(c);

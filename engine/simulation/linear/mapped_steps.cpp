@@ -53,7 +53,7 @@ bool MappedSteps::take(int level, double t, double) {
 
 void MappedSteps::take_last(double t, double end, double) { take_mapped(*last_, t, end, false); }
 
-/// `longer`: than the dead time.
+/// `longer`: the step is longer than the dead time.
 void MappedSteps::take_mapped(const StepMap& map, double t, double end, bool longer) {
     if (system_.delayed) {
         const Signal v0 = delayed_.from(t);

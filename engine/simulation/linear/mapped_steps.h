@@ -14,14 +14,14 @@
 
 namespace tunewright {
 
-/// The maps of steps of length h0 2^level, each made when it is asked for.
+/// The maps of steps of length h0 2^level, each made at the first request.
 class StepMaps {
 public:
-    /// `setup` must outlive this. `known`: of another run, whose states may move as this one's do; or null.
+    /// `setup` must outlive this. `known`: propagator of another run with the same equations of the states; or null.
     StepMaps(const RunSetup& setup, const std::shared_ptr<Propagator>& known);
 
     const StepMap& level(int level);
-    /// Longer than the dead time.
+    /// A step that is longer than the dead time.
     const LongStep& long_step(int level) { return long_steps_.level(level, *propagator_); }
     const std::shared_ptr<Propagator>& propagator() const { return propagator_; }
     StepMap of_length(double h) const { return {*system_, propagator_->step(h)}; }
@@ -32,7 +32,7 @@ private:
     const ResponseSystem* system_;
     int level_of_L_;
     std::shared_ptr<Propagator> propagator_;
-    std::deque<StepMap> maps_;  // of levels 0, 1, ..., as far as they stand up to the dead time
+    std::deque<StepMap> maps_;  // of levels 0, 1, ..., up to the dead time
     LongSteps long_steps_;
     std::deque<StepMap> long_maps_;  // of level_of_L + 1, ...
 };
@@ -42,14 +42,15 @@ public:
     /// `setup` and `nodes` must outlive this.
     MappedSteps(const RunSetup& setup, const std::shared_ptr<Propagator>& known, std::vector<ResponseNode>& nodes);
 
-    /// The first node.
+    /// Adds the first node.
     void begin();
-    /// A step of this level from t on, and the node at its end. True: such a step can always be taken.
+    /// Takes a step of this level from t and adds the node at its end. Returns true, because such a step is always
+    /// possible.
     bool take(int level, double t, double largest_y);
-    /// Steps of other lengths, up to a horizon.
+    /// Prepares steps of another length, up to a horizon.
     void prepare_last(double h) { last_ = maps_.of_length(h); }
     void take_last(double t, double end, double largest_y);
-    /// The delayed signal may jump at t, and with it u.
+    /// At t the delayed signal may jump, and with it u.
     void add_jump(double t);
 
     double error_integral() const { return nodes_.back().error_integral; }

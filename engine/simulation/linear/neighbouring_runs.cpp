@@ -15,7 +15,7 @@ namespace {
 using Index = std::size_t;
 using Lanes = double __attribute__((vector_size(8 * kMaxNeighbours)));
 
-// Wide registers want their memory aligned to their own size, of which a compiler for common ones knows nothing.
+// Wide registers need memory that is aligned to their size; compilers for common registers do not align to it.
 constexpr std::size_t kAlignment = sizeof(Lanes);
 
 template <class T>
@@ -27,10 +27,10 @@ struct Aligned {
 };
 using LaneVector = std::vector<Lanes, Aligned<Lanes>>;
 
-/// One by one, kMaxNeighbours for each of the vector's.
+/// The numbers one by one, kMaxNeighbours for each of the vector's entries.
 double* numbers(LaneVector& lanes) { return static_cast<double*>(static_cast<void*>(lanes.data())); }
 
-/// Each controller's own maps.
+/// The maps of each controller.
 struct Loops {
     std::vector<RunSetup> setups;
     std::deque<StepMaps> maps;
@@ -39,7 +39,7 @@ struct Loops {
           const StepSchedule& schedule) {
         setups.reserve(controllers.size());
         for (const auto& controller : controllers) setups.push_back(set_up_run(plant, controller, in, &schedule));
-        // Behind a dead time the gains are no part of the states' own equations.
+        // With a dead time the gains do not appear in the states' own equations.
         auto known = schedule.propagator;
         for (const auto& setup : setups) known = maps.emplace_back(setup, known).propagator();
     }
@@ -48,7 +48,7 @@ struct Loops {
 /// The maps of one level, side by side.
 struct LaneMap {
     LaneVector columns;
-    bool longer = false;  // than the dead time
+    bool longer = false;  // true: longer than the dead time
 };
 
 /// y, y', u, u' and the error's integral at a node.
@@ -82,7 +82,7 @@ public:
         keep_outputs(0, LaneSignal());
     }
 
-    /// Through all nodes.
+    /// Runs through all nodes.
     TUNEWRIGHT_INLINED void go();
 
     std::array<double, kMaxNeighbours> iaes() const;
@@ -100,7 +100,7 @@ private:
         return lanes;
     }
 
-    /// A node from the states alone: the first one, and after a jump.
+    /// Adds a node computed from the states alone: the first one, and after a jump.
     void keep_outputs(Index node, const LaneSignal& v) {
         std::vector<double> x(n_);
         for (Index k = 0; k < count_; ++k) {
@@ -117,7 +117,7 @@ private:
         to.slope = lanes_[k].u_slope;
     }
 
-    /// The delayed signal from both sides of t.
+    /// The delayed signal just before and just after t.
     TUNEWRIGHT_INLINED void look_up(double t, LaneSignal& before, LaneSignal& after) {
         const auto place = history_.find(t, slack_);
         if (!place.between) {
@@ -134,8 +134,7 @@ private:
         after = before;
     }
 
-    /// `kAtOnce` rows at a time stay in registers, and their sums side by side; the last ones may have been done
-    /// already.
+    /// `kAtOnce` rows at a time stay in registers, with their sums side by side; the last rows may be computed twice.
     template <Index kAtOnce>
     TUNEWRIGHT_INLINED void take_rows(const LaneMap& map, const std::array<Lanes, kStepInputs>& inputs) {
         const Index rows = n_ + 4, used = delayed_ ? kStepInputs : 1;
@@ -202,12 +201,12 @@ void LaneRun::go() {
         LaneNode& to = lanes_[++at];
         to.y = z_[n_], to.y_slope = z_[n_ + 1], to.u = z_[n_ + 2], to.u_slope = z_[n_ + 3];
         to.error_integral = -z_[n_ - 1];
-        // A node of the same time follows a jump.
+        // A second node at the same time follows a jump.
         if (at + 1 < nodes_.size() && nodes_[at + 1].t <= nodes_[at].t + slack_) keep_outputs(++at, after);
     }
 }
 
-/// As `integral_of_absolute_error`, from one change of the run's sign to the next.
+/// Like `integral_of_absolute_error`, between the changes of sign of the run's error.
 std::array<double, kMaxNeighbours> LaneRun::iaes() const {
     std::array<double, kMaxNeighbours> sum{}, last{};
     const auto node = [&](Index i, Index k) -> ResponseNode {

@@ -12,7 +12,8 @@ namespace {
 using Index = std::size_t;
 
 constexpr double kMaxTailShare = 1e-10;                                        // of the absolute error's integral
-constexpr double kValueRounding = 8 * std::numeric_limits<double>::epsilon();  // of y: the integral of e has it times t
+constexpr double kValueRounding = 8 * std::numeric_limits<double>::epsilon();  // of y; in the integral of e it is
+                                                                               // multiplied by t
 
 }  // namespace
 
@@ -52,7 +53,7 @@ SteadyState steady_outputs(const LinearPlant& plant, const ParallelPid& controll
     steady.exists = true;
     steady.y = inputs.r;
     steady.u = (plant.integrators() == 0 ? inputs.r / gain : 0) - inputs.d;
-    // What the integral action has come to, with y_f = r_f = r; then as in error_integral_in_states().
+    // The final value of the integral part, with y_f = r_f = r; then as in error_integral_in_states().
     const double integral = (steady.u - controller.Kp * (controller.b - 1) * inputs.r) / controller.Ki;
     const bool filtered = controller.filter.type == FilterType::measurement_first_order ||
                           controller.filter.type == FilterType::measurement_second_order;
@@ -64,7 +65,7 @@ double error_integral_in_states(const DelaySystem& system, const Filter& filter,
     // The integral of y - y_f follows from the filter's own equation: Tf y_f, or Tf y_f + Tf z/2 with z = Tf y_f'.
     const int integral = system.integral_state;
     double sum = x[Index(integral)];
-    // So does the integral of r - r_f, T r_f.
+    // In the same way the integral of r - r_f is T r_f.
     if (system.setpoint_state >= 0) sum += system.setpoint_lag * x[Index(system.setpoint_state)];
     switch (filter.type) {
         case FilterType::measurement_first_order: return sum - filter.Tf * x[Index(integral - 1)];
@@ -84,7 +85,7 @@ void ErrorTail::add(const ResponseNode& a, const ResponseNode& b, double r) {
 bool ErrorTail::little_is_left(double rest, double e, double t, double fraction) const {
     rest = std::abs(rest);
     e = std::abs(e);
-    // e^(-t/tau) has the integral tau and the first moment tau (t + tau) from t on: tau = rest/e.
+    // From t on, e^(-t/tau) has the integral tau and the first moment tau (t + tau): tau = rest/e.
     return rest <= kMaxTailShare * absolute_error_ + kValueRounding * largest_ * t ||
            rest * (t * e + rest) <= fraction * first_moment_ * e;
 }

@@ -1,4 +1,4 @@
-// Where a linear loop comes to rest under constant set point and load, and what the end of a response leaves of the
+// The rest of a linear loop with constant set point and load, and the contribution of a response's tail to the
 // integrals of its error.
 #pragma once
 
@@ -22,28 +22,28 @@ struct SteadyState {
 /// have no single solution.
 SteadyState steady_state(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& inputs);
 
-/// The same; with integral action in closed form, from y = r and the plant's gain at rest, for runs by the thousand.
+/// The same; with integral action in closed form, from y = r and the plant's static gain, for thousands of runs.
 SteadyState steady_outputs(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& inputs);
 
-/// The integral of r - y from 0 to now, from the states x of a loop whose integral state has integrated r - y_f alone:
-/// that state less the lag of the measurement filter, with that of the set-point filter. Differences of it are
+/// The integral of r - y from 0 to now, from the states x of a loop whose integral state has integrated only r - y_f:
+/// that state, corrected by the lags of the measurement filter and the set-point filter. Differences of it are
 /// integrals of r - y. Needs integral action.
 double error_integral_in_states(const DelaySystem& system, const Filter& filter, const std::vector<double>& x);
 
-/// Integrals of |e| and t |e| so far, by trapezoids, as a measure for what is left of them.
+/// Integrals of |e| and t |e| so far, by trapezoids, as a reference for their remaining parts.
 class ErrorTail {
 public:
-    /// The piece between neighbouring nodes; e = r - y.
+    /// Adds the part between neighbouring nodes; e = r - y.
     void add(const ResponseNode& a, const ResponseNode& b, double r);
 
     double absolute_error() const { return absolute_error_; }
 
-    /// Whether less than `fraction` of the integral of t |e| is left at time t, where the error is e and its integral
-    /// from there on `rest`: the tail is taken as one exponential.
+    /// True if less than `fraction` of the integral of t |e| remains after time t, with the error e and its remaining
+    /// integral `rest` there: the tail is assumed to be one exponential.
     bool little_is_left(double rest, double e, double t, double fraction) const;
 
 private:
-    double absolute_error_ = 0, first_moment_ = 0, largest_ = 0;  // `largest_` is of |y|
+    double absolute_error_ = 0, first_moment_ = 0, largest_ = 0;  // `largest_`: largest |y|
 };
 
 }  // namespace tunewright

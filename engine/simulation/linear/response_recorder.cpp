@@ -11,7 +11,7 @@ namespace {
 constexpr double kNodeTolerance = 1e-7;  // of the cubic between nodes, relative to the largest value so far
 constexpr int kMaxPieces = 16;
 
-/// How far the cubic through both ends of a piece misses its middle.
+/// Error of the cubic through both ends of a part, at its midpoint.
 double miss(const StepPolynomial& p, double from, double to) {
     const double h = (to - from) * p.h;
     const double cubic = hermite_midpoint(h, {p.at(from), p.slope(from)}, {p.at(to), p.slope(to)});
@@ -63,7 +63,7 @@ void ResponseRecorder::add(const StepPolynomial& y, const StepPolynomial& u) {
         for (int i = 1; i <= n; ++i) push_node(y, u, double(i) / n);
     }
     at_border_ = false;
-    // A value on the border of two steps belongs to the later.
+    // A value at the border of two steps belongs to the later step.
     auto& [even_y, even_u] = response_.even;
     while (int(even_y.size()) < samples_) {
         const double s = (horizon_ * double(even_y.size()) / (samples_ - 1) - y.t) / y.h;

@@ -1,4 +1,4 @@
-// What is kept of a numerically integrated response: nodes close enough for cubics, and values at equal distances.
+// The stored part of a numerically integrated response: nodes close enough for cubics, and values at equal distances.
 #pragma once
 
 #include <optional>
@@ -13,10 +13,10 @@ class ResponseRecorder {
 public:
     ResponseRecorder(NonlinearResponse& response, const NonlinearOptions& options, double r);
 
-    /// u or the slopes have jumped before the next step.
+    /// u or the slopes jump before the next step.
     void border() { at_border_ = true; }
     void add(const StepPolynomial& y, const StepPolynomial& u);
-    /// The sample that lies on the end itself.
+    /// Adds the sample at the end itself.
     void finish(double t, double y, double u);
 
     double error_integral() const { return error_integral_; }

@@ -11,7 +11,7 @@ ResponseSystem make_response_system(const LinearPlant& plant, const ParallelPid&
     if (!system.delayed) system.s = close_without_delay(system.s);
     const DelaySystem& s = system.s;
     system.in = in;
-    // Plain loops: with Eigen's maps a whole response takes 1.5 % longer.
+    // It uses plain loops: with Eigen's maps a whole response takes 1.5 % longer.
     const int n = s.n;
     system.n = n + 1;
     system.F.assign(Index(system.n * system.n), 0);
@@ -38,9 +38,9 @@ ResponseSystem make_response_system(const LinearPlant& plant, const ParallelPid&
     }
     system.b[Index(n)] = -in.r;
     if (!system.delayed) {
-        // v is the load alone here, with the algebraic loop solved.
+        // Here v consists of the load alone, with the algebraic loop solved.
         for (int i = 0; i < system.n; ++i) system.b[Index(i)] += system.G[Index(i)] * in.d;
-        // The error's integral also sees what the set point feeds through the plant's direct term.
+        // The error's integral also contains the set point's direct effect through the plant.
         system.b[Index(n)] = s.Z * in.d + s.Y_r * in.r - in.r;
     }
     return system;

@@ -1,4 +1,4 @@
-// The equations that a response is stepped with (the delay system, the integral of y - r and the constant inputs).
+// The equations of a response: the delay system, the integral of y - r and the constant inputs.
 #pragma once
 
 #include <array>
@@ -11,24 +11,25 @@
 
 namespace tunewright {
 
-/// The delay system with one more state, the integral of y - r, and without the constant inputs: x' = F x + G v + b,
+/// The delay system with one more state, the integral of y - r, with the constant inputs inserted: x' = F x + G v + b,
 /// row by row, for n states x and the delayed signal v.
 struct ResponseSystem {
     DelaySystem s;
     int n = 0;
     std::vector<double> F, G, b;
-    // y and u and, beside what the states bring, y' = ... + YG v + Z v' + YH, u' = ... + MG v + N v' + MH.
+    // Outputs y and u. Without the contribution of the states: y' = ... + YG v + Z v' + YH, u' = ... + MG v + N v' +
+    // MH.
     std::vector<double> outputs;  // n columns: of y, y', u and u'
     double MG = 0, YG = 0, MH = 0, YH = 0;
     StepInputs in;
     bool delayed = false;
 };
 
-/// Without a dead time the loop is closed: v is the load alone.
+/// Without a dead time the loop is closed: v consists of the load alone.
 ResponseSystem make_response_system(const LinearPlant& plant, const ParallelPid& controller, const StepInputs& in);
 
-/// What y, y', u and u' get from the delayed signal v and, `constant` times, from what is constant; the rest is from
-/// the states.
+/// Contributions of the delayed signal v and of the constant inputs (times `constant`) to y, y', u and u'; that of the
+/// states is separate.
 inline std::array<double, 4> outputs_of(const ResponseSystem& system, Signal v, double constant) {
     const DelaySystem& s = system.s;
     return {s.Z * v.value + constant * (s.Y_r * system.in.r),

@@ -12,13 +12,13 @@ namespace {
 
 using Index = std::size_t;
 
-constexpr int kMinLevelOfL = 3, kMaxLevelOfL = 30;  // of steps a dead time, as a power of 2
-constexpr double kMaxStepOverGrowthTime = 0.25;     // of an unstable mode's time: the longest step
-constexpr double kMaxMapped = 1000;                 // of the plant's own time
+constexpr int kMinLevelOfL = 3, kMaxLevelOfL = 30;  // steps in a dead time, as a power of 2
+constexpr double kMaxStepOverGrowthTime = 0.25;     // of an unstable mode's time constant: longest step
+constexpr double kMaxMapped = 1000;                 // multiple of the plant's own time: longest step with a map
 
 constexpr double kMaxStepOverFastestTime =
-    0.25;  // of the fastest mode's time: the cubic through a step's ends follows it
-constexpr double kMaxStepOverDeadTime = 0.125;  // a power of 2, as the lengths of the steps double
+    0.25;  // of the fastest mode's time constant: a cubic through a step's ends is accurate for it
+constexpr double kMaxStepOverDeadTime = 0.125;  // a power of 2, because the lengths of steps double
 
 double longest_step(const LinearPlant& plant) {
     double longest = std::numeric_limits<double>::infinity();
@@ -31,7 +31,7 @@ void choose_h0(RunSetup& setup, const LinearPlant& plant, const ParallelPid& con
     const ResponseSystem& system = setup.system;
     double fastest = fastest_rate(system, plant, controller);
     if (!system.delayed) {
-        // The rates of the single states count beside the loop's own.
+        // The rates of the single states count as well as those of the loop.
         for (int i = 0; i < system.s.n; ++i)
             fastest = std::max(fastest, std::abs(system.s.F[Index(i * system.s.n + i)]));
         setup.h0 = first_step(system, std::max(fastest, std::numeric_limits<double>::min()));

@@ -8,7 +8,7 @@ namespace {
 
 using Index = std::size_t;
 
-constexpr int kRepetitions = 20;      // of a step that sees its own end through the scaled integral
+constexpr int kRepetitions = 20;      // iterations for a step that depends on its own end through the scaled integral
 constexpr double kConverged = 1e-10;  // of the response's size
 
 }  // namespace
@@ -28,8 +28,8 @@ ScaledSteps::ScaledSteps(const RunSetup& setup, const ErrorScaling& scaling, dou
       long_steps_(system_, setup.level_of_L),
       x_(Index(system_.n), 0.0) {}
 
-/// What comes into the steps as a cubic: the delayed signal or, without dead time, what scaling adds to the integral's
-/// input.
+/// The input of the steps as a cubic: the delayed signal or, without dead time, the addition to the integral's input by
+/// scaling.
 std::vector<double> ScaledSteps::input() const {
     if (system_.delayed) return system_.G;
     std::vector<double> into_integral(Index(system_.n), 0.0);
@@ -39,7 +39,7 @@ std::vector<double> ScaledSteps::input() const {
 
 void ScaledSteps::begin() { add(node_at(system_, 0, x_, {})); }
 
-/// Adds the node and what scaling changes in its slopes.
+/// Adds the node, with the change of its slopes by scaling.
 void ScaledSteps::add(const ResponseNode& node) {
     scale(nodes_.emplace_back(node));
     excesses_.push_back(excess_);
@@ -68,7 +68,8 @@ void ScaledSteps::take_last(double t, double end, double largest_y) {
         take_closed(*last_, end, true, largest_y);
 }
 
-/// Up to the dead time, y does not depend on the integral's own input within the step: that is known when y is.
+/// In steps up to the dead time, y does not depend on the integral's own input within the step, which is therefore
+/// known once y is.
 void ScaledSteps::take_short(const ExactStep& step, double t, double end) {
     const Signal v0 = delayed_.from(t), v1 = delayed_.until(end);
     advance(step, hermite_taylor(step.h, v0, v1), x_);
@@ -91,7 +92,7 @@ bool ScaledSteps::take_long(const LongStep& step, double t, double largest_y) {
     });
 }
 
-/// Without dead time.
+/// For a loop without dead time.
 bool ScaledSteps::take_closed(const ExactStep& step, double end, bool shortest, double largest_y) {
     const Signal before = excess_;
     return settle(step.h, shortest, largest_y, [&](double) {
@@ -101,9 +102,9 @@ bool ScaledSteps::take_closed(const ExactStep& step, double end, bool shortest, 
     });
 }
 
-/// Finds the end of a step whose y depends on the integral's own input by repetition: `try_end` goes to the end with
-/// the excess assumed there. False where that does not converge, which a shorter step cures; the `shortest` is accepted
-/// all the same.
+/// Finds the end of a step whose y depends on the integral's own input by iteration: `try_end` computes the end for an
+/// assumed excess there. False if it does not converge, which a shorter step cures; the `shortest` step is accepted in
+/// any case.
 template <class TryEnd>
 bool ScaledSteps::settle(double h, bool shortest, double largest_y, const TryEnd& try_end) {
     const Signal before = excess_;

@@ -1,4 +1,4 @@
-// The steps of a run with the nonlinear PID, whose integral sees phi(e): what that adds to e comes in as one more cubic
+// The steps of a run with the nonlinear PID, whose integral acts on phi(e): the addition to e is one more cubic
 // (linear_response.h).
 #pragma once
 
@@ -14,28 +14,28 @@ namespace tunewright {
 
 class ScaledSteps {
 public:
-    /// `setup` and `nodes` must outlive this; the system has an integral's state. `beyond`: |y| of a response that
-    /// grows without bound.
+    /// `setup` and `nodes` must outlive this; the system must have an integral's state. `beyond`: |y| above which a
+    /// response counts as unbounded.
     ScaledSteps(const RunSetup& setup, const ErrorScaling& scaling, double beyond, std::vector<ResponseNode>& nodes);
 
-    /// The first node.
+    /// Adds the first node.
     void begin();
-    /// A step of this level from t on, and the node at its end. False: the step is too long for the scaled integral,
-    /// and nothing has happened. `largest_y`: so far, from rest.
+    /// Takes a step of this level from t and adds the node at its end. False: the step is too long for the scaled
+    /// integral, and nothing has changed. `largest_y`: largest deviation from rest so far.
     bool take(int level, double t, double largest_y);
-    /// Steps of other lengths, up to a horizon.
+    /// Prepares steps of another length, up to a horizon.
     void prepare_last(double h) { last_ = propagator_.step(h); }
     void take_last(double t, double end, double largest_y);
-    /// The delayed signal may jump at t, and with it u.
+    /// At t the delayed signal may jump, and with it u.
     void add_jump(double t);
 
-    /// What the integral has seen: near the end that is the error as it is.
+    /// The integral of the integral's input, which near the end equals the error.
     double error_integral() const { return x_[integral_]; }
     std::shared_ptr<Propagator> propagator() const { return nullptr; }
     bool escaped() const { return !(std::abs(nodes_.back().y) <= beyond_); }
-    /// Of the last two steps' cubic of phi(e) - e, against the local error of control, at least `floor`.
+    /// Fit of the last two steps' cubics of phi(e) - e, relative to the local control error, at least `floor`.
     Misfit fit(double floor) const;
-    /// The integral so far plus what the integral's state has yet to change.
+    /// The integral so far plus the remaining change of the integral's state.
     std::optional<double> final_integral(std::optional<double> exact) const;
 
 private:

@@ -1,5 +1,5 @@
-// A step of a linear run as one map: the states at its end, and what a node keeps of them, are a combination of the
-// states at its start and of what comes in.
+// A step of a linear run as one map: the states at its end, and the values stored in a node, are a linear combination
+// of the states at its start and of the inputs.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace tunewright {
 
-/// Of a step beside the states: 1, then values and slopes of two signals, the delayed one at the start first.
+/// Inputs of a step: 1, then values and slopes of two signals, first the delayed one at the start.
 constexpr std::size_t kStepInputs = 5;
 
 /// The states of a run and, after them, y, y', u and u'.
@@ -33,32 +33,32 @@ private:
 
 class StepMap {
 public:
-    /// Up to the dead time, whose second signal is the delayed one at the end; or without dead time, where 1 alone
-    /// comes in.
+    /// For steps up to the dead time, whose second signal is the delayed one at the end; or without dead time, where 1
+    /// is the only input.
     StepMap(const ResponseSystem& system, const ExactStep& step);
-    /// Of columns that are filled in from outside: first the states' part of each, then `add_outputs` and what is fed
-    /// through.
+    /// A map whose columns the caller fills: first the states' part of each, then `add_outputs` and `feed_through`.
     StepMap(const ResponseSystem& system, double h);
 
     double h() const { return h_; }
 
-    /// To the step's end. `inputs`: the first of them, at most kStepInputs.
+    /// Moves the state to the step's end. `inputs`: at most kStepInputs, the others are 0.
     void take(RunState& state, std::span<const double> inputs) const {
         map_columns(columns_.data(), n_, state.all(), inputs);
     }
 
-    /// The states at the end by state or, from n on, input k.
+    /// Column of the states at the end, for a state or, from n on, for input k - n.
     double* column(std::size_t k) { return columns_.data() + k * length_; }
     const double* column(std::size_t k) const { return columns_.data() + k * length_; }
-    /// What the states' part of each column leaves of y, y', u and u'.
+    /// Adds the contribution of the states' part of each column to y, y', u and u'.
     void add_outputs(const ResponseSystem& system);
-    /// The same of the delayed signal at the end that belongs to column k, and of r and d to that of 1.
+    /// Adds the contribution of the delayed signal at the end to column k, and that of r and d to the column of 1.
     void feed_through(const ResponseSystem& system, std::size_t k, Signal v);
 
 private:
     std::size_t n_, length_;
     double h_;
-    std::vector<double> columns_;  // n of the states, kStepInputs more; each of length_ = column_length(n + 4)
+    std::vector<double> columns_;  // n columns of the states and kStepInputs more; each of length_ = column_length(n +
+                                   // 4)
 };
 
 }  // namespace tunewright

@@ -9,11 +9,11 @@ namespace tunewright {
 namespace {
 
 constexpr int kMaxSamples = 20'000;
-constexpr double kSamplesPerUnit = 10;    // per time constant or radian of a mode that is alive
+constexpr double kSamplesPerUnit = 10;    // samples per time constant or radian of a mode that has not decayed
 constexpr double kSamplesPerDouble = 24;  // spacing at most t/24
 constexpr double kDecay = 14;             // e^-14 = 8e-7
 
-// [x; 1] moves by exp([A B; 0 0] tau): a constant input is one more state.
+// [x; 1] moves by exp([A B; 0 0] tau): a constant input is an additional state.
 std::vector<double> propagator(const Realisation& realisation, double tau) {
     const int n = realisation.n;
     std::vector<double> augmented(static_cast<size_t>((n + 1) * (n + 1)), 0.0);
@@ -50,7 +50,7 @@ StepSample sample(const Realisation& realisation, double t, std::vector<double> 
 
 double decay_time(std::complex<double> pole, double modes) { return (kDecay + 3 * modes) / -pole.real(); }
 
-// The spacing that the modes alive at t ask for.
+// The spacing for the modes that have not decayed at t.
 double spacing(const LinearPlant& plant, double t, double shortest) {
     double h = std::max(shortest, t / kSamplesPerDouble);
     for (const auto pole : plant.poles()) {

@@ -13,10 +13,11 @@ namespace tunewright {
 namespace {
 
 constexpr int kMaxSteps = 200000;
-constexpr double kLimitTolerance = 1e-10;  // of the input's scale: how far beyond a limit the law is before that counts
-constexpr double kFirstProbeShare = 1e-15;  // of the horizon: how far ahead a fault is looked for first
-constexpr int kMaxProbes = 50;              // each twice as far: the last beyond half the horizon
-constexpr double kMaxInputEffect = 1e12;    // of the input's effect at the start
+constexpr double kLimitTolerance = 1e-10;   // of the input's scale: the law must exceed a limit by this to count as
+                                            // beyond it
+constexpr double kFirstProbeShare = 1e-15;  // of the horizon: distance of the first probe for a fault
+constexpr int kMaxProbes = 50;              // each at twice the distance; the last is beyond half the horizon
+constexpr double kMaxInputEffect = 1e12;    // relative to the input's effect at the start
 
 // u = (v - sum of beta_k L_f^k h) / (beta_r L_g L_f^(r-1) h).
 class LinearisingLaw {
@@ -24,7 +25,7 @@ public:
     LinearisingLaw(const NonlinearSystem& system, const TargetResponse& target, double setpoint_step)
         : system_(system), beta_(target.beta), v_(setpoint_step) {}
 
-    // Absolute; not finite where it is undefined.
+    // Absolute u; not finite if it is undefined.
     double operator()(std::span<const double> x) {
         const auto r = beta_.size() - 1;
         if (!lie_derivatives(system_, static_cast<int>(r), x, lie_)) return std::nan("");
@@ -33,7 +34,7 @@ public:
         return rest / (beta_[r] * lie_.of_g);
     }
 
-    double input_effect() const { return lie_.of_g; }  // where it was last asked for
+    double input_effect() const { return lie_.of_g; }  // at the last evaluation
 
 private:
     const NonlinearSystem& system_;
@@ -48,7 +49,7 @@ double sample_time(std::size_t i, const LinearisingOptions& options) {
 
 enum class Limit { none, low, high };
 
-// The loop without dead time, from one crossing of a limit to the next: clipping is continuous but has a kink.
+// The loop without dead time, from one crossing of a limit to the next: clipping is continuous but has a kink there.
 class LinearisedLoop {
 public:
     LinearisedLoop(const NonlinearSystem& system, const TargetResponse& target, double setpoint_step,
@@ -63,7 +64,8 @@ public:
                       options.tolerance),
           inside_(static_cast<std::size_t>(system.order())) {}
 
-    // From x at t = 0 to the horizon. u at the samples; y, which follows the dead time later, behind those of `before`.
+    // Runs from x at t = 0 to the horizon: u at the samples; y, which is later by the dead time, is added after those
+    // of `before`.
     LinearisingResponse run(std::span<const double> x, std::vector<double> before) {
         response_.even.y = std::move(before);
         const double u = law_(x);
@@ -77,14 +79,16 @@ public:
         for (int steps = 0; integrator_.t() < options_.horizon; ++steps) {
             if (stop_.stop_requested()) return ended("The simulation was stopped.");
             if (steps == kMaxSteps)
-                return ended("At t = " + text(now()) + " the run has taken the " + std::to_string(kMaxSteps) +
-                             " steps that it may.");
+                return ended("At t = " + text(now()) +
+                             " the run has reached the limit "
+                             "of " +
+                             std::to_string(kMaxSteps) + " steps.");
             OdeStep outcome = integrator_.step(options_.horizon);
             if (outcome != OdeStep::made) return ended(reason(outcome));
             if (const auto pole = loss_of_effect()) {
                 if (integrator_.shorten(*pole) == OdeStep::made) sample_step();
                 return ended("At t = " + text(now()) +
-                             " the controller's law ceases to exist: the input has no effect on the output there.");
+                             " the controller's law becomes undefined: the input has no effect on the output there.");
             }
             const auto crossing = end_of_side();
             if (crossing && (outcome = integrator_.shorten(*crossing)) != OdeStep::made) return ended(reason(outcome));
@@ -93,14 +97,14 @@ public:
             if (too_strong()) return ended(reason(OdeStep::left_domain));
             if (escaped())
                 return ended("At t = " + text(now()) +
-                             " the input has left every bound: the plant's zero dynamics are unstable.");
+                             " the input is unbounded: the plant's zero dynamics are unstable.");
         }
         response_.t_end = options_.horizon;
         return std::move(response_);
     }
 
 private:
-    // What the present side applies, whether or not the law has left it: smooth over a step.
+    // The input on the present side of the limits, even if the law has left it: smooth over a step.
     double input(std::span<const double> x) {
         if (limit_ == Limit::high) return system_.u_max();
         if (limit_ == Limit::low) return system_.u_min();
@@ -117,7 +121,7 @@ private:
         return scale_u_ > 0 && std::abs(input(integrator_.x()) - system_.u_nominal()) > kMaxResponseRatio * scale_u_;
     }
 
-    // L_g L_f^(r-1) h has grown so much that the u that y needs is lost in its rounding.
+    // True if L_g L_f^(r-1) h has grown so much that the required u is only rounding.
     bool too_strong() {
         law_(integrator_.x());
         return std::abs(law_.input_effect()) > kMaxInputEffect * first_effect_;
@@ -128,7 +132,8 @@ private:
         return first_crossing([this](double t) { return beyond(t); }, integrator_.t_before(), integrator_.t());
     }
 
-    // L_g L_f^(r-1) h changes its sign within the step: u has a pole there, which y alone would not show.
+    // The time within the step at which L_g L_f^(r-1) h changes its sign: u has a pole there, which y alone would not
+    // show.
     std::optional<double> loss_of_effect() {
         const auto reversed = [this](std::span<const double> x) {
             law_(x);
@@ -143,7 +148,7 @@ private:
             integrator_.t_before(), integrator_.t());
     }
 
-    // > 0 where the law has left the present side.
+    // > 0 if the law has left the present side.
     double beyond(double t) {
         integrator_.at(t, inside_);
         const double u = law_(inside_);
@@ -179,7 +184,7 @@ private:
 
     double now() const { return integrator_.t(); }
 
-    // Why the loop cannot go on from here; whatever fails lies just ahead.
+    // The reason why the loop cannot continue from here; the failing operation lies just ahead.
     std::string reason(OdeStep outcome) {
         const auto x = integrator_.x(), dx = integrator_.dx();
         const std::string at = "At t = " + text(now());
@@ -190,7 +195,7 @@ private:
                              ? " the controller's law is undefined: the input has no effect on the output there."
                              : " the states leave the model's domain. " + fault);
         }
-        if (outcome == OdeStep::stalled) return at + " the steps needed are too short to go on: u grows beyond bounds.";
+        if (outcome == OdeStep::stalled) return at + " the required steps are too short to continue: u is unbounded.";
         std::vector<double> ahead(x.size());
         double h = kFirstProbeShare * options_.horizon;
         for (int doubling = 0; doubling < kMaxProbes; ++doubling, h *= 2) {
@@ -198,7 +203,7 @@ private:
             const std::string fault = system_.domain_fault(ahead, u);
             if (!fault.empty()) return (at + " the states leave the model's domain. ").append(fault);
         }
-        return at + " the controller's law ceases to exist.";
+        return at + " the controller's law becomes undefined.";
     }
 
     LinearisingResponse ended(const std::string& why) {
@@ -221,7 +226,7 @@ private:
     LinearisingResponse response_;
 };
 
-// Under the nominal input from 0 to the dead time: y at the samples before it, and x at its end.
+// The motion with the nominal input from 0 to the dead time: y at the samples before it, and x at its end.
 struct FreeMotion {
     std::vector<double> y, x;
     std::string ended;

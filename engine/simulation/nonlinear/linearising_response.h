@@ -1,12 +1,12 @@
-// The loop under an input/output linearising controller with full knowledge of the plant's states: what a PID is asked
-// to emulate.
+// The loop with an input/output linearising controller that knows the plant's states: the loop that a PID is to
+// emulate.
 //
 //   beta_r y^(r) + ... + beta_1 y' + y = v,   u = (v - sum_k beta_k L_f^k h) / (beta_r L_g L_f^(r-1) h)
 //
 // v is the set point, y and v deviations from the operating point, r the relative degree. First order: beta = {1,
 // gamma} (Eq. 5-7); second order: {1, 2 xi tau_cl, tau_cl^2} (Eq. 8 with its middle term corrected). With a dead time
-// the law acts on the state predicted by L (exactly, the model being the plant): y follows L later. Source: Mhaskar,
-// El-Farra & Christofides (2004).
+// the law acts on the state predicted over L (exactly, because the model is the plant): y follows L later. Source:
+// Mhaskar, El-Farra & Christofides (2004).
 #pragma once
 
 #include <complex>
@@ -19,7 +19,7 @@
 
 namespace tunewright {
 
-/// beta[0] = 1, one coefficient a derivative up to the relative degree.
+/// beta[0] = 1, one coefficient for each derivative up to the relative degree.
 struct TargetResponse {
     std::vector<double> beta;
 };
@@ -30,7 +30,7 @@ TargetResponse target_of_poles(const std::vector<std::complex<double>>& poles);
 
 struct LinearisingOptions {
     double horizon = 0;  ///< > 0
-    int samples = 401;   ///< >= 2, from 0 to the horizon
+    int samples = 401;   ///< samples from 0 to the horizon, >= 2
     double tolerance = 1e-10;
     std::vector<double> initial = {};  ///< absolute states at t = 0; empty: the steady state
 };
@@ -39,7 +39,7 @@ struct LinearisingResponse {
     EvenSamples even;      ///< deviations; u after the limits
     bool limited = false;  ///< a limit of the input clipped u
     double t_end = 0;
-    std::string ended;  ///< why it ended early; empty: it did not
+    std::string ended;  ///< the reason for an early end; empty: it reached the horizon
 };
 
 /// `target` must suit the relative degree.

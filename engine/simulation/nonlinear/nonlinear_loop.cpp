@@ -14,21 +14,22 @@ namespace {
 
 using Index = std::size_t;
 
-constexpr int kEchoes = 6;  // of a jump: smoothed by the plant at each passage, to the method's order
+constexpr int kEchoes = 6;  // echoes of a jump: the plant smooths it at each passage, finally beyond the order of the
+                            // method
 constexpr int kMaxSecants = 30;
 constexpr double kSecantDone = 1e-14;
 
 constexpr int kMaxIterations = 40, kMaxHalvings = 20;
 constexpr double kRestLimitTolerance =
-    1e-9;  // of u at rest: what Newton's method leaves; nearer to a limit it is at it
+    1e-9;  // of u at rest: rounding of Newton's method; closer to a limit u counts as being at it
 constexpr double kNewtonTolerance = 1e-12,
                  kNewtonRounding = 1e-9;  // of a Newton step, relative to the values and to their sizes
 
-/// The equations of rest in (x, u): f = 0 and what closes the loop.
+/// The equations of rest in (x, u): f = 0 and the equation that closes the loop.
 struct Rest {
     const NonlinearLoop& loop;
     const StepInputs& in;
-    std::optional<double> held;  // u at a limit; else the control law's
+    std::optional<double> held;  // u, if it is at a limit; else the control law applies
     Index n;
     std::vector<double> A, B, C;
 
@@ -144,8 +145,8 @@ bool NonlinearLoop::y_slope(std::span<const double> x, double w, double& slope) 
     return true;
 }
 
-// Without dead time the command depends on y', that on u, and that on the command: solved by secants, at once where f
-// is affine in u.
+// Without dead time the command depends on y', y' on u, and u on the command: solved by secants, in one step if f is
+// affine in u.
 NonlinearLoop::Output NonlinearLoop::output_of_pure_derivative(Region region, std::span<const double> z,
                                                                double w_then) const {
     Output out;

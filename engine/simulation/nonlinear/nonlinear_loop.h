@@ -1,5 +1,5 @@
-// A PID loop on a nonlinear plant as differential equations, below, within and above the limits of its input, and where
-// it comes to rest.
+// A PID loop on a nonlinear plant as differential equations, below, within and above the limits of its input, and its
+// state of rest.
 #pragma once
 
 #include <optional>
@@ -13,18 +13,18 @@
 
 namespace tunewright {
 
-/// The plant's limits of u and the actuator's, as deviations; infinite where there is none.
+/// The limits of u by the plant and by the actuator, as deviations; infinite without a limit.
 ActuatorLimits input_limits(const NonlinearSystem& system, const std::optional<ActuatorLimits>& actuator);
 
-/// 1/Tt of the anti-windup (limited_response.h) for the plant's linearisation; 0 where nothing can wind up.
+/// 1/Tt of the anti-windup (limited_response.h) for the plant's linearisation; 0 if nothing can wind up.
 double back_calculation_rate(const NonlinearSystem& system, const ParallelPid& controller,
                              const ActuatorLimits& limits);
 
-/// The size of y to which a load d drives the linearisation over the plant's own time.
+/// The change of y by which a load d drives the linearisation over the plant's own time.
 double size_of_effect(const NonlinearSystem& system, double d);
 
-/// The number of passages through the loop for which a jump of the plant's input still counts. With a pure derivative
-/// it comes back after a dead time as a smaller jump, else as a smoother kink.
+/// The number of passages through the loop after which a jump of the plant's input no longer matters. With a pure
+/// derivative it returns after a dead time as a smaller jump, otherwise as a smoother kink.
 int passages_that_count(const NonlinearSystem& system, const ParallelPid& controller, double tolerance);
 
 /// States z: those of the plant (absolute), then those of the PidLaw. y, u, w = u + d are deviations.
@@ -45,9 +45,10 @@ public:
     const ActuatorLimits& limits() const { return limits_; }
     double limit(Region region) const { return region == Region::above ? limits_.max : limits_.min; }
 
-    /// `w_then`: what the plant receives with a dead time, its input one dead time ago; not used without one.
+    /// `w_then`: with a dead time the present input of the plant, which left the controller one dead time ago; not used
+    /// without one.
     Output output(Region region, std::span<const double> z, double w_then) const;
-    /// The region for these states: on a limit it is `inside`.
+    /// The region for these states: at a limit it is `inside`.
     Region region(std::span<const double> z, double w_then) const;
     /// False outside the plant's domain.
     bool rates(Region region, std::span<const double> z, double w_then, std::span<double> dz) const;
@@ -62,7 +63,7 @@ public:
 
 private:
     double y_of(std::span<const double> z) const;
-    /// y' with the plant's input w; f is left in slope_.
+    /// y' for the plant's input w; leaves f in slope_.
     bool y_slope(std::span<const double> x, double w, double& slope) const;
     Output output_of_pure_derivative(Region region, std::span<const double> z, double w_then) const;
 
@@ -74,16 +75,16 @@ private:
     mutable std::vector<double> slope_, C_, A_, B_;  // scratch
 };
 
-/// A rest of the loop.
+/// A state of rest of the loop.
 struct NonlinearRest {
-    bool within = false;    ///< by the control law; false: at a limit
+    bool within = false;    ///< true: by the control law; false: at a limit
     double y = 0, u = 0;    ///< deviations
     std::vector<double> x;  ///< absolute
 };
 
-/// The rest nearest to these states, by Newton's method: under the control law if the limits admit it, else at the
-/// limit. Empty where none is found near. `sizes`: by how much the states, and last u, move in this loop; what is far
-/// below them is rounding.
+/// The rest nearest to these states, by Newton's method: with the control law if the limits allow it, else at the
+/// limit. Empty if none is found nearby. `sizes`: ranges of the states, and last of u, in this loop; much smaller
+/// values are rounding.
 std::optional<NonlinearRest> find_rest(const NonlinearLoop& loop, const StepInputs& inputs, std::vector<double> x,
                                        double u, const std::vector<double>& sizes);
 

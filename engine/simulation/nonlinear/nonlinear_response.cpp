@@ -20,18 +20,17 @@ using Index = std::size_t;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-constexpr double kCommandRounding =
-    1e-11;                          // of the largest command: how far beyond a limit it must go to have crossed it
-constexpr double kMinLongStep = 4;  // in dead times: shorter steps are not worth repeating
+constexpr double kCommandRounding = 1e-11;  // of the largest command: it must exceed a limit by this to have crossed it
+constexpr double kMinLongStep = 4;          // in dead times: it is not worthwhile to iterate shorter steps
 constexpr int kMaxPasses = 12;
-constexpr double kPassTolerance = 0.1;     // of the tolerance: two passes of a long step agree
-constexpr double kLongStepPause = 50;      // dead times until long steps are tried again
-constexpr int kMaxCrossings = 100;         // without a whole step between two
-constexpr double kMaxStillRatio = 100;     // y and u have not moved since this fraction of the time: they will not
-constexpr int kRestInterval = 32;          // steps between two looks for where the loop comes to rest
-constexpr double kMaxRestDistance = 0.05;  // of the largest deviation: the end is near enough to rest to name it
+constexpr double kPassTolerance = 0.1;     // of the tolerance: two iterations of a long step agree
+constexpr double kLongStepPause = 50;      // dead times before long steps are tried again
+constexpr int kMaxCrossings = 100;         // crossings without a whole step between them
+constexpr double kMaxStillRatio = 100;     // if y and u have not moved since this fraction of the time, they stay
+constexpr int kRestInterval = 32;          // steps between two searches for the loop's rest
+constexpr double kMaxRestDistance = 0.05;  // of the largest deviation: the end is close enough to report the rest
 
-/// One run: steps from border to border, where a border is a crossing of a limit, a jump's echo, the horizon.
+/// One run: steps between borders, which are crossings of a limit, echoes of jumps, and the horizon.
 class NonlinearRun {
 public:
     NonlinearRun(const NonlinearSystem& system, const ParallelPid& controller, const StepInputs& in,
@@ -75,7 +74,7 @@ private:
 
     double slack() const { return 8 * kEpsilon * std::max(integrator_.t(), L_); }
     bool at_step_end(double t) const { return t >= step_end_ - slack(); }
-    /// The plant's input, L ago: before a jump for the step that ends there, after it for the one that begins.
+    /// The plant's input, given L ago: before a jump for the step that ends there, after it for the one that begins.
     double w_then(double t) const { return loop_.delayed() ? history_.at(t - L_, at_step_end(t)) : 0; }
 
     // ---- one step -----------------------------------------------------------------------------------------------
@@ -110,7 +109,7 @@ private:
         return stop;
     }
 
-    /// Worth it to go beyond the dead time at once, although the step then depends on itself?
+    /// True if a step beyond the dead time is worthwhile, although it then depends on itself.
     bool long_step() const {
         return loop_.delayed() && !history_.empty() && integrator_.next_length() > kMinLongStep * L_ &&
                integrator_.t() >= no_long_steps_before_ && !loop_.law().pure_derivative();
@@ -137,8 +136,8 @@ private:
         return passages ? pass_echo(*passages) : true;
     }
 
-    /// Repeats a step longer than the dead time until the input that it supposed is the one that it gives; cuts it to
-    /// the dead time where that does not come about.
+    /// Iterates a step longer than the dead time until its assumed input equals the resulting one; if this fails, the
+    /// step is shortened to the dead time.
     bool agree_with_itself() {
         for (int pass = 0; pass < kMaxPasses; ++pass) {
             const StepPolynomial w = plant_input();
@@ -161,7 +160,7 @@ private:
         return w;
     }
 
-    /// The last step's signals as polynomials.
+    /// Reads the last step's signals as polynomials.
     bool read_signals() {
         const double from = integrator_.t_before(), h = integrator_.t() - from;
         std::array<double, 6> y{}, command{};
@@ -238,7 +237,7 @@ private:
         return passages ? pass_echo(*passages) : true;
     }
 
-    /// What the plant sees jumps, and with a pure derivative the command too.
+    /// The plant's input jumps, and with a pure derivative the command jumps too.
     bool pass_echo(int passages) {
         step_end_ = kInfinity;
         const Region before = region_;
@@ -248,7 +247,7 @@ private:
         return restart();
     }
 
-    /// What jumps now comes back.
+    /// Adds the echo of a jump at the present time.
     void add_echo(int passages) {
         if (loop_.delayed()) echoes_.add(integrator_.t() + L_, passages, slack());
     }
@@ -289,18 +288,21 @@ private:
         }
         if (t > 0 && std::abs(y_.at(1)) > kMaxResponseRatio * scale_y_) {
             response_.escaped = true;
-            response_.ended = "At t = " + text(t) +
-                              " the output has left every bound: it is more than a million times the step's size.";
+            response_.ended =
+                "At t = " + text(t) + " the output is unbounded: it is more than a million times the step's size.";
             return true;
         }
         if (!options_.horizon && t > kMaxStillRatio * (still_since_ + L_) && steps_ > kRestInterval) {
             response_.ended = "At t = " + text(t) + " y has stayed at " + text(y_.at(1)) +
-                              " for 99 % of the time, and the control law would still move it.";
+                              " for 99 % of the time, although the control law would still move it.";
             return true;
         }
         if (steps_ >= options_.max_steps) {
-            response_.ended = "At t = " + text(t) + " the run has taken the " + std::to_string(options_.max_steps) +
-                              " steps that it may" + (options_.horizon ? "." : ", and the loop has not come to rest.");
+            response_.ended = "At t = " + text(t) +
+                              " the run has reached the limit "
+                              "of " +
+                              std::to_string(options_.max_steps) + " steps" +
+                              (options_.horizon ? "." : ", and the loop is not at rest.");
             return true;
         }
         return false;
@@ -315,7 +317,7 @@ private:
                                       std::abs(recorder_.error_integral()) + std::abs(*remaining));
     }
 
-    /// Once the loop stays within its limits: what the integral has yet to change until rest.
+    /// Once the loop stays within its limits: the remaining change of the integral until rest.
     std::optional<double> remaining_error_integral() const {
         if (!rest_ || !rest_->within || !loop_.law().integrates() || region_ != Region::inside) return std::nullopt;
         return loop_.law().error_integral_to_rest(loop_.law_states(integrator_.x()),
@@ -324,8 +326,8 @@ private:
 
     bool crowded() {
         response_.ended = "At t = " + text(integrator_.t()) +
-                          " the command crosses the input's limit again and again without any time between: with this "
-                          "derivative action the loop has no solution there. Give the derivative a filter.";
+                          " the command crosses the input's limit infinitely often: with this derivative action the "
+                          "loop has no solution there. Give the derivative a filter.";
         return false;
     }
 
@@ -333,7 +335,7 @@ private:
         const double t = integrator_.t();
         if (outcome == OdeStep::stalled) {
             response_.ended =
-                "At t = " + text(t) + " the steps needed are too short to go on: the states change too fast.";
+                "At t = " + text(t) + " the required steps are too short to continue: the states change too fast.";
             return false;
         }
         response_.escaped = true;

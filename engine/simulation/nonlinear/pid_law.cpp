@@ -103,7 +103,7 @@ double PidLaw::rate_by_seen(int i, int j) const {
 }
 
 double PidLaw::error_integral_to_rest(std::span<const double> s, double integral_final) const {
-    // What the integral has yet to see of r - y_f, less the integral of y - y_f, which the filter's equation gives.
+    // The remaining integral of r - y_f, minus the integral of y - y_f, which follows from the filter's equation.
     double rest = (integral_final - s[0]) / gains_.Ki;
     if (filters_setpoint()) rest += gains_.setpoint_lag * (r_ - seen(s));
     if (gains_.filter.type == FilterType::measurement_first_order) rest -= gains_.filter.Tf * (r_ - s[1]);

@@ -9,21 +9,21 @@
 namespace tunewright {
 
 /// States s: the integral part (in units of u), then the filter's (none, x_f; y_f; y_f and Tf y_f'), then the filtered
-/// set point where it is filtered. The command is
-/// linear in y, y' and s; without `delta_r` so are the rates. y' enters only a derivative without any filter.
+/// set point where it is filtered. The command is linear in y, y' and s; without `delta_r` the rates are too. y'
+/// appears only in a derivative without a filter.
 class PidLaw {
 public:
     static constexpr int kMaxStates = 4;
 
-    /// `delta_r`: the error that the integral sees is the nonlinear PID's. `tracking_rate`: 1/Tt of the anti-windup.
+    /// `delta_r`: for the nonlinear PID, the scale of its integral's input. `tracking_rate`: 1/Tt of the anti-windup.
     PidLaw(const ParallelPid& gains, double r, std::optional<double> delta_r, double tracking_rate);
 
     int order() const { return order_; }
     bool integrates() const { return gains_.Ki != 0; }
-    /// The command depends on y' itself.
+    /// True: the command depends on y' itself.
     bool pure_derivative() const { return gains_.Kd != 0 && gains_.filter.type == FilterType::none; }
 
-    /// At rest with the output y and nothing integrated yet.
+    /// Sets the states to rest with the output y and an integral of 0.
     void rest(double y, std::span<double> s) const;
     double command(double y, double y_slope, std::span<const double> s) const;
     /// `excess`: u - command.
@@ -47,7 +47,7 @@ public:
 private:
     double rate_by_seen(int i, int j) const;
     bool filters_setpoint() const { return gains_.setpoint_lag > 0; }
-    /// What of the set point the law sees.
+    /// The set point as the law uses it.
     double seen(std::span<const double> s) const { return filters_setpoint() ? s[std::size_t(order_ - 1)] : r_; }
 
     ParallelPid gains_;

@@ -59,7 +59,7 @@ bool PlantRun::read_step(OdeStep outcome) {
     if (outcome != OdeStep::made) {
         const std::string at = "At t = " + text(t()) + " with u = " + text(u_) + " from its nominal value ";
         if (outcome == OdeStep::stalled) {
-            why_ = at + "the steps needed are too short to go on.";
+            why_ = at + "the required steps are too short to continue.";
             return false;
         }
         why_ = at + "the states leave the model's domain. " +
@@ -87,7 +87,7 @@ double PlantRun::unrest() const {
 std::string fault_ahead(const NonlinearSystem& system, std::span<const double> x, std::span<const double> dx, double u,
                         double t) {
     constexpr double kFirstLength = std::numeric_limits<double>::epsilon(), kMaxLength = 1e3, kLengthGrowth = 4;
-    constexpr double kMinTimeForRounding = 1e-9;  // the t that rounding is measured by near t = 0
+    constexpr double kMinTimeForRounding = 1e-9;  // least t for the rounding near t = 0
     std::vector<double> ahead(x.size());
     double length = 0;
     while (length < kMaxLength) {

@@ -1,5 +1,5 @@
-// A nonlinear plant from its operating point under an input that is constant between switches (open-loop experiments),
-// and the operation of its equations that fails where it leaves its domain.
+// A nonlinear plant from its operating point, with an input that is constant between switches (open-loop experiments),
+// and the operation of its equations that fails if it leaves its domain.
 #pragma once
 
 #include <deque>
@@ -21,13 +21,13 @@ public:
     PlantRun(const PlantRun&) = delete;  // its equations refer to it
     PlantRun& operator=(const PlantRun&) = delete;
 
-    /// u from now on, or from t in the last step: with a dead time only, which must not have brought it to the plant
-    /// yet.
+    /// Sets u from now on, or from t in the last step. The latter is possible only with a dead time, before the change
+    /// has reached the plant.
     void give(double u) { give_at(t(), u); }
     void give_at(double t, double u);
-    /// One step, not beyond `t_stop` nor the next arrival of a switch. Returns false on failure; see why().
+    /// Takes one step, at most to `t_stop` and to the next arrival of a switch. Returns false on failure; see why().
     bool step(double t_stop);
-    /// Goes back within the last step.
+    /// Returns to a time within the last step.
     bool shorten(double t);
 
     double t() const { return integrator_.t(); }
@@ -35,7 +35,7 @@ public:
     double y() const { return y_.at(1); }
     const StepPolynomial& last() const { return y_; }  ///< y over the last step
     bool nothing_arrived() const { return !arrived_; }
-    /// The largest rate of change of a state, relative to how far the states have moved: 1/time.
+    /// The largest rate of change of a state, relative to the states' movement so far: 1/time.
     double unrest() const;
     const std::string& why() const { return why_; }
 
@@ -57,8 +57,8 @@ private:
     std::string why_;
 };
 
-/// The operation that fails first when x continues at the rates dx from time t, as a sentence for the user
-/// (NonlinearSystem::domain_fault). x and u are absolute. Cost: some tens of looks along that line.
+/// The operation that fails first if x continues with the rates dx from time t, as a sentence for the user
+/// (NonlinearSystem::domain_fault). x and u are absolute. Cost: some tens of evaluations along that line.
 std::string fault_ahead(const NonlinearSystem& system, std::span<const double> x, std::span<const double> dx, double u,
                         double t);
 

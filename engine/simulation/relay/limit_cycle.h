@@ -1,4 +1,4 @@
-// The figures of a relay test's steady oscillation, simulated or found in a record.
+// The figures of a relay test's steady oscillation, from a simulation or a record.
 #pragma once
 
 #include <optional>
@@ -19,11 +19,11 @@ struct LimitCycle {
     double Pu = 0;  ///< period
     double Au = 0;  ///< y per u
     double phi_u = 0;
-    int periods = 0;  ///< whole steady periods used; of a simulated cycle: those in its record
+    int periods = 0;  ///< whole steady periods used; for a simulated cycle those in its record
     std::optional<ShiftedPoint> shift;
     std::optional<double> fit_rms;  ///< root of Eq. 15's mean square: model against record over the steady periods, y
     std::optional<UltimatePoint> describing_function;  ///< 4 d/(pi a) with the relay's and y's amplitudes
-    std::optional<double> t_plus, t_minus;             ///< how long u stays at its upper and at its lower level
+    std::optional<double> t_plus, t_minus;             ///< times for which u is at its upper and at its lower level
     std::optional<double> y_max, y_min;                ///< largest and smallest y of the steady oscillation
 };
 

@@ -12,14 +12,14 @@ namespace tunewright {
 namespace {
 
 constexpr double kRowsPerPeriod = 200;
-constexpr double kRowTolerance = 1e-9;  // of the rows' spacing: nearer instants are one row
-constexpr double kWholeRatioTolerance =
-    1e-6;  // relative: a ratio of times given as decimals that is a whole number but for rounding
-constexpr int kMaxEnlargements = 20;       // of the levels, until y swings far enough
-constexpr double kMinRaise = 1.1;          // of the levels each time: the swing falls short by rounding at last
-constexpr double kBlindRaise = 2;          // where the relay does not oscillate with these levels
-constexpr double kHysteresisPerNoise = 3;  // hysteresis per noise_std
-constexpr double kSwingPerHysteresis = 3;  // amplitude of y per hysteresis
+constexpr double kRowTolerance = 1e-9;         // of the rows' spacing: closer times are one row
+constexpr double kWholeRatioTolerance = 1e-6;  // relative: a ratio of decimal times that is whole except for rounding
+constexpr int kMaxEnlargements = 20;           // of the levels, until the swing of y is large enough
+constexpr double kMinRaise = 1.1;          // factor of the levels each time, because at the end the swing is too small
+                                           // only by rounding
+constexpr double kBlindRaise = 2;          // factor if the relay does not oscillate with these levels
+constexpr double kHysteresisPerNoise = 3;  // ratio of hysteresis to noise_std
+constexpr double kSwingPerHysteresis = 3;  // ratio of y's amplitude to the hysteresis
 constexpr int kQuietCycles = 3, kNoisyCycles = 10;
 
 Error refuse(const char* field, const std::string& message) {
@@ -55,7 +55,7 @@ LimitCycle describe(const LinearPlant& plant, const RelaySettings& settings, con
     return out;
 }
 
-// The spacing of rows where none is given: as fine as is useful, coarser where the record would not hold it.
+// The default spacing of rows: as fine as is useful, or wider if the record would be too long.
 double interval(const RelaySettings& settings, const SteadyRelayCycle& steady) {
     if (settings.record_interval) return *settings.record_interval;
     const double max = 0.9 * static_cast<double>(kMaxRelayRows) - 2.0 * settings.cycles;
@@ -69,14 +69,13 @@ std::optional<Error> refuse_rows(const RelaySettings& settings, const SteadyRela
     const double fitting = settings.cycles * steady.Pu() / (static_cast<double>(kMaxRelayRows) - 2.0 * settings.cycles);
     return refuse("record_interval", "record_interval is " + text(spacing) + "; " + std::to_string(settings.cycles) +
                                          " cycles of about " + text(steady.Pu()) + " would make " + text(rows) +
-                                         " rows, and at most 100000 are recorded. Ask for fewer cycles, or rows at "
-                                         "least " +
+                                         " rows, but at most 100000 are recorded. Use fewer cycles, or rows at least " +
                                          text(1.01 * fitting) + " apart.");
 }
 
 Error full_record(const RelaySettings& settings, int cycles) {
     return refuse("cycles", "cycles is " + std::to_string(settings.cycles) + "; the record was full after " +
-                                std::to_string(cycles) + ". Ask for fewer cycles or a longer record_interval.");
+                                std::to_string(cycles) + ". Use fewer cycles or a longer record_interval.");
 }
 
 void add_row(RelayRecord& record, double t, double u, double y) {
@@ -95,7 +94,7 @@ std::optional<Error> record_events(const LinearPlant& plant, const RelaySettings
     std::int64_t row = 0;
     while (const auto piece = run.next()) {
         if ((run.steps() & 1023) == 0 && control.stop.stop_requested()) return stopped();
-        // A row next to a switch, nearer than rounding of t, is the switch's own.
+        // A row closer to a switch than the rounding of t is the switch's own row.
         const double last = piece->switched ? piece->t_end - kRowTolerance * spacing : piece->t_end;
         for (double t = static_cast<double>(row) * spacing; t < last; t = static_cast<double>(++row) * spacing) {
             if (!record.t.empty() && t <= record.t.back() + kRowTolerance * spacing) continue;
@@ -111,7 +110,7 @@ std::optional<Error> record_events(const LinearPlant& plant, const RelaySettings
     }
     return Error{ErrorKind::unsupported, "plant",
                  "The run from rest ended after " + std::to_string(switches / 2) +
-                     " cycles within the steps allowed. Ask for fewer cycles."};
+                     " cycles, because it reached the allowed number of steps. Use fewer cycles."};
 }
 
 std::optional<Error> record_samples(const LinearPlant& plant, const RelaySettings& settings,
@@ -139,23 +138,23 @@ void add_warnings(const LinearPlant& plant, const RelaySettings& settings, const
                   RelayExperiment& out) {
     if (out.reversed)
         out.warnings.push_back({"relay-reversed",
-                                "The plant answers a positive u with a negative y, so the relay acts on -y (to u_minus "
-                                "when y < -hysteresis); the other way round it would latch."});
+                                "A positive u gives a negative y, so the relay acts on -y (to u_minus when y < "
+                                "-hysteresis); otherwise it would latch."});
     if (const double held = held_start(plant, {settings.u_plus, settings.u_minus, settings.hysteresis});
         held > 0 && settings.relay_sample_time == 0)
         out.warnings.push_back({"start-held",
                                 "Without dead time and hysteresis a relay at rest cannot start: the record begins with "
-                                "u_plus held for " +
+                                "u_plus, held for " +
                                     text(held) + "."});
     if (out.limit_cycle.periods == 0)
         out.warnings.push_back({"not-settled", "The oscillation takes " + std::to_string(steady.settling_cycles) +
-                                                   " cycles to become steady and the record has " +
+                                                   " cycles to become steady, but the record has " +
                                                    std::to_string(settings.cycles) + ". Ask for " +
                                                    std::to_string(out.plan.cycles) + " cycles."});
     if (plant.integrators() > 0 && settings.u_plus != -settings.u_minus)
         out.warnings.push_back({"integrating-plant",
-                                "On an integrating plant the mean of u over a steady period is 0 whatever the bias: "
-                                "the ratio of the means of y and u says nothing about the plant."});
+                                "On an integrating plant the mean of u over a steady period is 0 for any bias, so the "
+                                "ratio of the means of y and u does not depend on the plant."});
     const double mean = out.record.t.back() / settings.cycles;
     if (settings.noise_std > 0 && mean < steady.Pu() / 2)
         out.warnings.push_back({"noise-switches-relay", "Noise switches the relay: its cycles take " + text(mean) +
@@ -193,16 +192,18 @@ std::optional<SteadyRelayCycle> enlarged(const LinearPlant& plant, const RelayLe
 std::string sentence(const RelayPlan& plan, const RelaySettings& settings, int settling, double factor) {
     std::string out;
     if (settings.noise_std > 0) {
-        out = "hysteresis is 3 noise_std: a single noisy sample crosses it by chance once in 741. ";
-        out += factor > 1 ? "The levels are " + text(factor) + " times those given, so that y swings "
+        out = "hysteresis is 3 noise_std: on average one noisy sample in 741 crosses it by chance. ";
+        out += factor > 1 ? "The levels are " + text(factor) + " times the given ones, so that y swings "
                           : std::string("With the levels given y swings ");
-        out += text(plan.amplitude / plan.hysteresis) + " hystereses to either side. ";
+        out += text(plan.amplitude / plan.hysteresis) + " times the hysteresis to either side. ";
     } else {
         out = "Levels and hysteresis as given; enter the noise to get a hysteresis. ";
     }
     out += std::to_string(settling) + (settling == 1 ? " cycle" : " cycles") + " to settle and " +
            std::to_string(plan.cycles - settling) +
-           (settings.noise_std > 0 ? " to average: the error falls with the root of their number." : " to measure.");
+           (settings.noise_std > 0 ? " to average: the error falls with the square root of their "
+                                     "number."
+                                   : " to measure.");
     return out;
 }
 
@@ -213,7 +214,7 @@ double round_down(double x) {
     return power * (first >= 5 ? 5 : first >= 2 ? 2 : 1);
 }
 
-/// `steady` is the cycle of the settings as given.
+/// `steady`: the cycle with the given settings.
 RelayPlan plan_relay(const LinearPlant& plant, const RelaySettings& settings, const SteadyRelayCycle& steady,
                      const RunControl& control) {
     const bool noisy = settings.noise_std > 0;
@@ -249,14 +250,14 @@ std::optional<Error> refuse_settings(const RelaySettings& settings) {
     const auto& s = settings;
     if (!(s.u_minus < s.u_plus))
         return refuse("u_minus", "u_minus is " + text(s.u_minus) + "; it must be less than u_plus, " + text(s.u_plus) +
-                                     ". Exchange the two.");
+                                     ". Swap the two values.");
     if (!(s.hysteresis >= 0)) return refuse("hysteresis", "hysteresis must be >= 0.");
     if (!(s.noise_std >= 0)) return refuse("noise_std", "noise_std must be >= 0.");
     if (!(s.relay_sample_time >= 0)) return refuse("relay_sample_time", "relay_sample_time must be >= 0.");
     if (s.noise_std > 0 && s.relay_sample_time == 0)
         return refuse("relay_sample_time",
-                      "relay_sample_time is 0 and noise_std > 0; noise belongs to samples. Give the time between looks "
-                      "of the relay, or set noise_std to 0.");
+                      "relay_sample_time is 0 and noise_std > 0; noise belongs to samples. Give the relay's sample "
+                      "time, or set noise_std to 0.");
     if (s.cycles < 1 || s.cycles > kMaxRelayCycles)
         return refuse("cycles", "cycles is " + std::to_string(s.cycles) + "; it must be 1 to 1000.");
     if (s.seed < 0) return refuse("seed", "seed must be >= 0.");
@@ -267,7 +268,7 @@ std::optional<Error> refuse_settings(const RelaySettings& settings) {
     if (ratio < 0.5 || std::abs(ratio - std::round(ratio)) > kWholeRatioTolerance * ratio)
         return refuse("record_interval", "record_interval is " + text(*s.record_interval) +
                                              "; it must be a whole multiple of relay_sample_time, " +
-                                             text(s.relay_sample_time) + ". Leave it out to record every sample.");
+                                             text(s.relay_sample_time) + ". Omit it to record every sample.");
     return std::nullopt;
 }
 
@@ -279,7 +280,8 @@ Expected<RelayExperiment> simulate_relay(const Plant& given, const RelaySettings
     const bool sampled = settings.relay_sample_time > 0;
     if (sampled && plant->dead_time() > kMaxDeadSamples * settings.relay_sample_time)
         return refuse("relay_sample_time", "relay_sample_time is " + text(settings.relay_sample_time) +
-                                               "; the dead time may hold at most 1000000 samples. Make it longer.");
+                                               "; the dead time can have at most 1000000 samples. Use a longer "
+                                               "relay_sample_time.");
     const auto steady = sampled ? steady_sampled_cycle(*plant, levels, settings.relay_sample_time, control)
                                 : steady_relay_cycle(*plant, levels, control);
     if (!steady) return steady.error();

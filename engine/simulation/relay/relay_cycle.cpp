@@ -12,28 +12,30 @@ namespace {
 using Index = std::size_t;
 
 constexpr int kMaxCycles = 400;
-constexpr double kMaxNearDistance = 0.02;  // of the period: a run that has come so close is on its way to the cycle
+constexpr double kMaxNearDistance = 0.02;  // of the period: a run this close is converging to the cycle
 constexpr double kSteadyTolerance = 1e-3;  // of the period
-constexpr double kMinPart = 0.2;           // of a duration that a Newton step leaves; longer steps are halved
-constexpr double kMinStep = 1e-6;          // of a Newton step: shorter ones lead nowhere
+constexpr double kMinPart = 0.2;           // of a duration that must remain after a Newton step; longer steps are
+                                           // halved
+constexpr double kMinStep = 1e-6;          // of a Newton step: shorter ones do not help
 constexpr int kMaxNewton = 40;
-constexpr double kMinRelativeChange = 1e-15;   // relative change of the period: nothing is left to improve
-constexpr double kStalledTolerance = 1e-11;    // from here on a change that is not halved is rounding
-constexpr double kConvergedTolerance = 1e-10;  // what a cycle must reach
-constexpr double kSwitchTolerance = 1e-8;      // of the period: the run switches where the solution says
-constexpr double kOnCycleTolerance =
-    1e-6;                             // of the period: nearer than this it need not come nearer from cycle to cycle
-constexpr double kMaxDistance = 0.2;  // of the period: the last run has gone elsewhere
-constexpr double kInstantTolerance = 1e-12;  // of the period
-constexpr double kMaxTurns = 10'000;  // periods in the dead time; a run holds as many before its relay is too fast
+constexpr double kMinRelativeChange = 1e-15;   // relative change of the period: no further improvement is possible
+constexpr double kStalledTolerance = 1e-11;    // below it, a change that is not halved is rounding
+constexpr double kConvergedTolerance = 1e-10;  // required accuracy of a cycle
+constexpr double kSwitchTolerance = 1e-8;      // of the period: the run must switch at the computed times
+constexpr double kOnCycleTolerance = 1e-6;     // of the period: closer than this, the distance need not decrease from
+                                               // cycle to cycle
+constexpr double kMaxDistance = 0.2;           // of the period: the last run has diverged from the cycle
+constexpr double kInstantTolerance = 1e-12;    // of the period
+constexpr double kMaxTurns = 10'000;  // periods in the dead time; also the most switches in a dead time before the
+                                      // relay is too fast
 
 struct Durations {
     double t_plus = 0, t_minus = 0;
 };
 
-// What Newton's method needs to know of the switches.
+// The data on the switches for Newton's method.
 struct Switching {
-    bool minus_at_jump = false, plus_at_jump = false;  ///< y jumps over the threshold instead of crossing it
+    bool minus_at_jump = false, plus_at_jump = false;  ///< true: y jumps over the threshold instead of crossing it
 };
 
 // One complete cycle of a run, from u_plus to u_plus.
@@ -79,7 +81,7 @@ public:
         Durations durations;
     };
 
-    /// A Newton step; false where the Jacobian is singular.
+    /// A Newton step; false if the Jacobian is singular.
     bool improve(Point& point, double& relative_change) const {
         const int m = n_ + 2;
         std::vector<double> J(Index(m * m), 0.0), residual(Index(m), 0.0);
@@ -126,7 +128,7 @@ private:
         return out;
     }
 
-    // Where the relay switches, on the clock of the delayed input (0: u_plus arrives; t_plus: u_minus arrives), in
+    // The time of the relay's switch on the clock of the delayed input (0: u_plus arrives; t_plus: u_minus arrives), in
     // (0, P], with its derivatives.
     struct Phase {
         double s = 0, by_plus = 0, by_minus = 0;
@@ -183,7 +185,7 @@ std::optional<ShootingProblem::Point> fixed_point(const ShootingProblem& problem
     return point;
 }
 
-// Runs one period from the fixed point: it must switch where it says. Adds the extremes of y.
+// Runs one period from the fixed point, which must switch at the computed times. Adds the extremes of y.
 bool verify(RelayMotion& motion, double L, const RelayLevels& levels, const RunControl& control,
             SteadyRelayCycle& cycle) {
     RelayRun run(motion, L, levels, state_at_switch(motion, L, levels, cycle));
@@ -211,7 +213,7 @@ bool verify(RelayMotion& motion, double L, const RelayLevels& levels, const RunC
     return switches == 2;
 }
 
-// Lets a run from rest settle, and solves for the cycle as soon as the run is near it.
+// Lets a run from rest settle, and solves for the cycle as soon as the run is close to it.
 class Settling {
 public:
     Settling(const LinearPlant& plant, const RelayLevels& levels, double direction, const RunControl& control)
@@ -299,7 +301,8 @@ RelayState state_at_switch(RelayMotion& motion, double dead_time, const RelayLev
     RelayState state;
     state.x = cycle.x;
     state.u = levels.u_plus;
-    // The delayed input is L behind: it stands s after the arrival of u_plus. What arrives just now is still pending.
+    // The delayed input is later by L: it is s after the arrival of u_plus. A change that arrives at this very time is
+    // still pending.
     const double now = kInstantTolerance * P;
     double s = std::ceil(L / P) * P - L;
     if (s <= now) s += P;

@@ -13,7 +13,7 @@ using Index = std::size_t;
 
 constexpr double kStepsPerRadian = 10;
 constexpr double kDecay = 25;                   // e^-25 = 1e-11
-constexpr double kMaxRelativeRealPart = 1e-10;  // of |p|: the real part of a pole that neither decays nor grows
+constexpr double kMaxRelativeRealPart = 1e-10;  // of |p|: real part of a pole that neither decays nor grows
 constexpr int kLevels = 60;
 constexpr double kExtremumTolerance = 1e-15;  // of the step
 

@@ -1,4 +1,4 @@
-// A plant's rational part under a constant input: exact states, and its output between them as a polynomial.
+// A plant's rational part with a constant input: exact states, and its output between them as a polynomial.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ public:
     double slope(double tau) const;  ///< d/dtau
     double length() const { return h_; }
 
-    /// Where the slope changes sign inside the step, if it does; one place only (steps are short).
+    /// The time at which the slope changes sign inside the step, if it does; at most one, because steps are short.
     std::optional<double> extremum() const;
 
 private:
@@ -39,11 +39,12 @@ public:
     const HeldStep& level(int k);
 
     double shortest() const { return shortest_; }
-    /// The step that the modes still alive `elapsed` after the last change of v allow; `quiet` says that none is.
+    /// The step length for the modes that have not decayed `elapsed` after the last change of v; `quiet`: all have
+    /// decayed.
     double spacing(double elapsed, bool& quiet) const;
-    /// The time from which every decaying mode is below 1e-10 of itself; 0 if there is none.
+    /// The time after which every decaying mode is below 1e-10 of its initial value; 0 if there is none.
     double decay_time() const { return decay_time_; }
-    /// Every mode decays: y stays bounded whatever the relay does.
+    /// True if every mode decays: y stays bounded for any switching of the relay.
     bool bounded() const;
     /// The largest real part of a pole, if positive; else 0.
     double growth_rate() const { return growth_rate_; }
@@ -51,7 +52,7 @@ public:
 private:
     struct Mode {
         double magnitude = 0;
-        double ends = 0;  ///< when it has decayed; infinite if it does not
+        double ends = 0;  ///< time at which it has decayed; infinite if it does not
     };
 
     int integrators_;

@@ -26,7 +26,7 @@ Error latched_at_rest(const EndedRun& run) {
     const char* side = (run.direction > 0) == high ? "above" : "below";
     return refuse(high ? "relay/u_plus" : "relay/u_minus",
                   rest + ": it waits for y " + side +
-                      " the hysteresis. u_plus and u_minus must lie on both sides of 0, " + "the operating point.");
+                      " the hysteresis. u_plus and u_minus must be on both sides of 0, " + "the operating point.");
 }
 
 Error ramps_away(const EndedRun& run) {
@@ -37,8 +37,8 @@ Error ramps_away(const EndedRun& run) {
                       "never switches back.");
 }
 
-// y grows from the hysteresis for one dead time under the wrong level; then the other level must still turn it. For
-// K e^(-Ls)/(T s + 1), T < 0: e^(L/|T|) (eps + |K| u) < |K| (u_plus - u_minus), either side.
+// y grows from the hysteresis for one dead time with the wrong level; the other level must then still be able to
+// reverse it. For K e^(-Ls)/(T s + 1), T < 0: e^(L/|T|) (eps + |K| u) < |K| (u_plus - u_minus), either side.
 Error first_order_escape(const EndedRun& run) {
     const double T = 1 / run.plant.poles()[0].real();
     const double K = std::abs(run.plant.low_frequency_gain());
@@ -46,10 +46,10 @@ Error first_order_escape(const EndedRun& run) {
     const double worse = K * std::max(run.levels.u_plus, -run.levels.u_minus) + run.levels.hysteresis;
     const double limit = std::log(std::max(swing / worse, 1.0));
     return {ErrorKind::unsupported, "plant/L",
-            "y runs away: L/|T| is " + text(run.plant.dead_time() / T) +
-                ", and this relay can turn y back only for L/|T| < " + text(limit) +
+            "y is unbounded: L/|T| is " + text(run.plant.dead_time() / T) +
+                ", and this relay can reverse y only for L/|T| < " + text(limit) +
                 " (ln 2 = 0.693 for a symmetric relay without hysteresis). A smaller hysteresis" +
-                " and levels of equal size widen the range up to ln 2; beyond it no relay test works."};
+                " and levels of equal size extend the range up to ln 2; beyond it no relay test is possible."};
 }
 
 }  // namespace
@@ -63,29 +63,28 @@ Error no_oscillation(const EndedRun& run) {
                 plant.unstable_poles() == 1)
                 return first_order_escape(run);
             return {ErrorKind::unsupported, "plant",
-                    "y runs away under this relay: it cannot hold the plant. A smaller hysteresis or larger levels may "
-                    "help; a plant that is unstable and slow to answer cannot be tested with a relay at all."};
+                    "y is unbounded: this relay cannot stabilise the plant. A smaller hysteresis or larger levels may "
+                    "help; an unstable plant with a slow response cannot be tested with a relay at all."};
         case RelayEnd::too_fast:
             return refuse("relay/hysteresis", "hysteresis is " + text(run.levels.hysteresis) +
-                                                  "; the relay then switches without any time between. Make it larger "
-                                                  "than the jump of y at a switch, or set relay_sample_time > 0.");
+                                                  "; the relay then switches infinitely fast. Make it larger than the "
+                                                  "jump of y at a switch, or set relay_sample_time > 0.");
         case RelayEnd::exhausted:
         case RelayEnd::running: break;
     }
     return {ErrorKind::unsupported, "plant",
-            "The plant's modes are too far apart for an event-accurate run: the oscillation was not reached within the "
-            "steps allowed. Leave the fastest modes out, or set relay_sample_time > 0."};
+            "The plant's modes have too different time scales for an event-accurate run: the oscillation was not "
+            "reached within the allowed number of steps. Omit the fastest modes, or set relay_sample_time > 0."};
 }
 
 Error no_steady_cycle(const LinearPlant& plant, int cycles) {
-    std::string cause = "Its switches never repeat after two: several oscillations of the plant compete.";
+    std::string cause = "Its switches do not repeat after two, because several oscillations of the plant compete.";
     if (plant.integrators() >= 2)
-        cause = "A double integrator without damping keeps growing under a relay.";
+        cause = "The oscillation of a double integrator without damping grows with a relay.";
     else if (!RelayMotion(plant, 1).bounded())
-        cause = "Its oscillation grows, or never repeats with two switches a period.";
+        cause = "Its oscillation grows, or does not repeat with two switches per period.";
     return {ErrorKind::unsupported, "plant",
-            "After " + std::to_string(cycles) +
-                " cycles the relay and the plant have not found a steady oscillation. " + cause +
+            "After " + std::to_string(cycles) + " cycles the oscillation is still not steady. " + cause +
                 " Try another hysteresis or other levels."};
 }
 

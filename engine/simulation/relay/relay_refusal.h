@@ -1,4 +1,4 @@
-// Why a relay does not oscillate with a plant, in sentences that name the field and the cure.
+// The reasons why a relay does not oscillate with a plant, as messages with the field and the cure.
 #pragma once
 
 #include <optional>
@@ -8,7 +8,7 @@
 
 namespace tunewright {
 
-/// A run that has ended without a further switch. y as the relay sees it.
+/// A run that has ended without a further switch. y is the relay's input.
 struct EndedRun {
     const LinearPlant& plant;
     RelayLevels levels;
@@ -17,17 +17,17 @@ struct EndedRun {
     double u = 0, y = 0;
 };
 
-/// invalid_argument at the setting that is to blame (`relay/hysteresis`, `relay/u_plus`, `relay/u_minus`), with the
-/// value that would do where it is known; unsupported at `plant` or `plant/L` where no setting helps, and where the
-/// work allowed was not enough.
+/// invalid_argument at the setting that causes it (`relay/hysteresis`, `relay/u_plus`, `relay/u_minus`), with a value
+/// that works if it is known; unsupported at `plant` or `plant/L` if no setting helps, or if the allowed number of
+/// steps was reached.
 Error no_oscillation(const EndedRun& run);
 
-/// After `cycles` cycles the switches still do not repeat: unsupported at `plant`, with the likely cause.
+/// For a run whose switches still do not repeat after `cycles` cycles: unsupported at `plant`, with the likely cause.
 Error no_steady_cycle(const LinearPlant& plant, int cycles);
 
 /// Without dead time and hysteresis, and with a pole excess of at most 2 whose leading coefficient has the feedback's
-/// sign, the switches accumulate: there is no oscillation to wait for. Then invalid_argument at `relay/hysteresis`;
-/// else empty. `direction` is that of the relay, 1 or -1 (relay_direction).
+/// sign, the switches accumulate and there is no oscillation. Then invalid_argument at `relay/hysteresis`; else empty.
+/// `direction` is that of the relay, 1 or -1 (relay_direction).
 std::optional<Error> switches_without_end(const LinearPlant& plant, const RelayLevels& levels, double direction);
 
 }  // namespace tunewright

@@ -11,15 +11,15 @@ namespace {
 constexpr std::int64_t kMaxSteps = 4'000'000;
 constexpr std::size_t kMaxPending = 20'000;
 constexpr int kMaxCrowdedSwitches = 50;
-constexpr double kSimultaneousTolerance = 1e-14;  // of t: no time between two switches
+constexpr double kSimultaneousTolerance = 1e-14;  // of t: two switches within it are simultaneous
 constexpr int kPolishSteps = 6;                   // Newton steps; each squares the error of the quintic
 constexpr double kPolishTolerance = 1e-15;        // of the step: rounding
-constexpr double kLevelTolerance = 1e-9;          // of a level: a length that is a power of 2 but for rounding
+constexpr double kLevelTolerance = 1e-9;          // of a level: a length within it of a power of 2 is that power
 constexpr int kMaxLevel = 59;
-constexpr double kMaxLogGrowth = 45;  // e^45 beyond the last swing: never to come back
+constexpr double kMaxLogGrowth = 45;  // e^45 beyond the last swing: y does not return
 constexpr int kFirstSwitches = 4;
-constexpr double kMaxSwingRatio = 1e9;    // times the swing before these switches
-constexpr double kMaxWaitInSteps = 1e12;  // times the shortest step, for ramps
+constexpr double kMaxSwingRatio = 1e9;    // multiple of the swing before these switches
+constexpr double kMaxWaitInSteps = 1e12;  // multiple of the shortest step, for ramps
 
 }  // namespace
 
@@ -86,7 +86,7 @@ bool RelayRun::settle_or_escape(bool quiet, double elapsed, double slope) {
     return end_ != RelayEnd::running;
 }
 
-// The first place in the step where the excess becomes positive; `first` is the excess at its start.
+// The first time in the step at which the excess becomes positive; `first` is the excess at its start.
 std::optional<double> RelayRun::crossing(const Quintic& y, double first) const {
     const double h = y.length();
     const double outward = u_ == levels_.u_plus ? 1 : -1;
@@ -98,7 +98,7 @@ std::optional<double> RelayRun::crossing(const Quintic& y, double first) const {
     }
     double low = 0;
     if (first >= 0 && outward * y.slope(0) < 0) {
-        // It starts on the threshold, goes inward and comes back.
+        // It starts at the threshold, moves inward and returns.
         if (const auto bottom = y.extremum()) low = *bottom;
     } else if (first >= 0) {
         return 0;
@@ -135,7 +135,7 @@ std::optional<RelayPiece> RelayRun::next() {
     const OutputMotion now = motion_->output(x_, v_);
     RelayPiece piece{t_, 0, t_, u_, false, Quintic(0, now, now)};
     double first = excess(now.y);
-    // Without a direct term y is continuous, so every crossing was found inside a step: what is beyond is rounding.
+    // Without a direct term y is continuous, so every crossing was found inside a step: a remaining excess is rounding.
     if (motion_->direct_term() == 0) first = std::min(first, 0.0);
     if (first > 0 && t_ >= held_) return switch_over(piece);
 

@@ -1,5 +1,5 @@
 // A relay with hysteresis and a plant with dead time, event by event: the input of the plant's rational part is
-// piecewise constant, so each piece is exact, and the switches are found by root finding on it.
+// piecewise constant, so each piece is exact, and the times of the switches are its roots.
 #pragma once
 
 #include <cstdint>
@@ -11,56 +11,56 @@
 
 namespace tunewright {
 
-/// u_minus < u_plus. The relay sees y as RelayMotion gives it: to u_minus when y > hysteresis, to u_plus when
-/// y < -hysteresis.
+/// u_minus < u_plus. The relay's input is y of RelayMotion: to u_minus when y > hysteresis, to u_plus when y <
+/// -hysteresis.
 struct RelayLevels {
     double u_plus = 1, u_minus = -1;
     double hysteresis = 0;
 };
 
-/// A switch of the relay that has not reached the plant's rational part yet.
+/// A switch of the relay that has not yet reached the plant's rational part.
 struct PendingInput {
     double t = 0;
     double v = 0;
 };
 
-/// Where a run begins, at t = 0.
+/// The initial state of a run, at t = 0.
 struct RelayState {
     std::vector<double> x;
-    double v = 0;  ///< what reaches the rational part now
-    double u = 0;  ///< what the relay gives now
+    double v = 0;  ///< present input of the rational part
+    double u = 0;  ///< present output of the relay
     std::deque<PendingInput> pending;
 };
 
-/// A stretch [t, t + h] in which u and the delayed input are constant; h = 0 where y jumps over the threshold.
+/// An interval [t, t + h] in which u and the delayed input are constant; h = 0 if y jumps over the threshold.
 struct RelayPiece {
     double t = 0, h = 0;
     double t_end = 0;
-    double u = 0;           ///< over the stretch
+    double u = 0;           ///< in this interval
     bool switched = false;  ///< the relay switches at t_end
     Quintic y;
 };
 
 enum class RelayEnd {
     running,
-    latched,    ///< y comes to rest or moves away between the thresholds: no further switch
-    escaped,    ///< y runs away
-    too_fast,   ///< switches follow each other without time between
-    exhausted,  ///< the work allowed is over
+    latched,    ///< y comes to rest, or moves away between the thresholds: no further switch
+    escaped,    ///< y is unbounded
+    too_fast,   ///< switches accumulate
+    exhausted,  ///< the allowed number of steps is reached
 };
 
-/// How long u_plus must be held at the start: 0 except for a plant without dead time under a relay without hysteresis.
-/// At rest on its threshold such a relay would switch again and again without any time between; half the plant's lags
-/// set it going.
+/// The time for which u_plus must be held at the start: 0 except for a plant without dead time and a relay without
+/// hysteresis. At rest on its threshold such a relay would switch infinitely fast; half the plant's lags are enough to
+/// start it.
 double held_start(const LinearPlant& plant, const RelayLevels& levels);
 
 class RelayRun {
 public:
-    /// At rest, u = u_plus from t = 0; the relay does not switch before `held`.
+    /// Starts at rest, with u = u_plus from t = 0; the relay does not switch before `held`.
     RelayRun(RelayMotion& motion, double dead_time, const RelayLevels& levels, double held = 0);
     RelayRun(RelayMotion& motion, double dead_time, const RelayLevels& levels, RelayState start);
 
-    /// The next stretch; empty once `end()` is not `running`.
+    /// The next interval; empty once `end()` is not `running`.
     std::optional<RelayPiece> next();
 
     RelayEnd end() const { return end_; }
@@ -73,7 +73,7 @@ public:
 
 private:
     void take_pending();
-    double excess(double y) const;  ///< > 0: beyond the threshold that switches
+    double excess(double y) const;  ///< > 0: beyond the threshold at which the relay switches
     bool settle_or_escape(bool quiet, double elapsed, double slope);
     std::optional<double> crossing(const Quintic& y, double first) const;
     double polish(double tau, double low, double high) const;

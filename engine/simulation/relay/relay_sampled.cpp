@@ -12,21 +12,22 @@ namespace {
 
 constexpr std::int64_t kMaxSamples = 4'000'000;
 constexpr std::size_t kMaxCycles = 400, kAveragedCycles = 200, kMaxPatternLength = 32, kMinPatternRepeats = 4;
-constexpr double kTimeTolerance = 1e-9;                // relative: whole samples, which rounding alone makes differ
-constexpr double kOutputTolerance = 1e-7;              // of the swing
-constexpr double kSampleTolerance = 1e-9;              // of a sample: a dead time of whole samples but for rounding
-constexpr std::size_t kMinCycles = 8, kMinGrowth = 4;  // cycles that show a pattern; that show growth
-constexpr double kMinGrowthRatio = 1.5;                // times the swing halfway: it grows
-constexpr double kMaxLogGrowth = 45;                   // e^45 without a switch: never to come back
+constexpr double kTimeTolerance = 1e-9;                // relative: tolerance of whole samples
+constexpr double kOutputTolerance = 1e-7;              // relative to the swing
+constexpr double kSampleTolerance = 1e-9;              // of a sample: a dead time within it of whole samples counts as
+                                                       // whole
+constexpr std::size_t kMinCycles = 8, kMinGrowth = 4;  // cycles needed to show a pattern, and to show growth
+constexpr double kMinGrowthRatio = 1.5;                // multiple of the swing halfway: it grows
+constexpr double kMaxLogGrowth = 45;                   // e^45 without a switch: y does not return
 constexpr double kSteadyTolerance = 1e-3;
 
 struct SampledCycle {
     double t_plus = 0, t_minus = 0;
-    double y_start = 0;  ///< y at the switch to u_plus that ends it
+    double y_start = 0;  ///< y at the switch to u_plus that ends the cycle
     double top = 0, bottom = 0;
 };
 
-// The smallest number of cycles after which everything repeats.
+// The smallest number of cycles after which all values repeat.
 std::optional<std::size_t> pattern(const std::vector<SampledCycle>& cycles) {
     for (std::size_t k = 1; k <= kMaxPatternLength; ++k) {
         const std::size_t needed = std::max<std::size_t>(kMinPatternRepeats * k, kMinCycles) + k;
@@ -87,8 +88,10 @@ public:
         }
         if (cycles_.size() >= kMinGrowth && grows()) return no_steady_cycle(plant_, static_cast<int>(cycles_.size()));
         return Error{ErrorKind::invalid_argument, "relay/relay_sample_time",
-                     "relay_sample_time is " + text(Ts_) + "; the oscillation is not steady after " +
-                         std::to_string(kMaxSamples) + " samples. Make it longer, or 0 for an event-accurate relay."};
+                     "relay_sample_time is " + text(Ts_) + " and the oscillation is not steady after " +
+                         std::to_string(kMaxSamples) +
+                         " samples. Use a longer relay_sample_time, or 0 for an "
+                         "event-accurate relay."};
     }
 
 private:
@@ -126,7 +129,8 @@ private:
         out.y_max = direction_ > 0 ? top : -bottom;
         out.y_min = direction_ > 0 ? bottom : -top;
         std::size_t settling = cycles_.size();
-        // A mean over cycles that do not repeat: as far as they stray from it, they are steady.
+        // The cycles vary around a mean that they do not repeat: a cycle counts as steady if it is as close to the mean
+        // as they are.
         const auto stray = [&](const SampledCycle& cycle) {
             return std::max(std::abs(cycle.t_plus - out.t_plus), std::abs(cycle.t_minus - out.t_minus));
         };

@@ -20,8 +20,8 @@ InputHistory::OneSidedLimits InputHistory::at_nodes(const NodePosition& place) c
 
 int echoes_that_count(double q, double tolerance, int smoothing) {
     constexpr int kMaxEchoes = 2000;
-    constexpr double kLargestShare = 0.999;  // nearer to 1 the echoes hardly fade within kMaxEchoes
-    constexpr double kFaded = 1e-3;          // of the tolerance
+    constexpr double kLargestShare = 0.999;  // for a share closer to 1 the echoes hardly fade within kMaxEchoes
+    constexpr double kFaded = 1e-3;          // of the tolerance: an echo has faded
     if (!(q > 0)) return smoothing;
     const double passages = std::log(kFaded * tolerance) / std::log(std::min(q, kLargestShare));
     return std::min(kMaxEchoes, smoothing + static_cast<int>(passages));

@@ -1,4 +1,4 @@
-// The plant's input as it comes back a dead time later: its values, and the instants at which its jumps return.
+// The plant's input after the dead time: its values, and the times at which its jumps return.
 #pragma once
 
 #include <algorithm>
@@ -12,24 +12,24 @@
 
 namespace tunewright {
 
-/// For responses that are kept as nodes; those on nonlinear plants are polynomials of degree 5, which
-/// numerics/step_polynomial.h looks up.
+/// For responses that are stored as nodes; those on nonlinear plants are polynomials of degree 5, which
+/// numerics/step_polynomial.h evaluates.
 ///
 /// w = u + d, controller output and load: 0 before t = 0, then a cubic between neighbouring nodes; after the last node
 /// its value is held.
 ///
-/// The look-up stands here because a call of it costs a response a seventh.
+/// The look-up is in the header because a function call would cost a response a seventh.
 class InputHistory {
 public:
-    /// `nodes`: of ascending t; must live as long as this. They may grow, and lose their last ones again.
+    /// `nodes`: of ascending t; must outlive this. Nodes may be added, and the last ones removed.
     InputHistory(const std::vector<ResponseNode>& nodes, double d) : nodes_(nodes), d_(d) {}
 
-    /// Where a time lies: strictly between two neighbouring nodes, or at nodes of equal times, of which the first is
-    /// the value before a jump and the last the one after it.
+    /// The position of a time: strictly between two neighbouring nodes, or at nodes of equal times, of which the first
+    /// has the value before a jump and the last the one after it.
     struct NodePosition {
         std::size_t first, last;
         bool between = false;
-        bool rest_before = false, rest_after = false;  ///< 0 takes the place of the node: nothing had begun
+        bool rest_before = false, rest_after = false;  ///< true: 0 takes the place of the node, before the first one
     };
     /// Nodes within `slack` of t count as being at t.
     NodePosition find(double t, double slack) {
@@ -41,7 +41,7 @@ public:
     struct OneSidedLimits {
         Signal before, after;
     };
-    /// From the left and from the right at t.
+    /// Limits from the left and from the right at t.
     OneSidedLimits at(double t, double slack) {
         const std::size_t i = first_from(t, slack);
         if (is_node(i, t, slack)) return at_nodes(near_node(i, t, slack));
@@ -52,7 +52,7 @@ public:
     }
 
 private:
-    /// The first node at t or later; their number, if there is none.
+    /// The first node at t or later; the number of nodes if there is none.
     std::size_t first_from(double t, double slack);
     bool is_node(std::size_t i, double t, double slack) const {
         return i == 0 || i == nodes_.size() || nodes_[i].t <= t + slack;
@@ -62,7 +62,7 @@ private:
 
     const std::vector<ResponseNode>& nodes_;
     double d_;
-    std::size_t cursor_ = 0;  // the node that was found last: times are asked for in nearly ascending order
+    std::size_t cursor_ = 0;  // index of the last result, because times are requested in nearly ascending order
 };
 
 inline std::size_t InputHistory::first_from(double t, double slack) {
@@ -72,18 +72,18 @@ inline std::size_t InputHistory::first_from(double t, double slack) {
     return cursor_ = i;
 }
 
-/// The number of passages through the loop after which a jump is no longer met with a step's end. Each passage smooths
-/// it by one derivative: after `smoothing` of them the method's order no longer sees it. Where the loop returns a share
-/// q (|q| < 1) of the jump at once, it counts until it is below a thousandth of `tolerance`.
+/// The number of passages through the loop after which steps need not end at a jump. Each passage smooths it by one
+/// derivative: after `smoothing` of them it no longer affects a method of this order. If the loop returns a share q
+/// (|q| < 1) of the jump directly, it counts until it is below a thousandth of `tolerance`.
 int echoes_that_count(double q, double tolerance, int smoothing);
 
-/// The echoes still to come, each with the number of passages since its origin.
+/// The future echoes, each with the number of passages since its origin.
 class Echoes {
 public:
-    /// After `max` passages a jump counts no more.
+    /// After `max` passages a jump no longer counts.
     explicit Echoes(int max) : max_(max) {}
 
-    /// Times nearer than `slack` are one.
+    /// Times closer than `slack` are equal.
     void add(double t, int passages, double slack) {
         if (passages > max_) return;
         const auto near = points_.lower_bound(t - slack);
@@ -93,12 +93,12 @@ public:
             points_.emplace(t, passages);
     }
 
-    /// The time of the next one; empty: there is none.
+    /// The time of the next echo; empty: there is none.
     std::optional<double> next() const {
         return points_.empty() ? std::nullopt : std::optional(points_.begin()->first);
     }
 
-    /// Takes the next one away if it is not after t; its passages so far.
+    /// Removes the next echo if it is not after t, and returns its passages so far.
     std::optional<int> pass(double t) {
         if (points_.empty() || points_.begin()->first > t) return std::nullopt;
         const int passages = points_.begin()->second;

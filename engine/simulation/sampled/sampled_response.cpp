@@ -89,7 +89,7 @@ private:
     double largest_y_ = 0, largest_u_ = 0;
     LoopSizes sizes_;
     double last_v_ = 0;
-    double fastest_swing_ = 0;  // rad/time, of the plant's poles
+    double fastest_swing_ = 0;  // rad/time, the fastest of the plant's poles
     StoppingRule rule_;
     StepResponse response_;
 };
@@ -144,7 +144,8 @@ bool SampledRun::swings(Piece& piece, int level, std::vector<double> x, const Re
     return std::abs(cubic - y) > options_.tolerance * std::max(largest_y_, std::abs(y));
 }
 
-// From the last node over 2^-level of the piece: a node at its end, and more within where a cubic would not do.
+// Runs from the last node over 2^-level of the piece: a node at its end, and more inside if a cubic is not accurate
+// enough.
 void SampledRun::run_piece(Piece& piece, int level, double t, double t_end, double v, double u) {
     const ResponseNode left = response_.nodes.back();
     const std::vector<double> start = x_;
@@ -171,7 +172,7 @@ void SampledRun::run_piece(Piece& piece, int level, double t, double t_end, doub
 void SampledRun::run_period(int k) {
     for (Index i = 0; i < pieces_.size(); ++i) {
         Piece& piece = pieces_[i];
-        // The very numbers from which the next piece, and the next period, begin.
+        // Exactly the same numbers as those with which the next piece, and the next period, begin.
         const double t = k * law_.Ts + piece.from;
         const double t_end = i + 1 < pieces_.size() ? k * law_.Ts + pieces_[i + 1].from : (k + 1) * law_.Ts;
         const bool loaded = k > load_.whole || (k == load_.whole && piece.from >= load_.rest);
@@ -189,7 +190,7 @@ void SampledRun::run_period(int k) {
 }
 
 void SampledRun::sample(int k) {
-    // Taken just before anything changes at t_k: what arrives at that very instant is not seen yet.
+    // Read just before anything changes at t_k: an input that arrives at that very time is not included.
     const double v = input(k, false) + (k > load_.whole ? in_.d : 0);
     u_.push_back(program_.step(in_.r, motion_.value(x_, v)));
 }
@@ -202,7 +203,7 @@ void SampledRun::note(double t) {
 
 StepResponse SampledRun::result() {
     response_.settles = false;
-    // One period at least: whoever reads a response that was stopped at once finds its beginning.
+    // At least one period, so that a response that is stopped at once has a beginning.
     for (int k = 0; k < options_.max_samples && (k == 0 || !options_.stop.stop_requested()); ++k) {
         sample(k);
         run_period(k);
@@ -229,10 +230,11 @@ StepResponse simulate_sampled(const LinearPlant& plant, const SampledPid& law, c
 
 namespace {
 
-constexpr double kTolerance = 1e-8;       // of the integrator's steps
-constexpr double kBend = 1e-9;            // of the largest |y|: by so much a jump of its slope would move y over a step
-constexpr double kTimeTolerance = 1e-12;  // relative: times nearer than that are one
-constexpr int kMinRestSamples = 3;        // the least that a response must have rested for, beyond its dead time
+constexpr double kTolerance = 1e-8;       // of the steps of the integration
+constexpr double kBend = 1e-9;            // of the largest |y|: the change of y over a step by a jump of its slope
+constexpr double kTimeTolerance = 1e-12;  // relative: closer times are equal
+constexpr int kMinRestSamples = 3;        // the least time that a response must have rested, in addition to its dead
+                                          // time
 
 struct Given {
     double t = 0, u = 0;
@@ -271,14 +273,15 @@ private:
     NonlinearOptions recording_;
     ResponseRecorder recorder_;
     StoppingRule rule_;
-    std::deque<Given> outputs_;         // computed, not given out yet
+    std::deque<Given> outputs_;         // computed, but not yet effective
     double u_ = 0;                      // given out
-    double y_quiet_ = 0, u_quiet_ = 0;  // near which y and u have stayed since they last moved
+    double y_quiet_ = 0, u_quiet_ = 0;  // y and u have stayed near these values since they last moved
     double size_y_ = 0, size_u_ = 0;
-    double min_size_u_;  // of the loop, whatever the first samples are
+    double min_size_u_;  // of the loop, independent of the first samples
 };
 
-// What arrives behind the dead time bends y at once where the plant's relative degree is one.
+// True if the input that arrives after the dead time changes the slope of y at once: the plant's relative degree is
+// one.
 bool NonlinearRun::slope_jumped(const StepPolynomial& y) const {
     const auto& nodes = response_.loop.nodes;
     return !nodes.empty() && std::abs(y.slope(0) - nodes.back().y_slope) * y.h > kBend * size_y_;
@@ -307,7 +310,7 @@ bool NonlinearRun::run_to(double t) {
     return advance(t);
 }
 
-// With integral action y comes to rest at r; without it, and at a limit, where it stays.
+// With integral action y comes to rest at r; without it, or at a limit, wherever it stays.
 void NonlinearRun::note(double t) {
     const double y = plant_.y();
     size_y_ = std::max({size_y_, std::abs(y), std::abs(in_.r)});

@@ -18,8 +18,8 @@ namespace tunewright {
 
 namespace {
 
-constexpr int kPoints = 25;         // of the scan: every 0.025
-constexpr double kAccuracy = 1e-9;  // of Ms: what the header promises
+constexpr int kPoints = 25;         // points of the scan, one every 0.025
+constexpr double kAccuracy = 1e-9;  // accuracy of Ms that the header promises
 
 struct Sample {
     double Ms = 0, Deg = 0;
@@ -40,11 +40,11 @@ private:
     TradeoffScale scale_;
 };
 
-// Ms between two samples on either side of `target`, to kAccuracy.
+// The Ms between two samples on either side of `target`, to kAccuracy.
 double Ms_between(const Branch& branch, Sample a, Sample b, double target) {
     const auto surplus = [&](double Ms) {
         const auto Deg = branch.degradation(Ms);
-        return Deg ? *Deg - target : 0;  // where there is none, the branch ends: its end is the answer
+        return Deg ? *Deg - target : 0;  // without a degradation the branch ends, and its end is the result
     };
     return root_between(surplus, a.Ms, b.Ms, a.Deg - target, b.Deg - target, kAccuracy);
 }
@@ -52,21 +52,21 @@ double Ms_between(const Branch& branch, Sample a, Sample b, double target) {
 Error out_of_reach(const std::vector<Sample>& samples, double degradation) {
     const auto [low, high] = std::ranges::minmax_element(samples, {}, &Sample::Deg);
     return {ErrorKind::unsupported, "degradation",
-            "degradation is " + text(degradation) + "; with Ms from 1.4 to 2 this rule has " + text(low->Deg) +
+            "degradation is " + text(degradation) + ", but with Ms from 1.4 to 2 this rule has " + text(low->Deg) +
                 " (Ms = " + text(low->Ms) + ") to " + text(high->Deg) + " (Ms = " + text(high->Ms) +
-                ") on this model. Ask for one in that range, or 0 for the tuning without a limit on Ms."};
+                ") on this model. Choose a value in that range, or 0 for the tuning without a limit on Ms."};
 }
 
 // The smallest Ms from 1.4 to 2 with which Eq. 9 (c3 refitted) has this degradation (tradeoff.h) on the model. Errors:
-// unsupported where no Ms has it (the sentence names the range) or the model has no optimum to measure by; cancelled.
+// unsupported if no Ms has it (the message has the range) or if the model has no optimum as a reference; cancelled.
 Expected<double> Ms_of_degradation(const Fopdt& model, double degradation, const std::stop_token& stop) {
     const auto references = reference_controllers(model);
     if (!references) return references.error();
     if (!references->free)
         return Error{ErrorKind::unsupported, "plant",
                      "L/T is " + text(model.L / model.T) +
-                         ", where the tuning without a limit on Ms has Td < 0: there is nothing to measure a "
-                         "degradation by. The rule holds for L/T from 0.1 to 2; use simc, amigo or robust."};
+                         ", for which the tuning without a limit on Ms has Td < 0, so the degradation has no "
+                         "reference. The rule holds for L/T from 0.1 to 2; use simc, amigo or robust."};
     const Branch branch(model, *references);
     std::vector<Sample> samples;
     for (int i = 0; i < kPoints; ++i) {
@@ -86,13 +86,13 @@ Expected<double> Ms_of_degradation(const Fopdt& model, double degradation, const
     return out_of_reach(samples, degradation);
 }
 
-constexpr double kLowestTau = 0.1, kHighestTau = 2;  // of the source
+constexpr double kLowestTau = 0.1, kHighestTau = 2;  // range of the source
 constexpr const char* kSource =
     "Arrieta, Vilanova and Alfaro, Performance degradation driven PID controller design, IFAC PID'12 (2012), ";
 constexpr const char* kCorrectedB3 = "b3 = 1.3870 M^2 - 4.7810 M + 4.9470 (0.3870 in print, a misprint)";
 constexpr const char* kRefittedC3 = "c3 = 0.1331 M^2 - 0.4320 M + 0.3330 (the quadratic through Table 1)";
 
-// The rule's model, or why there is none.
+// The rule's model, or the error in its place.
 Expected<ReducedModel> model_for(const TuningProblem& problem, const ReductionOptions& options) {
     auto model =
         rule_model(problem, options, {.order = ReducedOrder::first, .preferred = ReductionMethod::two_point_123c});
@@ -101,8 +101,8 @@ Expected<ReducedModel> model_for(const TuningProblem& problem, const ReductionOp
         return degenerate("plant", "The rule is written for stable first-order models, and the plant integrates.",
                           "Use simc, lambda, amigo or robust.");
     if (model->L <= 0)
-        return degenerate("plant/L", "The rule needs a dead time: Kp grows without end as L/T goes to 0.",
-                          "Give the loop's true dead time, or use lambda, simc with tau_c, or robust.");
+        return degenerate("plant/L", "The rule needs a dead time: Kp is unbounded as L/T goes to 0.",
+                          "Give the true dead time of the loop, or use lambda, simc with tau_c, or robust.");
     if (model->T1 <= 0)
         return degenerate("plant/T", "The rule needs a lag, and the model is a pure dead time (T = 0).",
                           "Use amigo or robust.");
@@ -122,8 +122,8 @@ Expected<TunedController> answer(const TuningProblem& problem, const ReducedMode
     if (tau < kLowestTau || tau > kHighestTau)
         warnings.push_back(
             outside_validity("L/T is " + text(tau) +
-                             ", outside 0.1 to 2, for which the rule was fitted: Ms and degradation may be far "
-                             "from those asked for."));
+                             ", outside the range 0.1 to 2 for which the rule was fitted: Ms and degradation may "
+                             "differ much from the requested ones."));
     auto tuned = rule_answer(problem, model, pid, std::move(warnings));
     if (tuned) tuned->report = std::make_shared<TradeoffReport>(std::move(report));
     return tuned;
@@ -148,7 +148,7 @@ Expected<TunedController> settings_for_Ms(const TuningProblem& problem, const Ar
     const double Ms = *options.Ms;
     if (!(Ms >= kArrietaLowestMs && Ms <= kArrietaHighestMs))
         return Error{ErrorKind::invalid_argument, "Ms",
-                     "Ms is " + text(Ms) + "; this rule has settings for 1.4 to 2, and for \"free\"."};
+                     "Ms is " + text(Ms) + "; this rule has settings only for 1.4 to 2 and for \"free\"."};
     report.Ms_design = Ms;
     if (const ArrietaConstants* column = arrieta_column(arrieta_Ms_levels(), Ms)) {
         report.constants = "Table 1, column Ms = " + text(Ms);
@@ -173,7 +173,7 @@ Expected<TunedController> tune_exactly(const TuningProblem& problem, const Reduc
     const auto Ms = Ms_of_degradation(report.model, degradation, control.stop);
     if (!Ms) return Ms.error();
     report.Ms_design = *Ms;
-    report.constants = "Eq. 9 at Ms = " + text(*Ms) + ", whose degradation on the model is " + text(degradation) +
+    report.constants = "Eq. 9 at Ms = " + text(*Ms) + ", with a degradation on the model of " + text(degradation) +
                        ", with " + kCorrectedB3 + " and " + kRefittedC3;
     return answer(problem, model, arrieta_equation_9(*Ms, ArrietaC3::refitted), report, std::move(warnings));
 }
@@ -201,12 +201,12 @@ Expected<TunedController> tune_by_degradation(const TuningProblem& problem, cons
     if (!column && exact.has_value() && !*exact)
         return Error{ErrorKind::invalid_argument, "degradation",
                      "degradation is " + text(degradation) + "; Table 2 has settings for " + listed_levels() +
-                         ". Take one of these, or exact = true, which solves for any other on the model."};
+                         ". Use one of these, or exact = true, which solves for any other value on the model."};
     std::vector<Warning> warnings;
     if (!exact)
         warnings.push_back({"exact-degradation", "Table 2 has settings for " + listed_levels() + "; those for " +
                                                      text(degradation) +
-                                                     " were solved for on the model, as with exact = true."});
+                                                     " were computed on the model, as with exact = true."});
     return tune_exactly(problem, *model, degradation, report, std::move(warnings), control);
 }
 
@@ -216,22 +216,21 @@ void add_profile(OptionSet<T>& set) {
         &T::profile, "profile",
         "Also return the trade-off of this rule on the model over Ms from 1.4 to 2 and over the levels of Table 2.");
     set.draws("profile");
-    add_reduction(set, "123c, as in the source; half_rule where that does not apply.");
+    add_reduction(set, "123c, as in the source; half_rule if it does not apply.");
 }
 
 OptionSet<ArrietaMsOptions> Ms_options() {
     OptionSet<ArrietaMsOptions> set;
     set.number_or_word(&ArrietaMsOptions::Ms, "Ms",
-                       "Largest |S| that the loop on the model shall have, from 1.4 (robust) to 2 (fast); free: no "
-                       "limit, the least combined distance from both optima (Ms is then 2 to 2.9).",
+                       "Largest |S| of the loop on the model, from 1.4 (robust) to 2 (fast); free: no limit, the least "
+                       "combined distance from both optima (Ms is then 2 to 2.9).",
                        "free", {.minimum = kArrietaLowestMs, .maximum = kArrietaHighestMs});
     set.main({"Ms"}).slider("Ms");
-    set.choice(
-        &ArrietaMsOptions::c3, "c3",
-        "Constant c3 of Eq. 9, which serves the Ms between the levels of Table 1. refitted: the quadratic through "
-        "Table 1, within 0.006 of it; printed: the source's, off by 0.014 at Ms 1.4 and 2, so that Td jumps "
-        "there.",
-        Words<ArrietaC3>{{"refitted", ArrietaC3::refitted}, {"printed", ArrietaC3::printed}});
+    set.choice(&ArrietaMsOptions::c3, "c3",
+               "Constant c3 of Eq. 9, for Ms between the levels of Table 1. refitted: the quadratic through "
+               "Table 1, within 0.006 of it; printed: the source's, off by 0.014 at Ms 1.4 and 2, so that Td jumps "
+               "there.",
+               Words<ArrietaC3>{{"refitted", ArrietaC3::refitted}, {"printed", ArrietaC3::printed}});
     add_profile(set);
     return set;
 }
@@ -240,15 +239,15 @@ OptionSet<ArrietaDegradationOptions> degradation_options() {
     using O = ArrietaDegradationOptions;
     OptionSet<O> set;
     set.field(&O::degradation, "degradation",
-              "How much of the combined performance may be given up for robustness: 0 is the tuning without a limit on "
-              "Ms, 0.25 low, 0.35 medium-low, 0.45 medium-high, 0.55 high. Others are solved for on the model.",
+              "Loss of combined performance that is allowed for robustness: 0 is the tuning without a limit on Ms, "
+              "0.25 low, 0.35 medium-low, 0.45 medium-high, 0.55 high. Other values are computed on the model.",
               {.minimum = 0, .maximum = 1});
     set.slider("degradation");
     set.field(
         &O::exact, "exact",
-        "true: solve on the model for the Ms from 1.4 to 2 whose degradation is the one asked for, also at the "
-        "levels of Table 2 (which are up to 0.02 off for L/T up to 1.5 and 0.1 off at 2); false: the table alone. "
-        "Left out: the table at its levels, solved in between.");
+        "true: solve on the model for the Ms from 1.4 to 2 with the requested degradation, also at the levels of Table "
+        "2 (whose error is up to 0.02 for L/T up to 1.5 and 0.1 at 2); false: only the table. Default: the table at "
+        "its levels, solved in between.");
     add_profile(set);
     return set;
 }
@@ -282,12 +281,12 @@ TuningMethod arrieta_degradation_method() {
     method.formula =
         std::string(kFormula) +
         "a1 to c3 from Table 2 for degradation 0, 0.25, 0.35, 0.45 and 0.55; exact: from equation 9 with the Ms "
-        "for which 1 - J_free/J_rd on the model, J_free being J_rd of Ms free, is the degradation asked for";
+        "for which 1 - J_free/J_rd on the modelequals the requested degradation, where J_free is J_rd of Ms free";
     method.source = std::string(kSource) + "Eqs. 5-11, Table 2";
     method.needs = "fopdt with T > 0 and L > 0 (others are reduced)";
     method.validity = "L/T from 0.1 to 2, degradation up to 0.55";
     const OptionSet<ArrietaDegradationOptions> options = degradation_options();
-    constexpr double kNoLevel = -1;  // every variant states its level, the default too
+    constexpr double kNoLevel = -1;  // every variant states its level, even the default
     for (const auto& [level, constants] : arrieta_degradation_levels())
         method.variants.push_back(
             {"degradation " + text(level), options.given_for({.degradation = level}, {.degradation = kNoLevel})});

@@ -21,8 +21,8 @@ namespace {
 
 constexpr double kTolerance = 1e-5;
 constexpr const char* kUnstable = "The closed loop is not stable.";
-constexpr const char* kNoIntegral = "Without integral action the error does not vanish, and its integral is infinite.";
-constexpr const char* kUnsettled = "The response does not settle within the steps computed.";
+constexpr const char* kNoIntegral = "Without integral action the error does not go to 0, and its integral is infinite.";
+constexpr const char* kUnsettled = "The response does not settle within the simulated steps.";
 
 std::optional<double> step_iae(const Loop& loop, const StepInputs& inputs) {
     ResponseOptions options;
@@ -32,7 +32,7 @@ std::optional<double> step_iae(const Loop& loop, const StepInputs& inputs) {
     return integral_of_absolute_error(response.nodes, inputs.r, response.error_integral_final);
 }
 
-// A stable loop with integral action, or why there is none.
+// A stable loop with integral action, or the error in its place.
 Expected<Loop> usable_loop(const LinearPlant& plant, const ParallelPid& controller) {
     auto loop = Loop::make(plant, controller);
     if (!loop) return loop.error();
@@ -50,11 +50,12 @@ Expected<double> iae_with(const LinearPlant& plant, const IdealPid& pid, const S
 
 std::string no_static_gain(const LinearPlant& plant) {
     if (plant.integrators() > 0)
-        return "An integrating plant has no static gain to scale the load's effect by, and no first-order model.";
+        return "An integrating plant has no static gain with which to scale the load's effect, and no first-order "
+               "model.";
     return "The plant's static gain is 0: no controller holds a set point.";
 }
 
-// What a reference controller reaches on the plant, or why it has no figure.
+// The IAE of a reference controller on the plant, or the reason for its absence.
 Figure reached(const Expected<double>& IAE, const std::string& whose) {
     return IAE ? Figure(*IAE) : no_figure(whose + IAE.error().message);
 }
@@ -89,8 +90,8 @@ TradeoffScale::TradeoffScale(LinearPlant plant, const Expected<ReferenceControll
     J_d_opt_ =
         reached(iae_with(plant_, references->ideal.load, {.d = 1 / *K_}), "With the model's load-optimal controller: ");
     if (!references->free) {
-        J_rd_free_ = no_figure(
-            "The rule of Table 1 without a limit on Ms gives Td < 0 at this L/T: nothing to compare J_rd with.");
+        J_rd_free_ =
+            no_figure("The rule of Table 1 without a limit on Ms gives Td < 0 at this L/T, so J_rd has no reference.");
         return;
     }
     J_rd_free_ = figures(to_parallel(*references->free)).J_rd;
@@ -141,18 +142,19 @@ namespace {
 
 constexpr double kTfOverTd = 0.1;
 constexpr double kLargestTau = 50;
-constexpr double kRoughTolerance = 1e-4;   // of the simulation: its error of the IAE is 1e-5 and hardly changes nearby
-constexpr double kFirstStep = 0.004;       // of a logarithm: about what interpolation leaves
+constexpr double kRoughTolerance = 1e-4;   // of the simulation: the IAE has an error of 1e-5, which hardly changes
+                                           // nearby
+constexpr double kFirstStep = 0.004;       // of a logarithm: about the error of the interpolation
 constexpr double kOptimumAccuracy = 1e-6;  // of ln IAE
 constexpr int kMaxSteps = 6000;
 constexpr int kMaxEvaluations = 16;
-constexpr double kNoController = 1e3;  // ln IAE of what does not settle
+constexpr double kNoController = 1e3;  // ln IAE of a response that does not settle
 
-// An optimum at tau = L/T, scaled so that all is finite from tau = 0 on.
+// An optimum at tau = L/T, scaled so that all members are finite from tau = 0.
 struct Optimum {
     double tau;
     double gain;             // Kp K L/(L + T)
-    double integral_time;    // Ti/L of the load's, Ti/(L + T) of the set point's
+    double integral_time;    // Ti/L for the load optimum, Ti/(L + T) for the set-point optimum
     double derivative_time;  // Td/L
 };
 
@@ -245,10 +247,12 @@ Expected<IdealControllers> ideal_controllers(const Fopdt& model) {
     const double tau = model.L / model.T;
     if (!(tau > 0))
         return refused(
-            "The model has no dead time: the error's integral falls without end as the gain grows, so there is no "
-            "optimum to measure by.");
+            "The model has no dead time: the error's integral goes to 0 as the gain grows, so there is no optimum as a "
+            "reference.");
     if (tau > kLargestTau)
-        return refused("The optimal controllers are known for L/T up to " + text(kLargestTau) + "; the model's is " +
+        return refused("The optimal controllers are known for L/T up to " + text(kLargestTau) +
+                       ", but the model's "
+                       "is " +
                        text(tau) + ".");
     const double L = share(tau);
     const auto plant = LinearPlant::make(Fopdt{.K = 1, .T = 1 - L, .L = L});

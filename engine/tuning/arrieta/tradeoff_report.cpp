@@ -12,8 +12,8 @@ namespace tunewright {
 namespace {
 
 constexpr const char* kOnlyPoints =
-    "The plant is known by points of its frequency response alone, which have no response over time.";
-constexpr double kMaxDegradationError = 0.03;  // of a degradation: what the table keeps to for L/T from 0.1 to 1.5
+    "The plant is known only by points of its frequency response, so its response over time is unknown.";
+constexpr double kMaxDegradationError = 0.03;  // of a degradation: largest error of the table for L/T from 0.1 to 1.5
 constexpr int kMsPoints = 13;                  // 1.4, 1.45 ... 2
 
 void add_point(std::vector<ProfilePoint>& points, double level, const ArrietaConstants& constants, const Fopdt& model,
@@ -57,7 +57,7 @@ const Tradeoffs::OnModel& Tradeoffs::scales(const Fopdt& model) {
     return kept_.emplace(key, OnModel{std::move(references), std::move(on_model), std::move(on_plant)}).first->second;
 }
 
-// A nonlinear controller's responses are not those of its gains.
+// The responses of a nonlinear controller cannot be computed from its gains alone.
 TradeoffFigures Tradeoffs::figures(const TradeoffScale& scale, const Plant& plant, const Controller& controller) const {
     const auto K = scale.static_gain();
     if (!K || !std::holds_alternative<Npid>(controller)) return scale.figures(gains(controller));

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// A search compares costs; figures that are answered are computed anew.
+// A search compares costs; the figures of an answer are computed again.
 constexpr double kTolerance = 1e-5, kSettledTolerance = 1e-6;
 
 bool sampled(const Law& law) { return law.Ts > 0; }

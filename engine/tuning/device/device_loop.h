@@ -1,4 +1,4 @@
-// A loop as it is built, continuous or sampled, seen in one way: what a search over its settings asks of it.
+// An implemented loop, continuous or sampled, with one interface for a search over its settings.
 #pragma once
 
 #include <complex>
@@ -17,7 +17,7 @@ using Law = SampledPid;
 /// C at omega of the law, by its sampled or its continuous formula.
 std::complex<double> response_of(const Law& law, double omega);
 
-/// Where the loop is looked at: frequencies from far below to far above its corners, or to pi/Ts.
+/// The frequencies at which the loop is evaluated: from far below to far above its corners, or up to pi/Ts.
 std::vector<double> frequencies_of(const LinearPlant& plant, const Law& law);
 
 bool is_stable(const LinearPlant& plant, const Law& law);
@@ -28,7 +28,7 @@ std::optional<Peaks> stable_peaks(const LinearPlant& plant, const Law& law);
 /// The largest relative excess over a limit; infinite where the loop is not stable.
 double excess_on(const LinearPlant& plant, const Law& law, const PeakLimits& limits);
 
-/// The integral of |y| after a unit load step; infinite where the loop does not settle.
+/// The integral of |y| after a unit load step; infinite if the loop does not settle.
 double load_iae_of(const LinearPlant& plant, const Law& law);
 
 }  // namespace tunewright::device

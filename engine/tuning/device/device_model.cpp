@@ -14,14 +14,16 @@
 namespace tunewright::device {
 namespace {
 
-// Of M - 1, left for the rounding of what is typed: the least with which settings are found that hold the limits.
+// Shares of M - 1 that are reserved for the rounding of settings: the smallest one is used with which rounded settings
+// keep the limits.
 constexpr double kMargins[] = {0, 0.0005, 0.001, 0.002, 0.004, 0.015, 0.05};
-constexpr double kMinCoarseStep = 0.01;    // a step relative to the number: smaller ones are left to the rounding
+constexpr double kMinCoarseStep = 0.01;    // step relative to the number: numbers with smaller steps are simply rounded
 constexpr double kCostOfMargin = 2;        // of ln IAE, per share of M - 1
-constexpr int kMaxFilterSampleOffset = 2;  // of a filter: from the number that its rule gives
-constexpr double kEqualTimes = 0.5;  // of sqrt(Ti Td): a start of a series form whose ideal twin has complex zeros
+constexpr int kMaxFilterSampleOffset = 2;  // of a filter: from the number of samples that its rule gives
+constexpr double kEqualTimes = 0.5;  // of sqrt(Ti Td): a start for a series form whose ideal equivalent has complex
+                                     // zeros
 
-/// Text and value of what is typed, one for each setting.
+/// Writes text and value of every setting as it is entered.
 void write_texts(const product::Product& product, Fitted& fitted) {
     fitted.texts.clear();
     for (product::Setting& setting : fitted.typed) {
@@ -44,7 +46,7 @@ Law program_of(const DeviceModel& device, const IdealPid& pid) {
             .velocity = device.velocity};
 }
 
-/// The period with which the block runs: of one whose settings hold it in steps, what stands there.
+/// The period at which the block runs: if it is a setting with a resolution, its rounded value.
 double period_of(const DeviceModel& device, const product::Settings& typed) {
     const product::Parameter* period = product::parameter_of(*device.product, product::ParameterRole::sample_time);
     if (period == nullptr || period->resolution == 0) return device.Ts;
@@ -55,7 +57,7 @@ double period_of(const DeviceModel& device, const product::Settings& typed) {
     return device.Ts;
 }
 
-/// True if the filter is a number of samples that is typed.
+/// True if the filter is a number of samples that is entered.
 bool counts_samples(const DeviceModel& device) {
     return device.sampled() && device.product != nullptr && device.product->filter.kind == product::FilterKind::slope &&
            device.product->filter.value == 0;
@@ -107,7 +109,7 @@ double series_alpha(const product::Product& product) {
     return product.filter.kind == product::FilterKind::ratio ? product.filter.value : product.series_alpha;
 }
 
-/// A product's own form: which ideal law its gain and times make.
+/// A product's own form: the ideal law for its gain and times.
 class OwnForm {
 public:
     OwnForm(const DeviceModel& device, const Wish& wish) : device_(device), wish_(wish) {}
@@ -152,7 +154,7 @@ IdealPid OwnForm::controller(double gain, double Ti, double Td) const {
     return pid;
 }
 
-/// The start's times in the own form: of a series form the real ones nearby.
+/// The start's times in the own form; for a series form the nearest real ones.
 Settings start_of(const DeviceModel& device, const Wish& wish) {
     Settings start{wish.start.Kp, wish.start.Ti, wish.start.Td, 0};
     if (device.product == nullptr || device.product->form != product::Form::series || start.Td <= 0) return start;
@@ -164,7 +166,7 @@ Settings start_of(const DeviceModel& device, const Wish& wish) {
     return start;
 }
 
-/// The rules of the product's program, from its settings for the start.
+/// The rules of the product's program, read from its settings for the start.
 Expected<Law> rules_of(const DeviceModel& device, const IdealPid& pid) {
     if (device.product == nullptr) return program_of(device, pid);
     auto fitted = fit(device, pid, true);
@@ -172,7 +174,7 @@ Expected<Law> rules_of(const DeviceModel& device, const IdealPid& pid) {
     return fitted->law;
 }
 
-/// Gain and times as they are typed.
+/// Gain and times as entered.
 struct TypedNumbers {
     explicit TypedNumbers(const DeviceModel& device)
         : gain(device, product::ParameterRole::gain),
@@ -181,21 +183,21 @@ struct TypedNumbers {
     TypedQuantity gain, Ti, Td;
 };
 
-/// A design, and what of its shape is left to choose.
+/// A design, with the parameters that are still free.
 struct Numbers {
     Shape shape;
     Settings found;
 };
 
-/// What comes in coarse steps is settled one after the other, the coarsest first, each at both of its values, and the
-/// rest searched anew: rounding a design leaves the limits or gives up what they allow.
+/// Fixes the settings with coarse steps one after the other, the coarsest first, each at both neighbouring values, and
+/// searches the others again: simply rounding a design would exceed the limits or waste what they allow.
 class Settling {
 public:
     Settling(const DeviceModel& device, const OwnForm& form, const TypedNumbers& numbers,
              const std::vector<const LinearPlant*>& plants, const PeakLimits& limits, const RunControl& control)
         : device_(device), form_(form), numbers_(numbers), plants_(plants), limits_(limits), control_(control) {}
 
-    /// From a design whose numbers are free.
+    /// Starts from a design whose numbers are free.
     Expected<Fitted> best(const Numbers& free) {
         settle(free);
         return std::move(best_);
@@ -242,13 +244,13 @@ void Settling::settle(const Numbers& from) {
     }
 }
 
-// With more settled nothing gets quicker: what is slower already leads nowhere.
+// Fixing more settings never makes the loop faster: a design that is already slower need not be continued.
 void Settling::settle_at(Shape shape, const Settings& start) {
     const auto found = search(plants_, shape, limits_, {start}, control_, Reach::near);
     if (found && found->load_IAE < min_) settle({std::move(shape), *found});
 }
 
-// With as little margin for the rounding as serves: a margin costs a few times itself.
+// Uses the smallest sufficient margin for the rounding: a margin costs a multiple of itself.
 void Settling::type(Numbers near) {
     const double designed = near.found.load_IAE;
     for (const double margin : kMargins) {
@@ -256,7 +258,7 @@ void Settling::type(Numbers near) {
         if (margin > 0) {
             const auto found =
                 search(plants_, near.shape, within(limits_, margin), {near.found}, control_, Reach::near);
-            if (!found) return;  // what has been typed says why
+            if (!found) return;  // the settings found so far give the reason
             near.found = *found;
         }
         auto rounded = fit(device_, form_.controller(std::abs(near.found.gain), near.found.Ti, near.found.Td), true);
@@ -297,9 +299,8 @@ Shape shape_of(const DeviceModel& device, const Wish& wish, const OwnForm& form,
     return shape;
 }
 
-/// A filter of whole samples cannot follow the derivative time as a filter's time does: their number is held, and the
-/// rest searched for it. Numbers from a few below to a few above what the filter's rule gives the free design are
-/// tried.
+/// A filter with a whole number of samples cannot change with the derivative time: the number is fixed, and the other
+/// settings are searched for it. Numbers near that of the filter's rule for the free design are tried.
 class WholeSamples {
 public:
     WholeSamples(const DeviceModel& device, const Wish& wish, const Law& rules, const TypedNumbers& numbers,
@@ -349,16 +350,16 @@ private:
     const RunControl& control_;
 };
 
-/// The sign is settled before anything is searched: a controller turned round would be unstable at any gain.
+/// The sign is decided before any search: a controller with the wrong sign is unstable at any gain.
 std::optional<Error> wrong_direction(const DeviceModel& device, const Wish& wish) {
     if (device.product == nullptr || device.product->action.kind != product::Action::Kind::reverse_only ||
         wish.sign > 0)
         return std::nullopt;
     return Error{ErrorKind::not_representable, "",
                  std::string(device.product->name) +
-                     " cannot control this plant: its gain is never negative and it has no switch for the direction, "
-                     "and this plant asks for a negative Kp. Turn the actuator round, so that the plant's gain changes "
-                     "its sign. " +
+                     " cannot control this plant: its gain cannot be negative and it has no switch for the direction, "
+                     "but this plant needs a negative Kp. Invert the actuator, so that the plant's gain changes its "
+                     "sign. " +
                      std::string(device.product->action.text)};
 }
 
@@ -373,8 +374,8 @@ Expected<Fitted> design(const DeviceModel& device, const std::vector<const Linea
     if (device.product != nullptr && device.product->form == product::Form::p_only)
         return Error{ErrorKind::not_representable, "",
                      std::string(device.product->name) +
-                         " has proportional action alone, and a design with integral "
-                         "action cannot be typed into it. Choose another controller."};
+                         " has only proportional action and cannot represent a design with integral action. Choose "
+                         "another controller."};
     if (auto error = wrong_direction(device, wish)) return *error;
     for (const LinearPlant* plant : plants)
         if (const auto error = refuse_sampling(device, *plant)) return *error;

@@ -1,5 +1,5 @@
-// From a controller of the ideal form, or from limits, to the settings that a user types into his own controller, and
-// to the law that it then computes.
+// Converts a controller of the ideal form, or limits, to the settings that a user enters into a controller, and to the
+// law that it then computes.
 #pragma once
 
 #include <functional>
@@ -15,58 +15,58 @@
 
 namespace tunewright::device {
 
-/// How the user's controller computes: a product, or a sampled program of the ideal form.
+/// The user's controller: a product, or a sampled program of the ideal form.
 struct DeviceModel {
     const product::Product* product = nullptr;
-    product::Context context = {};                   ///< of the product
+    product::Context context = {};                   ///< context of the product
     double Ts = 0;                                   ///< sample time, in the plant's unit; 0: continuous
-    IntegralRule integral = IntegralRule::backward;  ///< this and the next two: without a product
-    std::optional<DerivativeRule> derivative = {};   ///< empty: by the controller's filter
+    IntegralRule integral = IntegralRule::backward;  ///< this and the next two only without a product
+    std::optional<DerivativeRule> derivative = {};   ///< empty: chosen by the controller's filter
     bool velocity = false;
     double computation_delay = 0;  ///< time
-    ProgramLimits program = {};    ///< what the program has beside the law
+    ProgramLimits program = {};    ///< nonlinear parts of the program
 
     bool sampled() const { return Ts > 0; }
 };
 
-/// A controller as it is typed.
+/// A controller with its settings as entered.
 struct Fitted {
     const product::Product* product = nullptr;
-    IdealPid controller;         ///< the exact ideal twin of what is typed
-    Law law;                     ///< what it computes
-    product::Settings settings;  ///< in full precision, before they are rounded; empty without a product
-    product::Settings typed;     ///< as the texts say
+    IdealPid controller;         ///< the exact ideal equivalent of these settings
+    Law law;                     ///< the law that it computes
+    product::Settings settings;  ///< in full precision, before rounding; empty without a product
+    product::Settings typed;     ///< the values of the texts
     std::vector<std::string> texts;
     std::vector<product::Note> notes;
 };
 
-/// Converted and rounded, nothing searched. Errors: those of product::to_settings.
+/// Converts and rounds, without a search. Errors: those of product::to_settings.
 Expected<Fitted> fit(const DeviceModel& device, const IdealPid& pid, bool nearest = false);
 
-/// The same of settings as they stand in the product.
+/// The same for given settings of the product.
 Expected<Fitted> fit(const DeviceModel& device, const product::Settings& typed);
 
-/// The same loop as a continuous one can be: a difference of r without a filter has no finite step response there, so c
-/// is 0 then.
+/// The controller for the same loop in continuous time: a difference of r without a filter has no finite step response
+/// there, so c becomes 0.
 IdealPid continuous(IdealPid pid);
 
-/// What a design is asked for.
+/// The specification of a design.
 struct Wish {
     PeakLimits limits;
     bool pid = true;  ///< false: PI
     double sign = 1;  ///< of Kp
-    double b = 1;     ///< set-point weight, as near as the controller has it
-    /// Tf for a Td of the controller's own form, where it has a filter to set; empty: none.
+    double b = 1;     ///< set-point weight; the controller has the nearest possible one
+    /// Tf for a Td of the controller's own form, if its filter can be set; empty: no filter.
     std::function<double(double Td)> filter_time = {};
-    FilterType filter = FilterType::none;  ///< without a product
-    IdealPid start;                        ///< a design of the ideal form nearby
+    FilterType filter = FilterType::none;  ///< only without a product
+    IdealPid start;                        ///< a design of the ideal form, from which the search starts
 };
 
-/// Where the plant's dead time is no dead time for this sample time (loop/sampled/held_plant.h).
+/// An error if the sample time is too short for the plant's dead time (loop/sampled/held_plant.h).
 std::optional<Error> refuse_sampling(const DeviceModel& device, const LinearPlant& plant);
 
-/// The settings with the least load IAE on the first plant, limits held on all, as typed: on the controller's own law
-/// and grid of settings. Errors: no_feasible_controller, not_representable, cancelled.
+/// The settings with the least load IAE on the first plant that keep the limits on all plants, with the controller's
+/// own law and the resolution of its settings. Errors: no_feasible_controller, not_representable, cancelled.
 Expected<Fitted> design(const DeviceModel& device, const std::vector<const LinearPlant*>& plants, const Wish& wish,
                         const RunControl& control);
 

@@ -10,16 +10,16 @@ namespace tunewright::device {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kGainInset = 1 - 1e-9;    // of a limit's gain: the limit itself holds to rounding
-constexpr double kIntervalOverlap = 1e-9;  // relative: by so much a refined interval overlaps the grid's
-constexpr double kGapProbe = 0.999;        // of a gap's upper end: where its stability is asked
+constexpr double kGainInset = 1 - 1e-9;    // of a limit's gain, so that the limit itself holds despite rounding
+constexpr double kIntervalOverlap = 1e-9;  // relative overlap of a refined interval with the grid's
+constexpr double kGapProbe = 0.999;        // of a gap's upper end: the gain at which its stability is checked
 
 struct Range {
     double from = kInfinity, to = kInfinity;
     bool empty() const { return !(from < to); }
 };
 
-/// Where a k^2 + 2 b k + c < 0 for k > 0, c >= 0 or c < 0 alike.
+/// The values k > 0 with a k^2 + 2 b k + c < 0, for either sign of c.
 Range negative(double a, double b, double c) {
     if (a == 0) {
         if (b == 0) return {};
@@ -32,7 +32,7 @@ Range negative(double a, double b, double c) {
     double low = q / a, high = q == 0 ? 0 : c / q;
     if (low > high) std::swap(low, high);
     if (a > 0) return high > 0 ? Range{std::max(low, 0.0), high} : Range{};
-    // Between the roots it is positive; beyond them the gain is too large.
+    // It is positive between the roots; beyond them the gain is too large.
     return high > 0 ? Range{high, kInfinity} : Range{0, kInfinity};
 }
 
@@ -59,7 +59,7 @@ double first_of(const Forbidden& f) {
     return first;
 }
 
-/// Where what a low gain may not be ends; 0 where nothing or everything above is forbidden.
+/// The end of the interval of forbidden low gains; 0 if nothing, or everything above, is forbidden.
 double last_of(const Forbidden& f) {
     double last = 0;
     for (const Range& range : {f.S, f.T, f.CS})
@@ -102,9 +102,9 @@ std::vector<GainLimiter::Interval> GainLimiter::forbidden(const std::function<st
         for (const auto part : {&Forbidden::S, &Forbidden::T, &Forbidden::CS}) {
             const Range& here = f.*part;
             if (here.empty()) continue;
-            // From one frequency to the next an interval moves without a break and forbids all that it sweeps over.
+            // Between two frequencies an interval moves continuously and forbids every gain that it passes.
             const Range past = before ? (*before).*part : Range{};
-            // Below the first the two integrators of plant and controller carry it on to 0.
+            // Below the first frequency, the two integrators of plant and controller extend the interval to 0.
             const double first_from = i == 0 ? 0 : here.from;
             all.push_back({past.empty() ? first_from : std::min(here.from, past.from),
                            past.empty() ? here.to : std::max(here.to, past.to), omega_[i]});
@@ -113,7 +113,8 @@ std::vector<GainLimiter::Interval> GainLimiter::forbidden(const std::function<st
         last[i] = last_of(f);
         before = f;
     }
-    // Between two frequencies an interval may begin lower or end higher than at either: followed where the grid's does.
+    // Between two frequencies an interval may begin lower or end higher than at either: refined where the grid has a
+    // local extreme.
     for (std::size_t i = 1; i + 1 < omega_.size(); ++i) {
         if (last[i] > 0 && last[i] >= last[i - 1] && last[i] >= last[i + 1]) {
             const auto f = [&](double omega) { return last_of(at(omega)); };
@@ -146,7 +147,7 @@ std::optional<double> largest_gain(const std::vector<GainLimiter>& plants, const
         all.insert(all.end(), some.begin(), some.end());
     }
     std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.from < b.from; });
-    std::vector<double> gains;  // the largest of each gap
+    std::vector<double> gains;  // the largest gain of each gap
     double reached = 0;
     for (const auto& interval : all) {
         if (interval.from > reached && reached < max) gains.push_back(std::min(interval.from, max));

@@ -3,9 +3,9 @@
 //
 //   L = k G, k > 0:   |1 + k G| >= 1/Ms,   |k G| <= Mt |1 + k G|,   |k C1| <= Mks |1 + k G|
 //
-// Each is a quadratic in k. What no frequency forbids and is stable is allowed; the answer is the upper end of the
-// stable gap with the largest gains. Source: Garpinger and Hagglund, Control Engineering Practice 16 (2008) 1301-1309,
-// section 3 (circles), solved per frequency instead of by iteration.
+// Each is a quadratic in k. A gain is allowed if no frequency forbids it and the loop is stable; the result is the
+// upper end of the stable gap with the largest gains. Source: Garpinger and Hagglund, Control Engineering Practice 16
+// (2008) 1301-1309, section 3 (circles), solved per frequency instead of by iteration.
 #pragma once
 
 #include <functional>
@@ -18,17 +18,17 @@
 
 namespace tunewright::device {
 
-/// One plant, its response at the search's frequencies kept.
+/// One plant with its stored response at the search's frequencies.
 class GainLimiter {
 public:
-    /// `law` sets the sample time and the frequencies. The plant must outlive this.
+    /// `law` gives the sample time and the frequencies. The plant must outlive this object.
     GainLimiter(const LinearPlant& plant, const Law& law);
 
-    /// The intervals of k that some frequency forbids, for the controller's response `unit` at gain 1; joined and
+    /// The intervals of k that some frequency forbids, for a controller with response `unit` at gain 1; merged and
     /// ascending.
     struct Interval {
         double from = 0, to = 0;
-        double omega = 0;  ///< that sets `from`
+        double omega = 0;  ///< frequency that determines `from`
     };
     std::vector<Interval> forbidden(const std::function<std::complex<double>(double)>& unit,
                                     const PeakLimits& limits) const;
@@ -44,8 +44,8 @@ private:
     std::vector<std::complex<double>> P_;
 };
 
-/// On all plants at once, not above `max`. `law_at(k)`: the controller at gain k. Empty: no gain is stable and within
-/// the limits.
+/// The result for all plants together, at most `max`. `law_at(k)`: the controller at gain k. Empty: no gain is stable
+/// and within the limits.
 std::optional<double> largest_gain(const std::vector<GainLimiter>& plants, const std::function<Law(double k)>& law_at,
                                    const PeakLimits& limits, double max = std::numeric_limits<double>::infinity());
 

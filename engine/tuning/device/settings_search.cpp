@@ -13,30 +13,31 @@ namespace tunewright::device {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNoCost = 1e6;                 // of a logarithm: where no gain serves under any limits
-constexpr double kCostOutsideLimits = 1e3;      // the same where one does under wider limits; more the wider they are
-constexpr double kMaxLimitWidening = 30;        // times M - 1 of the limits
-constexpr double kLogWideningTolerance = 0.02;  // of ln: how well the width is known
+constexpr double kNoCost = 1e6;                 // ln of the cost if no gain keeps even wider limits
+constexpr double kCostOutsideLimits = 1e3;      // the same if a gain keeps wider limits; it grows with the widening
+constexpr double kMaxLimitWidening = 30;        // multiple of M - 1 of the limits
+constexpr double kLogWideningTolerance = 0.02;  // accuracy of ln of the widening
 constexpr double kFirstStep = 0.25;             // of ln Ti and ln Td
-constexpr double kLaterStep = 0.08;             // of the searches that start again from the best
-constexpr double kMinCostGain = 1e-5;           // relative: a search that gains less is the last
+constexpr double kLaterStep = 0.08;             // of the later searches, which start from the best result
+constexpr double kMinCostGain = 1e-5;           // relative: the search ends if it gains less
 constexpr int kMaxRestarts = 4;
 constexpr int kMaxEvaluations = 150;     // of one simplex
 constexpr double kTolerance = 1e-6;      // of ln IAE
-constexpr int kMaxEvaluationsNear = 50;  // both, of a start that is near
+constexpr int kMaxEvaluationsNear = 50;  // these two for a start that is near the optimum
 constexpr double kNearTolerance = 1e-4;
 constexpr int kMaxCorrections = 6;
-// Of M - 1: where limits bound the gain from both sides, the last grid may differ and leave no gain; then the next.
+// Of M - 1: if limits bound the gain from both sides, the final grid may leave no gain; then the next margin is tried.
 constexpr double kMargins[] = {1e-5, 1e-4, 1e-3};
-constexpr double kLowerGains[] = {0.95, 0.85, 0.7};  // where a loop at its limits swings, less gain may cost less
+constexpr double kLowerGains[] = {0.95, 0.85, 0.7};  // tried because a loop at its limits may oscillate, so that a
+                                                     // lower gain costs less
 
-// The net over both times on which other valleys than the start's are looked for. A resonance makes some that a simplex
-// from an ordinary design does not find: there Ti is a tenth of Td.
+// A grid over both times for finding local minima other than the start's. A resonance causes minima that a simplex from
+// an ordinary design does not find: there Ti is a tenth of Td.
 constexpr double kNetStep = 2;  // from one value to the next
 constexpr int kNetBelow = 4, kNetAbove = 3;
-constexpr double kTdOverTi = 0.1;        // of a start without derivative, whose logarithm a search of Td cannot use
-constexpr double kMinValleyGain = 1e-3;  // relative: what another valley must save to be searched to its end
-constexpr std::size_t kMaxValleys = 3;   // that get a simplex of their own
+constexpr double kTdOverTi = 0.1;        // for a start without derivative, because a search needs the logarithm of Td
+constexpr double kMinValleyGain = 1e-3;  // relative improvement that makes another local minimum worth a full search
+constexpr std::size_t kMaxValleys = 3;   // local minima that get their own simplex
 
 }  // namespace
 
@@ -58,12 +59,12 @@ public:
 
     void keep_margin(double margin) { inner_ = within(limits_, margin); }
 
-    /// The cost is infinite where no gain serves, or where what the load IAE cannot be below, 1/Ki, exceeds `enough`.
+    /// The cost is infinite if no gain keeps the limits, or if its lower bound 1/Ki exceeds `enough`.
     Settings at(double Ti, double Td, double enough = kInfinity);
-    /// How far the limits would have to be widened for some gain to serve, as a factor of M - 1; infinite: no width
-    /// helps. It leads a search from times without a gain to times with one.
+    /// The factor of M - 1 by which the limits must be widened for some gain to keep them; infinite if no widening
+    /// helps. It guides a search from times without a feasible gain to times with one.
     double widening(double Ti, double Td) const;
-    /// With a gain that the whole loop, on a grid of its own, confirms.
+    /// With a gain that is confirmed on the whole loop, on its own grid.
     Settings confirmed(double Ti, double Td);
 
 private:
@@ -132,10 +133,10 @@ Settings Search::confirmed(double Ti, double Td) {
 Error none(const PeakLimits& limits) {
     return {ErrorKind::no_feasible_controller, "",
             "No settings of this controller keep Ms <= " + text(limits.Ms) + " and Mt <= " + text(limits.Mt) +
-                " on the loop as it is built. Allow more, sample faster, or choose a controller that can do more."};
+                " on the implemented loop. Raise the limit, sample faster, or choose a controller with more actions."};
 }
 
-/// The search in the logarithms of those times that the shape has.
+/// The search in the logarithms of the times that the shape has.
 class TimesSearch {
 public:
     TimesSearch(Search& local, const Shape& shape, const Settings& start) : local_(local), shape_(shape), held_(start) {
@@ -143,13 +144,13 @@ public:
         if (shape.has_derivative) x_.push_back(std::log(start.Td));
     }
 
-    /// From the start, and again from the best while that gains; under a wider margin where the last grid leaves no
-    /// gain.
+    /// Searches from the start, and again from the best result while that improves; with a larger margin if the final
+    /// grid leaves no gain.
     Settings best(Reach reach, const std::stop_token& stop);
 
 private:
     double cost(const std::vector<double>& x) const;
-    /// Leaves the best times in x_; its cost.
+    /// Leaves the best times in x_ and returns their cost.
     double descend(Reach reach, const std::stop_token& stop);
     std::pair<double, double> times(const std::vector<double>& x) const {
         const double first = x.empty() ? 0 : std::exp(x.front()), last = x.empty() ? 0 : std::exp(x.back());
@@ -203,7 +204,7 @@ Settings TimesSearch::best(Reach reach, const std::stop_token& stop) {
     return found;
 }
 
-/// The lowest points of the valleys on a net about the start, the best first.
+/// The local minima on a grid around the start, the best first.
 std::vector<Settings> valleys(Search& local, const Shape& shape, const Settings& start, const std::stop_token& stop) {
     const int rows = shape.has_integral ? kNetBelow + 1 + kNetAbove : 1,
               columns = shape.has_derivative ? kNetBelow + 1 + kNetAbove : 1;
@@ -244,7 +245,7 @@ Expected<Settings> search(const std::vector<const LinearPlant*>& plants, const S
     for (Settings start : starts) {
         start.Ti = shape.Ti.within(start.Ti);
         start.Td = shape.Td.within(start.Td > 0 || !shape.has_derivative ? start.Td : kTdOverTi * start.Ti);
-        // The first loop's frequencies serve all later ones.
+        // The first loop's frequencies are used for all later ones.
         Search local(plants, shape, limits, shape.law(std::abs(start.gain), start.Ti, start.Td));
         const auto take = [&](const Settings& found) {
             if (std::isfinite(found.load_IAE) && (!best || found.load_IAE < best->load_IAE)) best = found;

@@ -11,22 +11,22 @@ namespace tunewright::device {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kMinCoarseStep = 0.004;     // of a value: larger steps are worth a look at the neighbours too
-constexpr int kMaxExtraSteps = 2;            // so many steps beyond floor and ceiling, where they are coarse
-constexpr int kMaxGainSteps = 6;             // steps of the gain that are tried below the first
+constexpr double kMinCoarseStep = 0.004;     // of a value: with larger steps the neighbours are tried too
+constexpr int kMaxExtraSteps = 2;            // additional steps beyond floor and ceiling, if they are coarse
+constexpr int kMaxGainSteps = 6;             // steps of the gain that are tried below the first feasible one
 constexpr double kLongestClimb = 64;         // steps of the gain
-constexpr double kMaxClimbCostRatio = 1.25;  // times the IAE: what a climb is not expected to save
-constexpr double kProbeFactor = 1.01;        // times a number, to see which way it acts
-constexpr int kTypedDigits = 4;              // of a number without a resolution of its own
+constexpr double kMaxClimbCostRatio = 1.25;  // multiple of the IAE: more than a climb can be expected to save
+constexpr double kProbeFactor = 1.01;        // factor of a number that shows the direction of its effect
+constexpr int kTypedDigits = 4;              // digits of a number without its own resolution
 
-/// One number that can be typed.
+/// One number that can be entered.
 struct Number {
-    std::size_t at = 0;  // in the settings
+    std::size_t at = 0;  // index in the settings
     product::ParameterRole role = product::ParameterRole::gain;
-    std::vector<double> values;  // of the gain: from where the loop is strongest to where it is weakest
+    std::vector<double> values;  // for the gain: from the strongest to the weakest loop
 };
 
-/// The step in which a value of that size can be typed.
+/// The step in which a value of this size can be entered.
 double step_of(const product::Tunable& tunable, double value) {
     if (tunable.resolution > 0) return tunable.resolution;
     if (value == 0) return 0;
@@ -49,7 +49,7 @@ std::vector<double> neighbours(const product::Tunable& tunable, double value) {
     return values;
 }
 
-/// Whether a larger number is a weaker controller: a proportional band.
+/// True if a larger number makes a weaker controller: a proportional band.
 bool weakens(const DeviceModel& device, product::Settings settings, std::size_t at) {
     double& value = std::get<double>(settings[at].value);
     std::vector<product::Note> notes;
@@ -68,7 +68,7 @@ public:
             for (std::size_t i = 0; i < near_.settings.size(); ++i) {
                 const auto* value = std::get_if<double>(&near_.settings[i].value);
                 if (near_.settings[i].name != tunable.name || value == nullptr || *value == 0) continue;
-                // A number of samples has been chosen already, and the rest for it.
+                // The number of samples has already been chosen, and the other settings for it.
                 if (tunable.role == product::ParameterRole::filter &&
                     product::parameter_named(*device_.product, tunable.name)->shape == product::Shape::slope_samples &&
                     device_.sampled())
@@ -114,7 +114,7 @@ std::optional<Fitted> Grid::held(const product::Settings& settings) const {
     return std::move(*fitted);
 }
 
-// True where the limits hold.
+// True if the limits hold.
 bool Grid::consider(const product::Settings& settings) {
     auto fitted = held(settings);
     if (!fitted) return false;
@@ -126,13 +126,13 @@ bool Grid::consider(const product::Settings& settings) {
     return true;
 }
 
-// From the strongest gain down to the first that holds; where the strongest does, further up while they hold: other
-// numbers than the design's may allow more.
+// From the strongest gain down to the first that keeps the limits; if the strongest does, further up as long as they
+// hold, because numbers other than the design's may allow more.
 void Grid::look_at_gains(product::Settings settings, const Number& gain) {
     double& value = std::get<double>(settings[gain.at].value);
     const double first = value;
     std::vector<double> values = gain.values;
-    // A proportional band runs against the gain.
+    // A larger proportional band is a smaller gain.
     const bool band = weakens(device_, settings, gain.at);
     const double stronger = (band ? -gain_step_ : gain_step_) * (first < 0 ? -1 : 1);
     std::sort(values.begin(), values.end(),
@@ -203,8 +203,8 @@ Expected<Fitted> on_grid(const DeviceModel& device, const std::vector<const Line
     if (auto best = Grid(device, plants, limits, std::move(near), enough).best(control)) return std::move(*best);
     if (control.stop.stop_requested()) return Error{ErrorKind::cancelled, "", "The job was cancelled."};
     return Error{ErrorKind::no_feasible_controller, "",
-                 "No settings that can be typed near the optimum keep the limits: the steps of this controller are too "
-                 "coarse for this loop. Allow a little more Ms, or use a controller with finer settings."};
+                 "No settings near the optimum that this controller accepts keep the limits: its steps are too coarse "
+                 "for this loop. Raise the limit on Ms slightly, or use a controller with finer settings."};
 }
 
 }  // namespace tunewright::device

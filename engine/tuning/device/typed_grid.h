@@ -1,4 +1,4 @@
-// The settings that can be typed around a design: numbers in the steps of their resolution.
+// The settings that can be entered near a design: numbers in the steps of their resolution.
 #pragma once
 
 #include <string>
@@ -8,12 +8,12 @@
 
 namespace tunewright::device {
 
-/// The number that a text says; `fallback` where it is none.
+/// The number in a text; `fallback` if it is none.
 double number_of(const std::string& text, double fallback);
 
-/// `near` is a design within the limits before its settings were rounded. All ways to round its numbers up or down are
-/// tried, and where a step is coarse the neighbours too. Error: no_feasible_controller where none holds the limits and
-/// has a load IAE below `enough`.
+/// `near` is a design within the limits before its settings were rounded. All combinations of rounding its numbers up
+/// or down are tried, and for coarse steps the neighbours too. Error: no_feasible_controller if none keeps the limits
+/// with a load IAE below `enough`.
 Expected<Fitted> on_grid(const DeviceModel& device, const std::vector<const LinearPlant*>& plants,
                          const PeakLimits& limits, Fitted near, double enough, const RunControl& control);
 

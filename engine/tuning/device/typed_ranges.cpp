@@ -24,7 +24,7 @@ TypedQuantity::TypedQuantity(const DeviceModel& device, product::ParameterRole r
     unit_ = gain ? 1 : device.context.seconds_per_time;
     may_vanish_ = role == product::ParameterRole::derivative;
     parameter_ = parameter;
-    // A gain may be typed with either sign; its size counts.
+    // A gain may be entered with either sign; its size counts.
     constexpr double kUnbounded = std::numeric_limits<double>::infinity();
     const bool turned = term.factor < 0;
     const double low = std::max(turned ? -parameter->range.high : parameter->range.low, 0.0),

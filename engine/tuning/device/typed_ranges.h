@@ -1,5 +1,5 @@
-// What can be typed of the gain and the times of a product's own form: ranges, and the values on either side where
-// steps are coarse.
+// The possible values of the gain and the times of a product's own form: ranges, and for coarse steps the neighbouring
+// values.
 #pragma once
 
 #include <vector>
@@ -9,17 +9,17 @@
 
 namespace tunewright::device {
 
-/// Gain, Ti or Td, where a number of its own sets it. Of a parallel form, whose numbers for the times are gains, and
-/// without a product: anything.
+/// Gain, Ti or Td, if a number of the product sets it directly. Any value is possible for a parallel form, whose
+/// numbers for the times are gains, and without a product.
 class TypedQuantity {
 public:
     TypedQuantity(const DeviceModel& device, product::ParameterRole role);
 
-    /// Of its size, times in the plant's unit.
+    /// Range of its size, times in the plant's unit.
     const Shape::Range& range() const { return range_; }
-    /// The step in which its number can be typed, relative to that number; 0: none.
+    /// The step of its number, relative to that number; 0: none.
     double step(double size) const;
-    /// What can be typed next below and above, where there is a step. 0 is among them for Td alone.
+    /// The next possible values below and above, if there is a step. Only Td can be 0.
     std::vector<double> choices(double size) const;
 
 private:

@@ -10,7 +10,7 @@ namespace tunewright::emulation {
 
 namespace {
 
-constexpr double kEarlyEndPenalty = 100;  // of a run that ends early, in J at rest
+constexpr double kEarlyEndPenalty = 100;  // factor of the J at rest, for a run that ends early
 constexpr double kMaxPenalisedJ = 1e100;  // of a penalised J
 constexpr int kMaxSimulationSteps = 20000;
 
@@ -77,8 +77,8 @@ double square_integral(const std::vector<double>& values, const std::vector<doub
 
 Error cannot_run(std::size_t scenario, const std::string& reason) {
     return {ErrorKind::unsupported, "scenarios/" + std::to_string(scenario),
-            "The nonlinear controller itself cannot make this step: " + reason +
-                " Give a smaller step, a slower target or wider limits of the input."};
+            "The nonlinear controller itself cannot perform this step: " + reason +
+                " Use a smaller step, a slower target or wider limits of the input."};
 }
 
 }  // namespace

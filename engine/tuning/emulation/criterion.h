@@ -1,5 +1,5 @@
-// J of a PID: the mean over the scenarios of int_0^horizon wy (y_nl - y)^2 + wu (u_nl - u)^2 dt (Eq. 2).
-// It is taken against the runs of the nonlinear controller, which the PID is to resemble.
+// J of a PID: the mean over the scenarios of int_0^horizon wy (y_nl - y)^2 + wu (u_nl - u)^2 dt (Eq. 2). Its reference
+// are the runs of the nonlinear controller, which the PID is to emulate.
 
 #pragma once
 
@@ -14,26 +14,26 @@ struct Trajectory {
     bool limited = false;
 };
 
-/// One a scenario. Errors: unsupported where the nonlinear controller itself cannot run to the horizon; cancelled.
+/// One for each scenario. Errors: unsupported if the nonlinear controller itself cannot run to the horizon; cancelled.
 Expected<std::vector<Trajectory>> nonlinear_trajectories(const EmulationProblem& problem, const RunControl& control);
 
-/// int of the samples from 0 to the horizon by Simpson's rule: the sum of samples times these weights.
+/// Weights of Simpson's rule: the integral from 0 to the horizon is the sum of samples times these weights.
 std::vector<double> simpson_weights(const EmulationProblem& problem);
 
-/// The PID's own run of one scenario; deviations. Shorter than the horizon where it ended early.
+/// The PID's own run of one scenario; deviations. Shorter than the horizon if it ended early.
 struct PidRun {
     std::vector<double> y, u;
-    double share = 1;   ///< of the horizon
-    std::string ended;  ///< why it ended early; empty: it did not
+    double share = 1;   ///< fraction of the horizon
+    std::string ended;  ///< the reason for an early end; empty: none
 };
 
 struct Cost {
-    double J = 0, J_y = 0, J_u = 0;  ///< of what was run
-    double share = 1;                ///< of the horizon, in the run that ended first
-    std::string ended;               ///< why that one did; empty: every run reached the horizon
+    double J = 0, J_y = 0, J_u = 0;  ///< of the part that was simulated
+    double share = 1;                ///< fraction of the horizon, of the run that ended first
+    std::string ended;               ///< the reason for its end; empty: every run reached the horizon
 };
 
-/// By simulation on the nonlinear plant.
+/// Computes J by simulation on the nonlinear plant.
 class Criterion {
 public:
     Criterion(const EmulationProblem& problem, const std::vector<Trajectory>& trajectories);
@@ -43,12 +43,12 @@ public:
     Cost cost(const IdealPid& pid, double tolerance, const std::stop_token& stop = {}) const {
         return weigh(pid, tolerance, stop, nullptr);
     }
-    /// The same, and residuals whose squares add up to J.
+    /// The same, with residuals whose squares sum to J.
     Cost cost(const IdealPid& pid, double tolerance, const std::stop_token& stop,
               std::vector<double>& residuals) const {
         return weigh(pid, tolerance, stop, &residuals);
     }
-    /// J, or where a run ended early more than that: the earlier, the more. Finite.
+    /// J, or a larger value if a run ended early: the earlier, the larger. Finite.
     double penalised(const Cost& cost) const;
 
     const EmulationProblem& problem() const { return problem_; }
@@ -61,7 +61,7 @@ private:
     const EmulationProblem& problem_;
     const std::vector<Trajectory>& trajectories_;
     std::vector<double> weights_;
-    double at_rest_ = 0;  // J where nothing moves
+    double at_rest_ = 0;  // J if nothing moves
 };
 
 }  // namespace tunewright::emulation

@@ -15,19 +15,19 @@ namespace tunewright::emulation {
 
 namespace {
 
-constexpr double kFlatnessRise = 0.05;  // of J, by which the flatness is measured
+constexpr double kFlatnessRise = 0.05;  // increase of J that defines the flatness
 
-// How far each unknown may move before J has risen by kFlatnessRise: the others follow (reoptimised), or stay (alone).
+// Possible change of each unknown until J has risen by kFlatnessRise: with the others re-optimised, or fixed (alone).
 struct Flatness {
     std::vector<double> reoptimised, alone;
 };
 
 constexpr double kFirstStep = 1e-3;   // relative to the unknown
-constexpr double kRiseSought = 2e-3;  // of J, relative, at the steps of the differences
+constexpr double kRiseSought = 2e-3;  // increase of J, relative, at the steps of the differences
 constexpr double kMaxStep = 0.3;
 constexpr int kStepRounds = 8;
 
-// Steps to either side at which the curvature of J stands out and is still that of the optimum.
+// Steps to either side at which the curvature of J is well above rounding and still that of the optimum.
 struct Differences {
     SettingsPoint step, curvature;
 };
@@ -58,9 +58,8 @@ std::optional<Differences> measure(const std::function<double(const SettingsPoin
     return found;
 }
 
-// From the Hessian of J at the optimum. `J` is finite near it, on both sides of bounds; `sizes` are those that the
-// unknowns may have. An optimum on a bound counts with its curvature all the same. Empty: no curvature that stands out
-// from rounding.
+// From the Hessian of J at the optimum. `J` is finite near it, on both sides of bounds; `sizes` are the typical sizes
+// of the unknowns. The curvature of an optimum on a bound is used too. Empty if the curvature is not above rounding.
 std::optional<Flatness> flatness(const std::function<double(const SettingsPoint&)>& J, const SettingsPoint& optimum,
                                  const SettingsPoint& sizes) {
     const std::size_t n = optimum.size();
@@ -95,11 +94,11 @@ std::optional<Flatness> flatness(const std::function<double(const SettingsPoint&
 }
 
 constexpr double kMaxBoundDistance = 1e-6;  // of the range
-constexpr double kMaxUnexplainedU = 0.1;    // of int u_nl^2, beyond which a PID cannot emulate (Remark 7)
-constexpr double kMaxUnexplainedY = 0.05;   // of int y_nl^2, likewise
+constexpr double kMaxUnexplainedU = 0.1;    // of int u_nl^2: above it a PID cannot emulate (Remark 7)
+constexpr double kMaxUnexplainedY = 0.05;   // of int y_nl^2, in the same way
 constexpr int kReportedIntervals = 400;     // of a run in the answer
 
-// The answer carries every so many samples.
+// The answer has every stride-th sample.
 std::size_t stride(const EmulationProblem& problem) {
     return static_cast<std::size_t>(problem.intervals / kReportedIntervals);
 }
@@ -134,7 +133,7 @@ void judge_fit(EmulationFit& fit) {
     const std::string figures =
         "u differs from the nonlinear controller by " + percent(fit.u_left) + " (squared), y by " + percent(fit.y_left);
     fit.sentence = fit.adequate ? "The PID follows the nonlinear controller: " + figures + "."
-                                : "No PID within the bounds can follow this nonlinear controller: " + figures +
+                                : "No PID within the bounds follows this nonlinear controller: " + figures +
                                       " (up to " + percent(kMaxUnexplainedU) + " and " + percent(kMaxUnexplainedY) +
                                       " count as following). Ask for a slower target, smaller steps or wider bounds, "
                                       "or implement the nonlinear controller itself.";
@@ -215,11 +214,10 @@ void add_flatness(EmulationReport& report, const Criterion& criterion, const Fix
 
 Warning at_bound(const ActiveBound& bound) {
     if (bound.parameter == "Td" && bound.value == 0)
-        return {"at-bound", "Td lies on its lower bound 0: a derivative part does not help here, a PI does as well."};
-    return {"at-bound", bound.parameter + " lies on its " + (bound.high ? "upper" : "lower") + " bound " +
+        return {"at-bound", "Td is at its lower bound 0: a derivative part does not help here, and a PI is as good."};
+    return {"at-bound", bound.parameter + " is at its " + (bound.high ? "upper" : "lower") + " bound " +
                             text(bound.value) +
-                            ": J would fall beyond it. Widen bounds, or alpha, if such values are "
-                            "acceptable."};
+                            ": J would be lower beyond it. Widen bounds, or alpha, if such values are acceptable."};
 }
 
 }  // namespace
@@ -259,16 +257,16 @@ std::vector<Warning> remarks(const EmulationReport& report) {
     if (!report.fit.adequate) warnings.push_back({"cannot-emulate", report.fit.sentence});
     if (!report.zero_dynamics_stable)
         warnings.push_back({"unstable-zero-dynamics",
-                            "The plant's zero dynamics are unstable at the operating point: under the nonlinear "
-                            "controller y follows its target while the states behind it run away. Its run to the "
-                            "horizon is emulated all the same; a robust design is safer."});
+                            "The plant's zero dynamics are unstable at the operating point: with the nonlinear "
+                            "controller y follows its target, but the internal states are unbounded. Its run to the "
+                            "horizon is emulated in spite of that; a robust design is safer."});
     for (std::size_t i = 0; i < report.scenarios.size(); ++i) {
         const EmulatedScenario& scenario = report.scenarios[i];
         const std::string which = report.scenarios.size() > 1 ? " of scenario " + std::to_string(i + 1) : "";
         if (scenario.limited)
             warnings.push_back({"nonlinear-controller-limited",
                                 "A limit of the input clips the nonlinear controller's run" + which +
-                                    ": y does not follow the target there, and the PID emulates the clipped run."});
+                                    ", so y does not follow the target there, and the PID emulates the clipped run."});
         if (!scenario.ended.empty())
             warnings.push_back({"left-domain", "The PID's run" + which + " ends early: " + scenario.ended});
     }

@@ -20,15 +20,15 @@ Error cancelled() { return {ErrorKind::cancelled, "", "The job was cancelled bef
 Error nothing_reaches(const std::string& reason) {
     return {ErrorKind::no_feasible_controller, "bounds",
             "No PID within the bounds runs to the horizon: " + reason +
-                " Give other bounds, smaller steps or a shorter horizon."};
+                " Use other bounds, smaller steps or a shorter horizon."};
 }
 
 Expected<EmulatedDesign> approximate(const FixedErrorQp& remark6, const Bounds& bounds, double wu) {
     const auto point = remark6.best(bounds);
     if (!point)
         return Error{ErrorKind::no_feasible_controller, "bounds",
-                     "Within the bounds the optimal gain is 0: the nonlinear controller's action has no share of the "
-                     "error, its integral or derivative. Give bounds of Kp with the sign of the plant's gain."};
+                     "Within the bounds the optimal gain is 0: the nonlinear controller's action does not depend on "
+                     "the error, its integral or its derivative. Give bounds of Kp with the sign of the plant's gain."};
     const double J = remark6.J(*point);
     return EmulatedDesign{*point, bounds, J, J / wu, std::nullopt, false};
 }
@@ -47,7 +47,7 @@ Expected<EmulatedDesign> full(const Criterion& criterion, const FixedErrorQp& re
     return EmulatedDesign{optimum->point, bounds, cost.J, cost.J_u, cost.J_y, optimum->stopped};
 }
 
-// A default step that the nonlinear controller cannot make was too large a guess.
+// If the nonlinear controller cannot perform the default step, that step was too large.
 Expected<std::vector<Trajectory>> trajectories_of(EmulationProblem& problem, const RunControl& control) {
     auto trajectories = nonlinear_trajectories(problem, control);
     for (int i = 0; i < kSmallerSteps && problem.default_scenario; ++i) {
@@ -58,7 +58,7 @@ Expected<std::vector<Trajectory>> trajectories_of(EmulationProblem& problem, con
     if (problem.default_scenario && trajectories)
         problem.warnings.push_back({"default-scenario", "No scenarios are given: one set-point step of " +
                                                             text(problem.scenarios.front().setpoint_step) +
-                                                            " is taken. Give the steps that the loop really sees."});
+                                                            " is used. Give the steps that occur in the loop."});
     return trajectories;
 }
 
@@ -94,17 +94,16 @@ TuningMethod emulation_method() {
     method.id = kEmulation;
     method.title = "Emulation of a nonlinear controller";
     method.formula =
-        "minimise over Kp, Ti, Td the mean over scenarios of int_0^t_f [wy (y_nl - y)^2 + wu (u_nl - u)^2] dt; "
-        "y_nl, u_nl: the run under u = (v - sum_k beta_k L_f^k h)/(beta_r L_g L_f^(r-1) h); Kp, Ti, Td: within "
-        "alpha_low and alpha_high times classical settings; t_f: the horizon; remark6: error taken from y_nl, wy "
-        "= 0";
+        "minimise over Kp, Ti, Td the mean over scenarios of int_0^t_f [wy (y_nl - y)^2 + wu (u_nl - u)^2] dt; y_nl, "
+        "u_nl: the run with u = (v - sum_k beta_k L_f^k h)/(beta_r L_g L_f^(r-1) h); Kp, Ti, Td: within alpha_low and "
+        "alpha_high times classical settings; t_f: the horizon; remark6: error taken from y_nl, wy = 0";
     method.source =
         "Mhaskar, El-Farra and Christofides, A method for PID controller tuning using nonlinear control techniques, "
         "American Control Conference (2004)";
     method.needs = "differential equations that are affine in the input, or a linear plant without direct term";
     method.validity =
-        "operating conditions that a PID can stabilise; where much of the nonlinear controller's action is left the "
-        "answer warns (Remark 7)";
+        "operating conditions that a PID can stabilise; a warning says if the PID leaves much of the nonlinear "
+        "controller's action (Remark 7)";
     method.all_if_nonlinear = true;
     method.bind(described_options(), tune);
     return method;

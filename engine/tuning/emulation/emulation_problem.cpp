@@ -14,13 +14,13 @@
 namespace tunewright::emulation {
 namespace {
 
-constexpr double kShareOfInput = 0.05;   // of the nominal input, or of its range: the default step
-constexpr double kTargetTimes = 8;       // the default horizon, in the target's slowest time
-constexpr double kMaxTargetTimes = 640;  // of a given horizon, likewise: ten samples a time
-constexpr double kFilterShare = 0.1;     // the default Tf over the target's time
-constexpr double kShareOfTest = 0.4;     // of that step: a simulated test has no noise to stand out of
+constexpr double kShareOfInput = 0.05;   // share of the nominal input, or of its range, for the default step
+constexpr double kTargetTimes = 8;       // default horizon as a multiple of the target's slowest time
+constexpr double kMaxTargetTimes = 640;  // largest given horizon as such a multiple: ten samples per time
+constexpr double kFilterShare = 0.1;     // default Tf over the target's time
+constexpr double kShareOfTest = 0.4;     // share of that step: a simulated test has no noise
 constexpr int kMinIntervals = 800, kMaxIntervals = 6400;
-constexpr double kIntervalShare = 0.04;  // of the fastest time constant
+constexpr double kIntervalShare = 0.04;  // share of the fastest time constant
 
 Error wrong(const std::string& where, const std::string& sentence) {
     return {ErrorKind::invalid_argument, where, sentence};
@@ -56,18 +56,19 @@ Expected<Scenario> scenario_at(const std::string& path, const std::shared_ptr<co
             std::ranges::find_if(states, [&id = name](const NamedValue& state) { return state.name == id; });
         if (at == states.end())
             return wrong(std::string(path).append("/initial/").append(name),
-                         name + " is no state of the plant; its states are " + state_names(*nominal) + ".");
+                         name + " is not a state of the plant; its states are " + state_names(*nominal) + ".");
         if (scenario.x0.empty()) scenario.x0.assign(steady.begin(), steady.end());
         scenario.x0[static_cast<std::size_t>(at - states.begin())] = value;
     }
     if (scenario.setpoint_step == 0 && scenario.x0.empty())
         return wrong(
             path + "/setpoint_step",
-            "setpoint_step is 0 and no state starts elsewhere: nothing would happen. Give a step, or initial.");
+            "setpoint_step is 0 and all states start at their steady values, so nothing would happen. Give a step, or "
+            "initial.");
     return scenario;
 }
 
-// What u may be moved by for a test or a step of modest size.
+// The change of u for a test or a step of modest size.
 double modest_input(const NonlinearSystem& system, double gain) {
     const double range = system.u_max() - system.u_min();
     if (std::isfinite(range)) return kShareOfInput * range;
@@ -100,7 +101,7 @@ Expected<LevelOneOptions> chosen_level_one(const EmulationProblem& problem, doub
         if (method == kEmulation || find_method(method) == nullptr)
             return wrong("bounds_from/methods/" + std::to_string(i),
                          "bounds_from names the method " + method +
-                             ", which is none of the first level. Give ids of other methods, such as imc, simc or "
+                             ", which the first level cannot use. Give ids of other methods, such as imc, simc or "
                              "ziegler_nichols_ultimate.");
     }
     if (level.methods.empty()) level.methods = {kImc, kZieglerNicholsUltimate};
@@ -112,8 +113,7 @@ Expected<LevelOneOptions> chosen_level_one(const EmulationProblem& problem, doub
         options.lambda.value_or(problem.relative_degree == 2 ? std::sqrt(problem.target.beta[2])
                                                              : target_time(problem.target) / problem.relative_degree);
     level.test_step = options.test_step.value_or(kShareOfTest * modest);
-    if (level.test_step == 0)
-        return wrong("bounds_from/test_step", "test_step is 0; a test without a step shows nothing.");
+    if (level.test_step == 0) return wrong("bounds_from/test_step", "test_step is 0; it must not be 0.");
     level.relay_amplitude = options.relay_amplitude.value_or(modest);
     level.relay_hysteresis = options.relay_hysteresis;
     return level;
@@ -141,8 +141,10 @@ std::optional<Error> choose_horizon(EmulationProblem& problem, const EmulationOp
     problem.horizon = options.horizon.value_or(kTargetTimes * slowest + L);
     const double longest = kMaxTargetTimes * slowest + L;
     if (problem.horizon <= longest) return std::nullopt;
-    return wrong("horizon", "horizon is " + text(problem.horizon) + ", so long that the response, over after some " +
-                                text(kTargetTimes * slowest) + ", would fall between two samples; it may be " +
+    return wrong("horizon", "horizon is " + text(problem.horizon) +
+                                ", which is too long: the response, which ends "
+                                "after about " +
+                                text(kTargetTimes * slowest) + ", would lie between two samples. It may be " +
                                 text(longest) + " at most.");
 }
 
@@ -150,13 +152,14 @@ std::optional<Error> choose_weights(EmulationProblem& problem, double gain, cons
     problem.wu = options.wu;
     problem.wy = problem.remark6 ? 0 : options.wy.value_or((problem.wu > 0 ? problem.wu : 1) / (gain * gain));
     if (problem.remark6 && !(problem.wu > 0))
-        return wrong("weights/wu", "wu is 0, and remark6 compares u alone. Give wu above 0, or formulation full.");
+        return wrong("weights/wu", "wu is 0, but remark6 compares only u. Give wu above 0, or use formulation full.");
     if (problem.wu == 0 && problem.wy == 0)
-        return wrong("weights", "wy and wu are both 0: nothing would be compared. Give one of them above 0.");
+        return wrong("weights", "wy and wu are both 0, so nothing would be compared. Give one of them above 0.");
     return std::nullopt;
 }
 
-// As many as resolve the derivative filter and the target: Simpson's rule then leaves some 1e-6 of J.
+// Enough intervals to resolve the derivative filter and the target: the error of Simpson's rule is then about 1e-6 of
+// J.
 int chosen_intervals(const EmulationProblem& problem) {
     double fastest = problem.target.beta.back() / problem.target.beta[problem.target.beta.size() - 2];
     if (problem.with_derivative)
@@ -177,7 +180,7 @@ double gain_size(const LinearPlant& plant, double time) {
 Expected<EmulationProblem> state_problem(const TuningProblem& plant, const EmulationOptions& options) {
     EmulationProblem problem;
     problem.linear = &plant.linear;
-    problem.system = {std::shared_ptr<const void>(), plant.nonlinear};  // lives as long as `plant`
+    problem.system = {std::shared_ptr<const void>(), plant.nonlinear};  // valid as long as `plant`
     if (!problem.system) {
         auto equations = as_equations(plant.linear);
         if (!equations) return equations.error();
@@ -247,8 +250,8 @@ SettingsPoint sizes_of(const SettingsPoint& point, const Bounds& bounds) {
 
 namespace {
 
-constexpr double kShareOfPlantTime = 0.5;  // the default target's lags over the plant's slowest time
-constexpr double kConjugate = 1e-9;        // of a pair, relative
+constexpr double kShareOfPlantTime = 0.5;  // sum of the default target's lags over the plant's slowest time
+constexpr double kConjugate = 1e-9;        // of a conjugate pair, relative
 
 std::string cure(int r) {
     if (r == 1) return "Give gamma.";
@@ -298,7 +301,9 @@ Expected<TargetResponse> chosen_target(const LinearPlant& plant, int r, const Ta
     const auto &gamma = options.gamma, &tau_cl = options.tau_cl, &xi = options.xi;
     const bool poles = !options.poles.empty();
     if (gamma.has_value() + (tau_cl || xi) + poles > 1)
-        return wrong("target", "target must be one of gamma, tau_cl with xi, and poles; more than one is given.");
+        return wrong("target",
+                     "target must have exactly one of gamma, tau_cl (with xi) and poles; more than one is "
+                     "given.");
     if (gamma && r != 1) return unsuitable("target/gamma", "gamma", 1, r);
     if (gamma) return first_order_target(*gamma);
     if (xi && !tau_cl) return wrong("target/tau_cl", "xi is given without tau_cl; give both.");

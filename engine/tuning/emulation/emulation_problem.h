@@ -1,4 +1,4 @@
-// The emulation problem: the plants and scenarios to run, the weights of their errors, and the bounds of the settings.
+// The emulation problem: plants and scenarios to run, weights of their errors, and bounds of the settings.
 
 #pragma once
 
@@ -24,10 +24,10 @@ struct Scenario {
     std::vector<double> x0;  ///< absolute states at t = 0; empty: the steady state
 };
 
-/// Where the first level's rules and tests come from.
+/// The rules and tests of the first level.
 struct LevelOneOptions {
     std::vector<std::string> methods = {};  ///< ids of the registry
-    NumberRange alpha;                      ///< of Eq. 3, on magnitudes
+    NumberRange alpha;                      ///< alpha of Eq. 3, for magnitudes
     double lambda = 0;                      ///< of imc
     double test_step = 0;                   ///< of u
     double relay_amplitude = 0;             ///< of u
@@ -41,26 +41,26 @@ struct EmulationProblem {
     ZeroDynamics zero_dynamics;
     TargetResponse target;
     std::vector<Scenario> scenarios;
-    bool default_scenario = false;  ///< none was given
-    bool with_derivative = true;    ///< PID, else PI
+    bool default_scenario = false;  ///< true: no scenario was given
+    bool with_derivative = true;    ///< true: PID, false: PI
     bool error_derivative = false;  ///< c = 1: the set-point step is differentiated
     bool remark6 = false;
     double horizon = 0;
-    int intervals = 0;  ///< of every run's samples from 0 to the horizon, even for Simpson's rule
+    int intervals = 0;  ///< intervals between the samples of every run from 0 to the horizon; even, for Simpson's rule
     double wy = 0, wu = 1;
-    double Tf = 0;                              ///< of a PID; the middle of its range where it is free
-    std::map<std::string, NumberRange> bounds;  ///< as given: of Kp, Ti, Td, and of Tf where it is free
+    double Tf = 0;                              ///< for a PID; the middle of its range if it is free
+    std::map<std::string, NumberRange> bounds;  ///< the given bounds of Kp, Ti, Td, and of Tf if it is free
     LevelOneOptions level_one;
     std::vector<Warning> warnings;
 
     bool free_Tf() const { return bounds.contains("Tf"); }
 };
 
-/// From the options; what they leave out comes from the linearisation (docs/methods.md). Errors: invalid_argument with
-/// the option as `where`; those of the relative degree with `where` = "plant/...".
+/// Reads the options; missing ones are set from the linearisation (docs/methods.md). Errors: invalid_argument with the
+/// option as `where`; those of the relative degree with `where` = "plant/...".
 Expected<EmulationProblem> state_problem(const TuningProblem& plant, const EmulationOptions& options);
 
-/// Magnitude of the linearisation's static gain; of an integrating plant the gain at frequency 1/time.
+/// Magnitude of the linearisation's static gain; for an integrating plant the gain at frequency 1/time.
 double gain_size(const LinearPlant& plant, double time);
 
 /// The unknowns of the second level: Kp, Ti, with PID Td, with a free filter Tf, in this order.
@@ -73,20 +73,20 @@ struct Bounds {
     SettingsPoint low, high;
 };
 
-/// The controller at a point: b = 1, the filter derivative with PID.
+/// The controller at a point: b = 1, with a filter of the derivative for PID.
 IdealPid controller_at(const EmulationProblem& problem, const SettingsPoint& point);
 
-/// The point of a controller; a PI of a PID problem has Td = 0.
+/// The point of a controller; a PI in a PID problem has Td = 0.
 SettingsPoint point_of(const EmulationProblem& problem, const IdealPid& pid);
 
 SettingsPoint clipped(const SettingsPoint& point, const Bounds& bounds);
 
-/// By which each unknown's changes are measured: its magnitude, near 0 a share of its range.
+/// The size of each unknown for relative changes: its magnitude, or near 0 a share of its range.
 SettingsPoint sizes_of(const SettingsPoint& point, const Bounds& bounds);
 
-/// The response that the nonlinear controller is to give, by the option `target`: as asked for, or from the
-/// linearisation. Errors: invalid_argument, `where` = "target/...", where it does not suit the relative
-/// degree, which the sentence names, or is not stable.
+/// The target response of the nonlinear controller: the option `target`, or a default from the linearisation. Errors:
+/// invalid_argument, `where` = "target/...", if it does not fit the relative degree, which the message states, or is
+/// not stable.
 Expected<TargetResponse> chosen_target(const LinearPlant& plant, int relative_degree, const TargetOptions& options);
 
 /// beta_1: the lags' sum, the area under 1 - y of a unit step.
@@ -95,7 +95,7 @@ double target_time(const TargetResponse& target);
 /// 1/|Re p| of the slowest pole of the target.
 double slowest_time(const TargetResponse& target);
 
-/// 1/|p| of the slowest pole p != 0 of a plant; without one ten dead times, or 1.
+/// 1/|p| of the slowest pole p != 0 of a plant; without such a pole ten dead times, or 1.
 double plant_time(const LinearPlant& plant);
 
 }  // namespace tunewright::emulation

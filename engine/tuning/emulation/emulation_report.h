@@ -1,5 +1,4 @@
-// What the method emulation reports beside its controller. Times from the step; y and u absolute; J in the user's
-// units.
+// The report of the method emulation. Times from the step; y and u absolute; J in the user's units.
 #pragma once
 
 #include <complex>
@@ -21,23 +20,23 @@ struct ActiveBound {
     double value = 0;
 };
 
-/// Classical settings of the first level, or why there are none.
+/// Classical settings of the first level, or the error in their place.
 struct LevelOneRow {
     std::string method;  ///< id of the registry
-    std::string test;    ///< step, relay or linear: what its model comes from
+    std::string test;    ///< step, relay or linear: the origin of its model
     std::string title;
-    std::optional<Plant> model;  ///< that its rule worked on
+    std::optional<Plant> model;  ///< the model that its rule used
     std::optional<Controller> controller;
     std::string error;            ///< in place of the controller
-    std::optional<double> J;      ///< as the second level counts it; empty where the run ended early
-    std::string ended;            ///< why it did
-    std::vector<double> t, y, u;  ///< of the first scenario
+    std::optional<double> J;      ///< as the second level computes it; empty if the run ended early
+    std::string ended;            ///< the reason for that
+    std::vector<double> t, y, u;  ///< the run of the first scenario
 };
 
-/// How much of the nonlinear controller's action the PID's leaves, and whether that is little (Remark 7).
+/// The part of the nonlinear controller's action that the PID does not reproduce, and whether it is small (Remark 7).
 struct EmulationFit {
     double u_left = 0;  ///< int (u_nl - u)^2 over int (u_nl - u_rest)^2, mean over the scenarios
-    double y_left = 0;  ///< the same of y
+    double y_left = 0;  ///< the same for y
     bool adequate = true;
     std::string sentence;
 };
@@ -45,10 +44,10 @@ struct EmulationFit {
 struct EmulatedScenario {
     double setpoint_step = 0;
     std::map<std::string, double> initial, parameters;
-    double y_rest = 0, u_rest = 0;  ///< its plant's steady state
+    double y_rest = 0, u_rest = 0;  ///< steady state of its plant
     std::vector<double> t, y_nl, u_nl, y, u;
-    bool limited = false;  ///< a limit of the input clipped the nonlinear controller
-    std::string ended;     ///< why the PID's run ended early; empty: it did not
+    bool limited = false;  ///< a limit of the input clipped the nonlinear controller's u
+    std::string ended;     ///< the reason why the PID's run ended early; empty: it did not
 };
 
 struct EmulationReport : MethodReport {
@@ -58,18 +57,18 @@ struct EmulationReport : MethodReport {
     double wy = 0, wu = 0;
     double horizon = 0;
     std::vector<ActiveBound> active_bounds;
-    std::map<std::string, NumberRange> bounds;     ///< of Kp, Ti, and Td, Tf where they are free
-    std::map<std::string, double> flatness;        ///< change of a parameter for J + 5 %, the others re-optimised
-    std::map<std::string, double> flatness_alone;  ///< the others fixed
+    std::map<std::string, NumberRange> bounds;     ///< of Kp, Ti, and of Td and Tf if they are free
+    std::map<std::string, double> flatness;        ///< change of a parameter for J + 5 %, with the others re-optimised
+    std::map<std::string, double> flatness_alone;  ///< the same with the others fixed
     int relative_degree = 0;
     bool zero_dynamics_stable = true;
     std::vector<std::complex<double>> zeros;
-    std::vector<double> beta;  ///< of the target beta_r y^(r) + ... + y = v
+    std::vector<double> beta;  ///< coefficients of the target beta_r y^(r) + ... + y = v
     EmulationFit fit;
     std::vector<LevelOneRow> level1;
     std::vector<EmulatedScenario> scenarios;
 
-    /// Without points, leaves out all traces but what was emulated in the first scenario.
+    /// Without points, removes all traces except the emulated one of the first scenario.
     void complete(const ReportContext& context, Evaluation&) override {
         if (context.options.points > 0) return;
         for (LevelOneRow& row : level1) row.t = row.y = row.u = {};

@@ -11,7 +11,7 @@ namespace tunewright::emulation {
 
 namespace {
 
-constexpr double kSeriesUpTo = 3;  // of h/Tf, where the recursion starts to be the accurate one
+constexpr double kSeriesUpTo = 3;  // h/Tf above which the recursion is more accurate than the series
 constexpr int kSeriesTerms = 40;
 
 using Four = std::array<double, 4>;
@@ -37,7 +37,7 @@ Four lagrange(int at, int first) {
 }
 
 // Weights of four neighbours in an integral over one interval, from the integrals of sigma^k over it; `first` of them
-// lie before the interval's start.
+// are before the interval's start.
 Four interval_weights(const Four& moments, int first) {
     Four weights{};
     for (int at = 0; at < 4; ++at) {
@@ -77,7 +77,7 @@ void over_intervals(const std::vector<double>& samples, const Four& moments,
     }
 }
 
-// The integral from the first sample on, by cubics; samples h apart, at least four.
+// The integral from the first sample, by cubics; at least four samples at distance h.
 std::vector<double> running_integral(const std::vector<double>& samples, double h) {
     std::vector<double> integral(samples.size(), 0);
     over_intervals(samples, {1, 1.0 / 2, 1.0 / 3, 1.0 / 4},
@@ -85,7 +85,7 @@ std::vector<double> running_integral(const std::vector<double>& samples, double 
     return integral;
 }
 
-// (e - x)/Tf with Tf x' = e - x from x0: the derivative of e behind a first-order filter.
+// (e - x)/Tf with Tf x' = e - x from x0: the derivative of e after a first-order filter.
 std::vector<double> filtered_derivative(const std::vector<double>& e, double h, double Tf, double x0) {
     std::vector<double> derivative(e.size());
     const double a = h / Tf, decay = std::exp(-a);
@@ -100,10 +100,10 @@ std::vector<double> filtered_derivative(const std::vector<double>& e, double h, 
 
 constexpr double kLimitTolerance = 1e-9;    // relative
 constexpr double kRidge = 1e-13;            // of the scaled normal matrix
-constexpr int kLimitRounds = 30;            // until the samples beyond a limit stay the same
-constexpr int kFilterScan = 9;              // points of a free filter
-constexpr int kFilterBits = 26;             // of ln Tf between them: half of the digits, which is what a minimum shows
-constexpr double kJOfNoController = 1e100;  // J of a filter with which there is none
+constexpr int kLimitRounds = 30;            // rounds until the set of samples beyond a limit no longer changes
+constexpr int kFilterScan = 9;              // scanned values of a free filter
+constexpr int kFilterBits = 26;             // bits of ln Tf between them: half of the digits, the accuracy of a minimum
+constexpr double kJOfNoController = 1e100;  // J of a filter without a controller
 
 using Gains = Eigen::Vector3d;
 
@@ -179,7 +179,7 @@ double FixedErrorQp::J(const SettingsPoint& point) const {
     return J_of(gains_at(point), problem_.free_Tf() ? signals(point[3]) : fixed_, nullptr);
 }
 
-// Convex: where u_nl is at a limit only what falls short of it counts. Newton's method on the samples that count.
+// Convex: if u_nl is at a limit, only values inside the limit count. Newton's method with the samples that count.
 std::optional<FixedErrorQp::BestPoint> FixedErrorQp::best_of_sign(double sign, double Tf, const Signals& signals,
                                                                   const Bounds& bounds) const {
     const int n = problem_.with_derivative ? 3 : 2;
@@ -249,7 +249,7 @@ std::optional<SettingsPoint> FixedErrorQp::best(const Bounds& bounds) const {
         const auto min = std::ranges::min_element(J) - J.begin();
         const double left = std::max(low, low + static_cast<double>(min - 1) * step);
         const double right = std::min(high, low + static_cast<double>(min + 1) * step);
-        boost::math::tools::brent_find_minima(at, left, right, kFilterBits);  // `at` keeps the best
+        boost::math::tools::brent_find_minima(at, left, right, kFilterBits);  // `at` stores the best
     }
     if (!best) return std::nullopt;
     return best->point;

@@ -1,4 +1,4 @@
-// Remark 6: the PID's error taken from the nonlinear controller's run, u compared alone. Its u is then linear in Kp,
+// Remark 6: the PID's error is that of the nonlinear controller's run, and only u is compared. Then u is linear in Kp,
 // Kp/Ti and Kp Td, and the least-squares problem is solved exactly inside the bounds.
 
 #pragma once
@@ -16,15 +16,16 @@ class FixedErrorQp {
 public:
     FixedErrorQp(const EmulationProblem& problem, const std::vector<Trajectory>& trajectories);
 
-    /// wu times the mean of int (u_nl - u)^2 dt. Where u_nl rests on a limit of the input, what u asks for beyond it
-    /// does not count: the limit would take it away.
+    /// wu times the mean of int (u_nl - u)^2 dt. If u_nl is at a limit of the input, the part of u beyond the limit
+    /// does not count, because the limit would remove it.
     double J(const SettingsPoint& point) const;
 
-    /// The best point within the bounds; a free Tf by a one-dimensional search around. Empty: no Kp other than 0.
+    /// The best point within the bounds; a free Tf is found by an outer one-dimensional search. Empty: no Kp other than
+    /// 0.
     std::optional<SettingsPoint> best(const Bounds& bounds) const;
 
 private:
-    /// At every sample of every scenario: what multiplies Kp, Kp/Ti and Kp Td in u.
+    /// At every sample of every scenario: the factors of Kp, Kp/Ti and Kp Td in u.
     using Signals = std::array<std::vector<double>, 3>;
     struct BestPoint {
         SettingsPoint point;
@@ -38,9 +39,9 @@ private:
 
     const EmulationProblem& problem_;
     const std::vector<Trajectory>& trajectories_;
-    std::vector<double> weights_;        // of a sample in J, all scenarios one after the other
+    std::vector<double> weights_;        // weight of each sample in J, all scenarios one after the other
     std::vector<double> u_nl_;           // likewise
-    std::vector<signed char> at_limit_;  // -1 the lower, 1 the upper
+    std::vector<signed char> at_limit_;  // -1 at the lower, 1 at the upper limit
     Signals fixed_;                      // with the fixed filter
 };
 

@@ -20,11 +20,11 @@ namespace {
 
 constexpr double kTolerance = 1e-12;
 constexpr int kMaxEvaluations = 600;
-constexpr double kMinT = 1e-3;               // of the test's length, to start from
+constexpr double kMinT = 1e-3;               // of the test's length: smallest T of the start
 constexpr double kMinSumOfSquares = 1e-300;  // keeps the logarithm of an exact fit finite
 constexpr double kFirstSteps = 0.1;          // in ln T, and of L relative to T
 
-// K by least squares for a shape, and the sum of squares that is left.
+// K by least squares for a shape, and the remaining sum of squares.
 struct Fit {
     double K = 0, left = 0;
 };
@@ -58,15 +58,15 @@ StepTest held_as_long_again(StepTest test) {
 }
 
 // The first-order model with dead time of a simulated test, which has no noise and no offset: the least sum of squared
-// differences over K, T > 0 and L >= 0; the test's last value counts for as long again. Errors: unsupported for a test
-// that has not settled.
+// differences over K, T > 0 and L >= 0; the test's last value is extended by the test's length. Error: unsupported for
+// a test that has not settled.
 Expected<Fopdt> first_order_model(const StepTest& recorded) {
     if (!recorded.settled || recorded.t.size() < 2)
         return Error{ErrorKind::unsupported, "plant",
                      "The simulated step test does not settle, so it has no first-order model: the plant integrates or "
-                     "is unstable. Name methods for such plants, simc or lambda, in bounds_from, or give bounds."};
+                     "is unstable. Give methods for such plants (simc or lambda) in bounds_from, or give bounds."};
     const StepTest test = held_as_long_again(recorded);
-    // The two instants of Smith's construction (28.3 % and 63.2 %) to start from.
+    // Start: the two times of Smith's construction (28.3 % and 63.2 %).
     const double slow = time_at(test, 0.632), fast = time_at(test, 0.283);
     const double T0 = std::max(1.5 * (slow - fast), kMinT * test.t.back());
     const auto left = [&](const std::vector<double>& x, bool&) {
@@ -79,10 +79,11 @@ Expected<Fopdt> first_order_model(const StepTest& recorded) {
     return Fopdt{.K = fit(test, T, L).K, .T = T, .L = L};
 }
 
-constexpr double kMaxHysteresis = 3;    // over sqrt(a^2 - hysteresis^2), a the amplitude of y: a is 1.05 times it
-constexpr double kSlowIntegral = 4;     // Ti over the target's time, where the nonlinear controller gives Kp
-constexpr double kMinAlphaOfTi = 1e-3;  // Ti = 0 is no controller
-constexpr double kHysteresis = 0.1;     // of what the relay moves y by in the long run, where there is no dead time
+constexpr double kMaxHysteresis = 3;    // relative to sqrt(a^2 - hysteresis^2), a the amplitude of y: a is then 1.05
+                                        // times it
+constexpr double kSlowIntegral = 4;     // Ti over the target's time, if the nonlinear controller gives Kp
+constexpr double kMinAlphaOfTi = 1e-3;  // Ti = 0 is not allowed
+constexpr double kHysteresis = 0.1;     // of the final change of y by the relay, for a plant without dead time
 
 class FirstLevel {
 public:
@@ -122,7 +123,7 @@ private:
         ImcOptions options;
         options.lambda = problem_.level_one.lambda;
         options.filter_order = 1;
-        // Of a PID as PI the derivative is left out: the first two terms of its series.
+        // For a PI, the derivative is omitted from the PID: the first two terms of its series.
         options.expansion = problem_.with_derivative ? expansion : ImcExpansion::maclaurin;
         return [options](const TuningProblem& plant) { return tune_imc(plant, options); };
     }
@@ -134,7 +135,7 @@ private:
         return [options](const TuningProblem& plant) { return tune_ziegler_nichols_ultimate(plant, options); };
     }
 
-    /// Any method, for the controller wanted where it lets that be chosen.
+    /// Any method, for the wanted controller if it can be chosen.
     Rule by_its_defaults(const std::string& id) const {
         return [this, &method = *find_method(id)](const TuningProblem& plant) -> Expected<TunedController> {
             MethodOptions options;
@@ -151,7 +152,7 @@ private:
     ControllerKind wanted() const { return problem_.with_derivative ? ControllerKind::PID : ControllerKind::PI; }
     std::string wanted_word() const { return word_of(words_of({wanted()}), wanted()); }
 
-    /// The settings that the rule gives on this plant.
+    /// Computes the settings that the rule gives on this plant.
     void settle(LevelOneRow& row, const Plant& plant, const LinearPlant& linear, const Rule& rule) const {
         const auto tuned = rule({plant, linear, std::nullopt, std::nullopt});
         if (!tuned) {
@@ -194,7 +195,7 @@ private:
         settle(row, *model, *linear, imc(ImcExpansion::pade));
     }
 
-    /// The relay test; where the plant does not oscillate under it, the linearisation's ultimate point.
+    /// Uses the relay test, or the linearisation's ultimate point if the relay does not make the plant oscillate.
     void by_oscillation() {
         LevelOneRow& row = add(kZieglerNicholsUltimate, "relay", "relay test");
         const double amplitude = problem_.level_one.relay_amplitude;
@@ -207,11 +208,11 @@ private:
             by_linear_model(kZieglerNicholsUltimate, ziegler_nichols({}));
             return;
         }
-        // Of its own the plant swings beyond the hysteresis; where it does not, the hysteresis sets the period.
+        // The plant's own oscillation must exceed the hysteresis; otherwise the hysteresis determines the period.
         const double hysteresis_share = std::numbers::pi * test->Ku * hysteresis / (4 * amplitude);
         if (hysteresis_share > kMaxHysteresis) {
             row.error =
-                "The plant has no oscillation of its own under a relay: y turns as soon as the relay has switched.";
+                "The plant does not oscillate by itself with a relay: y reverses as soon as the relay has switched.";
             by_linear_model(kZieglerNicholsUltimate, ziegler_nichols({}));
             return;
         }
@@ -221,8 +222,8 @@ private:
         settle(row, problem_.system->linearised(), *problem_.linear, ziegler_nichols(point));
     }
 
-    /// Where no rule serves, as on many unstable plants: what the nonlinear controller itself makes of y and y', with
-    /// an integral that is slow beside it.
+    /// If no rule applies, as for many unstable plants: the gains of the nonlinear controller for y and y', with a
+    /// comparatively slow integral.
     void by_linearising_law() {
         LieDerivatives at;
         const int r = problem_.relative_degree;
@@ -238,7 +239,7 @@ private:
     std::vector<LevelOneRow> rows_;
 };
 
-// The magnitudes of one parameter over the rows.
+// The magnitudes of one parameter in all rows.
 std::vector<double> magnitudes(const std::vector<IdealPid>& settings, double IdealPid::*member) {
     std::vector<double> values;
     for (const IdealPid& pid : settings)
@@ -256,7 +257,7 @@ Error nothing_to_start_from(const std::vector<LevelOneRow>& rows) {
     for (const LevelOneRow& row : rows)
         reasons += " " + row.title + ": " + (row.error.empty() ? "no integral action." : row.error);
     return {ErrorKind::no_feasible_controller, "bounds_from",
-            "The first level has no settings that bounds could follow from; give bounds of Kp, Ti and Td." + reasons};
+            "The first level has no settings from which to derive bounds; give bounds of Kp, Ti and Td." + reasons};
 }
 
 }  // namespace
@@ -270,7 +271,7 @@ Expected<std::vector<LevelOneRow>> level_one(const EmulationProblem& problem, co
 
 Expected<Bounds> search_bounds(const EmulationProblem& problem, const std::vector<LevelOneRow>& rows) {
     std::map<std::string, NumberRange> ranges = problem.bounds;
-    double sign = 0;  // that of the first row: an unstable plant's static gain does not show it
+    double sign = 0;  // that of the first row, because an unstable plant's static gain does not show it
     std::vector<IdealPid> settings;
     for (const LevelOneRow& row : rows) {
         const IdealPid* pid = row.controller ? std::get_if<IdealPid>(&*row.controller) : nullptr;

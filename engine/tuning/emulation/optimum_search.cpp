@@ -19,8 +19,7 @@ namespace tunewright::emulation {
 
 namespace {
 
-// The figures of a design that progress carries: on the linearisation, for a unit load. Null where that loop is not
-// stable.
+// The figures of a design for the progress: on the linearisation, for a unit load. Null if that loop is unstable.
 std::shared_ptr<const BestSoFar> best_so_far(const LinearPlant& plant, const IdealPid& pid) {
     const auto loop = Loop::make(plant, to_parallel(pid));
     if (!loop || !count_unstable_poles(*loop).stable()) return nullptr;
@@ -32,11 +31,11 @@ std::shared_ptr<const BestSoFar> best_so_far(const LinearPlant& plant, const Ide
     return std::make_shared<const BestSoFar>(BestSoFar{pid, integrals.IAE, peaks.S.value, peaks.T.value});
 }
 
-constexpr double kCoarseTolerance = 1e-6;        // of simulations while looking around
-constexpr double kSearchTolerance = 1e-8;        // of those between which differences are taken
-constexpr int kExplored[] = {0, 0, 30, 60, 90};  // points of the global look, by the number of unknowns
-constexpr int kPolishedStarts = 2;               // starts that are polished
-constexpr double kMinStartDistance = 0.05;       // of two of them, in a unit box
+constexpr double kCoarseTolerance = 1e-6;        // of simulations in the global search
+constexpr double kSearchTolerance = 1e-8;        // of simulations for differences
+constexpr int kExplored[] = {0, 0, 30, 60, 90};  // points of the global search, by the number of unknowns
+constexpr int kPolishedStarts = 2;               // starts that get a local search
+constexpr double kMinStartDistance = 0.05;       // between two of them, in a unit box
 constexpr int kMaxPolishSteps = 25;
 constexpr double kDifference = 1e-4;        // of a derivative, relative to the unknown
 constexpr double kMinExpectedFall = 1e-10;  // expected fall of J, relative, at which a polish ends
@@ -45,11 +44,11 @@ constexpr optimise::MarquardtDamping kDamping = {.max = 1e8, .ease = 10, .tighte
 constexpr double kMaxConfidentDamping = 10;  // damping up to which a small expected fall means that J is flat
 constexpr double kMaxPolishStep = 0.5;       // relative to the unknown
 constexpr double kSubplexStep = 0.02;        // in a unit box
-constexpr double kUnexploredLogJ = 700;      // ln J of a point where the search is stopped
+constexpr double kUnexploredLogJ = 700;      // ln J of a point after the search was stopped
 constexpr double kMinJ = 1e-300;             // keeps the logarithm of an exact emulation finite
 constexpr int kSubplexEvaluations = 150;
 constexpr double kSubplexTolerance = 1e-9;
-constexpr double kLogarithmicFrom = 3;  // high/low from which a bound's scale is logarithmic
+constexpr double kLogarithmicFrom = 3;  // ratio high/low above which a bound's scale is logarithmic
 
 // One unknown between its bounds as 0 to 1.
 class Scale {
@@ -91,7 +90,7 @@ public:
         best_.point = point_at(chosen.front().x);
         bool flat = false;
         for (std::size_t i = 0; i < chosen.size() && !stopped(); ++i) {
-            report(0.4 + 0.2 * static_cast<double>(i), "Polishing the emulating controller.");
+            report(0.4 + 0.2 * static_cast<double>(i), "Refining the emulating controller.");
             const double before = best_value_;
             const bool ended_flat = Polish(*this, point_at(chosen[i].x)).run();
             if (best_value_ < before) flat = ended_flat;
@@ -104,7 +103,7 @@ public:
 
 private:
     bool stopped() const { return control_.stop.stop_requested(); }
-    // With the best design so far, if there is one.
+    // Reports with the best design so far, if there is one.
     void report(double fraction, const char* message) const {
         if (!control_.progress) return;
         std::shared_ptr<const BestSoFar> best;
@@ -133,7 +132,7 @@ private:
             return stop ? kUnexploredLogJ : std::log(judged(point_at(q), kCoarseTolerance) + kMinJ);
         };
         const std::size_t n = scales_.size();
-        report(0.1, "Looking for the emulating controller within the bounds.");
+        report(0.1, "Searching the emulating controller within the bounds.");
         auto met = explore(f, {std::vector<double>(n, 0), std::vector<double>(n, 1)}, kExplored[n]);
         for (LocalMinimum& point : met) point.value = std::exp(point.value);
         return met;
@@ -154,7 +153,7 @@ private:
         return chosen;
     }
 
-    // A local search from one point, as `levenberg_marquardt` wants it. Unknowns are steps relative to their own sizes
+    // A local search from one point, as a problem of `levenberg_marquardt`. Unknowns are steps relative to their sizes
     // at the point.
     class Polish {
     public:
@@ -163,7 +162,7 @@ private:
             search.keep(start, cost_);
         }
 
-        // Whether it ends where no step promises anything.
+        // True if it ends at a point where no step promises a decrease.
         bool run() {
             if (cost_.ended.empty()) optimise::levenberg_marquardt(*this, kMaxPolishSteps, kDamping);
             return flat_;
@@ -233,7 +232,7 @@ private:
             return clipped(next, bounds);
         }
 
-        // What the step should gain, relative to J.
+        // The expected decrease by the step, relative to J.
         double expected_fall(const SettingsPoint& to) const {
             optimise::SmallProgram::Vector d(g_.size());
             for (std::size_t i = 0; i < to.size(); ++i) d[Eigen::Index(i)] = (to[i] - point_[i]) / size_[i];
@@ -256,7 +255,7 @@ private:
         best_.point = point;
     }
 
-    // Where limits of the input bend J.
+    // For a J with kinks from limits of the input.
     void subplex() {
         const auto f = [this](const std::vector<double>& q, bool& stop) {
             stop = stopped();
@@ -269,7 +268,7 @@ private:
             if (outside == 0) keep(point, cost);
             return std::log(criterion_.penalised(cost) + kMinJ) + outside;
         };
-        report(0.8, "Polishing the emulating controller.");
+        report(0.8, "Refining the emulating controller.");
         const std::size_t n = scales_.size();
         find_local_minimum(LocalSearch::subplex, f, units(best_.point),
                            {std::vector<double>(n, kSubplexStep), kSubplexTolerance, kSubplexEvaluations});

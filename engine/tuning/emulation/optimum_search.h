@@ -1,4 +1,4 @@
-// The second level's optimum within its bounds: a global look, then Gauss-Newton steps on the residuals.
+// The second level's optimum within its bounds: a global search, then Gauss-Newton steps on the residuals.
 
 #pragma once
 
@@ -9,20 +9,20 @@
 
 namespace tunewright::emulation {
 
-/// Where the search ended.
+/// The result of the search.
 struct Optimum {
     SettingsPoint point;
     Cost cost;             ///< simulated to kFineTolerance
-    bool stopped = false;  ///< the best design so far
+    bool stopped = false;  ///< true: stopped, the best design so far
 };
 
-/// The least J within `bounds`: DIRECT over the box (NLopt) and `starts`, the best of them polished by bounded
-/// Levenberg-Marquardt steps, then by NLopt's subplex where those leave off before J is flat. Empty: stopped before
-/// anything was tried.
+/// The least J within `bounds`: DIRECT over the box (NLopt) and `starts`, the best of them refined by bounded
+/// Levenberg-Marquardt steps, then by NLopt's subplex if these end before J is flat. Empty: stopped before anything was
+/// tried.
 std::optional<Optimum> find_optimum(const Criterion& criterion, const Bounds& bounds,
                                     const std::vector<SettingsPoint>& starts, const RunControl& control);
 
-/// Of the last simulations, which give J to the digits of the answer.
+/// Tolerance of the last simulations, which compute J to the digits of the answer.
 constexpr double kFineTolerance = 1e-9;
 
 }  // namespace tunewright::emulation

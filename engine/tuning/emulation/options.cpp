@@ -14,7 +14,7 @@ OptionSet<TargetOptions> target() {
     set.field(&O::gamma, "gamma", "gamma y' + y = set point.", kPositiveTime);
     set.field(&O::tau_cl, "tau_cl", "tau_cl^2 y'' + 2 xi tau_cl y' + y = set point.", kPositiveTime);
     set.field(&O::xi, "xi", "Damping ratio. Default: 1.", {.exclusive_minimum = 0});
-    set.list(&O::poles, "poles", "As many as the relative degree, complex ones in conjugate pairs.",
+    set.list(&O::poles, "poles", "As many poles as the relative degree, complex ones in conjugate pairs.",
              described_option(OptionType::complex, "pole", "A number or [re, im], in the open left half-plane.",
                               {.unit = "1/time"}),
              kMaxElements);
@@ -24,11 +24,14 @@ OptionSet<TargetOptions> target() {
 OptionSet<ScenarioOptions> scenario() {
     using O = ScenarioOptions;
     OptionSet<O> set;
-    set.field(&O::setpoint_step, "setpoint_step", "From this plant's steady state.", {.unit = "y", .required = true});
+    set.field(&O::setpoint_step, "setpoint_step",
+              "Set-point step from this plant's steady "
+              "state.",
+              {.unit = "y", .required = true});
     set.field(&O::initial, "initial", "States at t = 0 by name, absolute; the others are at their steady values.");
     set.field(&O::parameters, "parameters",
-              "Other values of the plant's parameters by name: an uncertain plant is one more scenario, known "
-              "to its nonlinear controller.");
+              "Other values of the plant's parameters by name: an uncertain plant is an additional scenario, and its "
+              "nonlinear controller knows these values.");
     return set;
 }
 
@@ -59,19 +62,25 @@ OptionSet<BoundsFromOptions> bounds_from() {
              "on the linearisation. Default: these two.",
              described_option(OptionType::text, "method", "Id of a method."), kMaxElements);
     set.field(&O::alpha, "alpha",
-              "Factors of the smallest and of the largest of their values, Kp by size (Eq. 3): at least 0 and below 1, "
+              "Factors of the smallest and the largest of these values, Kp by size (Eq. 3): at least 0 and below 1, "
               "and above 1. Default: [" +
                   text(alpha.low) + ", " + text(alpha.high) + "].",
               {.minimum = 0});
-    set.field(&O::lambda, "lambda", "Of imc. Default: the target's time constant.", kPositiveTime);
+    set.field(&O::lambda, "lambda",
+              "Closed-loop time constant of imc. Default: the target's time "
+              "constant.",
+              kPositiveTime);
     set.field(&O::test_step, "test_step",
-              "Step of the input in that test, not 0. Default: 2 % of the input's range, or of its nominal value.",
+              "Step of the input in the simulated step test, not 0. Default: 2 % of the input's range, or of its "
+              "nominal value.",
               {.unit = "u"});
-    set.field(&O::relay_amplitude, "relay_amplitude", "Of the relay test. Default: 5 % of them.",
+    set.field(&O::relay_amplitude, "relay_amplitude",
+              "Amplitude of the input in the simulated relay test. Default: 5 "
+              "% of the input's range, or of its nominal value.",
               {.unit = "u", .exclusive_minimum = 0});
     set.field(&O::relay_hysteresis, "relay_hysteresis",
-              "Hysteresis of the simulated relay test. Default: 0 with a dead time, else a tenth of what the relay "
-              "moves y by in the long run.",
+              "Hysteresis of the simulated relay test. Default: 0 with a dead time, else a tenth of the final change "
+              "of y by the relay.",
               {.unit = "y", .minimum = 0});
     return set;
 }
@@ -83,30 +92,34 @@ OptionSet<EmulationOptions> described_options() {
     OptionSet<O> set;
     add_controller(set, {ControllerKind::PI, ControllerKind::PID});
     set.object(&O::target, "target",
-               "The response that the nonlinear controller gives: gamma for relative degree 1, tau_cl and xi for 2, "
+               "The target response of the nonlinear controller: gamma for relative degree 1, tau_cl and xi for 2, "
                "poles for any. Default: lags that sum to half the slowest time of the linearisation.",
                target());
     set.choice(&O::formulation, "formulation",
-               "full: the PID's own run on the plant (Eq. 2); remark6: its error taken from the nonlinear controller's "
-               "run, u compared alone.",
+               "full: the PID's own run on the plant (Eq. 2); remark6: its error is that of the nonlinear controller's "
+               "run, and only u is compared.",
                Words<Formulation>{{"full", Formulation::full}, {"remark6", Formulation::remark6}});
     set.list(&O::scenarios, "scenarios",
-             "Runs that J is averaged over. Default: one step that takes 5 % more of the input, or of its range.",
+             "Runs over which J is averaged. Default: one set-point step that needs 5 % of the nominal input, or of "
+             "its range.",
              described_option(OptionType::object, "scenario", "A run from t = 0."), kMaxElements, scenario());
     set.field(&O::horizon, "horizon",
-              "Where J's integral ends. Default: eight times the target's slowest time after the dead time.",
+              "The end of the integral in J. Default: eight times the target's slowest time after the dead time.",
               kPositiveTime);
     set.object(&O::weights, "weights", "J = mean of int wy (y_nl - y)^2 + wu (u_nl - u)^2 dt.", weights());
-    set.object(&O::bounds, "bounds", "Where the optimum is searched. Those left out come from bounds_from.", bounds());
+    set.object(&O::bounds, "bounds",
+               "Bounds within which the optimum is searched. Missing ones come from "
+               "bounds_from.",
+               bounds());
     set.object(&O::bounds_from, "bounds_from",
-               "The first level: which classical settings are tried beside, and how bounds follow from them.",
+               "The first level: which classical settings are computed, and how the bounds follow from them.",
                bounds_from());
     set.field(&O::Tf, "Tf",
               "Filter time of a PID's derivative part, or [low, high] to choose it too (Remark 5). Default: a "
               "tenth of the target's time.",
               kPositiveTime);
     set.choice(&O::derivative_on, "derivative_on",
-               "measurement: of y alone; error: of set point minus y, with the kick of its step.",
+               "measurement: derivative of y only; error: derivative of set point minus y, with a kick at a step.",
                Words<DerivativeOn>{{"measurement", DerivativeOn::measurement}, {"error", DerivativeOn::error}});
     return set.main({"target", "formulation", "scenarios", "horizon", "bounds"});
 }

@@ -12,7 +12,7 @@
 
 namespace tunewright::emulation {
 
-/// The response that the nonlinear controller gives: gamma for relative degree 1, tau_cl and xi for 2, poles for any;
+/// The target response of the nonlinear controller: gamma for relative degree 1, tau_cl and xi for 2, poles for any;
 /// none: lags that sum to half the slowest time of the linearisation.
 struct TargetOptions {
     std::optional<double> gamma = {};              ///< gamma y' + y = v, in time
@@ -22,7 +22,7 @@ struct TargetOptions {
 
 /// A run from t = 0.
 struct ScenarioOptions {
-    double setpoint_step = 0;                    ///< from this plant's steady state, in y
+    double setpoint_step = 0;                    ///< step in y, from this plant's steady state
     std::map<std::string, double> initial = {};  ///< states at t = 0, absolute; the others are at their steady values
     std::map<std::string, double> parameters = {};  ///< other values of the plant's parameters
 };
@@ -33,27 +33,27 @@ struct WeightOptions {
     double wu = 1;
 };
 
-/// Where the optimum is searched; those left out come from BoundsFromOptions.
+/// Bounds within which the optimum is searched; missing ones come from BoundsFromOptions.
 struct BoundOptions {
     std::optional<NumberRange> Kp = {}, Ti = {}, Td = {};
 };
 
-/// The first level: which classical settings are tried beside, and how bounds follow from them.
+/// The first level: which classical settings are computed, and how the bounds follow from them.
 struct BoundsFromOptions {
     std::vector<std::string> methods = {};  ///< ids of the registry; empty: imc and Ziegler and Nichols' ultimate rule
     NumberRange alpha{0.2, 5};              ///< factors of the smallest and of the largest value (Eq. 3), Kp by size
-    std::optional<double> lambda = {};      ///< of imc; empty: the target's time constant
-    std::optional<double> test_step = {};   ///< of u, not 0
+    std::optional<double> lambda = {};      ///< lambda of imc; empty: the target's time constant
+    std::optional<double> test_step = {};   ///< step of u, not 0
     std::optional<double> relay_amplitude = {};  ///< of u
     std::optional<double> relay_hysteresis = {};
 };
 
 enum class Formulation {
     full,     ///< the PID's own run on the plant (Eq. 2)
-    remark6,  ///< its error taken from the nonlinear controller's run, u compared alone
+    remark6,  ///< its error is that of the nonlinear controller's run, and only u is compared
 };
 
-/// What the derivative part acts on: y alone, or set point minus y, with the kick of its step.
+/// Input of the derivative part: y only, or set point minus y, with a kick at a step.
 enum class DerivativeOn { measurement, error };
 
 struct EmulationOptions {
@@ -65,7 +65,7 @@ struct EmulationOptions {
     WeightOptions weights = {};
     BoundOptions bounds = {};
     BoundsFromOptions bounds_from = {};
-    std::optional<std::variant<double, NumberRange>> Tf = {};  ///< a range: chosen too (Remark 5)
+    std::optional<std::variant<double, NumberRange>> Tf = {};  ///< a range: Tf is optimised too (Remark 5)
     DerivativeOn derivative_on = DerivativeOn::measurement;
 };
 

@@ -14,22 +14,22 @@ std::vector<Warning> range_warnings(const ReducedModel& model, const FirstOrderR
     std::string range = "outside " + text(rule.min) + " to " + text(rule.max);
     if (rule.min == 0) range = "above " + text(rule.max);
     if (rule.max == std::numeric_limits<double>::infinity()) range = "below " + text(rule.min);
-    return {outside_validity("L/T is " + text(ratio) + ", " + range + ", the range in which " + rule.name +
-                             " holds. Check Ms, or use robust.")};
+    return {outside_validity("L/T is " + text(ratio) + ", " + range + ", the range of L/T for which " + rule.name +
+                             " was made. Check Ms, or use robust.")};
 }
 
 }  // namespace
 
 std::optional<Error> unfit(const ReducedModel& model, const FirstOrderRule& rule) {
     if (model.integrators > (rule.has_integrating_form ? 1 : 0))
-        return degenerate("plant", rule.name + " has no form for integrating plants.",
+        return degenerate("plant", rule.name + " has no formulas for integrating plants.",
                           "Use simc, lambda, amigo, ziegler_nichols_ultimate or robust.");
     if (model.L <= 0)
-        return degenerate("plant/L", rule.name + " divides by the dead time, and that of the model is 0.",
-                          "Give the loop's true dead time, or use lambda with lambda, simc with tau_c, or robust with "
-                          "a fixed filter Tf.");
+        return degenerate("plant/L", rule.name + " divides by the dead time, but that of the model is 0.",
+                          "Give the true dead time of the loop, or use lambda with lambda, simc with tau_c, or robust "
+                          "with a fixed filter Tf.");
     if (model.integrators == 0 && model.T1 <= 0)
-        return degenerate("plant/T", rule.name + " needs a lag, and the model is a pure dead time (T = 0).",
+        return degenerate("plant/T", rule.name + " needs a lag, but the model is a pure dead time (T = 0).",
                           "Use amigo, improved_simc or robust.");
     return std::nullopt;
 }
@@ -53,7 +53,7 @@ Expected<TunedController> tune_first_order(const TuningProblem& problem, const F
 
 OptionSet<FirstOrderOptions> first_order_options() {
     OptionSet<FirstOrderOptions> set;
-    add_reduction(set, "tangent, half_rule where the step response has no tangent.");
+    add_reduction(set, "tangent; half_rule if the step response has no tangent.");
     add_filter(set, "of the derivative part, Td s/(1 + s Tf); the source has none.");
     return set;
 }

@@ -1,4 +1,4 @@
-// What every tuning method is: a plant in, a controller out, and the texts and options that describe it.
+// The interface of every tuning method: a plant in, a controller out, with the texts and options that describe it.
 #pragma once
 
 #include <functional>
@@ -29,11 +29,11 @@ class NonlinearSystem;
 struct TunedController {
     IdealPid controller;
     bool nonlinear_integral = false;     ///< the answer is the Npid whose linear part `controller` is
-    std::optional<Plant> reduced_model;  ///< where a rule needed a simpler model
+    std::optional<Plant> reduced_model;  ///< the simpler model, if the rule needed one
     std::vector<Warning> warnings;
-    std::shared_ptr<MethodReport> report;  ///< what the method reports beside the controller; may be null
-    std::optional<double> Ms_limit;        ///< that was asked for
-    bool partial = false;                  ///< stopped early: the best feasible design so far
+    std::shared_ptr<MethodReport> report;  ///< the method's own report; may be null
+    std::optional<double> Ms_limit;        ///< the requested limit
+    bool partial = false;                  ///< stopped early, with the best feasible design so far
 
     /// The report, if it is of this type; else null.
     template <class Report>
@@ -42,13 +42,13 @@ struct TunedController {
     }
 };
 
-/// A design for a controller as it is built, and the settings that are typed.
+/// A design for an implemented controller, with the settings to enter.
 struct DeviceDesign {
-    TunedController tuned;  ///< its controller is the ideal twin of the settings
+    TunedController tuned;  ///< its controller is the ideal equivalent of the settings
     device::Fitted fitted;
 };
 
-/// The controller that the method answers.
+/// The controller of the method's answer.
 inline Controller controller_of(const TunedController& tuned) {
     const IdealPid& pid = tuned.controller;
     if (tuned.nonlinear_integral) return Npid{.Kp = pid.Kp, .Ti = pid.Ti, .Td = pid.Td, .filter = pid.filter};
@@ -56,15 +56,15 @@ inline Controller controller_of(const TunedController& tuned) {
 }
 
 /// The (nominal) plant both as given and in the form that computations use; `dead_time_std` is the standard error of an
-/// identified L. `family`: all plants on which limits must hold; empty: the plant alone. Methods that know no limits
-/// work on the nominal plant.
+/// identified L. `family`: all plants on which limits must hold; empty: the plant alone. Methods without limits use the
+/// nominal plant.
 struct TuningProblem {
     Plant plant;
     LinearPlant linear;
     std::optional<double> dead_time_std;
     std::optional<PlantFamily> family = {};
-    std::optional<UltimatePoint> relay_point = {};  ///< by the describing function of a recorded relay test
-    /// Where `linear` is only the linearisation of this plant, which lives as long as the problem; else null.
+    std::optional<UltimatePoint> relay_point = {};  ///< from the describing function of a recorded relay test
+    /// The nonlinear plant of which `linear` is the linearisation, valid as long as the problem; else null.
     const NonlinearSystem* nonlinear = nullptr;
 };
 
@@ -77,33 +77,34 @@ struct MethodVariant {
 struct TuningMethod {
     std::string id;
     std::string title;
-    std::string formula;   ///< readable as in the source, plain text
-    std::string source;    ///< author, year, where
+    std::string formula;   ///< as in the source, in plain text
+    std::string source;    ///< author, year, publication
     std::string needs;     ///< "any linear plant", "fopdt (others are reduced)", ...
     std::string validity;  ///< the range the source claims
     std::vector<OptionDescription> options;
-    /// What "all" runs of it, each with a name that its title gets; empty: one for each choice of `controller` with
-    /// integral action, or the defaults.
+    /// Its variants in "all", each with a name for its title; empty: one for each choice of `controller` with integral
+    /// action, or the defaults.
     std::vector<MethodVariant> variants = {};
     bool holds_family = false;    ///< limits hold on all of TuningProblem::family
     bool weighs_setpoint = true;  ///< its controllers have a set-point weight, which a request may choose
-    /// Percent of overshoot that the weight keeps where the options ask for nothing; empty: the source's weight stays.
+    /// Limit on the overshoot, in percent, that the method applies by itself if the options have none; empty: the
+    /// source's weight stays.
     std::function<std::optional<double>(const MethodOptions&)> overshoot = {};
-    bool compared = true;           ///< "all" runs it; else it runs by name alone
+    bool compared = true;           ///< "all" runs it; false: only a request by name does
     bool all_if_nonlinear = false;  ///< "all" runs it on nonlinear plants only; by name it runs on any
     std::function<Expected<TunedController>(const TuningProblem&, const MethodOptions&, const RunControl&)> tune;
     /// For a plant known by measured points of its frequency response; empty: the method needs a model.
     std::function<Expected<TunedController>(const MeasuredPlant&, const MethodOptions&, const RunControl&)>
         tune_on_points = {};
-    /// For a controller as it is built: the limits hold on the loop as it computes. Empty: the method designs the ideal
-    /// law, which is then fitted.
+    /// For an implemented controller: the limits hold on its loop. Empty: the method designs the ideal law, which is
+    /// then converted.
     std::function<Expected<DeviceDesign>(const TuningProblem&, const MethodOptions&, const device::DeviceModel&,
                                          const RunControl&)>
         tune_for_device = {};
     std::vector<OptionDescription> options_on_points = {};  ///< with other defaults; empty: the same options
 
-    /// The options and the function that takes them as a struct: `solve(problem, options)`, or with the RunControl
-    /// behind them.
+    /// Sets the options and the function that takes them as a struct: `solve(problem, options)`, or with the RunControl
+    /// as a third argument.
     template <class Options, class Solve>
     void bind(const OptionSet<Options>& set, Solve solve) {
         options = set.descriptions();

@@ -1,5 +1,4 @@
-// What a method reports beside its controller. Each kind is a type of its own in the method's folder; the interface
-// encodes it by its type.
+// A method's own report. Each kind is a type in the method's folder; the interface encodes it by its type.
 #pragma once
 
 #include <memory>
@@ -12,18 +11,19 @@ namespace tunewright {
 
 class Tradeoffs;
 
-/// What a report may be completed from, once its controller has been evaluated.
+/// The data with which a report is completed, once its controller has been evaluated.
 struct ReportContext {
     const AnalysedPlant& subject;
     const EvaluateOptions& options;
-    Tradeoffs& tradeoffs;  ///< on the nominal plant; kept for the whole request
+    Tradeoffs& tradeoffs;  ///< on the nominal plant; one for the whole request
 };
 
 class MethodReport {
 public:
     virtual ~MethodReport() = default;
 
-    /// Adds what depends on the plant and on what is to be answered; remarks go to the evaluation's warnings.
+    /// Adds the parts that depend on the plant and on the requested output; remarks are added to the evaluation's
+    /// warnings.
     virtual void complete(const ReportContext&, Evaluation&) {}
 };
 

@@ -1,5 +1,5 @@
-// A method's struct of options with the description of each member: from it follow decoding, schema, form, list of
-// methods and the options of an answer. A default stands once, in the struct.
+// A method's struct of options with the description of each member: decoding, schema, form, list of methods and the
+// options of an answer follow from it. A default is defined once, in the struct.
 #pragma once
 
 #include <complex>
@@ -173,16 +173,15 @@ public:
     const T& defaults() const { return defaults_; }
     const std::vector<OptionDescription>& descriptions() const { return list_.descriptions(); }
 
-    /// The struct that was asked for. `given` suits the descriptions; `prefix`: the path of the object that holds the
-    /// options, "" or with a slash at its end.
+    /// The requested struct. `given` must fit the descriptions; `prefix`: the path of the object with the options, ""
+    /// or with a slash at its end.
     T read(const MethodOptions& given, const std::string& prefix = {}) const {
         T value = defaults_;
         list_.read(given, prefix, &value);
         return value;
     }
 
-    /// What a request gives for `value`: its numbers, switches and words that differ from the defaults, or from
-    /// `other`.
+    /// The options that give `value`: its numbers, switches and words that differ from the defaults, or from `other`.
     MethodOptions given_for(const T& value) const { return given_for(value, defaults_); }
     MethodOptions given_for(const T& value, const T& other) const { return list_.given_for(&value, &other); }
 
@@ -248,7 +247,7 @@ public:
         return *this;
     }
 
-    /// A struct under a name of its own, or one that may be left out; with `at_most_fields` > 0 no more of them may be
+    /// A struct under its own name, or an optional one; with `at_most_fields` > 0 at most that number of fields may be
     /// given.
     template <class M>
     OptionSet& object(M T::*member, std::string_view name, std::string_view sentence,
@@ -260,7 +259,7 @@ public:
         return *this;
     }
 
-    /// A struct whose options stand among this one's, as several methods share them.
+    /// A struct whose options are on the same level as this one's, because several methods share them.
     template <class E>
     OptionSet& embed(E T::*member, const OptionSet<E>& set) {
         for (const OptionDescription& option : set.descriptions()) list_.describe(option);
@@ -268,7 +267,7 @@ public:
         return *this;
     }
 
-    /// The options of these names, described before, decide what comes out.
+    /// The options of these names, which must be described already, are the main ones.
     OptionSet& main(std::initializer_list<std::string_view> names) {
         for (const std::string_view name : names) list_.described(name).main = true;
         return *this;
@@ -286,8 +285,8 @@ public:
         return *this;
     }
 
-    /// The number at `path` ("Ms", "filter/Tf") is moved by hand; without a slider of its own: evenly between its
-    /// limits, or about its value where it has only a lower one.
+    /// The number at `path` ("Ms", "filter/Tf") has a slider; by default evenly between its limits, or around its value
+    /// if it has only a lower one.
     OptionSet& slider(std::string_view path) { return slider(path, slider_within(list_.described(path))); }
     OptionSet& slider(std::string_view path, OptionSlider slider) {
         list_.described(path).slider = std::move(slider);

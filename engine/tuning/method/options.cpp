@@ -67,7 +67,7 @@ std::optional<std::string> value_misfit(const OptionDescription& option, const O
     return std::nullopt;
 }
 
-// What an option of several values is made of, for the part of the path behind its name.
+// For an option of several values: the fault in the part whose path follows its name.
 std::optional<std::string> part_misfit(const OptionDescription& option, const std::string& rest,
                                        const OptionValue& value) {
     const std::size_t slash = rest.find('/');
@@ -97,7 +97,7 @@ std::optional<std::string> misfit(const std::vector<OptionDescription>& options,
         std::vector<std::string> names;
         names.reserve(options.size());
         for (const OptionDescription& known : options) names.push_back(known.name);
-        return name + " is none of " + listed(names) + ".";
+        return name + " is not one of " + listed(names) + ".";
     }
     if (slash == std::string::npos) return value_misfit(*option, value);
     return part_misfit(*option, path.substr(slash + 1), value);

@@ -28,21 +28,21 @@ enum class OptionType {
     numbers_by_name,  ///< an object of numbers under names that the request chooses
 };
 
-/// The figure of a design that an option asks for, or limits.
+/// The figure of a design that an option sets or limits.
 enum class DesignFigure { none, Mks, Tf, Tf_over_Td, overshoot_percent };
 
-/// How a number is moved by hand.
+/// The slider of a number.
 struct OptionSlider {
-    double from = 0, to = 0;  ///< its ends; `relative`: factors of the value
+    double from = 0, to = 0;  ///< its ends; with `relative`, factors of the value
     bool relative = false, logarithmic = false;
-    std::optional<double> step = {};  ///< smallest move; empty: the form's own
+    std::optional<double> step = {};  ///< smallest step; empty: the form's own
     std::string label = {};           ///< empty: the option's name
-    std::string low = {}, high = {};  ///< what its ends mean, in a word or two
-    /// Of the options of one group one is moved: the first that was given, else the last whose value is known.
+    std::string low = {}, high = {};  ///< the meaning of its ends, in a word or two
+    /// Only one of the options of a group has its slider: the first that was given, else the last whose value is known.
     std::string group = {};
-    std::string moves_with = {};                 ///< another option, as long as both have the same value
-    DesignFigure value_of = DesignFigure::none;  ///< of the design: the option's value where nobody gave one
-    DesignFigure reached = DesignFigure::none;   ///< what the design came to, which may be another value
+    std::string moves_with = {};                 ///< another option that moves too, as long as both have the same value
+    DesignFigure value_of = DesignFigure::none;  ///< figure of the design that is the option's value if none was given
+    DesignFigure reached = DesignFigure::none;   ///< figure of the design that results, perhaps another value
 };
 
 using OptionValue = std::variant<bool, double, std::string>;
@@ -51,7 +51,7 @@ using OptionValue = std::variant<bool, double, std::string>;
 struct OptionDescription : NumberRule {
     std::string name;  ///< e.g. "Ms"
     OptionType type = OptionType::number;
-    std::string sentence;   ///< what it does
+    std::string sentence;   ///< its effect
     std::string unit = {};  ///< "", "time", "u/y", ...
     std::optional<OptionValue> default_value = {};
     std::vector<std::string> choices = {};       ///< words of a choice
@@ -81,8 +81,8 @@ struct NumberRange {
     double low = 0, high = 0;
 };
 
-/// Values by path: "Ms", "filter/Tf", "bounds/Kp/0" (low) and "bounds/Kp/1" (high), "scenarios/1/initial/T". Only what
-/// the user gave; already checked against the description.
+/// Values by path: "Ms", "filter/Tf", "bounds/Kp/0" (low) and "bounds/Kp/1" (high), "scenarios/1/initial/T". Only the
+/// user's values, already checked against the description.
 class MethodOptions {
 public:
     void set(const std::string& path, OptionValue value) { values_[path] = std::move(value); }
@@ -91,9 +91,10 @@ public:
     std::optional<bool> boolean(const std::string& path) const;
     std::optional<std::string> text(const std::string& path) const;
     std::optional<NumberRange> range(const std::string& path) const;
-    /// Elements of the list at `path`; 0 where it was not given.
+    /// Number of elements of the list at `path`; 0 if it was not given.
     std::size_t size(const std::string& path) const;
-    /// What was given right below `path`, in the order of names: fields, or the names of numbers_by_name.
+    /// Names of the given options directly below `path`, in alphabetical order: fields, or the names of
+    /// numbers_by_name.
     std::vector<std::string> names(const std::string& path) const;
     const std::map<std::string, OptionValue>& values() const { return values_; }
 
@@ -104,10 +105,10 @@ private:
 /// The option of this name; null if there is none.
 const OptionDescription* named(const std::vector<OptionDescription>& options, const std::string& name);
 
-/// The given values over the defaults of `options`.
+/// The given values, and the defaults of `options` for the others.
 MethodOptions with_defaults(const std::vector<OptionDescription>& options, const MethodOptions& given);
 
-/// What in the value at `path` ("Ms", "filter/Tf") contradicts the description, as a sentence; empty if it suits.
+/// The fault of the value at `path` ("Ms", "filter/Tf") by its description, as a sentence; empty if there is none.
 std::optional<std::string> misfit(const std::vector<OptionDescription>& options, const std::string& path,
                                   const OptionValue& value);
 

@@ -36,8 +36,8 @@ OptionSet<ReductionOptions> reduction_options(const std::string& of_auto) {
                    of_auto,
                words);
     set.field(&ReductionOptions::horizon, "horizon",
-              "Of min_ise, min_iae and min_itae: where the integral ends, with the gain fitted too. Default: settled, "
-              "with the plant's static gain.",
+              "For min_ise, min_iae and min_itae: the end of the integral; the gain is then fitted too. Default: when "
+              "the response has settled, with the plant's static gain.",
               {.unit = "time", .exclusive_minimum = 0});
     return set;
 }
@@ -79,9 +79,9 @@ Error degenerate(const std::string& where, const std::string& sentence, const st
 Warning outside_validity(const std::string& detail) { return {"outside-validity", detail}; }
 
 Warning no_second_lag() {
-    return {
-        "no-derivative",
-        "The model has no second lag, which the rule's derivative action would cancel: the answer is a PI controller."};
+    return {"no-derivative",
+            "The model has no second lag that the rule's derivative action could cancel, so the result is a PI "
+            "controller."};
 }
 
 Expected<TunedController> rule_answer(const IdealPid& pid, std::vector<Warning> warnings) {
@@ -90,7 +90,7 @@ Expected<TunedController> rule_answer(const IdealPid& pid, std::vector<Warning> 
         return Error{
             ErrorKind::numerical_failure, "plant",
             "The rule gives Kp = " + text(pid.Kp) + ", Ti = " + text(pid.Ti) + ", Td = " + text(pid.Td) +
-                " for this plant, beyond what can be used. Check the plant's numbers or choose the method robust."};
+                " for this plant, which is not usable. Check the plant's numbers or choose the method robust."};
     TunedController answer;
     answer.controller = pid;
     answer.warnings = std::move(warnings);

@@ -1,4 +1,4 @@
-// What the closed-form rules have in common: their options, the reduced model that they are written for, their answer.
+// The common part of the closed-form rules: their options, the reduced model that they use, their answer.
 #pragma once
 
 #include <optional>
@@ -14,16 +14,16 @@ namespace tunewright {
 
 enum class ControllerKind { P, PI, PID };
 
-/// What a rule's settings were made for: set-point steps or load steps.
+/// The purpose of a rule's settings: set-point steps or load steps.
 enum class Mode { servo, regulation };
 
-/// How a plant that is not of the rule's form is reduced to it.
+/// The reduction of a plant that does not have the rule's form.
 struct ReductionOptions {
     ReductionMethod method = ReductionMethod::automatic;
-    std::optional<double> horizon = {};  ///< of min_*: where their integral ends; empty: settled
+    std::optional<double> horizon = {};  ///< for min_*: the end of their integral; empty: when settled
 };
 
-/// Filter of a PID: Tf where it is given, else Tf_over_Td Td; 0 for none.
+/// Filter of a PID: Tf if it is given, else Tf_over_Td Td; 0 for none.
 struct FilterOptions {
     double Tf_over_Td = limits::kDefaultTf_over_Td;
     std::optional<double> Tf = {};
@@ -35,21 +35,21 @@ OptionSet<FilterOptions> filter_options(const FilterOptions& defaults);
 
 inline constexpr const char* kControllerOption = "controller";
 
-/// Option `controller` with the forms that the source gives.
+/// Option `controller` with the forms of the source.
 template <class T>
 void add_controller(OptionSet<T>& set, const std::vector<ControllerKind>& kinds) {
-    set.choice(&T::controller, kControllerOption, "The controller that is tuned.", words_of(kinds));
+    set.choice(&T::controller, kControllerOption, "The type of controller.", words_of(kinds));
     set.main({kControllerOption});
 }
 
-/// Option `reduction {method, horizon}`; `automatic` says what "auto" does for this rule.
+/// Option `reduction {method, horizon}`; `automatic`: the meaning of "auto" for this rule.
 template <class T>
 void add_reduction(OptionSet<T>& set, const std::string& automatic) {
-    set.object(&T::reduction, "reduction", "How a plant that is not of the rule's form is reduced to it.",
+    set.object(&T::reduction, "reduction", "Reduction of a plant that does not have the rule's form.",
                reduction_options(automatic));
 }
 
-/// Option `filter {Tf_over_Td | Tf}`; `law` says what is filtered.
+/// Option `filter {Tf_over_Td | Tf}`; `law`: the signal that is filtered.
 template <class T>
 void add_filter(OptionSet<T>& set, const std::string& law) {
     const FilterOptions* defaults = detail::content(set.defaults().filter);
@@ -60,38 +60,38 @@ void add_filter(OptionSet<T>& set, const std::string& law) {
 /// Option `mode`.
 template <class T>
 void add_mode(OptionSet<T>& set) {
-    set.choice(&T::mode, "mode", "What the settings were made for: servo (set-point steps) or regulation (load steps).",
+    set.choice(&T::mode, "mode", "Purpose of the settings: servo (set-point steps) or regulation (load steps).",
                Words<Mode>{{"servo", Mode::servo}, {"regulation", Mode::regulation}});
 }
 
 /// The filter of a PID with this Td.
 Filter chosen_filter(const FilterOptions& options, FilterType type, double Td);
 
-/// The model that the rule works on, by option `reduction`. Errors: those of reduce().
+/// The model that the rule uses, by option `reduction`. Errors: those of reduce().
 Expected<ReducedModel> rule_model(const TuningProblem& problem, const ReductionOptions& options,
                                   ReductionRequest request);
 
-/// The same by the half rule, where no other is asked for: of second order for a PID, else of first.
+/// The same by the half rule, unless another one is requested: of second order for a PID, else of first.
 Expected<ReducedModel> half_rule_model(const TuningProblem& problem, const ReductionOptions& options,
                                        ControllerKind controller);
 
 /// L/(L + T1): 0 lag-dominated, 1 dead-time-dominated; 0 with an integrator.
 double normalised_dead_time(const ReducedModel& model);
 
-/// Error for a model that a rule would divide by: `sentence` names value and rule, `cure` another way.
+/// Error for a model whose zero would be a divisor: `sentence` has value and rule, `cure` an alternative.
 Error degenerate(const std::string& where, const std::string& sentence, const std::string& cure);
 
 Warning outside_validity(const std::string& detail);
 
-/// Of a rule whose derivative action cancels the second lag, where there is none.
+/// Warning of a rule whose derivative action cancels the second lag, if there is none.
 Warning no_second_lag();
 
-/// The answer: controller, warnings of the reduction first, the reduced model unless the plant was given in its form.
-/// Errors: numerical_failure if a parameter is not a finite number or Kp is 0.
+/// The answer: controller, warnings (those of the reduction first), and the reduced model unless the plant has that
+/// form. Errors: numerical_failure if a parameter is not a finite number or Kp is 0.
 Expected<TunedController> rule_answer(const TuningProblem& problem, const ReducedModel& model, const IdealPid& pid,
                                       std::vector<Warning> warnings);
 
-/// The answer of a rule that works on no reduced model. Errors: as above.
+/// The answer of a rule that uses no reduced model. Errors: as above.
 Expected<TunedController> rule_answer(const IdealPid& pid, std::vector<Warning> warnings);
 
 }  // namespace tunewright

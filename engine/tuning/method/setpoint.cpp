@@ -16,16 +16,16 @@
 namespace tunewright {
 namespace {
 
-constexpr double kOvershootReservePercent = 2e-3;  // percentage points of overshoot, for the figures' own error
-constexpr double kFixedWeight = 1e-2;              // of b: a step of its setting is finer
-constexpr double kWeightStepsPerUnit = 1e4;        // b is answered to four decimals
-constexpr int kLongestFilter = 24;                 // doublings of the first filter tried
+constexpr double kOvershootReservePercent = 2e-3;  // percentage points of overshoot, for the error of the figures
+constexpr double kFixedWeight = 1e-2;              // of b: finer than any step of its setting
+constexpr double kWeightStepsPerUnit = 1e4;        // b is rounded to four decimals
+constexpr int kLongestFilter = 24;                 // doublings of the first filter that are tried
 constexpr int kShortestFilter = 24;                // halvings
 constexpr double kFilterTolerance = 1e-12;         // relative
 constexpr int kHalvings = 40;
-constexpr int kGoldenSections = 26;     // golden ones: leave 4e-6 of the interval
-constexpr double kStepOfPair = 0.05;    // of b: a pair's IAE moves by less than 0.3 % between two
-constexpr double kStepOfWeight = 1e-3;  // of b, over which the IAE shows whether it rises
+constexpr int kGoldenSections = 26;     // golden sections; they leave 4e-6 of the interval
+constexpr double kStepOfPair = 0.05;    // of b: between two values a pair's IAE changes by less than 0.3 %
+constexpr double kStepOfWeight = 1e-3;  // of b: enough to show whether the IAE rises
 
 double min(const auto& f) { return golden_section(f, 0, 1, kGoldenSections); }
 
@@ -33,7 +33,7 @@ double rounded(double b) { return std::round(b * kWeightStepsPerUnit) / kWeightS
 double down(double b) { return std::floor(b * kWeightStepsPerUnit) / kWeightStepsPerUnit; }
 bool same_digits(double a, double b) { return down(a) == down(b); }
 
-/// The shortest filter that keeps the limit; empty: none that was looked at does. `near`: where the search begins.
+/// The shortest filter that keeps the limit; empty: none of the tried ones does. `near`: where the search starts.
 std::optional<double> shortest_filter(const SetpointResponses::Filtered& response, double limit, double near) {
     const auto beyond = [&](double T) { return response.overshoot(T) - limit; };
     double T = near, here = beyond(T);
@@ -62,10 +62,10 @@ struct WeightAndFilter {
     double IAE = std::numeric_limits<double>::infinity();
 };
 
-/// With each b the shortest filter that keeps the limit: of these pairs the one with the least IAE. Mostly that of b =
-/// 1: with a PI's b Ti s + 1 over T s + 1 a larger b makes room for a longer T, and the overshoot is taken off the
-/// whole response and not off its first rise. Where hardly any filter is needed it is near the b with the least
-/// overshoot, `calmest`, with a short T. Empty: none was found.
+/// The pair with the least IAE among all pairs of a b and the shortest filter that keeps the limit with it. Usually b =
+/// 1: with (b Ti s + 1)/(T s + 1) of a PI, a larger b allows a longer T, which lowers the whole response and not only
+/// its first rise. If hardly any filter is needed, it is near the b with the least overshoot, `calmest`, with a short
+/// T. Empty: none was found.
 std::optional<WeightAndFilter> best_pair(const SetpointResponses& responses, double limit, double calmest) {
     double near = responses.time();
     const auto with = [&](double b) {
@@ -88,8 +88,8 @@ std::optional<WeightAndFilter> best_pair(const SetpointResponses& responses, dou
     return std::isfinite(best.IAE) ? std::optional(best) : std::nullopt;
 }
 
-/// The b with the least IAE among those that keep the limit on the overshoot, of which `best` is one. Overshoot and IAE
-/// are convex in b, so that is the largest of them or the one with the least IAE at all.
+/// The b with the least IAE among those that keep the limit on the overshoot; `best` must be one of them. Overshoot and
+/// IAE are convex in b, so it is either the largest of them or the b with the least IAE without the limit.
 double best_weight(const SetpointResponses& responses, double limit, double best) {
     const auto keeps = [&](double b) { return responses.overshoot(b) <= limit; };
     const auto IAE = [&](double b) { return responses.IAE(b); };
@@ -122,11 +122,10 @@ std::vector<Warning> keep_overshoot(const SetpointResponses& responses, double a
     }
     return {{"overshoot-not-held", "No set-point weight or filter keeps the overshoot of a set-point step within " +
                                        text(asked) + " %. With b = " + text(pid.b) + " it is " +
-                                       text(overshoot(pid.b)) +
-                                       " %; raise the set point slowly instead of in a step."}};
+                                       text(overshoot(pid.b)) + " %. Ramp the set point instead of stepping it."}};
 }
 
-/// Empty where nothing can be said of a set-point step, with the reason.
+/// Empty, with the reason, if the response to a set-point step is undefined.
 OrReason<SetpointResponses> responses_of(const LinearPlant& plant, const IdealPid& pid) {
     if (!pid.has_integral()) return {std::nullopt, "without integral action the output does not reach the set point."};
     const auto loop = Loop::make(plant, to_parallel(pid));
@@ -145,7 +144,7 @@ std::vector<Warning> choose_setpoint(const LinearPlant& plant, const SetpointOpt
     }
     if (!options.given()) return {};
     const auto responses = responses_of(plant, pid);
-    if (!responses) return {{"setpoint-left", "The set-point weight is left as it is: " + responses.why}};
+    if (!responses) return {{"setpoint-left", "The set-point weight is not changed: " + responses.why}};
     if (options.overshoot) return keep_overshoot(*responses, *options.overshoot, options.may_filter, pid);
     pid.setpoint_lag = 0;
     pid.b = rounded(min([&](double b) { return responses->IAE(b); }));
@@ -174,7 +173,7 @@ OptionDescription setpoint_option(const std::string& by_default, bool moved) {
     best.choices = {"iae"};
     OptionDescription setpoint = described_option(
         OptionType::object, kSetpointOption,
-        "What the set point does: weight, overshoot or best. It leaves the loop and its response to loads alone. "
+        "Response to the set point: weight, overshoot or best. It does not change the loop and its response to loads. "
         "Default: " +
             by_default + ".");
     setpoint.fields = {std::move(weight), std::move(overshoot), std::move(best)};
@@ -203,7 +202,8 @@ void weigh_setpoint(const LinearPlant& plant, const SetpointOptions& options, Tu
 
 namespace {
 
-/// The block with the weight that keeps the wish, if it has one to set and nothing else of it moves; else with its own.
+/// Sets the block's weight that meets the request, if it can be set without changing anything else; otherwise the block
+/// keeps its own.
 void settle_weight(device::Fitted& fitted, const device::DeviceModel& device, const LinearPlant& plant,
                    const SetpointOptions& options, TunedController& tuned) {
     IdealPid wished = fitted.controller;
@@ -214,7 +214,7 @@ void settle_weight(device::Fitted& fitted, const device::DeviceModel& device, co
     wished.setpoint_lag = twin.controller.setpoint_lag;
     auto again = device::fit(device, wished);
     if (again && std::abs(again->controller.b - wished.b) > kFixedWeight) {
-        // A weight that cannot be set is the block's own, and no difference from the design to tell of.
+        // A weight that cannot be set is fixed by the block and is no difference from the design.
         wished.b = again->controller.b;
         again = device::fit(device, wished);
     }

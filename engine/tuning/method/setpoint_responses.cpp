@@ -7,15 +7,15 @@
 namespace tunewright {
 namespace {
 
-constexpr double kTolerance = 1e-5, kSettledTolerance = 1e-6;  // of the responses that the choice is made on
+constexpr double kTolerance = 1e-5, kSettledTolerance = 1e-6;  // of the responses on which the choice depends
 constexpr double kSameInstant = 1e-12;
 
-/// Instants nearer than the times' rounding are one.
+/// Times closer than their rounding are equal.
 bool jumps_after(const std::vector<ResponseNode>& nodes, std::size_t i) {
     return i + 1 < nodes.size() && nodes[i + 1].t - nodes[i].t <= kSameInstant * nodes[i + 1].t;
 }
 
-/// Doubles the node of one run at a jump that only the other has, over the same steps.
+/// Doubles a node of one run where only the other run has a jump, over the same steps.
 void align(std::vector<ResponseNode>& a, std::vector<ResponseNode>& b) {
     std::vector<ResponseNode> both_a, both_b;
     std::size_t i = 0, j = 0;

@@ -1,5 +1,5 @@
-// How the answer to a set-point step depends on the set-point weight b and on a first-order filter of the set point:
-// affine in b, and a lag of that, so two simulations answer for all.
+// The response to a set-point step as a function of the set-point weight b and of a first-order set-point filter:
+// affine in b, filtered by a lag, so two simulations are enough for all.
 #pragma once
 
 #include <optional>
@@ -12,20 +12,20 @@
 
 namespace tunewright {
 
-/// The responses y(t; b, T) to a unit step of the set point without limits of u: y_0 + b (y_1 - y_0) behind
+/// The responses y(t; b, T) to a unit step of the set point without limits of u: y_0 + b (y_1 - y_0) after the filter
 /// 1/(1 + T s). Needs integral action and a stable loop; times in the plant's unit.
 class SetpointResponses {
 public:
     SetpointResponses(const LinearPlant& plant, const IdealPid& pid);
 
-    /// False: the responses do not settle in the steps allowed; then nothing else may be asked.
+    /// False: the responses do not settle in the allowed number of steps; then no other member may be used.
     bool usable() const { return usable_; }
 
-    /// The largest y less 1, in percent; below 0 where y stays below the set point.
+    /// The largest y minus 1, in percent; negative if y stays below the set point.
     double overshoot(double b) const { return percent_above(weighted(b)); }
     double IAE(double b) const;
 
-    /// With one b, behind filters of any T > 0.
+    /// For one b, with filters of any T > 0.
     class Filtered {
     public:
         double overshoot(double T) const { return percent_above(behind(T)); }
@@ -44,7 +44,7 @@ public:
     };
     Filtered with(double b) const { return {weighted(b), error_integral(b)}; }
 
-    /// The size of the integral of the error with b = 0: a time of the loop.
+    /// The size of the integral of the error with b = 0: a characteristic time of the loop.
     double time() const;
 
 private:

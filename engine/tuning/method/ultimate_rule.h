@@ -1,4 +1,4 @@
-// What the rules on the ultimate point share: where Ku and Pu come from.
+// The common part of the rules on the ultimate point: the origin of Ku and Pu.
 #pragma once
 
 #include <optional>
@@ -8,11 +8,11 @@
 namespace tunewright {
 
 enum class UltimateSource {
-    model,  ///< computed from the plant, dead time exact
+    model,  ///< computed from the plant, with the exact dead time
     relay,  ///< by the describing function of the recorded relay test
 };
 
-/// Where Ku and Pu come from: given by hand, both, or from `ultimate`.
+/// Origin of Ku and Pu: both given, or from `ultimate`.
 struct UltimateOptions {
     UltimateSource ultimate = UltimateSource::model;
     std::optional<double> Ku = {}, Pu = {};
@@ -21,14 +21,14 @@ struct UltimateOptions {
 OptionSet<UltimateOptions> ultimate_options();
 
 /// Ku and Pu by these options. Errors: invalid_argument for Ku without Pu or the reverse, Ku = 0, "relay" without a
-/// recorded relay test; unsupported, `where` "plant", where no proportional gain makes the loop oscillate,
-/// and for a zero at the origin.
+/// recorded relay test; unsupported, `where` "plant", if no proportional gain makes the loop oscillate, and for a zero
+/// at the origin.
 Expected<UltimatePoint> chosen_ultimate_point(const TuningProblem& problem, const UltimateOptions& options);
 
 /// 1/(K Ku): 0 for integrating plants, near 1 for a pure dead time.
 double gain_ratio(const LinearPlant& plant, const UltimatePoint& at);
 
-/// Of a plant that only some gains stabilise, on which a fixed share of Ku may be too weak.
+/// Warnings for a plant that only a range of gains stabilises, for which a fixed share of Ku may be too small.
 std::vector<Warning> ultimate_warnings(const TuningProblem& problem);
 
 }  // namespace tunewright

@@ -24,7 +24,7 @@ Error contradiction(const GainPhaseMarginOptions& margins) {
     return {ErrorKind::invalid_argument, "phase_margin_deg",
             "A gain margin of " + text(margins.gain_margin) + " with a phase margin of " +
                 text(margins.phase_margin_deg) +
-                " degrees needs a negative integral time on this model. Ask for a phase margin nearer to 90 (1 - "
+                " degrees needs a negative integral time on this model. Choose a phase margin closer to 90 (1 - "
                 "1/gain_margin) = " +
                 text(90 * (1 - 1 / margins.gain_margin)) + " degrees."};
 }
@@ -54,18 +54,18 @@ TuningMethod gain_phase_margin_method() {
     method.title = "Ho-Hang-Cao, gain and phase margin";
     method.formula =
         "omega_p = (Am phi + pi Am (Am - 1)/2)/((Am^2 - 1) L); series form: Kp = omega_p T1/(Am K), Ti = 1/(2 omega_p "
-        "- 4 omega_p^2 L/pi + 1/T1), Td = T2; answered in the ideal form";
+        "- 4 omega_p^2 L/pi + 1/T1), Td = T2; converted to the ideal form";
     method.source = "Ho, Hang and Cao, Automatica 31 (1995) 497-502";
     method.needs = "fopdt for PI, sopdt for PID, T > 0, L > 0 (others are reduced)";
-    method.validity = "margins are met within some percent where L/T is below about 2";
+    method.validity = "the margins are accurate to some percent for L/T below about 2";
     OptionSet<GainPhaseMarginOptions> options;
     add_controller(options, {ControllerKind::PI, ControllerKind::PID});
-    options.field(&GainPhaseMarginOptions::gain_margin, "gain_margin", "Gain margin wanted.",
+    options.field(&GainPhaseMarginOptions::gain_margin, "gain_margin", "Specified gain margin.",
                   {.exclusive_minimum = 1, .maximum = 20});
-    options.field(&GainPhaseMarginOptions::phase_margin_deg, "phase_margin_deg", "Phase margin wanted, in degrees.",
+    options.field(&GainPhaseMarginOptions::phase_margin_deg, "phase_margin_deg", "Specified phase margin, in degrees.",
                   {.unit = "deg", .exclusive_minimum = 0, .maximum = 89});
     options.slider("gain_margin").slider("phase_margin_deg");
-    add_reduction(options, "half_rule; tangent (first order: PI) where that does not apply.");
+    add_reduction(options, "half_rule; tangent (first order: PI) if that does not apply.");
     add_filter(options, "of the derivative part of the ideal form, Td s/(1 + s Tf).");
     method.bind(options, tune_gain_phase_margin);
     return method;

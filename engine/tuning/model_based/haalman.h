@@ -1,4 +1,4 @@
-// Haalman's rule: the plant's lags cancelled, the loop 2/(3 L s) e^(-Ls).
+// Haalman's rule: cancels the plant's lags, so that the loop is 2/(3 L s) e^(-Ls).
 #pragma once
 
 #include "engine/tuning/method/rule.h"
@@ -16,13 +16,13 @@ struct HaalmanOptions {
 ///     PI    Kp = 2 T/(3 K L)            Ti = T
 ///     PID   Kp = 2 (T1 + T2)/(3 K L)    Ti = T1 + T2    Td = T1 T2/(T1 + T2)
 ///
-/// On such a plant the loop is 2/(3 L s) e^(-Ls) whatever the lags: Ms = 1.9 (without the derivative's filter).
-/// Cancelled lags come back in the answer to loads, so it is slow where they are long against the dead time.
+/// On such a plant the loop is 2/(3 L s) e^(-Ls) for all lags: Ms = 1.9 (without the derivative's filter). Cancelled
+/// lags still appear in the response to loads, which is slow if they are long compared with the dead time.
 ///
 /// Filter of the PID: derivative, Tf = Td/10 (the source has none).
 ///
 /// Errors: those of half_rule_model(); unsupported for a model without lag or dead time and for integrating plants.
-/// Warns `outside-validity` for L/T below 0.1, and `no-derivative` where a PID is asked for and the model has one lag.
+/// Warns `outside-validity` for L/T below 0.1, and `no-derivative` if a PID is requested and the model has one lag.
 ///
 /// Source: Haalman, Control Engineering 12 (1965) 71-73.
 TuningMethod haalman_method();

@@ -51,7 +51,7 @@ IdealPid by_pade(const Model& model, const ImcFilter& f) {
     return pid;
 }
 
-// A stable plant of two poles and no zero is its own model, oscillatory ones too.
+// A stable plant of two poles without zeros is its own model, even if it oscillates.
 std::optional<Model> exact_second_order(const LinearPlant& plant) {
     if (plant.poles().size() != 2 || plant.integrators() != 0 || !plant.zeros().empty()) return std::nullopt;
     const auto p = plant.poles()[0], q = plant.poles()[1];
@@ -64,8 +64,8 @@ std::optional<Error> unfit(const ReducedModel& model) {
     if (model.integrators == 0) return std::nullopt;
     return degenerate(
         "plant",
-        "This plant integrates: a constant load at its input would not be taken back by this controller's "
-        "filter.",
+        "This plant integrates: with this controller's filter a constant load at its input would leave a steady-state "
+        "error.",
         "Use simc, lambda, amigo or robust.");
 }
 
@@ -73,11 +73,11 @@ Error no_pid(const IdealPid& pid, const ImcFilter& f) {
     const bool is_default_order = f.n == 1;
     if (!std::isfinite(pid.Kp) || !std::isfinite(pid.Ti) || !std::isfinite(pid.Td))
         return {ErrorKind::no_feasible_controller, "plant",
-                "The plant's direct term leaves this method no PID: its settings would not be finite. Use robust."};
+                "The plant has a direct term, for which the settings of this method are not finite. Use robust."};
     return {ErrorKind::no_feasible_controller, "lambda",
             "lambda = " + text(f.lambda) + " with filter_order " + std::to_string(f.n) + " gives Kp = " + text(pid.Kp) +
                 ", Ti = " + text(pid.Ti) + ", Td = " + text(pid.Td) +
-                ", which is no PID with the sign of the plant's gain and Td >= 0. Give a smaller lambda" +
+                ", which is not a PID with the sign of the plant's gain and Td >= 0. Use a smaller lambda" +
                 (is_default_order ? "." : ", or filter_order 1.")};
 }
 
@@ -103,7 +103,7 @@ Expected<TunedController> tune_imc(const TuningProblem& problem, const ImcOption
     const ImcFilter f{.lambda = options.lambda.value_or(std::max(model.L, 0.1 * model.n1)),
                       .n = options.filter_order.value_or(model.second_order() ? 2 : 1)};
     if (!(f.lambda > 0))
-        return degenerate("plant/L", "The default lambda is the dead time, and the model has none.",
+        return degenerate("plant/L", "The default lambda is the dead time, but the model has none.",
                           "Give lambda, the closed-loop time constant that you want.");
     const bool pade = options.expansion == ImcExpansion::pade;
     IdealPid pid = pade ? by_pade(model, f) : by_maclaurin(model, f);
@@ -111,8 +111,8 @@ Expected<TunedController> tune_imc(const TuningProblem& problem, const ImcOption
     const bool own_filter = pid.filter.type != FilterType::none;
     if (own_filter && options.filter)
         return Error{ErrorKind::invalid_argument, "filter",
-                     "The pade expansion with filter_order 2 has its own filter time. Leave filter out, or use "
-                     "filter_order 1."};
+                     "The pade expansion with filter_order 2 has its own filter time. Omit filter, or use filter_order "
+                     "1."};
     if (!own_filter)
         pid.filter = chosen_filter(options.filter.value_or(FilterOptions{}), FilterType::derivative, pid.Td);
     if (pid.Td == 0) pid.filter = {};
@@ -121,7 +121,7 @@ Expected<TunedController> tune_imc(const TuningProblem& problem, const ImcOption
     const double min = std::max(0.25 * model.L, 0.02 * model.n1);
     if (f.lambda < min)
         warnings.push_back(outside_validity("lambda = " + text(f.lambda) + " is below " + text(min) +
-                                            ": the PID no longer follows the controller that it approximates. Give a "
+                                            ": the PID differs much from the controller that it approximates. Use a "
                                             "larger lambda."));
     auto answer = rule_answer(problem, *reduced, pid, std::move(warnings));
     if (answer && exact) answer->reduced_model.reset();
@@ -143,7 +143,7 @@ TuningMethod imc_method() {
         "Robust "
         "Process Control (1989); Maclaurin: Liu and Gao, IFAC World Congress (2008)";
     method.needs = "fopdt or stable sopdt, also oscillatory (others are reduced)";
-    method.validity = "lambda above about 0.25 L; loads are slow to be taken back where a lag is long";
+    method.validity = "lambda above about 0.25 L; with a long lag the response to loads is slow";
     OptionSet<ImcOptions> options;
     options.field(&ImcOptions::lambda, "lambda",
                   "Time constant of the closed loop's filter 1/(lambda s + 1)^n: larger is slower and more robust. "
@@ -152,11 +152,12 @@ TuningMethod imc_method() {
     options.field(&ImcOptions::filter_order, "filter_order", "n of that filter, 1 or 2. Default: the model's order.",
                   {.minimum = 1, .maximum = 2});
     options.choice(&ImcOptions::expansion, "expansion",
-                   "maclaurin: the first three terms of the controller's series, dead time exact; pade: the dead time "
-                   "replaced by a fraction first (1/1 on a first-order model, 1 - L s on a second-order one).",
+                   "maclaurin: the first three terms of the controller's series, with the exact dead time; pade: the "
+                   "dead time is first replaced by a fraction (1/1 on a first-order model, 1 - L s on a second-order "
+                   "one).",
                    Words<ImcExpansion>{{"maclaurin", ImcExpansion::maclaurin}, {"pade", ImcExpansion::pade}});
     options.main({"lambda"}).slider("lambda");
-    add_reduction(options, "half_rule; tangent (first order) where that does not apply.");
+    add_reduction(options, "half_rule; tangent (first order) if that does not apply.");
     add_filter(options, "of the derivative part, Td s/(1 + s Tf).");
     method.bind(options, tune_imc);
     return method;
@@ -172,7 +173,7 @@ ImcTerms imc_terms(double K, double n1, double n2, const std::array<double, 4>& 
     const double m0 = 1 / d[0];
     const double m1 = (n1 - d[1] * m0) / d[0];
     double m2 = (n2 - d[1] * m1 - d[2] * m0) / d[0];
-    // Its parts can cancel to the last digit, as for a plant without dead time.
+    // The terms can cancel to the last digit, as for a plant without dead time.
     if (std::abs(m2 * d[0]) <= kRelativeRounding * (std::abs(n2) + std::abs(d[1] * m1) + std::abs(d[2] * m0))) m2 = 0;
     const double m3 = (-d[1] * m2 - d[2] * m1 - d[3] * m0) / d[0];
     return {m0 / K, m1 / K, m2 / K, m3 / K};

@@ -13,8 +13,8 @@ IdealPid improved_pi(const ReducedModel& model, double tau_c) {
     return {.Kp = T / (model.K * horizon), .Ti = std::min(T, 4 * horizon)};
 }
 
-// Series Kp, Ti, Td as Kp (1 + Td/Ti), Ti + Td, Ti Td/(Ti + Td); written without the quotient Kp/Ti = 0/0 that a pure
-// dead time would give.
+// Series Kp, Ti, Td as Kp (1 + Td/Ti), Ti + Td, Ti Td/(Ti + Td); written without the quotient Kp/Ti, which is 0/0 for a
+// pure dead time.
 IdealPid improved_pid(const ReducedModel& model, double tau_c) {
     const double horizon = tau_c + model.L, Td = model.L / 3;
     const bool integrates = model.integrators == 1;
@@ -28,7 +28,7 @@ Expected<TunedController> tune_improved_simc(const TuningProblem& problem, const
     const auto model = rule_model(problem, options.reduction, {.preferred = ReductionMethod::half_rule});
     if (!model) return model.error();
     if (model->L <= 0)
-        return degenerate("plant/L", "The improvement over SIMC lies in the dead time, and that of the model is 0.",
+        return degenerate("plant/L", "The improvement over SIMC depends on the dead time, but that of the model is 0.",
                           "Use simc with tau_c, the closed-loop time constant that you want.");
     const bool wants_PID = options.controller == ControllerKind::PID;
     const double min = wants_PID ? model->L / 2 : model->L;
@@ -38,7 +38,7 @@ Expected<TunedController> tune_improved_simc(const TuningProblem& problem, const
     std::vector<Warning> warnings;
     if (tau_c < min)
         warnings.push_back(outside_validity("tau_c = " + text(tau_c) + " is below " + text(min) +
-                                            ", the tightest that the source recommends for this model."));
+                                            ", the smallest that the source recommends for this model."));
     return rule_answer(problem, *model, answer, std::move(warnings));
 }
 
@@ -50,7 +50,7 @@ TuningMethod improved_simc_method() {
     method.title = "Improved SIMC (Grimholt, Skogestad)";
     method.formula =
         "PI: Kp = (T + L/3)/(K (tau_c + L)), Ti = min(T + L/3, 4 (tau_c + L)); PID, series form: Kp = T/(K (tau_c + "
-        "L)), Ti = min(T, 4 (tau_c + L)), Td = L/3, answered in the ideal form; integrating: Kp = 1/(K (tau_c + L)), "
+        "L)), Ti = min(T, 4 (tau_c + L)), Td = L/3, converted to the ideal form; integrating: Kp = 1/(K (tau_c + L)), "
         "Ti = 4 (tau_c + L)";
     method.source =
         "Grimholt and Skogestad, IFAC Conf. Advances in PID Control (2012); PID: J. Process Control 70 (2018) 36-46";
@@ -63,7 +63,7 @@ TuningMethod improved_simc_method() {
                   "L for PI, L/2 for PID.",
                   {.unit = "time", .exclusive_minimum = 0});
     options.main({"tau_c"}).slider("tau_c");
-    add_reduction(options, "half_rule, as in SIMC; tangent where that does not apply.");
+    add_reduction(options, "half_rule, as in SIMC; tangent if that does not apply.");
     add_filter(options, "of the derivative part of the ideal form, Td s/(1 + s Tf).");
     method.bind(options, tune_improved_simc);
     return method;

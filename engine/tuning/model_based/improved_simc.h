@@ -1,4 +1,4 @@
-// Grimholt and Skogestad's improvement of SIMC for plants with much dead time.
+// Grimholt and Skogestad's improvement of SIMC for plants with a large dead time.
 #pragma once
 
 #include "engine/tuning/method/rule.h"
@@ -12,8 +12,8 @@ struct ImprovedSimcOptions {
     FilterOptions filter = {};
 };
 
-/// SIMC with T + L/3 in place of T for PI, and with a series derivative time L/3 for PID, answered in the ideal form;
-/// on a first-order model (half rule), also integrating, also a pure dead time:
+/// SIMC with T + L/3 in place of T for PI, and with a series derivative time L/3 for PID, converted to the ideal form;
+/// on a first-order model (half rule), which may integrate or be a pure dead time:
 ///
 ///     PI           Kp = (T + L/3)/(K (tau_c + L))   Ti = min(T + L/3, 4 (tau_c + L))
 ///     PID, series  Kp = T/(K (tau_c + L))           Ti = min(T, 4 (tau_c + L))        Td = L/3

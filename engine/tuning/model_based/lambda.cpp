@@ -27,25 +27,25 @@ IdealPid lambda_pid(const ReducedModel& model, double lambda) {
     return {.Kp = (2 * T + L) / (K * (2 * lambda + L)), .Ti = T + L / 2, .Td = T * L / (2 * T + L)};
 }
 
-// Rivera et al.'s limits on lambda: those of their PI hold for lambda + L in the form used here.
+// Rivera et al.'s limits on lambda. For the form used here, those of their PI hold for lambda + L.
 std::vector<Warning> remarks(const ReducedModel& model, double lambda, bool wants_PID) {
     if (model.integrators == 1) {
         if (lambda >= model.L) return {};
         return {outside_validity("lambda = " + text(lambda) + " is below the dead time L = " + text(model.L) +
-                                 ": the loop will be oscillatory. Give a larger lambda.")};
+                                 ", so the loop will be oscillatory. Use a larger lambda.")};
     }
     const double min =
         wants_PID ? std::max(0.8 * model.L, 0.1 * model.T1) : std::max(0.7 * model.L, 0.2 * model.T1 - model.L);
     if (lambda >= min) return {};
     return {outside_validity("lambda = " + text(lambda) + " is below " + text(min) +
-                             ", the least that the source recommends for this model. Give a larger lambda.")};
+                             ", the smallest that the source recommends for this model. Use a larger lambda.")};
 }
 
 Expected<TunedController> tune_lambda(const TuningProblem& problem, const LambdaOptions& options) {
     const auto model = rule_model(problem, options.reduction, {.preferred = ReductionMethod::tangent});
     if (!model) return model.error();
     if (model->integrators == 0 && model->T1 <= 0)
-        return degenerate("plant/T", "Lambda tuning sets Ti = T, and the model is a pure dead time (T = 0).",
+        return degenerate("plant/T", "Lambda tuning sets Ti = T, but the model is a pure dead time (T = 0).",
                           "Use amigo or robust.");
     const double lambda = options.lambda.value_or(default_lambda(*model));
     if (lambda <= 0)
@@ -86,7 +86,7 @@ TuningMethod lambda_method() {
         "Desired closed-loop time constant. Default: the larger of T and L; sqrt(10) L for an integrating plant.",
         {.unit = "time", .exclusive_minimum = 0});
     options.main({"lambda"}).slider("lambda");
-    add_reduction(options, "tangent, half_rule where the step response has no tangent.");
+    add_reduction(options, "tangent; half_rule if the step response has no tangent.");
     add_filter(options, "of the derivative part, Td s/(1 + s Tf).");
     method.bind(options, tune_lambda);
     return method;

@@ -1,4 +1,4 @@
-// Lambda tuning: the closed loop is asked to be a lag of time constant lambda behind the dead time.
+// Lambda tuning: the closed loop is to be a lag with time constant lambda and the dead time.
 #pragma once
 
 #include "engine/tuning/method/rule.h"
@@ -13,7 +13,7 @@ struct LambdaOptions {
     FilterOptions filter = {};
 };
 
-/// PI, and PID with the dead time as a first-order Pade term in the design:
+/// PI, and PID with the dead time as a first-order Pade approximation in the design:
 ///
 ///     PI    Kp = T/(K (lambda + L))              Ti = T
 ///     PID   Kp = (2 T + L)/(K (2 lambda + L))    Ti = T + L/2    Td = T L/(2 T + L)

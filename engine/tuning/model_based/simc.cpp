@@ -30,27 +30,32 @@ std::vector<Warning> remarks(const ReducedModel& model, double tau_c, const Seri
     if (tau_c < model.L)
         warnings.push_back(outside_validity("tau_c = " + text(tau_c) +
                                             " is below the effective dead time L = " + text(model.L) +
-                                            ": tighter than the source recommends, Ms will exceed about 1.6."));
+                                            ", which is smaller than the source recommends: Ms will exceed about "
+                                            "1.6."));
     if (!wants_PID) return warnings;
     if (pid.Td == 0)
         warnings.push_back(
             {"no-derivative",
-             "The model has no second lag, for which SIMC has no derivative action: the answer is a PI controller."});
+             "The model has no second lag, and without one SIMC has no derivative action: the result is a PI "
+             "controller."});
     else if (model.integrators == 0 && model.T2 < model.L)
         warnings.push_back(outside_validity("The second lag T2 = " + text(model.T2) +
                                             " is below the effective dead time L = " + text(model.L) +
-                                            ": the source recommends PI there, derivative action gains little."));
+                                            ", for which the source recommends PI, because derivative action gains "
+                                            "little."));
     return warnings;
 }
 
 std::optional<Error> unfit(const ReducedModel& model, double tau_c) {
     if (tau_c + model.L <= 0)
-        return degenerate("plant/L", "SIMC divides by tau_c + L, and the effective dead time, tau_c's default, is 0.",
+        return degenerate("plant/L",
+                          "SIMC divides by tau_c + L, but the effective dead time, which is the default of "
+                          "tau_c, is 0.",
                           "Give tau_c, the closed-loop time constant that you want.");
     if (model.integrators == 0 && model.T1 <= 0)
         return degenerate("plant/T",
-                          "The model is a pure dead time (T = 0), for which SIMC gives pure integral action; the ideal "
-                          "form cannot carry that.",
+                          "The model is a pure dead time (T = 0), for which SIMC gives pure integral action, which the "
+                          "ideal form cannot represent.",
                           "Use amigo or robust.");
     return std::nullopt;
 }
@@ -65,7 +70,7 @@ Expected<TunedController> tune_simc(const TuningProblem& problem, const SimcOpti
     const SeriesPid settings = series(*model, tau_c);
     auto ideal = to_ideal(settings);
     if (!ideal) return ideal.error();
-    ideal->b = 1;  // the source gives no weight; what the series form's own b = 1 amounts to is not meant
+    ideal->b = 1;  // the source gives no weight, and its series form is not meant to imply one
     ideal->filter = chosen_filter(options.filter, FilterType::derivative, ideal->Td);
     std::vector<Warning> warnings = remarks(*model, tau_c, settings, wants_PID);
     return rule_answer(problem, *model, *ideal, std::move(warnings));
@@ -81,10 +86,10 @@ TuningMethod simc_method() {
         "series form Kp (1 + 1/(s Ti)) (1 + s Td): Kp = T1/(K (tau_c + L)), Ti = min(T1, 4 (tau_c + L)), Td "
         "= T2; "
         "integrating with lag T: Kp = 1/(K (tau_c + L)), Ti = 4 (tau_c + L), Td = T; "
-        "double integrating: Kp = 1/(4 K (tau_c + L)^2), Ti = Td = 4 (tau_c + L); answered in the ideal form, exactly";
+        "double integrating: Kp = 1/(4 K (tau_c + L)^2), Ti = Td = 4 (tau_c + L); converted exactly to the ideal form";
     method.source = "Skogestad, J. Process Control 13 (2003) 291-309, Table 1";
     method.needs = "fopdt for PI, sopdt for PID, ipdt (others are reduced)";
-    method.validity = "tau_c >= L; PID where the second lag exceeds the effective dead time";
+    method.validity = "tau_c >= L; PID if the second lag exceeds the effective dead time";
     OptionSet<SimcOptions> options;
     add_controller(options, {ControllerKind::PI, ControllerKind::PID});
     options.field(&SimcOptions::tau_c, "tau_c",
@@ -92,7 +97,7 @@ TuningMethod simc_method() {
                   "L (tight but robust, Ms about 1.6).",
                   {.unit = "time", .exclusive_minimum = 0});
     options.main({"tau_c"}).slider("tau_c");
-    add_reduction(options, "half_rule, as in the source; tangent (first order: PI) where that does not apply.");
+    add_reduction(options, "half_rule, as in the source; tangent (first order: PI) if that does not apply.");
     add_filter(options, "of the derivative part of the ideal form, Td s/(1 + s Tf).");
     method.bind(options, tune_simc);
     return method;

@@ -18,13 +18,13 @@ struct SimcOptions {
 ///     integrating, lag T   Kp = 1/(K (tau_c + L))        Ti = 4 (tau_c + L)            Td = T
 ///     double integrating   Kp = 1/(4 K (tau_c + L)^2)    Ti = Td = 4 (tau_c + L)
 ///
-/// The series form is answered exactly in the ideal form, Ti + Td, Ti Td/(Ti + Td) and Kp (1 + Td/Ti), whose derivative
-/// is then filtered with Tf = Td/10: a tenth of the series Td, as the source has it, would be slower than the loop
-/// itself for two lags far above the dead time. A pure dead time gets pure integral action, which the ideal form cannot
-/// carry: unsupported.
+/// The series form is converted exactly to the ideal form, Ti + Td, Ti Td/(Ti + Td) and Kp (1 + Td/Ti), whose
+/// derivative is then filtered with Tf = Td/10: a tenth of the series Td, as in the source, would be slower than the
+/// loop itself for two lags much longer than the dead time. For a pure dead time the rule gives pure integral action,
+/// which the ideal form cannot represent: unsupported.
 ///
 /// Errors: those of half_rule_model(); unsupported for L = 0 without tau_c. Warns `outside-validity` for tau_c < L and
-/// for a second lag below L, `no-derivative` where there is no second lag.
+/// for a second lag below L, `no-derivative` if there is no second lag.
 ///
 /// Source: Skogestad, J. Process Control 13 (2003) 291-309, Table 1, Eqs. 23-29.
 TuningMethod simc_method();

@@ -18,7 +18,7 @@ struct VisioliIntegratingOptions {
 ///     itse    Kp = 1.36/(K L)   Ti = 1.66 L   Td = 0.53 L
 ///     ise     Kp = 1.37/(K L)   Ti = 1.49 L   Td = 0.59 L
 ///
-/// Robustness plays no part in it.
+/// The rule does not consider robustness.
 ///
 /// Filter of the PID: derivative, Tf = Td/10 (the source has none).
 ///

@@ -16,28 +16,30 @@
 namespace tunewright {
 namespace {
 
-constexpr double kLogCostOfNoLoop = 50;       // ln(cost/scale) of what is no stable loop
-constexpr double kMaxNeutralModulus = 0.98;   // of |L(infinity)|: beyond it echoes hardly fade
+constexpr double kLogCostOfNoLoop = 50;       // ln(cost/scale) without a stable loop
+constexpr double kMaxNeutralModulus = 0.98;   // of |L(infinity)|: for larger values echoes hardly fade
 constexpr int kExploredPoints = 500;          // points of the global search
-constexpr int kStarts = 3;                    // of local searches from it
+constexpr int kStarts = 3;                    // local searches from the best of these points
 constexpr double kMinLogStartDistance = 0.5;  // of two starts, in ln
 constexpr int kLocalEvaluations = 260;
 constexpr int kPolishes = 8;
-constexpr double kMinLogPolishGain = 2e-5;  // gain in ln at which they end
+constexpr double kMinLogPolishGain = 2e-5;  // decrease in ln at which they end
 constexpr int kExpected = kExploredPoints + (kStarts + 2) * kLocalEvaluations;
 constexpr int kReportEvery = 50;
-// The box, in Ku, Pu and the sum of the lags: wider than any optimum that was found by searches without one.
+// The search region, in Ku, Pu and the sum of the lags: larger than the distance of any optimum found by unbounded
+// searches.
 constexpr double kMinGain = 0.02, kMaxGain = 10;
 constexpr double kMinTi = 0.05, kMaxTi = 20;
 constexpr double kMinTd = 2e-3;
 constexpr double kWideStep = 0.15, kWideTolerance = 1e-5;      // of the local searches, in ln
-constexpr double kNarrowStep = 0.03, kNarrowTolerance = 1e-7;  // of the polish
-constexpr double kLogBoundTolerance = 1e-9;                    // in ln, of a point on the box's edge
-// Of the responses: the coarser ones tell valleys apart, the finer ones show what a polish wins.
+constexpr double kNarrowStep = 0.03, kNarrowTolerance = 1e-7;  // of the refinement
+constexpr double kLogBoundTolerance = 1e-9;                    // in ln: a point closer to the edge of the region is on
+                                                               // it
+// Tolerances of the responses: the coarser ones distinguish local minima, the finer ones show what a refinement gains.
 constexpr double kRoughTolerance = 1e-4, kFineTolerance = 1e-6;
 constexpr double kSettledOfTolerance = 0.01;
 constexpr double kMaxLogBoundDistance = 1e-3;  // in ln
-constexpr int kMaxSteps = 4000;                // of a response; what has not settled then is no candidate
+constexpr int kMaxSteps = 4000;                // of a response; one that has not settled by then is no candidate
 
 class NpidSearch {
 public:
@@ -70,12 +72,12 @@ public:
     }
 
 private:
-    /// From the best point with finer responses, again and again: the valleys are narrow and bent where the plant's lag
-    /// is long against its dead time.
+    /// Repeats the search from the best point with finer responses: the minima are narrow, curved valleys if the
+    /// plant's lag is long compared with its dead time.
     void polish(const std::function<double(const std::vector<double>&, bool&)>& f) {
         const LocalOptions narrow{std::vector<double>(box_.low.size(), kNarrowStep), kNarrowTolerance,
                                   kLocalEvaluations};
-        best_.value = kLogCostOfNoLoop;  // of the coarser responses
+        best_.value = kLogCostOfNoLoop;  // cost with the coarser responses
         for (int i = 0; i < kPolishes && !stopped_; ++i) {
             const double before = best_.value;
             find_local_minimum(i % 2 == 0 ? LocalSearch::subplex : LocalSearch::nelder_mead, f,
@@ -119,7 +121,7 @@ private:
         return true;
     }
 
-    /// ln of the criterion, time in periods; kLogCostOfNoLoop where the response does not settle.
+    /// ln of the criterion, time in periods; kLogCostOfNoLoop if the response does not settle.
     double cost(const IdealPid& pid) const {
         const auto loop = Loop::make(problem_.plant, to_parallel(pid));
         if (!loop) return kLogCostOfNoLoop;
@@ -138,7 +140,7 @@ private:
         return std::isfinite(log_value) ? std::min(log_value, kLogCostOfNoLoop) : kLogCostOfNoLoop;
     }
 
-    /// The best points that are not close to better ones.
+    /// The best points, without those close to better ones.
     static std::vector<LocalMinimum> apart(std::vector<LocalMinimum> met) {
         std::ranges::stable_sort(met, {}, &LocalMinimum::value);
         std::vector<LocalMinimum> chosen;
@@ -167,7 +169,7 @@ private:
         const double scale = problem_.criterion == ErrorCriterion::ITAE ? time_ * time_ : time_;
         optimum.cost = scale * std::exp(best_.value);
         optimum.stopped = stopped_;
-        // The lower bound of Td is a PI, as good as any.
+        // At the lower bound of Td it is a PI, which is a proper result.
         for (std::size_t i = 0; i < best_.x.size(); ++i)
             if ((i < 2 && best_.x[i] < box_.low[i] + kMaxLogBoundDistance) ||
                 best_.x[i] > box_.high[i] - kMaxLogBoundDistance)
@@ -193,13 +195,13 @@ Expected<NpidOptimum> find_npid_optimum(const NpidProblem& problem, const RunCon
     if (plant.dead_time() == 0 && plant.pole_excess() <= 2)
         return Error{ErrorKind::unbounded_optimum, "plant/L",
                      "Without a dead time and with a pole excess of " + text(plant.pole_excess()) +
-                         " ever higher gains give ever smaller errors: there is no optimum. Give the loop's true dead "
-                         "time, or use robust, which limits Ms."};
+                         " a higher gain always gives a smaller error, so there is no optimum. Give the true dead time "
+                         "of the loop, or use robust, which limits Ms."};
     const auto ultimate = ultimate_point(plant);
     if (!ultimate)
         return Error{ErrorKind::unsupported, "plant",
-                     "The plant has no ultimate gain, in whose units the optimum is searched: no proportional gain "
-                     "brings it to the edge of stability. Use robust."};
+                     "The plant has no ultimate gain, which the search for the optimum needs as its unit: no "
+                     "proportional gain makes the loop oscillate. Use robust."};
     return NpidSearch(problem, *ultimate, control).run();
 }
 

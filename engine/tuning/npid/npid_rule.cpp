@@ -45,13 +45,13 @@ IdealPid settings(const Coefficients& c, double K, double T, double L) {
 std::optional<Error> unfit(const ReducedModel& model) {
     if (model.integrators > 0)
         return degenerate("plant",
-                          "The rule is written for a stable first-order lag with dead time, and this plant integrates.",
+                          "The rule is written for a stable first-order lag with dead time, but this plant integrates.",
                           "Use optimise = true, which needs no model, or simc or robust.");
     if (model.L <= 0)
-        return degenerate("plant/L", "The rule raises L/T to a negative power, and the dead time of the model is 0.",
-                          "Give the loop's true dead time, or use lambda or robust.");
+        return degenerate("plant/L", "The rule raises L/T to a negative power, but the dead time of the model is 0.",
+                          "Give the true dead time of the loop, or use lambda or robust.");
     if (model.T1 <= 0)
-        return degenerate("plant/T", "The rule divides by the lag T, and that of the model is 0 (a pure dead time).",
+        return degenerate("plant/T", "The rule divides by the lag T, but that of the model is 0 (a pure dead time).",
                           "Use optimise = true, or amigo or robust.");
     return std::nullopt;
 }
@@ -60,13 +60,13 @@ std::vector<Warning> remarks(double q) {
     std::vector<Warning> warnings;
     if (q < kLowest || q > kHighest)
         warnings.push_back(outside_validity("L/T is " + text(q) +
-                                            ", outside 0.01 to 3, for which the rule was fitted. "
-                                            "optimise = true finds the plant's own optimum."));
+                                            ", outside the range 0.01 to 3 for which the rule was fitted. optimise = "
+                                            "true finds the plant's own optimum."));
     if (q > kTable2To)
         warnings.push_back(
             {"rule-table", "L/T is " + text(q) + ", above 0.9: the source's table for long dead times is used" +
-                               (q < kTable3From ? ", which costs less than the other one between 0.9 and 1, where the "
-                                                  "source gives neither."
+                               (q < kTable3From ? ". Between 0.9 and 1, for which the source has no table, it costs "
+                                                  "less than the other one."
                                                 : ".")});
     return warnings;
 }
@@ -95,8 +95,8 @@ Expected<TunedController> optimised(const Rule& rule, const TuningProblem& probl
     answer.partial = optimum->stopped;
     if (optimum->at_bound)
         answer.warnings.push_back({"at-search-bound",
-                                   "The optimum lies on the edge of the region searched (around the plant's ultimate "
-                                   "gain and period); a better one may lie beyond."});
+                                   "The optimum is at the edge of the search region (around the plant's ultimate gain "
+                                   "and period); a better one may lie outside."});
     return answer;
 }
 
@@ -123,12 +123,12 @@ TuningMethod described(const Rule& rule, Solve* solve) {
         formula_of(rule.short_delay) + "; q > 0.9: " + formula_of(rule.long_delay);
     method.source = "Jin and Son, Studies in Informatics and Control 28 (2019) 157-166, Tables 2 and 3";
     method.needs = "stable fopdt with L > 0 (others are reduced); with optimise any linear plant";
-    method.validity = "L/T from 0.01 to 3, set-point steps of the size delta_r; 0.9 to 1 is open in the source";
+    method.validity = "L/T from 0.01 to 3, set-point steps of the size delta_r; the source has no table for 0.9 to 1";
     OptionSet<NpidOptions> options;
     options.field(&NpidOptions::optimise, "optimise",
                   std::string("Search the settings of least ") + rule.index +
-                      " after a set-point step on this very plant instead of taking the rule's: any linear plant.");
-    add_reduction(options, "min_iae, as the source's fit of the step response; half_rule where that does not apply.");
+                      " after a set-point step on this plant instead of using the rule's; for any linear plant.");
+    add_reduction(options, "min_iae, as the source's fit of the step response; half_rule if that does not apply.");
     add_filter(options, "of the derivative, Td s/(1 + s Tf); none by default, as in the source.");
     method.bind(options, solve);
     return method;

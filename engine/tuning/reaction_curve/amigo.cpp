@@ -29,9 +29,9 @@ Expected<TunedController> tune_amigo(const TuningProblem& problem, const AmigoOp
     const auto model = rule_model(problem, options.reduction, {.preferred = ReductionMethod::tangent});
     if (!model) return model.error();
     if (model->L <= 0)
-        return degenerate("plant/L", "AMIGO divides by the dead time, and that of the model is 0.",
-                          "Give the loop's true dead time, or use lambda with lambda, simc with tau_c, or robust with "
-                          "a fixed filter Tf.");
+        return degenerate("plant/L", "AMIGO divides by the dead time, but that of the model is 0.",
+                          "Give the true dead time of the loop, or use lambda with lambda, simc with tau_c, or robust "
+                          "with a fixed filter Tf.");
 
     const bool wants_PID = options.controller == ControllerKind::PID;
     IdealPid controller = wants_PID ? amigo_pid(*model) : amigo_pi(*model);
@@ -42,8 +42,8 @@ Expected<TunedController> tune_amigo(const TuningProblem& problem, const AmigoOp
     if (wants_PID && tau < 0.3)
         warnings.push_back(
             outside_validity("L/(L + T) is " + text(tau) +
-                             ", below 0.3: with so little dead time a first-order model says too little about "
-                             "the plant and AMIGO's PID is conservative. Robust can do better."));
+                             ", below 0.3: with so little dead time a first-order model describes the plant poorly, "
+                             "and AMIGO's PID is conservative. The method robust can give a better one."));
     return rule_answer(problem, *model, controller, std::move(warnings));
 }
 
@@ -64,7 +64,7 @@ TuningMethod amigo_method() {
         "plants with an essentially monotone step response; the PID rule is conservative for L/(L + T) below 0.3";
     OptionSet<AmigoOptions> options;
     add_controller(options, {ControllerKind::PI, ControllerKind::PID});
-    add_reduction(options, "tangent, as in the source; half_rule where the step response has no tangent.");
+    add_reduction(options, "tangent, as in the source; half_rule if the step response has no tangent.");
     add_filter(options, "second order on the measurement, as in the source.");
     method.bind(options, tune_amigo);
     return method;

@@ -57,7 +57,7 @@ TuningMethod chien_hrones_reswick_method() {
     add_controller(options, {P, PI, PID});
     add_mode(options);
     options.choice(&ChienHronesReswickOptions::overshoot, "overshoot",
-                   "Overshoot that the settings were made for, in percent.",
+                   "Overshoot for which the settings were made, in percent.",
                    Words<DesignOvershoot>{{"0", none}, {"20", twenty_percent}});
     options.embed(&ChienHronesReswickOptions::model, first_order_options());
     method.variants = {

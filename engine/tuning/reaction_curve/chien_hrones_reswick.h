@@ -1,4 +1,4 @@
-// Chien, Hrones and Reswick's rules: a choice between set point and load, and of the overshoot.
+// Chien, Hrones and Reswick's rules: for set points or loads, with a choice of the overshoot.
 #pragma once
 
 #include "engine/tuning/method/first_order_rule.h"
@@ -22,8 +22,8 @@ struct ChienHronesReswickOptions {
 ///     servo, 0 %          P  Kp = 0.3/a    PI  Kp = 0.35/a, Ti = 1.2 T    PID  Kp = 0.6/a, Ti = T, Td = 0.5 L
 ///     servo, 20 %         P  Kp = 0.7/a    PI  Kp = 0.6/a, Ti = T         PID  Kp = 0.95/a, Ti = 1.4 T, Td = 0.47 L
 ///
-/// The regulation settings need a and L alone and serve integrating plants with a = K L; the servo PI and PID need T. T
-/// of a plant of other form is static gain over steepest slope.
+/// The regulation settings need only a and L and also apply to integrating plants with a = K L; the servo PI and PID
+/// need T. T of a plant of other form is static gain over steepest slope.
 ///
 /// Source: Chien, Hrones & Reswick, Trans. ASME 74 (1952) 175-185, constants as rounded by Astrom & Hagglund (1995).
 TuningMethod chien_hrones_reswick_method();

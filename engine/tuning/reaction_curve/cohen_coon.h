@@ -1,4 +1,4 @@
-// Cohen and Coon's rules: quarter-amplitude damping with the dead time taken into account.
+// Cohen and Coon's rules: quarter-amplitude damping, with the dead time taken into account.
 #pragma once
 
 #include "engine/tuning/method/first_order_rule.h"

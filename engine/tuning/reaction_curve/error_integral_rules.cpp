@@ -65,7 +65,7 @@ TuningMethod lopez_method() {
         "IAE: 0.902, -0.985; ISE: 1.411, -0.917; ITAE: 0.490, -1.084";
     method.source = "Lopez, Miller, Smith and Murrill, Instrumentation Technology 14 (1967) 57-62";
     method.needs = "fopdt with T > 0 and L > 0 (others are reduced)";
-    method.validity = "L/T from 0.1 to 1; made for load steps, with no regard to robustness";
+    method.validity = "L/T from 0.1 to 1; made for load steps, without a limit on Ms";
     OptionSet<LopezOptions> options;
     add_controller(options, {P, PI, PID});
     add_criterion(options, {iae, ise, itae});

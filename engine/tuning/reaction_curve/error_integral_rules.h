@@ -1,6 +1,6 @@
-// Settings fitted to optima of an error integral over L/T: one shape, many tables. The tables for load steps (Lopez,
-// Miller, Smith and Murrill), for set-point steps (Rovira, Murrill and Smith; Wang, Juang and Chan) and for both
-// (Zhuang and Atherton) are here.
+// Settings fitted to optima of an error integral over L/T: one formula with many tables. The tables for load steps
+// (Lopez, Miller, Smith and Murrill), for set-point steps (Rovira, Murrill and Smith; Wang, Juang and Chan) and for
+// both (Zhuang and Atherton) are here.
 
 #pragma once
 
@@ -14,7 +14,7 @@
 
 namespace tunewright {
 
-/// How Ti follows q = L/T.
+/// Ti as a function of q = L/T.
 enum class IntegralLaw {
     power,  ///< Ti = T q^b2/a2: fits to load steps
     line,   ///< Ti = T/(a2 + b2 q): fits to set-point steps
@@ -39,7 +39,7 @@ template <class T>
 void add_criterion(OptionSet<T>& set, const std::vector<FittedCriterion>& choices) {
     Words<FittedCriterion> words;
     for (const FittedCriterion choice : choices) words.emplace_back(to_string(choice), choice);
-    set.choice(&T::criterion, "criterion", "The error integral whose optima the settings were fitted to.", words);
+    set.choice(&T::criterion, "criterion", "The error integral for whose optima the settings were fitted.", words);
 }
 
 struct LopezOptions {
@@ -55,10 +55,10 @@ struct LopezOptions {
 ///     Ti = T (L/T)^b2/a2
 ///     Td = a3 T (L/T)^b3
 ///
-/// with the constants of the criterion from a table. Robustness plays no part in it: Ms is often above 2.
+/// with the constants of the criterion from a table. The rule does not consider robustness: Ms is often above 2.
 ///
-/// Source: Lopez, Miller, Smith & Murrill, Instrumentation Technology 14 (1967) 57-62, known to us from the textbooks
-/// that carry its table.
+/// Source: Lopez, Miller, Smith & Murrill, Instrumentation Technology 14 (1967) 57-62, taken from textbooks that
+/// contain its table.
 TuningMethod lopez_method();
 
 struct RoviraOptions {
@@ -76,8 +76,8 @@ struct RoviraOptions {
 ///
 /// with the constants of the criterion from a table.
 ///
-/// Source: Rovira, Murrill & Smith, Instruments & Control Systems 42 (1969) 67-69, known to us from the textbooks that
-/// carry its table.
+/// Source: Rovira, Murrill & Smith, Instruments & Control Systems 42 (1969) 67-69, taken from textbooks that contain
+/// its table.
 TuningMethod rovira_method();
 
 /// Kp = (0.7303 + 0.5307 T/L) (T + L/2)/(K (T + L)), Ti = T + L/2, Td = L T/(2 T + L): PID with the least ITAE of a
@@ -99,11 +99,10 @@ struct ZhuangAthertonOptions {
 ///     Ti = T/(a2 + b2 L/T) (servo), T (L/T)^b2/a2 (regulation)
 ///     Td = a3 T (L/T)^b3
 ///
-/// Two tables, for L/T from 0.1 to 1 and from 1.1 to 2; between them the first is taken up to 1, the second above. The
+/// Two tables, for L/T from 0.1 to 1 and from 1.1 to 2; between them the first is used up to 1, the second above. The
 /// set-point PID was fitted with the derivative on the error; here it acts on the measurement.
 ///
-/// Source: Zhuang & Atherton, IEE Proc. D 140 (1993) 216-224, Tables 1 to 4, known to us from the textbooks that carry
-/// them.
+/// Source: Zhuang & Atherton, IEE Proc. D 140 (1993) 216-224, Tables 1 to 4, taken from textbooks that contain them.
 TuningMethod zhuang_atherton_method();
 
 }  // namespace tunewright

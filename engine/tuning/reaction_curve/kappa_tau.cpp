@@ -56,11 +56,11 @@ TuningMethod kappa_tau_method() {
     method.source = "Åström and Hägglund, PID Controllers: Theory, Design, and Tuning, 2nd edition (1995), section 5.3";
     method.needs = "fopdt with T > 0 and L > 0 (others are reduced)";
     method.validity =
-        "plants with an essentially monotone step response; PI: L/T from 0.1 to 4, PID: from 0.4 (below that a plant "
-        "of one lag, unlike those of the source's batch, may become unstable)";
+        "plants with an essentially monotone step response; PI: L/T from 0.1 to 4, PID: from 0.4 (below that the loop "
+        "of a plant with one lag, unlike those of the source's batch, may be unstable)";
     OptionSet<KappaTauOptions> options;
     add_controller(options, {ControllerKind::PI, ControllerKind::PID});
-    options.choice(&KappaTauOptions::table_Ms, "table_Ms", "The Ms that the table was fitted for.",
+    options.choice(&KappaTauOptions::table_Ms, "table_Ms", "The Ms for which the table was fitted.",
                    Words<TableMs>{{"1.4", TableMs::Ms_1_4}, {"2.0", TableMs::Ms_2_0}});
     options.embed(&KappaTauOptions::model, first_order_options());
     method.variants = {{"PI, Ms = 1.4", options.given_for({.controller = ControllerKind::PI})},

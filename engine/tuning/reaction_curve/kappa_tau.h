@@ -9,7 +9,7 @@ enum class TableMs { Ms_1_4, Ms_2_0 };
 
 struct KappaTauOptions {
     ControllerKind controller = ControllerKind::PID;
-    TableMs table_Ms = TableMs::Ms_1_4;  ///< that the table was fitted for
+    TableMs table_Ms = TableMs::Ms_1_4;  ///< the Ms for which the table was fitted
     FirstOrderOptions model = {};
 };
 
@@ -18,8 +18,8 @@ struct KappaTauOptions {
 ///
 ///     a Kp, Ti/L, Td/L, b = a0 exp(a1 tau + a2 tau^2),   a = K L/T
 ///
-/// with a0, a1, a2 of each from a table. A b above 1 is answered as 1. The ranges of L/T are ours: on a plain
-/// first-order plant the PID loses stability below about 0.2.
+/// with a0, a1, a2 of each from a table. A b above 1 becomes 1. The ranges of L/T are not from the source: on a
+/// first-order plant the loop with the PID is unstable below about 0.2.
 ///
 /// Errors: those of tune_first_order(). Warns `outside-validity` for L/T outside 0.1 to 4, with PID outside 0.4 to 4.
 ///

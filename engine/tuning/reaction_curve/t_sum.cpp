@@ -7,7 +7,7 @@ namespace {
 
 using enum ControllerKind;
 
-constexpr double kDeadTimeDominated = 0.5;  // L/T_sum, from where the fast settings lose their margins
+constexpr double kDeadTimeDominated = 0.5;  // L/T_sum above which the fast settings have too little margin
 
 IdealPid settings(ControllerKind controller, TSumSpeed speed, double K, double T_sum) {
     const bool fast = speed == TSumSpeed::fast;
@@ -20,14 +20,14 @@ std::optional<Error> unfit(const LinearPlant& plant, double T_sum, const TSumOpt
     const bool fast = options.speed == TSumSpeed::fast;
     if (fast && options.controller == P)
         return Error{ErrorKind::invalid_argument, "speed",
-                     "The rule has no fast settings of a P controller. Ask for PI or PID, or leave speed out."};
+                     "The rule has no fast settings for a P controller. Choose PI or PID, or omit speed."};
     if (plant.integrators() != 0 || plant.unstable_poles() > 0)
         return degenerate("plant", "The T-sum rule is for stable plants with a static gain that is not 0.",
                           "Use simc, lambda or robust.");
     if (T_sum <= 0)
         return degenerate("plant",
-                          "The plant's lags and dead time less its leads come to " + text(T_sum) +
-                              ", and the rule scales all times by that sum.",
+                          "The sum of the plant's lags and dead time minus its leads is " + text(T_sum) +
+                              ", but the rule scales all times by that sum.",
                           "Use robust.");
     return std::nullopt;
 }
@@ -64,7 +64,7 @@ TuningMethod t_sum_method() {
     method.validity = "step responses of S shape without much overshoot; fast: little dead time";
     OptionSet<TSumOptions> options;
     add_controller(options, {P, PI, PID});
-    options.choice(&TSumOptions::speed, "speed", "normal, or fast: twice the gain, for plants with little dead time.",
+    options.choice(&TSumOptions::speed, "speed", "normal; fast: twice the gain, for plants with little dead time.",
                    Words<TSumSpeed>{{"normal", TSumSpeed::normal}, {"fast", TSumSpeed::fast}});
     add_filter(options, "of the derivative part, Td s/(1 + s Tf); the source has none.");
     method.variants = {{"PI", options.given_for({.controller = PI})}, {"PID", {}}};

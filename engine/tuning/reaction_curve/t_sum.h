@@ -22,8 +22,8 @@ struct TSumOptions {
 ///     fast     PI   Kp = 1/K     Ti = 0.7 T_sum
 ///              PID  Kp = 2/K     Ti = 0.8 T_sum    Td = 0.194 T_sum
 ///
-/// Source: Kuhn, Automatisierungstechnische Praxis 37 (1995) 10-16, known to us from the textbooks that carry its
-/// table. Errors: unsupported for unstable and integrating plants and for T_sum <= 0; invalid_argument for a fast P
+/// Source: Kuhn, Automatisierungstechnische Praxis 37 (1995) 10-16, taken from textbooks that contain its table.
+/// Errors: unsupported for unstable and integrating plants and for T_sum <= 0; invalid_argument for a fast P
 /// controller.
 TuningMethod t_sum_method();
 

@@ -31,7 +31,7 @@ TuningMethod described(const std::string& id, const std::string& criterion, cons
     method.title = "Tavakoli " + criterion;
     method.formula = "q = L/T; " + formula;
     method.source =
-        "Tavakoli and Tavakoli, Proc. 4th Int. Conf. Control and Automation (2003) 942-946; as read from Jin and Son "
+        "Tavakoli and Tavakoli, Proc. 4th Int. Conf. Control and Automation (2003) 942-946; taken from Jin and Son "
         "(2019), Table 1";
     method.needs = "fopdt with T > 0 and L > 0 (others are reduced)";
     method.validity = "L/T from 0.1 to 2; made for set-point steps";

@@ -11,11 +11,11 @@ namespace tunewright {
 ///     IAE    Kp = 1/(K (q + 0.2))                 Ti = L (0.3 q + 1.2)/(q + 0.08)    Td = L/(90 q)
 ///     ITAE   Kp = 0.8/(K (q + 0.1))               Ti = L (0.3 + 1/q)                 Td = 0.06 L/(q + 0.04)
 ///
-/// In the only table that we know (Jin & Son 2019, Table 1) the columns headed Ti/tau and Td/tau hold Ti/L and Td/L:
-/// only so do its nine published settings follow. Those have a pure derivative: filter {"Tf_over_Td": 0}.
+/// In the only known table (Jin & Son 2019, Table 1) the columns with the headings Ti/tau and Td/tau contain Ti/L and
+/// Td/L: only this reproduces its nine published settings. Those have a pure derivative: filter {"Tf_over_Td": 0}.
 ///
-/// The three have FirstOrderOptions: the reduction to the model (tangent first) and the derivative's filter, Tf =
-/// Td/10 if not given.
+/// All three methods have FirstOrderOptions: the reduction to the model (tangent first) and the derivative's filter, Tf
+/// = Td/10 if not given.
 ///
 /// Errors: those of tune_first_order(): a model without lag or dead time, and an integrating plant, are unsupported.
 /// Warns `outside-validity` for L/T outside 0.1 to 2.

@@ -17,13 +17,13 @@ Expected<TunedController> tune_ziegler_nichols_step(const TuningProblem& problem
                                   {.preferred = ReductionMethod::tangent, .tangent_time = TangentTime::by_slope});
     if (!model) return model.error();
     if (model->L <= 0)
-        return degenerate("plant/L", "Ziegler-Nichols divides by the dead time, and that of the model is 0.",
-                          "Give the loop's true dead time, or use lambda with lambda, simc with tau_c, or robust with "
-                          "a fixed filter Tf.");
+        return degenerate("plant/L", "Ziegler-Nichols divides by the dead time, but that of the model is 0.",
+                          "Give the true dead time of the loop, or use lambda with lambda, simc with tau_c, or robust "
+                          "with a fixed filter Tf.");
     if (model->integrators == 0 && model->T1 <= 0)
         return degenerate(
             "plant/T",
-            "Ziegler-Nichols needs a reaction curve with a slope, and the model is a pure dead time (T = 0).",
+            "Ziegler-Nichols needs a reaction curve with a slope, but the model is a pure dead time (T = 0).",
             "Use amigo or robust.");
 
     const double slope = model->integrators == 1 ? model->K : model->K / model->T1;
@@ -34,7 +34,7 @@ Expected<TunedController> tune_ziegler_nichols_step(const TuningProblem& problem
     const double ratio = model->L / model->T1;
     if (model->integrators == 0 && (ratio < 0.1 || ratio > 1))
         warnings.push_back(outside_validity(
-            "L/T is " + text(ratio) + ", outside 0.1 to 1, where this rule is usually applied: " +
+            "L/T is " + text(ratio) + ", outside the usual range 0.1 to 1 of this rule: " +
             (ratio > 1 ? "it is sluggish there." : "it is oscillatory and needs very high gains there.")));
     return rule_answer(problem, *model, controller, std::move(warnings));
 }
@@ -57,8 +57,7 @@ TuningMethod ziegler_nichols_step_method() {
     add_controller(options, {ControllerKind::P, ControllerKind::PI, ControllerKind::PID});
     add_reduction(
         options,
-        "tangent, as in the source, here with T = static gain over steepest slope; half_rule where there is no "
-        "tangent.");
+        "tangent, as in the source, here with T = static gain over steepest slope; half_rule if there is no tangent.");
     add_filter(options, "of the derivative part, Td s/(1 + s Tf).");
     method.bind(options, tune_ziegler_nichols_step);
     return method;

@@ -1,4 +1,4 @@
-// Ziegler and Nichols' step-response rules: the classic, for comparison.
+// Ziegler and Nichols' step-response rules, for comparison.
 #pragma once
 
 #include "engine/tuning/method/rule.h"

@@ -9,8 +9,10 @@
 namespace tunewright {
 namespace {
 
-constexpr double kPrintRounding = 1e-6;  // relative: of a lambda or an error that was asked for as a printed figure
-constexpr double kMinLambdaOverLimit = 1.25;  // times the stability limit of lambda: from here on it is warned
+constexpr double kPrintRounding = 1e-6;  // relative: rounding of a lambda or an error that was copied from a printed
+                                         // figure
+constexpr double kMinLambdaOverLimit = 1.25;  // multiple of the stability limit of lambda below which a warning is
+                                              // given
 constexpr double kMaxDeadTimeOverLag = 2;     // L/T up to which the source has results
 constexpr int kCurvePoints = 60;
 
@@ -29,13 +31,13 @@ std::optional<Error> contradictory(const RimcOptions& options) {
         if (first)
             return Error{ErrorKind::invalid_argument, name,
                          std::string(first) + " and " + name +
-                             " are both given; lambda follows from one of lambda, Ms, disturbance_peak and "
-                             "dead_time_error. Give one of them."};
+                             " are both given, but each of lambda, Ms, disturbance_peak and dead_time_error determines "
+                             "lambda. Give only one of them."};
         first = name;
     }
     if (options.Tf_over_Td && filter_of(options).linear_fraction)
         return Error{ErrorKind::invalid_argument, "Tf_over_Td",
-                     "The linear fractional approximation has its own filter time. Leave Tf_over_Td out, or use the "
+                     "The linear fractional approximation has its own filter time. Omit Tf_over_Td, or use the "
                      "approximation maclaurin."};
     return std::nullopt;
 }
@@ -43,12 +45,12 @@ std::optional<Error> contradictory(const RimcOptions& options) {
 std::optional<Error> unfit(const ReducedModel& model) {
     if (model.integrators > 0)
         return degenerate("plant",
-                          "The revised IMC design cancels a slow, stable pole, and this plant integrates: with T going "
-                          "to infinity its filter zero has no meaning.",
+                          "The revised IMC design cancels a slow, stable pole, but this plant integrates: for infinite "
+                          "T its filter zero is not defined.",
                           "Use simc, amigo, lambda or robust.");
     if (model.T1 <= 0)
         return degenerate("plant/T",
-                          "The revised IMC design cancels the model's time constant, and the model is a pure dead time "
+                          "The revised IMC design cancels the model's time constant, but the model is a pure dead time "
                           "(T = 0).",
                           "Use imc, amigo or robust.");
     return std::nullopt;
@@ -58,9 +60,9 @@ Error inadmissible(double lambda, const RimcBranch& branch) {
     const auto [low, high] = branch.admissible();
     return {ErrorKind::no_feasible_controller, "lambda",
             "lambda is " + text(lambda) + "; a PID with K Kp > 0 and Td >= 0" +
-                (low > 0 ? " and a filter time > 0" : "") + " comes out for lambda " +
+                (low > 0 ? " and a filter time > 0" : "") + " exists for lambda " +
                 (low > 0 ? "from " + text(low) + " to " : "up to ") + text(high) +
-                " on this model. Give one in that range."};
+                " on this model. Give a value in that range."};
 }
 
 Expected<double> chosen_lambda(const RimcOptions& options, const Fopdt& model, const RimcBranch& branch) {
@@ -71,8 +73,8 @@ Expected<double> chosen_lambda(const RimcOptions& options, const Fopdt& model, c
         return Error{
             ErrorKind::invalid_argument, "disturbance_peak",
             "disturbance_peak is " + text(*peak) +
-                "; it must not be 0, and negative only where the plant's gain is. Give the size of y's largest "
-                "deviation per unit of load."};
+                "; it must not be 0, and must be positive unless the plant's gain is negative. Give the largest "
+                "deviation of y per unit of load."};
     }
     const double lambda = options.lambda.value_or(model.T);
     const auto [low, high] = branch.admissible();
@@ -89,8 +91,9 @@ std::shared_ptr<RimcReport> report_on(const Fopdt& model, double lambda, const R
     report.Ms = Figure(branch.Ms(lambda), unstable);
     report.disturbance_peak = Figure(branch.disturbance_peak(lambda), unstable);
     report.dead_time_error = Figure(branch.dead_time_error(lambda), unstable);
-    report.stability_limit =
-        Figure(branch.stability_limit(), "No lambda that was looked at is at the limit of stability on the model.");
+    report.stability_limit = Figure(branch.stability_limit(),
+                                    "None of the tried values of lambda is at the limit of stability on the "
+                                    "model.");
     if (report.dead_time_error && options.dead_time_error) report.dead_time_error = *options.dead_time_error;
     if (options.curve) report.curve = branch.curve(kCurvePoints);
     return made;
@@ -99,7 +102,7 @@ std::shared_ptr<RimcReport> report_on(const Fopdt& model, double lambda, const R
 void warn_of_stability(std::vector<Warning>& warnings, const Fopdt& model, double lambda, const RimcBranch& branch) {
     const auto limit = branch.stability_limit();
     const std::string figures = limit ? "lambda/T is " + text(lambda / model.T) +
-                                            ", and the limit of stability on the model is " + text(*limit / model.T) +
+                                            ", but the limit of stability on the model is " + text(*limit / model.T) +
                                             ". "
                                       : "";
     if (!branch.branch())
@@ -107,15 +110,15 @@ void warn_of_stability(std::vector<Warning>& warnings, const Fopdt& model, doubl
                                                        text(model.L / model.T) + ". Use robust."});
     else if (limit && lambda < *limit)
         warnings.push_back({"unstable-model-loop",
-                            figures + "The loop is unstable on the model; if it is stable on the plant, that is by the "
-                                      "model's error. Give a larger lambda."});
+                            figures + "The loop is unstable on the model, and stable on the plant only because of the "
+                                      "model's error. Use a larger lambda."});
     else if (limit && lambda < kMinLambdaOverLimit * *limit)
         warnings.push_back({"near-stability-limit", figures + "A small error of the model may make the loop unstable. "
-                                                              "Give a larger lambda, or an Ms in its place."});
+                                                              "Use a larger lambda, or give Ms instead."});
     if (branch.branch() && lambda > branch.branch()->high * (1 + kPrintRounding))
         warnings.push_back(outside_validity("lambda = " + text(lambda) + " is beyond " + text(branch.branch()->high) +
                                             ", where Ms is least (" + text(branch.min_Ms()) +
-                                            "): the response is slower without being more robust."));
+                                            "), so the response is slower without being more robust."));
 }
 
 std::vector<Warning> remarks(const Fopdt& model, double lambda, const RimcBranch& branch, const RimcOptions& options) {
@@ -124,15 +127,13 @@ std::vector<Warning> remarks(const Fopdt& model, double lambda, const RimcBranch
     if (model.L > kMaxDeadTimeOverLag * model.T)
         warnings.push_back(outside_validity("L/T is " + text(model.L / model.T) +
                                             ": the design is for plants with a slow time constant; with a dead time "
-                                            "beyond 2 T it gains little and its PID follows the design badly."));
+                                            "above 2 T it gains little, and its PID approximates the design poorly."));
     if (options.dead_time_error) {
         const double asked = *options.dead_time_error, all = branch.dead_time_error(lambda).value_or(0);
         if (all < asked * (1 - kPrintRounding))
             warnings.push_back({"smaller-errors-too",
                                 "Eq. 29 holds for the error " + text(asked) +
-                                    ", but not for all smaller ones: for "
-                                    "every error only up to " +
-                                    text(all) +
+                                    ", but not for all smaller errors; it holds for every error up to " + text(all) +
                                     ". It is a sufficient condition; delay_margin is exact for later dead times."});
     }
     return warnings;
@@ -172,20 +173,20 @@ OptionSet<RimcOptions> described_options() {
     set.field(&O::disturbance_peak, "disturbance_peak",
               "In place of lambda: the largest deviation of y after a unit load step on the model.", {.unit = "y/u"});
     set.field(&O::dead_time_error, "dead_time_error",
-              "In place of lambda: an error of the model's dead time that the loop shall stand, by the small-gain "
-              "condition of Eq. 29 (sufficient only): the smallest lambda above which it holds.",
+              "In place of lambda: an error of the model's dead time for which the loop stays stable, by the "
+              "small-gain condition of Eq. 29 (sufficient only); uses the smallest lambda above which it holds.",
               {.unit = "time", .exclusive_minimum = 0});
-    set.field(&O::Tf_over_Td, "Tf_over_Td", "Time of the derivative's filter over Td; 0 for none.",
+    set.field(&O::Tf_over_Td, "Tf_over_Td", "Filter time of the derivative over Td; 0 for none.",
               {.minimum = 0, .maximum = 1, .fallback = RimcFilter{}.Tf_over_Td});
     set.choice(&O::approximation, "approximation",
-               "How the controller of Eq. 23 becomes a PID: maclaurin, the first three terms of its series; "
-               "linear_fractional: (a0 + a1 s + a2 s^2)/(s (1 + b1 s)) with the first four, which is the same PID with "
-               "the filter time b1.",
+               "Approximation of the controller of Eq. 23 by a PID: maclaurin: the first three terms of its series; "
+               "linear_fractional: (a0 + a1 s + a2 s^2)/(s (1 + b1 s)) with the first four terms, which is the same "
+               "PID with the filter time b1.",
                Words<RimcApproximation>{{"maclaurin", maclaurin}, {"linear_fractional", linear_fractional}});
     set.field(&O::curve, "curve",
               "Also return the load response's peak and Ms over lambda/T for this plant (Fig. 2 of the source).");
     set.main({"lambda", "Ms"}).in_place_of("lambda", {"Ms", "disturbance_peak", "dead_time_error"}).draws("curve");
-    add_reduction(set, "half_rule; tangent where that does not apply.");
+    add_reduction(set, "half_rule; tangent if that does not apply.");
     return set;
 }
 

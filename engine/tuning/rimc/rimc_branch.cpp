@@ -16,19 +16,19 @@
 namespace tunewright {
 namespace {
 
-constexpr double kMinLambdaRatio = 1e-4, kMaxLambdaRatio = 1e3;   // lambda/tau that are looked at
-constexpr double kDescentFactor = 0.8, kFineDescentFactor = 0.9;  // from one lambda to the next on the way down
-constexpr double kMaxLambdaWithoutDeadTime =
-    1.4142135623730951;                   // theta = 0: |S| <= 1 as long as lambda <= sqrt(2) tau
-constexpr double kLimitAccuracy = 1e-7;   // of the stability limit, relative
-constexpr double kRootTolerance = 1e-11;  // of ln lambda
-constexpr int kPointsPerDecade = 60;      // of the sweep that finds the branch
-// That sweep's ends, times 1/T or 1/L: no Ms of a PID of the branch peaks beyond them.
+constexpr double kMinLambdaRatio = 1e-4, kMaxLambdaRatio = 1e3;   // range of lambda/tau in the search
+constexpr double kDescentFactor = 0.8, kFineDescentFactor = 0.9;  // ratio of successive values of lambda in downward
+                                                                  // searches
+constexpr double kMaxLambdaWithoutDeadTime = 1.4142135623730951;  // theta = 0: |S| <= 1 for lambda <= sqrt(2) tau
+constexpr double kLimitAccuracy = 1e-7;                           // relative accuracy of the stability limit
+constexpr double kRootTolerance = 1e-11;                          // of ln lambda
+constexpr int kPointsPerDecade = 60;                              // points of the sweep that finds the branch
+// Ends of that sweep, as multiples of 1/T or 1/L: for every PID of the branch |S| has its peak between them.
 constexpr double kLowestSwept = 0.03, kHighestSwept = 300;
-constexpr double kShortestSwept = 1e-3;  // of L/T: a shorter dead time shows nothing more
-constexpr double kMinFilter = 0.01;      // of Td: a linear fraction's filter time
-constexpr double kOpenEndMargin = 1e-9;  // relative: where the admissible range excludes its end
-constexpr double kFirstStep = 1e-4;      // relative, from the sweep's answer to a bracket of the true one
+constexpr double kShortestSwept = 1e-3;  // of L/T: a shorter dead time has no visible effect
+constexpr double kMinFilter = 0.01;      // of Td: least filter time of a linear fraction
+constexpr double kOpenEndMargin = 1e-9;  // relative distance from an excluded end of the admissible range
+constexpr double kFirstStep = 1e-4;      // relative: first step from the sweep's result to a bracket of the exact one
 
 LinearPlant scaled_plant(const Fopdt& model) { return *LinearPlant::make(Fopdt{1, 1, model.L / model.T}); }
 
@@ -59,7 +59,7 @@ std::optional<double> RimcBranch::stability_limit() const {
 
 void RimcBranch::find_admissible() {
     const auto admissible = [&](double x) { return pid(x).has_value(); };
-    double low = 1, high = 1;  // lambda = tau always is
+    double low = 1, high = 1;  // lambda = tau is always admissible
     while (low > kMinLambdaRatio && admissible(low * 0.9)) low *= 0.9;
     while (high < kMaxLambdaRatio && admissible(high * 1.05)) high *= 1.05;
     scaled_admissible_.low =
@@ -68,12 +68,12 @@ void RimcBranch::find_admissible() {
         high < kMaxLambdaRatio ? log_bisect({high, high * 1.05}, admissible, kRootTolerance).inside : high;
 }
 
-// Least |1 + L| over a fixed set of frequencies, with a parabola through the lowest three: quick, and close enough to
-// find where the branch begins and ends.
+// Least |1 + L| over a fixed set of frequencies, with a parabola through the lowest three: fast, and accurate enough to
+// find the ends of the branch.
 double RimcBranch::nearest_approach(const IdealPid& pid) const {
     const double Ki = pid.Kp / pid.Ti, Kd = pid.Kp * pid.Td, Tf = pid.filter.Tf;
     const auto squared = [&](std::size_t i) {
-        // C(j omega) written out: the divisions of complex numbers would take most of the time.
+        // C(j omega) is written out because complex divisions would take most of the time.
         const double omega = omega_[i], corner = omega * Tf, lead = Kd * omega / (1 + corner * corner);
         const std::complex<double> C(pid.Kp + lead * corner, lead - Ki / omega);
         return std::norm(1.0 + response_[i] * C);
@@ -119,7 +119,7 @@ void RimcBranch::find_min_Ms() {
 void RimcBranch::find_stability_limit() {
     double& low = scaled_branch_->low;
     double lowest = std::max(scaled_admissible_.low * (1 + kOpenEndMargin), kMinLambdaRatio);
-    // A linear fraction's filter time goes to 0 at that end, where noise passes without end.
+    // At that end a linear fraction's filter time goes to 0, so its noise gain is unbounded.
     const auto filtered = [&](double x) {
         const auto settings = pid(x);
         return settings && settings->filter.Tf >= kMinFilter * settings->Td;
@@ -179,8 +179,8 @@ std::optional<double> RimcBranch::dead_time_mismatch_at(double lambda, double er
     return dead_time_mismatch(*stable, make_loop_grid(*stable), error / model_.T);
 }
 
-// From the branch's end downwards to the first lambda at which the figure passes the target. `rising`: it grows on the
-// way. Every loop of the branch is stable, which need not be asked again.
+// Searches downwards from the branch's upper end for the first lambda at which the figure passes the target. `rising`:
+// the figure grows in this direction. Every loop of the branch is stable and is not checked again.
 RimcBranch::Reach RimcBranch::descend(const Figure& figure, double target, bool rising, double step) const {
     const double sign = rising ? 1 : -1;
     const double lowest = scaled_branch_->low * (1 + 2 * kLimitAccuracy);
@@ -218,7 +218,8 @@ Expected<double> RimcBranch::lambda_for_Ms(double Ms) const {
     const auto excess = [&](double x) { return Ms_of(*loop(x)) - Ms; };
     double near =
         reach.x.value_or(Ms > min_Ms_ * 1.01 ? scaled_branch_->low * (1 + 2 * kLimitAccuracy) : scaled_branch_->high);
-    // The sweep is off by little: from its answer outwards until the true Ms lies on both sides.
+    // The sweep's result is nearly exact: the search goes outwards from it until the exact Ms lies on both sides of the
+    // target.
     double f = excess(near), next = near, f_next = f;
     for (double step = kFirstStep; f != 0 && (f < 0) == (f_next < 0); step *= 4) {
         near = next;
@@ -241,7 +242,7 @@ Expected<double> RimcBranch::lambda_for_disturbance_peak(double peak) const {
     return Error{ErrorKind::no_feasible_controller, "disturbance_peak",
                  "disturbance_peak is " + text(peak) + " per unit of load; with this PID on the model with L/T = " +
                      text(scaled_.L) + " it can be from " + text(lowest * gain) + " to " + text(highest * gain) +
-                     " (no controller at all comes below " + text(-std::expm1(-scaled_.L) * gain) +
+                     " (no controller has less than " + text(-std::expm1(-scaled_.L) * gain) +
                      "). Give a value in that range, or lambda."};
 }
 
@@ -257,7 +258,7 @@ Expected<double> RimcBranch::lambda_for_dead_time_error(double error) const {
                      "dead_time_error is " + text(error) + "; by Eq. 29 on the model with L/T = " + text(scaled_.L) +
                          " it can be up to " + text(small_gain_dead_time(at_end, make_loop_grid(at_end)) * model_.T) +
                          " (at lambda = " + text(branch()->high) + "). Give a smaller one, or lambda."};
-    // Where Eq. 29 holds all the way down, the branch's other end is the answer.
+    // If Eq. 29 holds down to the other end of the branch, that end is the result.
     return descend(mismatch, 1, true, kFineDescentFactor).x.value_or(scaled_branch_->low) * model_.T;
 }
 

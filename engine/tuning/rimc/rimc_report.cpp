@@ -43,7 +43,7 @@ FullController evaluated(const ImcController& controller, const LinearPlant& pla
     return full;
 }
 
-// Without dead time in the model Eq. 23 is a PI controller, and nothing else need be evaluated.
+// Without dead time in the model Eq. 23 is a PI controller, and no other evaluation is needed.
 std::optional<FullController> as_pi(const ImcController& c, const Plant& plant, EvaluateOptions options) {
     options.actuator.reset();
     const auto evaluation = evaluate(PlantModel(plant), maclaurin_pid(rimc_terms(c)), options);

@@ -1,4 +1,4 @@
-// What the revised IMC design reports beside its controller.
+// The report of the revised IMC design.
 #pragma once
 
 #include <optional>
@@ -10,25 +10,24 @@
 
 namespace tunewright {
 
-/// The full controller of Eq. 23, dead time inside, on the plant as given.
+/// The full controller of Eq. 23, with its dead time, on the given plant.
 struct FullController {
     Robustness robustness;
     LoadPerformance load;
     std::optional<Responses> responses;  ///< with points > 0 and a stable loop
 };
 
-/// Figures of the returned PID, with its filter, on the model that it was designed for.
+/// Figures of the returned PID, with its filter, on the model of its design.
 struct RimcReport : MethodReport {
-    ImcController controller;  ///< Eq. 23; holds lambda
+    ImcController controller;  ///< Eq. 23; contains lambda
     Figure Ms;
     Figure disturbance_peak;  ///< largest deviation of y per unit of load, signed
-    Figure dead_time_error;   ///< the one that was asked for, else the largest up to which Eq. 29 holds
+    Figure dead_time_error;   ///< the requested one, else the largest up to which Eq. 29 holds
     Figure stability_limit;   ///< of lambda
     OrReason<FullController> full_controller;
     std::optional<DisturbancePeakCurve> curve;  ///< with the option "curve"
 
-    /// Evaluates the full controller on the plant. Actuator limits do not apply to it; everything else of the options
-    /// does.
+    /// Evaluates the full controller on the plant. It ignores actuator limits but applies all other options.
     void complete(const ReportContext& context, Evaluation& evaluation) override;
 };
 

@@ -1,12 +1,12 @@
-// A PID whose proportional part is next to nothing where the loop works: the optimum of some resonances, and of plants
-// that are nearly dead time alone, is integral action, or integral and derivative action. As a PID its gain and Ti are
-// then next to 0 and their ratio is all that counts, so that a number typed for one of them means little by itself.
+// Detects a PID whose proportional part is negligible at the loop's frequencies. For some resonances, and for plants
+// that are nearly pure dead time, the optimum is integral action, or integral and derivative action. As a PID it has a
+// gain and a Ti near 0, of which only the ratio matters, so neither number means much by itself.
 //
 //   |Kp| < |Ki|/(1000 omega)  or  |Kp| < omega |Kd|/1000
 //
-// It is said of the ideal optimum, and of what is typed for a product or run sampled, whose own search may end there
-// where the ideal one does not: a simplex over gain and times sees no end on the way to Ti = 0, only a cost that falls
-// less and less.
+// The check applies to the ideal optimum, and to the settings of a product or of a sampled program. Their own search
+// may end there even if the ideal one does not: a simplex over gain and times does not notice that Ti goes to 0,
+// because the cost keeps falling, only more slowly.
 #pragma once
 
 #include <optional>
@@ -16,11 +16,11 @@
 
 namespace tunewright::robust {
 
-/// Times 1/omega: beyond them a design is no ordinary PID.
+/// Multiples of 1/omega: beyond them a design is not an ordinary PID.
 inline constexpr double kShortTi = 1e-3, kLongTd = 1e3;
 
-/// The warning "degenerate-design" of such times. `omega` (rad/time): where the loop works, such as that of Ms or the
-/// reference frequency of a search.
+/// The warning "degenerate-design" for such times. `omega` (rad/time): a characteristic frequency of the loop, such as
+/// that of Ms or the reference frequency of a search.
 inline std::optional<Warning> degenerate_design(double omega, double Ti, double Td) {
     if (Ti * omega >= kShortTi && Td * omega <= kLongTd) return std::nullopt;
     return Warning{"degenerate-design", "The optimum tends to pure integral and derivative action (Ti " + text(Ti) +

@@ -12,15 +12,17 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double kBeyondCorners = 100;  // the phase is followed so many times beyond the outer corners
+constexpr double kBeyondCorners = 100;  // multiple of the outer corners: the phase is followed up to there
 constexpr int kLagPointsPerDecade = 60;
 
-constexpr double kMaxResonantDamping = 0.05;  // damping below which a resonance may keep a loop far below it
-constexpr double kStepDown = 1.1, kMinFrequencyRatio = 1e-8;  // down from the resonance: one step, and the end
+constexpr double kMaxResonantDamping = 0.05;  // damping below which a resonance may require a loop much slower than it
+constexpr double kStepDown = 1.1, kMinFrequencyRatio = 1e-8;  // ratio of successive frequencies below the resonance,
+                                                              // and the last one
 constexpr double kFarReferenceRatio =
-    0.1;  // times the usual reference: what lies above is within its grid and its scans
-constexpr double kNearReferenceRatio = 0.5;    // the same, of a loop that must be met more nearly
-constexpr double kSparePhase[] = {0.1, 0.01};  // rad, of a PID's lead over what Ms and Mt need on two integrators
+    0.1;  // multiple of the usual reference: higher frequencies are within its grid and its scans
+constexpr double kNearReferenceRatio = 0.5;    // the same for a loop that must be found more precisely
+constexpr double kSparePhase[] = {0.1, 0.01};  // rad, lead of a PID above that which Ms and Mt need with two
+                                               // integrators
 
 }  // namespace
 
@@ -41,7 +43,7 @@ double reference_frequency(const DesignProblem& problem) {
     const double Tf = problem.filter.Tf.value_or(0);
     if (Tf > 0) note(1 / Tf);
     if (fastest == 0) return 1;
-    // Right-half-plane poles are mirrored: what counts is where the lag of the loop's other parts has used up half a
+    // Right-half-plane poles are mirrored: the frequency at which the lag of the loop's other parts reaches half a
     // turn.
     const auto lagging = [&](double w) {
         const Complex s(0, w);
@@ -71,7 +73,7 @@ double reference_frequency(const DesignProblem& problem) {
 
 namespace {
 
-/// Where a gain that keeps the peak of a barely damped resonance within Ms crosses over, if that is far below.
+/// The crossover of a gain that keeps the peak of a lightly damped resonance within Ms, if it is much lower.
 std::optional<double> crossover_below_resonance(const DesignProblem& problem, double usual) {
     const LinearPlant& plant = *problem.plant;
     const auto size = [&](double omega) { return magnitude(plant.at({0, omega})); };
@@ -87,7 +89,7 @@ std::optional<double> crossover_below_resonance(const DesignProblem& problem, do
     return slowest < kFarReferenceRatio * usual ? std::optional(slowest) : std::nullopt;
 }
 
-/// Where the lags beside the integrators have used up that phase, rad.
+/// The frequency at which the lags other than the integrators reach that phase, in rad.
 double frequency_of_lag(const LinearPlant& plant, double phase) {
     double delay = plant.dead_time();
     for (const auto pole : plant.poles())

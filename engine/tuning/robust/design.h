@@ -15,7 +15,7 @@
 
 namespace tunewright::robust {
 
-/// Which circles the Nyquist curve stays out of: those of Ms and Mt, or the smallest one around both.
+/// The circles that the Nyquist curve must avoid: those of Ms and Mt, or the smallest one around both.
 enum class Constraint { circles, m_circle };
 
 enum class Objective { load_iae, load_ie, setpoint_iae, weighted };
@@ -32,37 +32,39 @@ struct FilterRule {
 /// Logarithms of |Kp|, Ti, Td. PI uses the first two.
 using DesignPoint = std::array<double, 3>;
 
-/// Within which the searches by gradient keep the controller's times, in 1/reference frequency: beyond, the design is
-/// an integral alone, a PI, or lives below every frequency of interest, and a filter tied to Td leaves the frequency
+/// Bounds of the controller's times in searches by gradient, in 1/reference frequency. Beyond them the design is pure
+/// integral action, a PI, or much slower than every frequency of interest, and a filter tied to Td leaves the frequency
 /// grid.
 constexpr double kMinTi = 1e-6, kMinTd = 2e-4, kMaxTd = 300;
 
-/// What a search answers.
-/// The curvature that a search has seen around a design: of ln(cost) and the active limits over the logarithms of the
-/// parameters, symmetric. A search that starts near by learns it in as many steps as there are parameters.
+/// The curvature that a search has found around a design: of ln(cost) and the active limits over the logarithms of the
+/// parameters, symmetric. A search that starts nearby without it needs as many steps as there are parameters to find
+/// it.
 using Curvature = std::array<std::array<double, 3>, 3>;
 
 struct DesignResult {
     DesignPoint x{};
     double log_cost = 0;
-    bool stopped = false;  ///< the report asked to stop: x is the best so far
+    bool stopped = false;  ///< stopped by the report: x is the best so far
     std::optional<Curvature> curvature = {};
 };
 
 struct DesignProblem {
-    const LinearPlant* plant = nullptr;       ///< nominal: the cost is its own
+    const LinearPlant* plant = nullptr;       ///< nominal: the cost is computed on it
     std::span<const LinearPlant> others;      ///< stability and the limits must hold on these too
-    const MeasuredPlant* measured = nullptr;  ///< in their place: measured points, with objective load_ie
+    const MeasuredPlant* measured = nullptr;  ///< in place of plants: measured points, with objective load_ie
     bool pid = true;
     double sign = 1;  ///< of Kp
     FilterRule filter;
     PeakLimits limits;
     Objective objective = Objective::load_iae;
-    double rho = 0.5;         ///< weight of the load in `weighted`
+    double rho = 0.5;         ///< weight of the load in the objective `weighted`
     double load_optimum = 1;  ///< IAE of the load-optimal design, for `weighted`
     double setpoint_optimum = 1;
-    std::vector<DesignPoint> optimal_for_part = {};  ///< those designs: the weighted optimum's valley may be of one
-    std::optional<double> reference = {};  ///< where the loop is looked for; empty: reference_frequency() says
+    std::vector<DesignPoint> optimal_for_part = {};  ///< those designs, because the weighted optimum may lie near one
+                                                     ///< of them
+    std::optional<double> reference = {};            ///< frequency around which the loop is searched; empty:
+                                                     ///< reference_frequency()
 
     int dimension() const { return pid ? 3 : 2; }
     std::size_t plants() const { return 1 + others.size(); }
@@ -85,14 +87,14 @@ inline IdealPid controller_at(const DesignProblem& problem, const DesignPoint& x
 }
 
 /// The first frequency where the phase of P (right-half-plane poles mirrored; with the filter, if its Tf is fixed)
-/// falls through -180 degrees; else 1/L; else where it last falls through -135 degrees, as two lags far apart do at the
-/// faster one; else the filter's or the slowest lag's corner.
+/// falls through -180 degrees; else 1/L; else the frequency at which it last falls through -135 degrees, which is the
+/// faster one of two very different lags; else the filter's or the slowest lag's corner.
 double reference_frequency(const DesignProblem& problem);
 
-/// Where else to look on an integrating plant. Its resonance may be so lightly damped that a gain which keeps the peak
-/// within Ms crosses over far below: at that crossover, and half way to the usual reference in the logarithm, where a
-/// filter takes the peak down. Behind two integrators, with no phase to spare, where the other lags have used up little
-/// of it. Empty: nowhere.
+/// Further reference frequencies of an integrating plant; empty if there are none. A resonance may be so lightly damped
+/// that a gain which keeps its peak within Ms has a much lower crossover: then that crossover, and the logarithmic
+/// middle between it and the usual reference, where a filter lowers the peak. With two integrators, which leave no
+/// phase to spare: the frequency at which the other lags have little effect.
 std::vector<double> slower_references(const DesignProblem& problem);
 
 }  // namespace tunewright::robust

@@ -12,8 +12,9 @@ namespace {
 
 Error both_signs() {
     return {ErrorKind::no_feasible_controller, "",
-            "The plants need gains of both signs, which no controller has. Narrow the uncertainty; for a recorded "
-            "test: the record leaves even the sign of the plant's gain open, so repeat the test with a larger step."};
+            "Some of the plants need a positive and some a negative gain, so no controller stabilises all of them. "
+            "Narrow the uncertainty. For a recorded test, even the sign of the plant's gain is uncertain: repeat the "
+            "test with a larger step."};
 }
 
 }  // namespace

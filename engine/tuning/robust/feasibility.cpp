@@ -17,9 +17,9 @@ namespace tunewright::robust {
 
 namespace {
 
-constexpr double kPeakTolerance = 1e-5;                     // of ln M: a hundredth of what is promised
-constexpr double kLongestTi = 200, kShortestPeakTd = 1e-3;  // times the period over 2 pi at the reference frequency
-constexpr double kUnstableLogPeak = 20;                     // ln of the larger peak, where the loop is unstable
+constexpr double kPeakTolerance = 1e-5;                     // of ln M: a hundredth of the promised accuracy
+constexpr double kLongestTi = 200, kShortestPeakTd = 1e-3;  // multiple of 1/(reference frequency)
+constexpr double kUnstableLogPeak = 20;                     // ln of the larger peak for an unstable loop
 
 /// ln of the larger of Ms and Mt, on the grid that the loop itself chooses: far from any limit a search's fixed grid
 /// may be left behind.
@@ -34,29 +34,29 @@ double larger_peak(const DesignProblem& problem, const DesignPoint& x) {
 }
 
 constexpr double kMinExcess = 0.01, kFirstExcess = 0.5, kMaxExcess = 40;  // of peaks over 1, for a start
-constexpr double kExcessStep = 1.6;                                       // from one look to the next
-constexpr double kCloseStart = 1.05;  // over the least excess at which a scan sees anything
+constexpr double kExcessStep = 1.6;                                       // factor between successive attempts
+constexpr double kCloseStart = 1.05;  // multiple of the least excess at which a scan finds a design
 
-/// A stable loop whose peaks exceed 1 by no more than `excess`; empty if a scan sees none.
+/// A stable loop whose peaks exceed 1 by at most `excess`; empty if a scan finds none.
 std::optional<DesignPoint> stable_within(DesignProblem problem, double reference, double excess, Stability wanted) {
     problem.limits = PeakLimits{.Ms = 1 + excess, .Mt = 1 + excess, .Mks = std::nullopt, .m_circle = false};
     return first_stable(Sweep(problem, reference), {.Ti_points = 13, .Td_points = 11}, wanted);
 }
 
-/// How far and how hard stable loops are looked for.
+/// Extent of the search for stable loops.
 struct StartSearch {
     double first, max;  // excess
     Stability wanted;
 };
-// Loops of any peaks are looked for where none of usual ones is seen about any reference. Those of which the sweep's
-// grid tells nothing come last: most of their gains reach to where the dead time turns faster than the grid follows,
-// and none of these is stable.
+// Loops with any peaks are searched if none with usual peaks is found around any reference. Those whose stability the
+// sweep's grid does not show come last: most of their gains extend to frequencies at which the dead time turns faster
+// than the grid resolves, and none of these is stable.
 constexpr StartSearch kStartSearches[] = {{kFirstExcess, kFirstExcess, Stability::inferred},
                                           {kExcessStep * kFirstExcess, kMaxExcess, Stability::inferred},
                                           {kFirstExcess, kMaxExcess, Stability::verified}};
 
-/// Two stable loops: one of the widest limits needed, and one with nearly the least peaks that a scan sees. From either
-/// a search may stall on the kinks of the larger of two peaks.
+/// Two stable loops: one with the widest limits that were needed, and one with nearly the least peaks that a scan
+/// finds. From either one alone a search may stall at the kinks of the larger of two peaks.
 std::vector<DesignPoint> stable_starts(const DesignProblem& problem, double reference, const StartSearch& how) {
     const auto within = [&](double excess) { return stable_within(problem, reference, excess, how.wanted); };
     double enough = how.first;
@@ -78,22 +78,23 @@ std::vector<DesignPoint> stable_starts(const DesignProblem& problem, double refe
     return starts;
 }
 
-/// Of a descent.
+/// Parameters of a descent.
 struct Stage {
     double step, tolerance;
 };
-// Started anew with shorter steps, ever more exactly: the larger of two peaks has kinks on which a search stalls.
+// Restarted with shorter steps and smaller tolerances, because the larger of two peaks has kinks at which a search
+// stalls.
 constexpr Stage kFirstStage = {0.4, 100 * kPeakTolerance};
 constexpr Stage kLaterStages[] = {{0.1, 10 * kPeakTolerance}, {0.1, kPeakTolerance}};
-constexpr double kMinRefinementGain = 0.1;  // of ln M: what the later stages may still win
+constexpr double kMinRefinementGain = 0.1;  // of ln M: possible gain of the later stages
 
-/// From `min.x` on; M is kUnstableLogPeak where it leads nowhere.
+/// Descends from `min.x`; M is kUnstableLogPeak if it finds no stable loop.
 void descend(MinPeak& min, const DesignProblem& problem, const Stage& stage) {
     const auto n = static_cast<std::size_t>(problem.dimension());
-    // The least peak itself often lies at Ti = infinity, where nothing returns to the set point: kept within what a
-    // design would use.
+    // The least peak is often at Ti = infinity, where y does not return to the set point, so Ti is limited to that of
+    // usual designs.
     const double longest = std::log(kLongestTi / min.reference), shortest = std::log(kShortestPeakTd / min.reference);
-    // The unknowns are steps from the centre: a logarithm's own size depends on the unit of time.
+    // The unknowns are steps from the centre, because the logarithms themselves depend on the unit of time.
     const auto stepped = [&](const std::vector<double>& step) {
         DesignPoint x = min.x;
         for (std::size_t i = 0; i < n; ++i) x[i] += step[i];
@@ -130,7 +131,7 @@ std::optional<MinPeak> min_common_peak(const DesignProblem& problem) {
         for (const Stage& stage : kLaterStages) descend(valley, problem, stage);
         const double won = std::log(min.M / valley.M);
         min = std::min(min, valley, lower);
-        if (won < kPeakTolerance) break;  // what follows seemed higher than this one, which is not the lower
+        if (won < kPeakTolerance) break;  // skip the remaining starts, which are higher than this one
     }
     return min.M < std::exp(kUnstableLogPeak) ? std::optional(min) : std::nullopt;
 }
@@ -151,7 +152,7 @@ bool has_no_finite_optimum(const DesignProblem& problem) {
     const bool tied = problem.pid && problem.filter.Tf_over_Td.has_value();
     if (excess > (problem.pid ? 2 : 1)) return false;
     if (excess <= 1 || !tied) return true;
-    // Far above every corner the plant is K/s^2: feasible there means feasible at every higher speed.
+    // Far above every corner the plant is K/s^2: a design that is feasible there is feasible at every higher speed.
     const auto asymptote = LinearPlant::make(Zpk{.K = problem.sign, .zeros = {}, .poles = {0.0, 0.0}, .L = 0});
     DesignProblem limit = problem;
     limit.plant = &*asymptote;
@@ -162,11 +163,11 @@ bool has_no_finite_optimum(const DesignProblem& problem) {
 
 namespace {
 
-/// To three decimals, as the sentence prints it.
+/// Rounded up to three decimals, as printed.
 double rounded_up(double limit) { return std::ceil(limit * 1000) / 1000; }
 
-/// The smallest common limit at which a controller is really found, from 1 % above the least peak upward; empty if none
-/// is.
+/// The smallest common limit for which a controller is actually found, from 1 % above the least peak upwards; empty if
+/// there is none.
 std::optional<double> workable_limit(DesignProblem problem, const MinPeak& min) {
     for (double M = min.M * 1.01; M < 4 * min.M; M = 1 + (M - 1) * 1.1) {
         problem.limits.Ms = problem.limits.Mt = rounded_up(M);
@@ -177,7 +178,7 @@ std::optional<double> workable_limit(DesignProblem problem, const MinPeak& min) 
 
 std::string on_plants(const DesignProblem& problem) {
     return problem.others.empty() ? " on this plant"
-                                  : " on all " + std::to_string(problem.plants()) + " plants looked at";
+                                  : " on all " + std::to_string(problem.plants()) + " evaluated plants";
 }
 
 }  // namespace
@@ -194,23 +195,22 @@ Error why_infeasible(const DesignProblem& problem, const std::optional<MinPeak>&
     if (problem.limits.Mks && (!workable || *workable <= std::min(problem.limits.Ms, problem.limits.Mt)))
         return {ErrorKind::no_feasible_controller, "Mks",
                 "No " + name + " controller keeps Mks <= " + text(*problem.limits.Mks) +
-                    " together with the other limits. Raise Mks or leave it out."};
+                    " together with the other limits. Raise Mks or omit it."};
     if (workable && *workable <= std::min(problem.limits.Ms, problem.limits.Mt) && !problem.limits.m_circle)
         return {ErrorKind::numerical_failure, "",
-                "Controllers within the limits exist, but none whose response could be computed. Check the units of "
-                "the time constants and the dead time: "
-                "they lie very far apart."};
+                "Controllers within the limits exist, but their responses could not be computed. Check the units of "
+                "the time constants and the dead time: they differ by many orders of magnitude."};
     const double common = workable.value_or(rounded_up(min->M * 1.01));
     const std::string broken = "No " + name + " controller keeps Ms <= " + text(problem.limits.Ms) +
                                " and Mt <= " + text(problem.limits.Mt) + on_plants(problem) +
                                (problem.limits.Mks ? " with Mks <= " + text(*problem.limits.Mks) : std::string());
     if (common > limits::kMaxMs)
         return {ErrorKind::no_feasible_controller, "",
-                broken + ", nor was one found for any common limit up to " + text(limits::kMaxMs) +
-                    ". Shorten the dead time, or stabilise the plant by an inner loop."};
+                broken + ", and none was found for any common limit up to " + text(limits::kMaxMs) +
+                    ". Shorten the dead time, or stabilise the plant with an inner loop."};
     return {ErrorKind::no_feasible_controller,
             "",
-            broken + ". The smallest common limit that works is Ms = Mt = " + text(common) + "; use that or more.",
+            broken + ". The smallest common limit that works is Ms = Mt = " + text(common) + "; use at least that.",
             {{"Ms", common}, {"Mt", common}}};
 }
 

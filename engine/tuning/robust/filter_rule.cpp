@@ -10,9 +10,9 @@
 namespace tunewright::robust {
 namespace {
 
-constexpr double kMinResidence = 0.1;  // of the shortest lag, where leads outweigh the lags
+constexpr double kMinResidence = 0.1;  // of the shortest lag, if leads exceed the lags
 
-/// The sum of the lags minus the leads, kept from vanishing where the leads cancel it; 0 without lags.
+/// The sum of the lags minus the leads, limited so that it does not vanish if leads cancel it; 0 without lags.
 double filter_basis(const LinearPlant& plant) {
     double shortest = std::numeric_limits<double>::infinity();
     for (const auto pole : plant.poles())
@@ -25,10 +25,10 @@ Error no_filter_time(const TuningProblem& problem) {
     const double L = problem.linear.dead_time();
     const std::string what =
         L > 0 ? "This plant has no lags, and its identified dead time of " + text(L) +
-                    " counts as none because its standard error is " + text(problem.dead_time_std.value_or(0)) +
-                    ". Nothing suggests a filter time. "
-              : "This plant has neither dead time nor lags, so nothing bounds the speed of a PID and nothing suggests "
-                "a filter time. ";
+                    " is not significant because its standard error is " + text(problem.dead_time_std.value_or(0)) +
+                    ". So there is no basis for a filter time. "
+              : "This plant has neither dead time nor lags, so the speed of a PID is unbounded and there is no basis "
+                "for a filter time. ";
     return {ErrorKind::unbounded_optimum, "filter",
             what + "Give the filter a time constant Tf, such as the sampling time or the time constant of the sensor."};
 }

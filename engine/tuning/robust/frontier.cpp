@@ -50,7 +50,7 @@ Expected<Frontier> frontier(const TuningProblem& tuning, const FrontierOptions& 
     const RunControl inner{control.stop, nullptr, nullptr};
     Frontier answer;
     const int last = options.Ms.points - 1;
-    // Downwards: a limit that cannot be met ends the curve, as no lower one can.
+    // Downwards: a limit that cannot be met ends the curve, because no lower one can be met.
     for (int i = last; i >= 0; --i) {
         const double Ms = options.Ms.from + (options.Ms.to - options.Ms.from) * i / last;
         const auto design = front.at(Ms, inner);
@@ -76,8 +76,8 @@ Expected<Frontier> frontier(const TuningProblem& tuning, const FrontierOptions& 
 Expected<Frontier> frontier(const AnalysedPlant& subject, const FrontierOptions& options, const RunControl& control) {
     if (subject.linear() == nullptr)
         return Error{ErrorKind::unsupported, "plant",
-                     "Points of a frequency response have no response over time, so no load IAE belongs to a limit. "
-                     "Give a model, or tune with the method robust."};
+                     "Points of a frequency response have no response over time, so the load IAE is unknown. Give a "
+                     "model, or tune with the method robust."};
     TuningProblem problem{*subject.nominal(), *subject.linear(), {}, {}};
     if (subject.family() != nullptr) problem.family = *subject.family();
     return frontier(problem, options, control);
@@ -109,7 +109,7 @@ const OptionSet<FrontierOptions>& frontier_options() {
                    {.exclusive_minimum = 1, .maximum = limits::kMaxMs})
             .field(&FrontierRange::to, "to", "Highest limit on Ms.",
                    {.exclusive_minimum = 1, .maximum = limits::kMaxMs})
-            .field(&FrontierRange::points, "points", "How many limits, evenly spaced.",
+            .field(&FrontierRange::points, "points", "Number of limits, evenly spaced.",
                    {.minimum = 2, .maximum = kMaxPoints});
         using O = FrontierOptions;
         OptionSet<O> set;
@@ -117,7 +117,7 @@ const OptionSet<FrontierOptions>& frontier_options() {
         set.object(&O::Ms, "Ms", "The limits on Ms.", range)
             .number_or_word(&O::Mt, "Mt", "Limit on Mt at every point; tied: the same as on Ms.", "tied",
                             {.exclusive_minimum = 1, .maximum = limits::kMaxMs})
-            .field(&O::take, "take", "The method's own controller is the point whose limit is nearest to this.",
+            .field(&O::take, "take", "The method's controller is the point whose limit is nearest to this value.",
                    {.exclusive_minimum = 1, .maximum = limits::kMaxMs})
             .object(&O::filter, "filter", "Second-order measurement filter, as in robust.", robust::filter_options(), 1)
             .main({"Ms", "Mt"});

@@ -17,10 +17,11 @@ using namespace robust;
 
 namespace {
 
-constexpr double kMaxNeighbourDistance = 1;  // how far apart() a start may be
-constexpr double kMaxLogDesignChange = 0.5;  // of each logarithm of a design: more is another valley
+constexpr double kMaxNeighbourDistance = 1;  // largest distance (apart()) of a start
+constexpr double kMaxLogDesignChange = 0.5;  // of each logarithm of a design: a larger change means another local
+                                             // minimum
 
-// Distance between two limits: what matters is how far they lie above 1.
+// Distance between two limits, which depends on how much they exceed 1.
 double apart(double M, double other) { return std::abs(std::log((M - 1) / (other - 1))); }
 
 }  // namespace
@@ -45,9 +46,9 @@ DesignPoint ParetoFront::point_of(const Design& design) const {
     return {std::log(std::abs(pid.Kp)), std::log(pid.Ti), PI ? 0 : std::log(pid.Td)};
 }
 
-/// Between the two nearest neighbours, where both are near and alike; else the nearest one. Not beyond them: each
-/// design is exact to the search's tolerance alone, which a line through two of them would magnify from one to the
-/// next.
+/// Interpolated between the two nearest neighbours if both are near and similar; else the nearest one. No
+/// extrapolation: each design has the error of the search's tolerance, which a line through two of them would amplify
+/// from one to the next.
 std::optional<DesignResult> ParetoFront::expected_at(double M) const {
     std::vector<std::pair<double, const Design*>> near;
     for (const auto& [other, design] : known_)
@@ -100,8 +101,8 @@ Expected<ParetoFront::Design> ParetoFront::at(double M, const RunControl& contro
     limits.Ms = M;
     limits.Mt = terms_.Mt.value_or(M);
     Design design;
-    // A neighbour's valley need not be the deepest: of a resonant plant, or one with zeros, each limit's are all looked
-    // at.
+    // A neighbour's local minimum need not be the best: for a resonant plant, or one with zeros, all are searched for
+    // each limit.
     const bool valleys = !problem_.linear.zeros().empty() ||
                          (terms_.options.controller == ControllerKind::PID && is_resonant(problem_.linear));
     const auto before = valleys ? std::nullopt : expected_at(M);

@@ -1,4 +1,4 @@
-// The front of load IAE against robustness: one plant's robust designs under several limits, each searched from its
+// The front of load IAE against robustness: robust designs of one plant with different limits, each searched from its
 // neighbour.
 #pragma once
 
@@ -10,16 +10,16 @@
 
 namespace tunewright {
 
-/// Robust designs of one plant that differ in their limit on Ms alone. A new one is searched from between its nearest
-/// neighbours; where that breaks the front's order (more room never costs more) the whole search is made.
+/// Robust designs of one plant that differ only in their limit on Ms. A new one is searched from between its nearest
+/// neighbours; if the result breaks the front's order (a wider limit never costs more), the full search is made.
 class ParetoFront {
 public:
-    /// Whose limits they are: the options but for Ms and Mt, which is M as well where `Mt` is empty, and the plants on
-    /// which they hold.
+    /// The other parameters of the designs: all options except Ms and Mt (if `Mt` is empty, Mt is M as well), and the
+    /// plants on which the limits hold.
     struct FrontLimits {
         RobustOptions options = {};
         std::optional<double> Mt = {};
-        bool on_family = false;  ///< of the problem; false: on the nominal plant alone
+        bool on_family = false;  ///< true: on the family of the problem; false: on the nominal plant only
     };
 
     /// The default PID's, Ms = Mt = M, on the nominal plant. `problem` must outlive this.
@@ -28,9 +28,9 @@ public:
 
     struct Design {
         IdealPid controller;
-        double load_IAE = 0;  ///< of a unit step, to infinity; the search's own, to about 1e-4
+        double load_IAE = 0;  ///< for a unit step, to infinity; the search's own value, with an error of about 1e-4
         std::vector<Warning> warnings = {};
-        std::optional<robust::Curvature> curvature = {};  ///< that the search saw
+        std::optional<robust::Curvature> curvature = {};  ///< the curvature that the search found
     };
     /// M in (1, 4]. Errors: those of the method robust; cancelled if it was stopped before the search ended.
     Expected<Design> at(double M, const RunControl& control);
@@ -44,7 +44,8 @@ private:
 
     const TuningProblem& problem_;
     FrontLimits terms_;
-    std::optional<Expected<std::vector<LinearPlant>>> others_;  // that the limits hold on too; made when first needed
+    std::optional<Expected<std::vector<LinearPlant>>> others_;  // plants on which the limits hold too; made at the
+                                                                // first use
     std::map<double, Expected<Design>> known_;
 };
 

@@ -21,11 +21,11 @@ namespace {
 
 using namespace robust;
 
-constexpr int kMaxRounds = 10;  // of adding the worst plant found inside a region
+constexpr int kMaxRounds = 10;  // rounds in which the worst plant found inside a region is added
 
 bool pid_wanted(const RobustOptions& options) { return options.controller == ControllerKind::PID; }
 
-/// All but the plant and the sign of Kp.
+/// The problem without the plant and the sign of Kp.
 DesignProblem make_problem(const RobustOptions& options, const FilterRule& filter) {
     DesignProblem problem;
     problem.pid = pid_wanted(options);
@@ -39,7 +39,7 @@ DesignProblem make_problem(const RobustOptions& options, const FilterRule& filte
     return problem;
 }
 
-/// AMIGO's formulas on the reduced plant (the paper's section 4.2); empty where they do not apply.
+/// AMIGO's formulas on the reduced plant (the paper's section 4.2); empty if they do not apply.
 PlaneStart amigo_start(const TuningProblem& tuning, ControllerKind controller) {
     const auto tuned = tune_amigo(tuning, {.controller = controller});
     if (!tuned) return std::nullopt;
@@ -54,18 +54,16 @@ std::optional<Error> check_Mks(const DesignProblem& problem) {
             min = std::max(min, 1 / std::abs(problem.plant_at(i).low_frequency_gain()));
     if (!problem.limits.Mks || *problem.limits.Mks > min) return std::nullopt;
     return Error{ErrorKind::no_feasible_controller, "Mks",
-                 "Mks is " + text(*problem.limits.Mks) +
-                     ", but holding the output against a load takes |C S| = 1/|P(0)| = " + text(min) +
-                     " already at rest. Give a limit well above that."};
+                 "Mks is " + text(*problem.limits.Mks) + ", but rejecting a load needs |C S| = 1/|P(0)| = " +
+                     text(min) + " in steady state. Give a limit well above that."};
 }
 
 Warning exceeded_inside(const std::vector<LinearPlant>& found, const DesignProblem& problem, const DesignPoint& x) {
     double worst = 0;
     for (const auto& plant : found) worst = std::max(worst, excess_on(plant, problem, x, {}));
     return {"limit-exceeded-inside",
-            "Between the plants on which the limits hold one was left on which a limit is "
-            "exceeded by " +
-                text(100 * worst) + " %. Lower Ms and Mt a little, or narrow the ranges."};
+            "The limits hold on the plants of the design, but on a plant between them a limit is exceeded by " +
+                text(100 * worst) + " %. Lower Ms and Mt slightly, or narrow the ranges."};
 }
 
 void add_warnings(TunedController& result, const DesignProblem& problem, const DesignPoint& x) {
@@ -74,7 +72,7 @@ void add_warnings(TunedController& result, const DesignProblem& problem, const D
         result.warnings.push_back(std::move(*degenerate));
     if (problem.pid && !std::isfinite(x[2]))
         result.warnings.push_back(
-            {"no-derivative", "No derivative time was found with which a PID does better than this PI: Td is 0."});
+            {"no-derivative", "No derivative time was found with which a PID is better than this PI: Td is 0."});
 }
 
 }  // namespace
@@ -99,8 +97,7 @@ std::optional<Error> without_optimum(const DesignProblem& problem) {
     if (!has_no_finite_optimum(problem)) return std::nullopt;
     return Error{
         ErrorKind::unbounded_optimum, "filter",
-        "On this plant the gain is unbounded within the limits, because no dead time bounds it, so there is "
-        "no optimum. "
+        "On this plant the gain is unbounded within the limits, because there is no dead time, so there is no optimum. "
         "Fix the filter time constant Tf, or give the plant its dead time; a single design may limit Mks instead."};
 }
 
@@ -164,14 +161,14 @@ Expected<TunedController> tune_robust(const TuningProblem& tuning, const RobustO
 
 namespace {
 
-/// Points have no response over time, so the integrated error Ti/Kp stands for the integral of |e|.
+/// Points have no response over time, so the integrated error Ti/Kp replaces the integral of |e|.
 Expected<TunedController> tune_on_points(const MeasuredPlant& plant, const RobustOptions& options,
                                          const RunControl& control) {
     if (!plant.phase_crossover())
         return Error{ErrorKind::unsupported, "plant/omega",
                      "The measured band ends at omega " + text(plant.high()) +
-                         ", before the plant's phase has fallen through -180 degrees, so nothing in it bounds the "
-                         "gain. Measure higher frequencies."};
+                         ", before the plant's phase has fallen through -180 degrees, so the gain is unbounded. "
+                         "Measure higher frequencies."};
     const auto filter = explicit_filter(options.filter, pid_wanted(options));
     if (!filter) return filter.error();
     const FilterRule tied{.Tf = std::nullopt, .Tf_over_Td = limits::kDefaultTf_over_Td};
@@ -192,7 +189,7 @@ Expected<TunedController> tune_on_points(const MeasuredPlant& plant, const Robus
     if (options.objective != Objective::load_ie)
         result.warnings.push_back({"objective-replaced",
                                    "A frequency response has no response over time: Kp/Ti is maximised instead of the "
-                                   "objective asked for."});
+                                   "requested objective."});
     add_warnings(result, problem, found->x);
     return result;
 }
@@ -234,14 +231,17 @@ OptionSet<RobustOptions> described_options(const RobustOptions& defaults) {
               {.exclusive_minimum = 1, .maximum = limits::kMaxMs});
     set.field(&O::Mt, "Mt", "Largest allowed complementary sensitivity max |T|.",
               {.exclusive_minimum = 1, .maximum = limits::kMaxMt});
-    set.field(&O::Mks, "Mks", "Largest allowed max |C S|: how strongly u may react.", {.exclusive_minimum = 0});
+    set.field(&O::Mks, "Mks",
+              "Largest allowed max |C S|, the gain from measurement noise to "
+              "u.",
+              {.exclusive_minimum = 0});
     set.choice(&O::constraint, "constraint",
                "circles: the Ms and the Mt circle. m_circle: the smallest circle around both.",
                Words<Constraint>{{"circles", Constraint::circles}, {"m_circle", Constraint::m_circle}});
     set.choice(
         &O::objective, "objective",
-        "What is minimised. A plant known by points of its frequency response has no response over time: there it "
-        "is load_ie.",
+        "The cost to be minimised. For a plant known by points of its frequency response, which has no response over "
+        "time, it is load_ie.",
         Words<Objective>{
             {"load_iae", load_iae}, {"load_ie", load_ie}, {"setpoint_iae", setpoint_iae}, {"weighted", weighted}});
     set.field(&O::rho, "rho", "Weight of the load in the weighted objective; the set point has 1 - rho.",
@@ -275,7 +275,7 @@ TuningMethod robust_method() {
     method.bind(described_options({}), tune_robust);
     method.bind_for_device(described_options({}), tune_robust_for_device);
     method.holds_family = true;
-    // An optimum for set points is one for b = 1.
+    // An optimum for set points is designed for b = 1.
     method.overshoot = [](const MethodOptions& options) {
         const auto objective = options.text("objective");
         const bool sees_setpoint = objective == "setpoint_iae" || objective == "weighted";
@@ -289,12 +289,12 @@ TuningMethod robust_method() {
 
 namespace {
 
-constexpr int kMaxBuiltRounds = 5;           // of adding the worst plants found inside the regions
-constexpr int kSamples = 48;                 // of a region, looked at before the worst is followed
-constexpr double kHoldDelayInSamples = 0.5;  // of a sample: the mean delay of the hold
+constexpr int kMaxBuiltRounds = 5;           // rounds in which the worst plants found inside the regions are added
+constexpr int kSamples = 48;                 // points of a region that are evaluated before the search from the worst
+constexpr double kHoldDelayInSamples = 0.5;  // in samples: the mean delay of the hold
 
-/// The plant as a sampled program sees it, nearly: later by half a sample and by the computation. An ideal design for
-/// it is where the search starts; with any sampling it has a finite optimum.
+/// The plant with the additional delay of sampling: half a sample and the computation delay. The search starts from an
+/// ideal design for it, which has a finite optimum with any sampling.
 Expected<TuningProblem> delayed(const TuningProblem& tuning, const device::DeviceModel& device) {
     TuningProblem later = tuning;
     later.family.reset();
@@ -307,8 +307,8 @@ Expected<TuningProblem> delayed(const TuningProblem& tuning, const device::Devic
     return later;
 }
 
-/// What the product makes of a filter that nobody asked for: the firmware's own where it is compiled in, and none
-/// shorter than a sample time where forward differences would let it ring or blow up.
+/// The product's filter if the request has none: the firmware's own if it is compiled in, and none shorter than a
+/// sample time if forward differences would make it oscillate or unstable.
 struct OwnFilter {
     std::optional<double> fixed = {};
     double shortest = 0;
@@ -371,7 +371,7 @@ Expected<DeviceDesign> tune_robust_for_device(const TuningProblem& tuning, const
     auto others = other_members(tuning, first_sign);
     if (!others) return others.error();
     std::vector<const LinearPlant*> plants{&tuning.linear};
-    std::deque<LinearPlant> inside;  // found between the members; their addresses stay
+    std::deque<LinearPlant> inside;  // found between the members; a deque, because their addresses must not change
     for (const LinearPlant& other : *others) plants.push_back(&other);
 
     device::Wish wish;
@@ -396,8 +396,8 @@ Expected<DeviceDesign> tune_robust_for_device(const TuningProblem& tuning, const
     design.tuned.Ms_limit = options.Ms;
     if (options.objective != Objective::load_iae || options.constraint != Constraint::circles)
         design.tuned.warnings.push_back({"objective-replaced",
-                                         "A design for the controller as it is built minimises the load IAE under the "
-                                         "circles of Ms and Mt, in place of what was asked for."});
+                                         "A design for an implemented controller minimises the load IAE with the "
+                                         "circles of Ms and Mt, instead of the requested objective."});
     return design;
 }
 

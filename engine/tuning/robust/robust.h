@@ -1,4 +1,4 @@
-// Robust design: the least IAE of a load step under limits on Ms and Mt (Garpinger and Hagglund 2008).
+// Robust design: the least IAE of a load step within limits on Ms and Mt (Garpinger and Hagglund 2008).
 
 #pragma once
 
@@ -30,15 +30,15 @@ struct RobustOptions {
 Expected<TunedController> tune_robust(const TuningProblem& tuning, const RobustOptions& options,
                                       const RunControl& control);
 
-/// As the method robust, on the controller's own law. Its objective is the load IAE, whatever the options say; a
-/// warning says so. `ideal`: the method on the ideal law, for the start. Errors: those of the method and of
-/// device::design.
+/// The method robust for the controller's own law. Its objective is always the load IAE; a warning says so if the
+/// options have another one. `ideal`: the method for the ideal law, which gives the start. Errors: those of the method
+/// and of device::design.
 Expected<DeviceDesign> tune_robust_for_device(const TuningProblem& tuning, const RobustOptions& options,
                                               const device::DeviceModel& device, const RunControl& control);
 
 TuningMethod robust_method();
 
-/// The method's report with `surface`: the least cost over Kp; cost[i][j] belongs to Ti[i] (time) and Td[j] (time).
+/// The method's report with `surface`: the least cost over all Kp; cost[i][j] belongs to Ti[i] (time) and Td[j] (time).
 /// Empty: no Kp keeps the limits.
 struct CostSurface : MethodReport {
     std::vector<double> Ti, Td;
@@ -49,14 +49,14 @@ struct CostSurface : MethodReport {
 
 namespace tunewright::robust {
 
-/// The problem that the options pose on the nominal plant. Errors: no finite optimum, or none that could be stable.
+/// The problem of the options on the nominal plant. Errors: no finite optimum, or no possible stable loop.
 Expected<DesignProblem> nominal_problem(const TuningProblem& tuning, const RobustOptions& options);
 
-/// Why the problem has no optimum, if that is seen before any search.
+/// The reason why the problem has no optimum, if it is known without a search.
 std::optional<Error> without_optimum(const DesignProblem& problem);
 
-/// verified_search() with the limits held on all of the tuning problem's family: the worst plants that are found inside
-/// it join `others`, which the problem looks at and which must outlive it.
+/// verified_search() with limits that hold on the tuning problem's whole family: the worst plants found inside it are
+/// added to `others`, to which the problem refers and which must outlive it.
 Expected<DesignResult> search_everywhere(SearchKind kind, const TuningProblem& tuning, DesignProblem& problem,
                                          std::vector<LinearPlant>& others,
                                          const std::optional<std::pair<double, double>>& start, CostSurface* surface,

@@ -13,46 +13,49 @@ namespace tunewright::robust {
 
 namespace {
 
-/// Of ln of the cost or of a logarithm of the unknowns, where nothing else is said. Found with `bench/robust_search`,
-/// which sets this search against the best known design of random plants (tests/engine/tuning/random_plants.h: 300 for
-/// a look, thousands where a constant decides about one plant in a hundred) for every objective; `bench/robust_batch`
-/// says what each costs in time. To tune again: change one, run both, keep it where the worst plant comes nearer or the
-/// median is quicker and no plant is lost.
+/// In units of ln of the cost or of a logarithm of the unknowns, unless stated otherwise. The values were found with
+/// `bench/robust_search`, which compares this search with the best known design of random plants
+/// (tests/engine/tuning/random_plants.h: 300 for a first test, thousands if a constant matters for one plant in a
+/// hundred) for every objective; `bench/robust_batch` measures the time. To tune a constant: change it, run both, and
+/// keep the change if the worst plant improves or the median is faster, and no plant is lost.
 struct FastSearchConstants {
-    double resonant_damping = 0.4;     ///< of a pair of poles, below which a plant may have several valleys
-    double slow_zero = 0.3;            ///< times the reference: a filter below such a zero may make another valley
-    double short_Td = 0.1;             ///< times 1/reference: below it the cost hardly depends on ln Td
-    double same_design = 0.02;         ///< of each: two ends so near are one
-    double same_valley = 0.1;          ///< of each: a rough run that comes so near to an end goes there
-    double hopeless_cost = 0.7;        ///< a start so much costlier than the best is left out
-    double rough_tolerance = 3e-3;     ///< of a run that only shows how deep a valley is
-    double worth_following = 0.02;     ///< so much costlier a rough run's end may still be the deepest valley's
+    double resonant_damping = 0.4;     ///< damping of a pair of poles below which a plant may have several local minima
+    double slow_zero = 0.3;            ///< multiple of the reference: a filter below such a zero may give another local
+                                       ///< minimum
+    double short_Td = 0.1;             ///< multiple of 1/reference: below it the cost hardly depends on ln Td
+    double same_design = 0.02;         ///< in each logarithm: two ends closer than this are equal
+    double same_valley = 0.1;          ///< in each logarithm: a rough run this close to an end leads to it
+    double hopeless_cost = 0.7;        ///< a start this much costlier than the best is skipped
+    double rough_tolerance = 3e-3;     ///< of a run that only estimates the cost of a local minimum
+    double worth_following = 0.02;     ///< a rough run's end may be this much costlier and still lead to the best
+                                       ///< minimum
     double polish_tolerance = 1e-4;    ///< of a simplex
     double polish_step = 0.05;         ///< its first
     int max_polish_evaluations = 50;   ///< of one simplex
-    int trial_polish_evaluations = 8;  ///< of the first one without a set-point step: of 2,800 random resonant plants
-                                       ///< none that had won less than `worth_another` in eight steps won it later
+    int trial_polish_evaluations = 8;  ///< of the first one without a set-point step: of 2,800 random resonant plants,
+                                       ///< none that had gained less than `worth_another` in eight steps gained it
+                                       ///< later
     int max_simplices = 10;
-    double worth_another = 5e-4;  ///< what a simplex won, for the next to begin
-    double beyond_lag = 2;        ///< times the slowest lag: a Ti that cancels it lies inside the scan
+    double worth_another = 5e-4;  ///< gain of a simplex for which another one follows
+    double beyond_lag = 2;        ///< multiple of the slowest lag: a Ti that cancels it lies inside the scan
 };
 constexpr FastSearchConstants k;
 
-/// Where the scans look, in 1/reference; the usual one is `ScanBox{}`. Each was added for plants on which the others
-/// missed the best known design: bench/robust_search names them (`above 0.1 %`).
+/// The regions of the scans, in 1/reference; the usual one is `ScanBox{}`. Each was added for plants on which the
+/// others missed the best known design: bench/robust_search lists them (`above 0.1 %`).
 struct ScanBoxes {
-    /// A PI on two slow lags, or on one and an integrator, acts far below the frequency at which a PID would.
+    /// A PI on two slow lags, or on one and an integrator, is much slower than a PID would be.
     ScanBox slow = {.Ti_low = 60, .Ti_high = 1000};
-    /// The usual box, looked at more closely: the feasible set may be smaller than its spacing.
+    /// The usual box with a finer spacing, because the feasible set may be smaller than the usual spacing.
     ScanBox close = {.Ti_points = 27, .Td_points = 21};
-    /// Where the valleys of a resonant plant lie. Beside ordinary designs it may want an integral alone, behind a
-    /// filter that takes the resonance away: short Ti, long Td.
+    /// Region of the local minima of a resonant plant. As well as at ordinary designs its optimum may be at integral
+    /// action alone, with a filter that removes the resonance: short Ti, long Td.
     ScanBox wide = {.Ti_points = 9, .Td_points = 8, .Ti_low = 0.01, .Ti_high = 60, .Td_low = 0.02, .Td_high = 60};
-    /// An integral so much alone that Td is but the filter's measure.
+    /// Nearly pure integral action, for which Td only sets the filter.
     ScanBox integral = {.Ti_points = 1, .Td_points = 8, .Ti_low = 1e-4, .Ti_high = 1e-4, .Td_low = 1, .Td_high = 250};
-    /// An integral behind a filter that is long compared to 1/reference, as a slow zero may want it.
+    /// Integral action with a filter that is long compared with 1/reference, as a slow zero may need it.
     ScanBox filtered = {.Ti_points = 4, .Td_points = 4, .Ti_low = 0.05, .Ti_high = 2, .Td_low = 10, .Td_high = 250};
-    /// A loop of so high a gain that a set-point step hardly needs the integral.
+    /// A loop with so high a gain that a set-point step hardly needs the integral.
     ScanBox long_Ti = {.Ti_points = 4, .Td_points = 5, .Ti_low = 40, .Ti_high = 1000, .Td_low = 0.02, .Td_high = 2};
 };
 constexpr ScanBoxes kBoxes;
@@ -70,14 +73,14 @@ bool any_plant(const DesignProblem& problem, bool (*is)(const LinearPlant&)) {
 
 bool has_resonant_plant(const DesignProblem& problem) { return any_plant(problem, is_resonant); }
 
-/// The designs of a stable plant without zeros hang together over those of low gain, which are within every limit: of
-/// some 6000 random ones none had an island.
+/// For a stable plant without zeros the feasible designs are connected through those of low gain, which keep every
+/// limit: of some 6000 random ones none had a separate set.
 bool may_have_islands(const LinearPlant& plant) {
     return plant.integrators() != 0 || !plant.zeros().empty() ||
            std::ranges::any_of(plant.poles(), [](std::complex<double> pole) { return pole.real() >= 0; });
 }
 
-/// Above a slow zero, on either side, the loop may want a filter that keeps it below.
+/// On either side of a slow zero, the optimum may need a filter that keeps the loop slower than the zero.
 bool has_slow_zero(const DesignProblem& problem, double reference) {
     return problem.plant != nullptr && std::ranges::any_of(problem.plant->zeros(), [&](std::complex<double> zero) {
                return std::abs(zero) < k.slow_zero * reference;
@@ -90,18 +93,18 @@ bool has_kinks(const DesignProblem& problem) {
 
 double short_Td(const Sweep& sweep) { return std::log(k.short_Td / sweep.reference()); }
 
-/// Runs of the quadratic programming from one start after the other; the cheapest design counts.
+/// Runs of the sequential quadratic programming from several starts; the cheapest design is the result.
 class Runs {
 public:
     Runs(const Sweep& sweep, const DesignProblem& problem, const Report& report)
         : sweep_(sweep), problem_(problem), report_(report) {}
 
-    /// A start without a settled response may be given: nothing then comes of it.
+    /// Runs from one start; a start without a settled response has no effect.
     void from(const std::optional<Candidate>& start) {
         if (start && !stopped()) run(*start, {.stable_start = start->stable}, &Runs::at_known_end);
     }
 
-    /// The same of a valley that is likely not the deepest: it is followed to its end only where it may be.
+    /// The same for a local minimum that is probably not the best: it is followed to its end only if it may be.
     void explore(const std::optional<Candidate>& start) {
         if (!start || stopped() || in_known_valley(start->x)) return;
         const double before = best_ ? best_->log_cost : kLogCostOfNoDesign;
@@ -115,8 +118,8 @@ public:
             &Runs::at_known_end);
     }
 
-    /// By simplices, from the best so far: the integral of |e| has kinks where a slow tail after a set-point step, or a
-    /// wave of a resonance, comes to change its sign, and a descent along smooth models stalls on them.
+    /// Refines the best design by simplices: the integral of |e| has kinks where a slow tail after a set-point step, or
+    /// an oscillation of a resonance, begins to change the sign of e, and a descent along smooth models stalls at them.
     void polish() {
         for (int round = 0; round < k.max_simplices && best_ && !stopped(); ++round) {
             const double before = best_->log_cost;
@@ -129,7 +132,7 @@ public:
     const std::optional<DesignResult>& best() const { return best_; }
 
 private:
-    /// `arrived`: nothing more is to be learnt from here on.
+    /// `arrived`: true if further runs from here would find nothing new.
     SqpResult run(const Candidate& start, const SqpOptions& options, bool (Runs::*arrived)(const DesignPoint&) const) {
         bool stop = false;
         const Report watch = [&](const DesignPoint& x, double cost) {
@@ -146,7 +149,7 @@ private:
 
     void simplex(int max_evaluations) {
         const DesignPoint start = best_->x;
-        // The unknowns are steps from the start: a logarithm's own size depends on the unit of time.
+        // The unknowns are steps from the start, because the logarithms themselves depend on the unit of time.
         const auto cost = [&](const std::vector<double>& step, bool& stop) {
             DesignPoint x = start;
             for (std::size_t i = 0; i < step.size(); ++i) x[i] += step[i];
@@ -175,7 +178,7 @@ private:
     bool at_known_end(const DesignPoint& x) const { return known(x, k.same_design); }
     bool in_known_valley(const DesignPoint& x) const { return known(x, k.same_valley); }
 
-    /// Near an end in all logarithms; all short Td are one.
+    /// True if an end is near in all logarithms; all short Td count as equal.
     bool known(const DesignPoint& x, double same) const {
         const double min_Td = short_Td(sweep_);
         return std::ranges::any_of(ends_, [&](const DesignPoint& end) {
@@ -191,8 +194,8 @@ private:
     std::optional<DesignResult> best_;
 };
 
-/// A run that ends at a short Td may have been led there by the flatness of the cost alone: Td has to prove itself
-/// against the least one and against a long one.
+/// A run may end at a short Td only because the cost is flat there: it is compared with the least Td and with a long
+/// one.
 void look_beyond_short_Td(Runs& runs, const Sweep& sweep, const DesignProblem& problem, std::vector<ScanPoint> points) {
     const double shortest = std::log(kMinTd / sweep.reference()), ordinary = short_Td(sweep);
     const DesignPoint end = runs.best()->x;
@@ -214,7 +217,7 @@ ScanBox long_Ti_box(const DesignProblem& problem, double reference) {
     return box;
 }
 
-/// Where a long Ti wins from the start, kinks lie so close that one run rarely ends beside the lowest.
+/// If a long Ti is better than the start, kinks lie so close together that one run rarely ends at the best one.
 void look_at_long_Ti(Runs& runs, const Sweep& sweep, const DesignProblem& problem) {
     const auto points = scan(sweep, long_Ti_box(problem, sweep.reference()));
     const double before = runs.best()->log_cost;
@@ -227,7 +230,7 @@ void look_at_long_Ti(Runs& runs, const Sweep& sweep, const DesignProblem& proble
 
 void look_for_valleys(Runs& runs, const Sweep& sweep, const DesignProblem& problem,
                       const std::vector<ScanPoint>& points) {
-    // Under a limit on |C S| gain is traded against filtering, with several valleys along Td.
+    // A limit on |C S| is a compromise between gain and filtering, with several local minima along Td.
     if (problem.limits.Mks)
         for (const auto& valley : valley_starts(problem, points)) runs.from(valley);
     if (has_setpoint(problem)) look_at_long_Ti(runs, sweep, problem);
@@ -276,14 +279,15 @@ std::optional<DesignResult> fast_search(const Sweep& sweep, const DesignProblem&
 
 namespace {
 
-/// Of the paper's searches in the (Ti, Td) plane.
+/// Constants of the paper's searches in the (Ti, Td) plane.
 struct PlaneSearchConstants {
     double simulation_tolerance = 1e-4;
-    double simplex_corner = 0.4;  ///< of the simplex, to the first (Garpinger and Hagglund 2008, section 4.2)
+    double simplex_corner = 0.4;  ///< corner of the simplex relative to the first one (Garpinger and Hagglund 2008,
+                                  ///< section 4.2)
     int grid_points = 25;         ///< a side
-    double grid_reach = 3;        ///< ln: a factor of 20 to either side
+    double grid_reach = 3;        ///< in ln: a factor of 20 to either side
     int grid_rounds = 4;
-    double grid_finer = 6;         ///< of a round's reach, over the next one's: two cells of the first
+    double grid_finer = 6;         ///< ratio of successive rounds: the next one covers two cells
     int max_tightening_steps = 4;  ///< Newton's, in ln Kp
     double near_limit = -0.05;     ///< of a peak's logarithm: below it a peak does not end a gap
     double min_slope = 1e-3;       ///< of a peak over ln Kp: a flatter one is not moved by the gain
@@ -294,7 +298,7 @@ struct PlaneSearchConstants {
 };
 constexpr PlaneSearchConstants kPlane;
 
-/// Newton in ln(Kp) alone, from the grid's tangency to the refined peak's.
+/// Newton's method in ln(Kp), from the tangency on the grid to that of the refined peak.
 void tighten(const Sweep& sweep, DesignPoint& x, bool upper_end) {
     for (int i = 0; i < kPlane.max_tightening_steps; ++i) {
         const auto peaks = sweep.peaks(x, kPlane.near_limit);
@@ -312,13 +316,13 @@ void tighten(const Sweep& sweep, DesignPoint& x, bool upper_end) {
     }
 }
 
-/// The cheapest feasible gain for one (Ti, Td), moved onto the limit exactly; empty where no gain is feasible.
+/// The cheapest feasible gain for one (Ti, Td), moved exactly onto the limit; empty if no gain is feasible.
 std::optional<DesignResult> best_gain(const Sweep& sweep, const DesignProblem& problem, double Ti, double Td) {
     std::optional<DesignResult> best;
     const auto gains = feasible_gains(sweep, Ti, Td);
     for (std::size_t i = 0; i < gains.size(); ++i) {
         DesignPoint x = {std::log(gains[i].Kp), std::log(Ti), problem.pid ? std::log(Td) : 0};
-        tighten(sweep, x, i % 2 == 0);  // the ends of a gap follow each other, the upper one first
+        tighten(sweep, x, i % 2 == 0);  // the ends of a gap alternate, beginning with the upper one
         if (best && log_cost_bound(problem, x) >= best->log_cost) continue;
         const auto peaks = sweep.peaks(x, kPlane.near_limit);
         // Between the grid's points the gap is closed after all.
@@ -352,7 +356,7 @@ struct PlaneSearch {
 std::optional<DesignResult> nelder_mead_search(const Sweep& sweep, const DesignProblem& problem, double Ti, double Td,
                                                const Report& report) {
     PlaneSearch search{&sweep, &problem, &report, std::nullopt};
-    // The unknowns are steps from the first corner: a logarithm's own size depends on the unit of time.
+    // The unknowns are steps from the first corner, because the logarithms themselves depend on the unit of time.
     const auto cost = [&](const std::vector<double>& step, bool& stop) {
         const double value = search.cost(std::log(Ti) + step[0], problem.pid ? std::log(Td) + step[1] : 0);
         stop = search.stopped();

@@ -16,31 +16,31 @@ using optimise::SmallProgram;
 using Vector = SmallProgram::Vector;
 using Matrix = SmallProgram::Matrix;
 
-/// Of logarithms, where nothing else is said. Those of the iteration are `optimise::SqpConstants`. They were set while
-/// the search was made, on the AMIGO batch and random plants; `bench/robust_batch` shows what a change costs in time,
-/// `bench/robust_search` in designs.
+/// Constants of the problem, in units of logarithms unless stated otherwise; those of the iteration are
+/// `optimise::SqpConstants`. They were chosen during development on the AMIGO batch and random plants;
+/// `bench/robust_batch` measures the effect of a change on the time, `bench/robust_search` on the designs.
 struct DesignSqpConstants {
     double near = -0.25;                                  ///< constraints below it cannot become active within a step
     double aim_below = 1e-7;                              ///< feasibility is aimed this far inside
     double feasible = limits::kMaxRelativeExcessStepped;  ///< and accepted with this much slack
     std::size_t max_peaks = 8;                            ///< the largest ones, as constraints of a step
     int max_restoring_steps = 12;         ///< Newton steps back to the feasible side; three or four are usual
-    double near_of_restoring = -0.1;      ///< constraints below it do not stop a step back
-    double restoring_radius = 0.5;        ///< as the first trust region
-    std::size_t max_restoring_peaks = 6;  ///< the largest ones, as constraints of a step back
-    double gain_per_excess = 1.5;         ///< less gain where the peaks have no common linear way out
+    double near_of_restoring = -0.1;      ///< lower constraints do not limit a step back
+    double restoring_radius = 0.5;        ///< the first trust region of a step back
+    std::size_t max_restoring_peaks = 6;  ///< largest peaks that are constraints of a step back
+    double gain_per_excess = 1.5;         ///< reduction of the gain if the peaks' linear models have no common solution
     double min_less_gain = 1e-6;          ///< of ln Kp
     double max_less_gain = 0.3;           ///< of ln Kp
-    double max_restored_radii = 4;        ///< what restoring moved further is another design
-    int small_steps_to_end = 2;           ///< in a row, each within the tolerance of the cost
-    double max_of_promise = 5;            ///< a run rarely wins so many times what its model promises
-    double telling_step = 1e-3;           ///< a curvature from shorter ones is not handed on
-    double same_peak = 0.3;               ///< ln omega: a peak that moves further is another one
+    double max_restored_radii = 4;        ///< a restoration that moves further gives another design
+    int small_steps_to_end = 2;           ///< successive steps, each within the tolerance of the cost
+    double max_of_promise = 5;            ///< a run rarely gains more than this multiple of the model's promise
+    double telling_step = 1e-3;           ///< the curvature after shorter steps is not passed on
+    double same_peak = 0.3;               ///< in ln omega: a peak that moves further counts as another one
     double min_radius = 1e-5, max_radius = 1;
-    double hopeless_radius = 4;  ///< beyond it the linear models have no common solution at all
+    double hopeless_radius = 4;  ///< beyond it the linear models have no common solution
 };
 constexpr DesignSqpConstants k;
-static_assert(k.max_peaks + 6 <= 14, "SmallProgram has room for the peaks and the bounds of three unknowns");
+static_assert(k.max_peaks + 6 <= 14, "SmallProgram must have room for the peaks and the bounds of three unknowns");
 
 double longest(const Vector& v) { return v.cwiseAbs().maxCoeff(); }
 Vector vector(const std::array<double, 3>& a, int n) { return Eigen::Map<const Vector>(a.data(), n); }
@@ -52,8 +52,8 @@ DesignPoint moved(DesignPoint x, const Vector& p) {
     return x;
 }
 
-/// The peaks' linear models, the `max` largest ones, and the trust region, which ends at the bounds of Ti and Td, for
-/// a step from x. H and g are those of the shortest step.
+/// The linear models of the `max` largest peaks, and the trust region, which ends at the bounds of Ti and Td, for a
+/// step from x. H and g are those of the problem of the shortest step.
 SmallProgram linearised(const std::vector<ActivePeak>& peaks, const Sweep& sweep, const DesignPoint& x, double radius,
                         std::size_t max) {
     const int n = sweep.problem().dimension();
@@ -130,7 +130,7 @@ std::optional<DesignPoint> feasible_near(const Sweep& sweep, const DesignPoint& 
 
 namespace {
 
-/// As `optimise::minimise` wants it: every state is within the limits, so that its merit is the cost itself.
+/// Implements the problem of `optimise::minimise`: every state is within the limits, so its merit is the cost itself.
 class DesignSqp {
 public:
     struct State {
@@ -191,7 +191,7 @@ public:
         return !(longest(step.p) < radius && here.cost.value - k.max_of_promise * step.promised > options_.wanted);
     }
 
-    /// Back to the curved constraints before the cost is asked: a sweep costs a tenth of a simulation.
+    /// Restores feasibility before the cost is computed: a sweep costs a tenth of a simulation.
     std::optional<State> candidate(const State& here, const Step& step, double radius) {
         auto inside = restored(sweep_, moved(here.x, step.p));
         if (!inside || !(longest(difference(inside->x, here.x, n_)) < k.max_restored_radii * radius) ||
@@ -226,7 +226,7 @@ public:
         }
         const Vector moved_by = difference(here.x, before.x, n_);
         optimise::update_curvature(H_, moved_by, y);
-        // From a tiny step gradients' rounding tells more than their change.
+        // After a tiny step, the change of the gradients is mainly rounding.
         if (!(longest(moved_by) > k.telling_step)) return;
         // A parameter that this search does not vary gets the first curvature: a later search needs a positive one.
         Curvature& seen = result_.curvature.emplace();
@@ -245,7 +245,7 @@ private:
     const SqpOptions& options_;
     const Report& report_;
     int n_;
-    Matrix H_;  // of ln(cost) and the active limits
+    Matrix H_;  // Hessian of ln(cost) and the active limits
     std::optional<DesignPoint> last_stable_;
     int small_steps_ = 0;
     SqpResult result_;

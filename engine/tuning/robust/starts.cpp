@@ -11,12 +11,12 @@ namespace tunewright::robust {
 
 namespace {
 
-constexpr double kScanTolerance = 1e-3;       // of the simulations that only compare starting points
+constexpr double kScanTolerance = 1e-3;       // of the simulations that only rank the starts
 constexpr double kRoughCostTolerance = 1e-4;  // of ln of the integrated error of a start
 constexpr int kMaxCompared = 12;
 constexpr std::size_t kMaxValleys = 4;
-constexpr double kLogTdTolerance = 1e-9;         // of ln Td: rounding of one value of the scan
-constexpr double kWiderLimits = 1.4;             // times M - 1
+constexpr double kLogTdTolerance = 1e-9;         // of ln Td: values within it are the same value of the scan
+constexpr double kWiderLimits = 1.4;             // multiple of M - 1
 constexpr double kMaxMainlandLogDistance = 0.7;  // of ln Kp
 constexpr ScanBox kIslandBox = {
     .Ti_points = 12, .Td_points = 12, .Ti_low = 0.01, .Ti_high = 1000, .Td_low = 0.02, .Td_high = 60};
@@ -28,7 +28,7 @@ void consider(Candidate& best, const DesignProblem& problem, const ScanPoint& po
     if (cost < best.log_cost) best = {point.x, cost, true};
 }
 
-/// The least integrated error Ti/Kp costs sweeps only, and often is next to the optimum (Garpinger and Hagglund 2008;
+/// The least integrated error Ti/Kp needs only sweeps, and is often close to the optimum (Garpinger and Hagglund 2008;
 /// Hast et al. 2013).
 ScanPoint min_integrated_error(const Sweep& sweep, DesignProblem problem, const ScanPoint& start) {
     problem.objective = Objective::load_ie;
@@ -52,13 +52,13 @@ std::optional<Candidate> best_start(const Sweep& sweep, const DesignProblem& pro
     consider(best, problem, integrated);
     int compared = 0;
     for (const auto& point : points) {
-        if (log_cost_bound(problem, point.x) >= best.log_cost) break;  // the points ascend in it
+        if (log_cost_bound(problem, point.x) >= best.log_cost) break;  // the points are in ascending order of it
         if (++compared > kMaxCompared && std::isfinite(best.log_cost)) break;
         consider(best, problem, point);
     }
     if (std::isfinite(best.log_cost)) return best;
-    // No response settles within the steps allowed (time scales too far apart): the least integrated error still is a
-    // design.
+    // If no response settles within the allowed steps (very different time scales), the least integrated error is still
+    // a design.
     if (feasible_near(sweep, integrated.x)) return Candidate{integrated.x, integrated.log_ie, false};
     return std::nullopt;
 }
@@ -77,7 +77,7 @@ std::vector<Candidate> valley_starts(const DesignProblem& problem, const std::ve
     std::erase_if(starts, [](const Candidate& c) { return !std::isfinite(c.log_cost); });
     std::sort(starts.begin(), starts.end(),
               [](const Candidate& a, const Candidate& b) { return a.log_cost < b.log_cost; });
-    // Runs on the integrated error need no simulation.
+    // Runs with the integrated error need no simulation.
     if (starts.size() > kMaxValleys && problem.objective != Objective::load_ie) starts.resize(kMaxValleys);
     return starts;
 }
@@ -90,8 +90,8 @@ std::optional<Candidate> lowest_cost(const DesignProblem& problem, const std::ve
 
 namespace {
 
-constexpr double kRelativeInset = 1e-9;   // of a gain: from the end of a gap
-constexpr double kMinWideGapRatio = 1.3;  // ends of a gap: narrower ones lie between the grid's own points
+constexpr double kRelativeInset = 1e-9;   // of a gain: distance from the end of a gap
+constexpr double kMinWideGapRatio = 1.3;  // ratio of a gap's ends: narrower gaps lie between the grid's points
 
 std::vector<double> spaced(double low, double high, int n) {
     std::vector<double> values;
@@ -109,7 +109,7 @@ bool is_open(const GainGap& gap) {
     return std::isfinite(gap.upper) && gap.upper > gap.lower * (1 + kRelativeInset) && gap.stable != false;
 }
 
-/// Whether the loop is proved stable between a gap's ends; empty: there is no design.
+/// Whether the loop is verified as stable between a gap's ends; empty: there is no design.
 std::optional<bool> usable(const DesignProblem& problem, const GainGap& gap, double Ti, double Td, Stability wanted) {
     if (!is_open(gap)) return std::nullopt;
     if (gap.verified || (wanted == Stability::inferred && gap.stable)) return gap.verified;
@@ -118,13 +118,13 @@ std::optional<bool> usable(const DesignProblem& problem, const GainGap& gap, dou
     return true;
 }
 
-/// The upper one, with its largest gain.
+/// The gap's upper end, with its largest gain.
 ScanPoint end_of(const GainGap& gap, const DesignProblem& problem, double Ti, double Td) {
     const double Kp = gap.upper * (1 - kRelativeInset);
     return {{std::log(Kp), std::log(Ti), problem.pid ? std::log(Td) : 0}, std::log(Ti / Kp), gap.verified};
 }
 
-/// With the largest of feasible_gains; empty if there is none, or if it certainly costs not less than `below`.
+/// With the largest of feasible_gains; empty if there is none, or if its cost is certainly not below `below`.
 std::optional<ScanPoint> point_at(const Sweep& sweep, double Ti, double Td, Stability wanted, double below) {
     const DesignProblem& problem = sweep.problem();
     const auto gaps = sweep.gain_gaps(Ti, Td);
@@ -156,7 +156,7 @@ std::vector<FeasibleGain> feasible_gains(const Sweep& sweep, double Ti, double T
 
 namespace {
 
-/// What add(found, Ti, Td) adds at every place of the box, ascending in `log_ie`.
+/// The points that add(found, Ti, Td) adds at every position of the box, in ascending order of `log_ie`.
 template <class Add>
 std::vector<ScanPoint> points_over(const Sweep& sweep, const ScanBox& box, const Add& add) {
     const double unit = 1 / sweep.reference();
@@ -194,7 +194,8 @@ std::optional<DesignPoint> first_stable(const Sweep& sweep, const ScanBox& box, 
 
 namespace {
 
-/// Whether the true limits leave nearly as high a gain at the same Ti and Td: other scans have been near there.
+/// True if the true limits allow nearly as high a gain at the same Ti and Td: then other scans have covered this
+/// region.
 bool on_mainland(const Sweep& sweep, const DesignPoint& x) {
     const auto gains = feasible_gains(sweep, std::exp(x[1]), std::exp(x[2]), Stability::inferred);
     return !gains.empty() && std::log(gains.front().Kp) > x[0] - kMaxMainlandLogDistance;

@@ -36,7 +36,7 @@ public:
             progress.stage = "tune";
             progress.message = "robust design: " + std::to_string(steps_) + " improvements so far.";
             BestSoFar best{controller_at(problem_, x), std::exp(log_cost), problem_.limits.Ms, problem_.limits.Mt};
-            // Of other objectives the integral of e stands for the load IAE, which it never exceeds.
+            // For other objectives the integral of e stands for the load IAE, and is never larger.
             if (problem_.objective != Objective::load_iae) best.load_IAE = std::exp(x[1] - x[0]);
             progress.best = std::make_shared<const BestSoFar>(best);
             control_.progress(progress);
@@ -63,7 +63,8 @@ std::optional<DesignResult> search(SearchKind kind, const Sweep& sweep, const De
     return kind == SearchKind::grid || (gridded && gridded->stopped) ? gridded : fast_search(sweep, problem, report);
 }
 
-/// The weighted objective measures each part against its own optimum. False: no controller meets the limits.
+/// Searches the optima of the two parts of the weighted objective, which are its references. False: no controller meets
+/// the limits.
 bool has_reference_optima(DesignProblem& problem, const Sweep& sweep) {
     if (problem.objective != Objective::weighted) return true;
     std::vector<DesignPoint> optima;
@@ -80,7 +81,7 @@ bool has_reference_optima(DesignProblem& problem, const Sweep& sweep) {
     return true;
 }
 
-/// With the other sign of Kp, which `problem` then has, where none stabilises with its own.
+/// If no controller stabilises with the sign of Kp, the other sign is tried and then set in `problem`.
 std::optional<MinPeak> min_peak_of_either_sign(DesignProblem& problem) {
     if (const auto min = min_common_peak(problem)) return min;
     DesignProblem other = problem;
@@ -90,7 +91,7 @@ std::optional<MinPeak> min_peak_of_either_sign(DesignProblem& problem) {
     return min;
 }
 
-/// Where the scan saw nothing: the feasible set may be a small one around the least peak.
+/// If the scan found nothing, the feasible set may be a small one around the least peak.
 std::optional<DesignResult> search_from(const MinPeak& min, DesignProblem& problem, const Report& report) {
     const Sweep sweep(problem, min.reference);
     const auto start = feasible_near(sweep, min.x);
@@ -101,10 +102,11 @@ std::optional<DesignResult> search_from(const MinPeak& min, DesignProblem& probl
     return DesignResult{result.x, result.log_cost, false, result.curvature};
 }
 
-constexpr double kMaxShortLagRatio = 0.01;      // of the dead time
-constexpr double kTrustInOtherCurvature = 0.1;  // of what a curvature of another limit promises, believed less
+constexpr double kMaxShortLagRatio = 0.01;      // relative to the dead time
+constexpr double kTrustInOtherCurvature = 0.1;  // share of a promise by the curvature for another limit that is trusted
 
-/// Lags so short beside the dead time leave a derivative next to nothing to gain, and valleys where it costs much.
+/// With lags so short compared with the dead time, a derivative gains hardly anything and has local minima with a high
+/// cost.
 bool all_dead_time(const DesignProblem& problem) {
     if (problem.plant == nullptr || problem.plant->integrators() > 0) return false;
     double lags = 0;
@@ -112,7 +114,7 @@ bool all_dead_time(const DesignProblem& problem) {
     return lags < kMaxShortLagRatio * problem.plant->dead_time();
 }
 
-/// From a design that was right for fewer plants or another limit; empty where it cannot be moved within the limits.
+/// Searches from a design for fewer plants or another limit; empty if it cannot be moved within the limits.
 std::optional<DesignResult> search_again(const Sweep& sweep, const DesignProblem& problem, const DesignResult& before,
                                          const Report& report) {
     const auto start = feasible_near(sweep, before.x);
@@ -132,15 +134,15 @@ std::optional<DesignResult> search_again(const Sweep& sweep, const DesignProblem
     return DesignResult{result.x, result.log_cost, stopped, result.curvature ? result.curvature : before.curvature};
 }
 
-constexpr int kRounds = 4;               // searches under tighter limits
-constexpr double kMinTightening = 1e-6;  // of ln M - 1: what moves a design at all
+constexpr int kRounds = 4;               // searches with tighter limits
+constexpr double kMinTightening = 1e-6;  // of ln M - 1: the least tightening that changes a design
 constexpr double kMaxTightening = 0.5;
 
-constexpr double kExactRunTolerance = 1e-5;    // tolerance of runs that compare two designs
-constexpr double kShortestTd = 1.01 * kMinTd;  // over the reference frequency: the derivative's time is at its end
+constexpr double kExactRunTolerance = 1e-5;    // tolerance of simulations that compare two designs
+constexpr double kShortestTd = 1.01 * kMinTd;  // Td times the reference frequency: a smaller one is at its lower end
 
-/// The search and its check. `promising`: a search from the usual starts may find something. `explain`: where nothing
-/// is found, look harder, and say why.
+/// The search and its verification. `promising`: a search from the usual starts may succeed. `explain`: if nothing is
+/// found, search more thoroughly, and give the reason.
 Expected<DesignResult> checked_search(SearchKind kind, const Sweep& sweep, DesignProblem& problem, bool promising,
                                       const PlaneStart& start, CostSurface* surface, const RunControl& control,
                                       const DesignResult* before, bool explain = true) {
@@ -151,7 +153,7 @@ Expected<DesignResult> checked_search(SearchKind kind, const Sweep& sweep, Desig
     if (promising && !found) found = search(kind, sweep, problem, start, surface, report);
     if (control.stop.stop_requested() && !found)
         return Error{ErrorKind::cancelled, "", "The search was stopped before a feasible controller was found."};
-    if (!found && !explain) return Error{ErrorKind::no_feasible_controller, "", "Nothing was found here."};
+    if (!found && !explain) return Error{ErrorKind::no_feasible_controller, "", "No design was found here."};
     if (!found) {
         const auto min = min_peak_of_either_sign(problem);
         if (min) found = search_from(*min, problem, report);
@@ -172,11 +174,12 @@ Expected<DesignResult> checked_search(SearchKind kind, const Sweep& sweep, Desig
     }
     return Error{ErrorKind::numerical_failure, "",
                  "The design found does not hold its limits on the independent frequency grid, so it is not returned. "
-                 "Give the filter a longer time constant Tf; for a single design another search may do."};
+                 "Use a filter with a longer time constant Tf; for a single design another search may succeed."};
 }
 
-/// A PI is a PID too. It may be the better one where Td has come to its end, and under a dead time that repeats what
-/// the derivative makes of lags far shorter than it; and it is the one that is left where no PID passes the check.
+/// Also tries a PI in place of the PID. The PI may be better if Td is at its lower end, or if the dead time is much
+/// longer than the lags, because the dead time repeats the effect of the derivative. It is also the result if no PID
+/// passes the verification.
 Expected<DesignResult> or_without_derivative(Expected<DesignResult> found, const DesignProblem& problem,
                                              double reference, const RunControl& control, const DesignResult* before) {
     if (!problem.pid || (found && found->stopped)) return found;
@@ -185,9 +188,10 @@ Expected<DesignResult> or_without_derivative(Expected<DesignResult> found, const
     if (!doubtful) return found;
     DesignProblem without = problem;
     without.pid = false;
-    without.optimal_for_part = {};  // of which a PI need not be stable
+    without.optimal_for_part = {};  // a PI with these times need not be stable
     const Sweep sweep(without, reference);
-    // A PID whose Td is at its end is as good as a PI; set-point steps, and a limit on |C S|, may want another valley.
+    // A PID whose Td is at its lower end is as good as a PI. With set-point steps or a limit on |C S|, the PI may have
+    // another local minimum.
     const bool as_good =
         at_end && !all_dead_time(problem) && problem.objective == Objective::load_iae && !problem.limits.Mks;
     const DesignResult* nearest = before != nullptr ? before : as_good ? &*found : nullptr;
@@ -196,7 +200,7 @@ Expected<DesignResult> or_without_derivative(Expected<DesignResult> found, const
     auto other = checked_search(SearchKind::fast, sweep, without, true, std::nullopt, nullptr, control,
                                 nearest != nullptr ? &near : nullptr);
     if (!other) return found;
-    // The two may differ by less than the search's runs are exact to.
+    // The costs of the two may differ by less than the error of the search's simulations.
     const auto exactly = [](const DesignProblem& one, const DesignResult& design) {
         const double cost = log_cost(one, design.x, kExactRunTolerance);
         return std::isfinite(cost) ? cost : design.log_cost;
@@ -206,14 +210,14 @@ Expected<DesignResult> or_without_derivative(Expected<DesignResult> found, const
     return other;
 }
 
-constexpr double kSlowReferenceRatio = 0.1;          // times the reference, where nothing is found about it
-constexpr double kMaxTiRatio = 30, kMaxTdRatio = 8;  // over the reference: near the ends of the scan
-constexpr double kResonantRangeFactor = 8;      // times these, where the valleys of a resonant plant are looked for
-constexpr double kUsualTiRatio = 10;            // over the reference of a loop within limits as narrow
-constexpr int kMaxReferenceMoves = 3;           // of the reference
-constexpr double kMinLogCostGainOfMove = 1e-3;  // of ln of the cost
+constexpr double kSlowReferenceRatio = 0.1;          // multiple of the reference, if nothing is found around it
+constexpr double kMaxTiRatio = 30, kMaxTdRatio = 8;  // relative to the reference: near the ends of the scan
+constexpr double kResonantRangeFactor = 8;           // multiple of these, for the local minima of a resonant plant
+constexpr double kUsualTiRatio = 10;                 // relative to the reference of a loop with limits this tight
+constexpr int kMaxReferenceMoves = 3;                // changes of the reference
+constexpr double kMinLogCostGainOfMove = 1e-3;       // decrease of ln of the cost
 
-/// Where the loop of a design lives that lies beyond the box that was scanned; empty where it lies inside.
+/// The frequency of a loop whose design lies beyond the scanned box; empty if it lies inside.
 std::optional<double> reference_of(const DesignResult& found, const DesignProblem& problem) {
     if (problem.measured) return std::nullopt;
     const double reference = reference_frequency(problem), Ti = std::exp(found.x[1]);
@@ -223,11 +227,11 @@ std::optional<double> reference_of(const DesignResult& found, const DesignProble
     return Ti * reference > wide * kMaxTiRatio ? std::optional(kUsualTiRatio / Ti) : std::nullopt;
 }
 
-/// `other` and its problem in the place of what was found, if it is the cheaper; whether it was worth the look.
+/// Replaces the result by `other` and its problem if that is cheaper; returns whether the attempt was worthwhile.
 bool take_better(Expected<DesignResult>& found, DesignProblem& problem, Expected<DesignResult> other,
                  const DesignProblem& posed) {
     if (!other) return false;
-    // Of a weighted cost each place has reference optima of its own.
+    // For a weighted cost each reference has its own reference optima.
     const bool own_scale = problem.objective == Objective::weighted;
     const double standing = !found      ? INFINITY
                             : own_scale ? log_cost(posed, found->x, kExactRunTolerance)
@@ -246,7 +250,7 @@ bool take_better(Expected<DesignResult>& found, DesignProblem& problem, Expected
 Expected<DesignResult> verified_search(SearchKind kind, DesignProblem& problem, const PlaneStart& start,
                                        CostSurface* surface, const RunControl& control, const DesignResult* before) {
     if (!problem.reference) problem.reference = reference_frequency(problem);
-    // A design without derivative is no start for one with it.
+    // A design without derivative cannot be a start for one with it.
     const DesignResult* near = before != nullptr && (!problem.pid || std::isfinite(before->x[2])) ? before : nullptr;
     const auto about = [&](DesignProblem& posed, CostSurface* drawn, bool explain) {
         const Sweep sweep(posed, reference_frequency(posed));
@@ -266,7 +270,7 @@ Expected<DesignResult> verified_search(SearchKind kind, DesignProblem& problem, 
     for (const double reference : slower_references(problem))
         if (!over()) look_at(reference);
     if (!found) {
-        // Where the scans saw nothing a small feasible set may be left about the least peak.
+        // If the scans found nothing, there may be a small feasible set around the least peak.
         DesignProblem usual = problem;
         if (!over() && !problem.measured) look_at(kSlowReferenceRatio * reference_frequency(problem));
         auto last = about(usual, surface, true);

@@ -1,5 +1,10 @@
-// A robust design's search with everything around it: where to look, starts, second looks, and the check on a grid of
-// its own.
+// The complete search of a robust design: references, starts, repetitions, and the verification on an independent grid.
+//
+//  1. Search around the usual reference frequency, or from `before` alone (search.h).
+//  2. Verify the result on an independent grid; tighten exceeded limits and search again.
+//  3. If nothing was found, search around slower references, with the other sign of Kp, and around the least peak.
+//  4. If the design lies beyond the scanned box, repeat around its own frequency while that improves it.
+//  5. Compare a PID whose Td is at its lower end with a PI.
 
 #pragma once
 
@@ -14,14 +19,14 @@
 
 namespace tunewright::robust {
 
-/// Where the plane searches begin, as (Ti, Td); empty: at the best point of a scan.
+/// Start of the plane searches as (Ti, Td); empty: the best point of a scan.
 using PlaneStart = std::optional<std::pair<double, double>>;
 
-/// Searches, then holds the result against the independent grid; what exceeds a limit is searched again under tighter
-/// ones. `before`, if not null: a design of nearly the same problem (fewer plants, another limit), from which alone it
-/// is searched; where that finds nothing, the whole search is made. A PID's ln Td is -infinity where a PI does better
-/// than any derivative. `problem` receives the reference optima of a weighted objective, the sign of Kp that was found
-/// to work, and where the loop was found: about the usual reference or another (slower_references()).
+/// Searches, then verifies the result on the independent grid; if it exceeds a limit, the search is repeated with
+/// tighter limits. `before`, if not null: a design of nearly the same problem (fewer plants, another limit), from which
+/// alone the search starts; if it fails, the full search is made. A PID's ln Td is -infinity if a PI is better than any
+/// derivative. `problem` receives the reference optima of a weighted objective, the sign of Kp, and the reference
+/// frequency of the result: the usual one or another (slower_references()).
 ///
 /// Errors: cancelled, unstable_plant, no_feasible_controller (with the smallest limit that
 /// works), numerical_failure.

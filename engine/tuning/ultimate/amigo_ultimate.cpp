@@ -29,9 +29,8 @@ Expected<TunedController> tune_amigo_ultimate(const TuningProblem& problem, cons
     std::vector<Warning> warnings;
     if (options.controller == ControllerKind::PID && kappa < 0.1)
         warnings.push_back(outside_validity("1/(K Ku) is " + text(kappa) +
-                                            ", below 0.1: for plants with so little dead time the ultimate point says "
-                                            "too little and the rule may be far from its aim. Check Ms, or use "
-                                            "robust."));
+                                            ", below 0.1: plants with so little dead time are poorly described by the "
+                                            "ultimate point, and the rule may miss its aim. Check Ms, or use robust."));
     return rule_answer(answer, std::move(warnings));
 }
 
@@ -45,7 +44,7 @@ TuningMethod amigo_ultimate_method() {
         "kappa = 1/(K Ku), 0 when integrating; PI: Kp = 0.16 Ku, Ti = Pu/(1 + 4.5 kappa); PID: Kp = (0.3 - 0.1 "
         "kappa^4) Ku, Ti = 0.6 Pu/(1 + 2 kappa), Td = 0.15 Pu (1 - kappa)/(1 - 0.95 kappa)";
     method.source = "Åström and Hägglund, J. Process Control 14 (2004) 635-650; Advanced PID Control (2006), chapter 7";
-    method.needs = "stable or integrating plants that a proportional gain brings to oscillation, or Ku and Pu";
+    method.needs = "stable or integrating plants that oscillate with some proportional gain, or Ku and Pu";
     method.validity = "plants with an essentially monotone step response; PID: kappa from 0.1 to 1";
     OptionSet<AmigoUltimateOptions> options;
     add_controller(options, {ControllerKind::PI, ControllerKind::PID});

@@ -19,9 +19,9 @@ struct AmigoUltimateOptions {
 ///
 /// Filter: second order on the measurement.
 ///
-/// Errors: those of chosen_ultimate_point(); unsupported for unstable plants and where kappa is not from 0 to 1. Warns
-/// `outside-validity` for a PID with kappa below 0.1: for plants with so little dead time the ultimate point says too
-/// little.
+/// Errors: those of chosen_ultimate_point(); unsupported for unstable plants and if kappa is not from 0 to 1. Warns
+/// `outside-validity` for a PID with kappa below 0.1: plants with so little dead time are poorly described by the
+/// ultimate point.
 ///
 /// Source: Astrom & Hagglund, J. Process Control 14 (2004) 635-650, and Advanced PID Control (2006), chapter 7.
 TuningMethod amigo_ultimate_method();

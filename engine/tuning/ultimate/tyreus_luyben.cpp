@@ -9,13 +9,13 @@ namespace {
 
 constexpr double kSmallGainProduct = 0.5;  // 1/(K Ku)
 
-// With an integral time of 2.2 Pu a plant of much dead time creeps to its set point.
+// With an integral time of 2.2 Pu, a plant with a large dead time approaches its set point very slowly.
 std::vector<Warning> sluggishness(const TuningProblem& problem, const UltimatePoint& at) {
     const double kappa = std::abs(gain_ratio(problem.linear, at));
     if (kappa <= kSmallGainProduct) return {};
     return {outside_validity("1/(K Ku) is " + text(kappa) +
-                             ", above 0.5: much dead time, for which the rule's integral time is far too long. It was "
-                             "made for lag-dominated and integrating plants; use simc or robust.")};
+                             ", above 0.5: the dead time is large, and the rule's integral time is much too long for "
+                             "it. The rule was made for lag-dominated and integrating plants; use simc or robust.")};
 }
 
 Expected<TunedController> tune_tyreus_luyben(const TuningProblem& problem, const TyreusLuybenOptions& options) {
@@ -40,7 +40,7 @@ TuningMethod tyreus_luyben_method() {
     method.source =
         "Tyreus and Luyben, Ind. Eng. Chem. Res. 31 (1992) 2625-2628; PID: Luyben and Luyben, Essentials of Process "
         "Control (1997)";
-    method.needs = "any linear plant that a proportional gain brings to oscillation, or Ku and Pu";
+    method.needs = "any linear plant that oscillates with some proportional gain, or Ku and Pu";
     method.validity = "lag-dominated and integrating plants: 1/(K Ku) up to 0.5";
     OptionSet<TyreusLuybenOptions> options;
     add_controller(options, {ControllerKind::PI, ControllerKind::PID});

@@ -19,8 +19,8 @@ struct TyreusLuybenOptions {
 ///
 /// Filter of the PID: derivative, Tf = Td/10 (the sources have none).
 ///
-/// Errors: those of chosen_ultimate_point(). Warns `outside-validity` for 1/(K Ku) above 0.5 (much dead time, for which
-/// the integral time is far too long), and as ultimate_warnings() says.
+/// Errors: those of chosen_ultimate_point(). Warns `outside-validity` for 1/(K Ku) above 0.5 (a large dead time, for
+/// which the integral time is much too long), and those of ultimate_warnings().
 ///
 /// Sources: Tyreus & Luyben, Ind. Eng. Chem. Res. 31 (1992) 2625-2628 (PI); Luyben & Luyben, Essentials of Process
 /// Control (1997) (PID).

@@ -27,13 +27,14 @@ IdealPid settings(ControllerKind controller, ZieglerNicholsVariant variant, cons
     return pid(variant, at.Ku, at.Pu);
 }
 
-// Hang, Astrom and Ho's range of K Ku; an integrating plant's is infinite and the rule is used on it.
+// Hang, Astrom and Ho's range of K Ku; for an integrating plant K Ku is infinite, and the rule applies to it.
 std::vector<Warning> remarks(const TuningProblem& problem, const UltimatePoint& at) {
     std::vector<Warning> warnings = ultimate_warnings(problem);
     const double ratio = std::abs(1 / gain_ratio(problem.linear, at));
     if (!warnings.empty() || problem.linear.integrators() > 0 || (ratio >= 2.25 && ratio <= 15)) return warnings;
-    return {outside_validity("K Ku is " + text(ratio) + ", outside 2.25 to 15, where this rule is usually applied: " +
-                             (ratio < 2.25 ? "with so much dead time it is sluggish, its PID near instability."
+    return {outside_validity("K Ku is " + text(ratio) + ", outside the usual range 2.25 to 15 of this rule: " +
+                             (ratio < 2.25 ? "with so much dead time it is sluggish, and its PID is close to "
+                                             "instability."
                                            : "it is oscillatory and needs very high gains there."))};
 }
 
@@ -44,8 +45,8 @@ Expected<TunedController> tune_ziegler_nichols_ultimate(const TuningProblem& pro
     if (options.controller != ControllerKind::PID && options.variant != ZieglerNicholsVariant::classic)
         return Error{
             ErrorKind::invalid_argument, "variant",
-            "variant is " + word_of(variants(), options.variant) + ", which exists for PID alone, and controller is " +
-                word_of(words_of({options.controller}), options.controller) + ". Leave variant out, or ask for PID."};
+            "variant is " + word_of(variants(), options.variant) + ", which exists only for PID, but controller is " +
+                word_of(words_of({options.controller}), options.controller) + ". Omit variant, or choose PID."};
     const auto point = chosen_ultimate_point(problem, options.point);
     if (!point) return point.error();
     IdealPid answer = settings(options.controller, options.variant, *point);
@@ -63,7 +64,7 @@ TuningMethod ziegler_nichols_ultimate_method() {
         "Ku, Ti = Pu/2, Td = Pu/3";
     method.source =
         "Ziegler and Nichols, Trans. ASME 64 (1942) 759-768; Pessen, J. Dyn. Syst. Meas. Control 116 (1994)";
-    method.needs = "any linear plant that a proportional gain brings to oscillation, or Ku and Pu";
+    method.needs = "any linear plant that oscillates with some proportional gain, or Ku and Pu";
     method.validity =
         "integrating plants, stable ones with K Ku from 2.25 to 15; aims at quarter-amplitude damping, so expect Ms "
         "above 2";
@@ -71,11 +72,12 @@ TuningMethod ziegler_nichols_ultimate_method() {
     add_controller(options, {ControllerKind::P, ControllerKind::PI, ControllerKind::PID});
     options.choice(
         &ZieglerNicholsUltimateOptions::variant, "variant",
-        "Of PID: classic; pessen (Pessen's integral rule); some_overshoot, no_overshoot: less gain, more damping.",
+        "Variant of the PID: classic; pessen (Pessen's integral rule); some_overshoot, no_overshoot: less gain, more "
+        "damping.",
         variants());
     options.embed(&ZieglerNicholsUltimateOptions::point, ultimate_options());
     add_filter(options, "of the derivative part, Td s/(1 + s Tf); the source has none.");
-    // Of the variants only the calmest: the others are known for their overshoot.
+    // Only the variant with the least overshoot: the others are known for their overshoot.
     method.variants = {{"PI", options.given_for({.controller = ControllerKind::PI})},
                        {"PID", {}},
                        {"PID, no overshoot", options.given_for({.variant = ZieglerNicholsVariant::no_overshoot})}};

@@ -14,14 +14,14 @@ struct ZieglerNicholsUltimateOptions {
     FilterOptions filter = {};
 };
 
-/// Any linear plant that a proportional gain brings to oscillation:
+/// For any linear plant that oscillates with some proportional gain:
 ///
 ///     P     Kp = 0.5 Ku
 ///     PI    Kp = 0.45 Ku   Ti = Pu/1.2
 ///     PID   Kp = 0.6 Ku    Ti = Pu/2     Td = Pu/8      classic
 ///           Kp = 0.7 Ku    Ti = 0.4 Pu   Td = 0.15 Pu   pessen: Pessen's integral rule
-///           Kp = Ku/3      Ti = Pu/2     Td = Pu/3      some_overshoot: gives up gain for damping
-///           Kp = 0.2 Ku    Ti = Pu/2     Td = Pu/3      no_overshoot: gives up more
+///           Kp = Ku/3      Ti = Pu/2     Td = Pu/3      some_overshoot: less gain, more damping
+///           Kp = 0.2 Ku    Ti = Pu/2     Td = Pu/3      no_overshoot: even less gain
 ///
 /// The classic rule aims at quarter-amplitude damping: Ms is typically above 2.
 ///

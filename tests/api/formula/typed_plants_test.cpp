@@ -75,16 +75,16 @@ TEST(TypedPlants, EveryKindOfPlantHasItsFormula) {
 TEST(TypedPlants, AFaultStandsAtItsField) {
     Json problem = asked({{"text", "2e^-3s/(10s+1"}}, 422);
     EXPECT_EQ(problem["errors"][0]["pointer"], "/text");
-    EXPECT_EQ(problem["detail"], "A bracket is open since position 8; close it.");
+    EXPECT_EQ(problem["detail"], "A bracket is not closed; it opens at position 8; close it.");
     problem = prepared({{"plant", "2/(10s+1))"}});
     EXPECT_EQ(problem["errors"][0]["pointer"], "/plant");
-    EXPECT_EQ(problem["detail"], "Position 10: this bracket closes nothing.");
+    EXPECT_EQ(problem["detail"], "Position 10: this closing bracket has no opening one.");
     problem = prepared({{"plant", {{"type", "set"}, {"plants", {"1/(s+1)", "s/"}}}}});
     EXPECT_EQ(problem["errors"][0]["pointer"], "/plant/plants/1");
     EXPECT_THAT(asked({{"text", "K=1 T=3 min"}, {"units", {{"time", "samples"}}}}, 422)["detail"].get<std::string>(),
                 HasSubstr("units.time"));
     EXPECT_EQ(asked({{"text", "2/(10s+"}, {"unfinished", true}}),
-              (Json{{"fault", "A bracket is open since position 3; close it."}}));
+              (Json{{"fault", "A bracket is not closed; it opens at position 3; close it."}}));
     asked(Json::object(), 422);
     asked({{"text", "1/s"}, {"plant", "1/s"}}, 422);
     asked({{"text", 3}}, 422);

@@ -230,7 +230,7 @@ TEST_P(RangeRefuses, WithTheFieldAndTheCure) {
 INSTANTIATE_TEST_SUITE_P(
     All, RangeRefuses,
     testing::Values(
-        Refused{"PointsOutOfOrder", "/points/1/at", "must ascend", [](Json& r) { r["points"][1]["at"] = 10; }},
+        Refused{"PointsOutOfOrder", "/points/1/at", "ascending order", [](Json& r) { r["points"][1]["at"] = 10; }},
         Refused{"AStructureOfItsOwn", "/points/1/plant", "differ in structure",
                 [](Json& r) { r["points"][1]["plant"] = "2 e^(-3s)/((12s+1)(2s+1))"; }},
         Refused{"APointWithoutAPlant", "/points/2", "neither plant nor record",
@@ -284,7 +284,7 @@ TEST(RangeCall, AFoldInTheRangeIsNamedWithItsPlace) {
         {"range", {{"along", "input"}, {"from", 290}, {"to", 320}}}};
     const Answer answer = range_call(request.dump(), {});
     ASSERT_EQ(answer.status, 422) << answer.body;
-    EXPECT_THAT(answer.body, HasSubstr("turn back at Tc"));
+    EXPECT_THAT(answer.body, HasSubstr("turns back at Tc"));
     EXPECT_THAT(answer.body, HasSubstr("\"/range"));
 }
 

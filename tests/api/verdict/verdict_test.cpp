@@ -169,7 +169,7 @@ TEST(Verdict, OfADesignForAControllerIsThatOfTheLoopAsItIsBuilt) {
     ASSERT_NEAR(entry["implemented"]["robustness"]["Ms"], 1.6, 2e-3);
     ASSERT_GT(entry["robustness"]["Ms"], 1.62);
     EXPECT_EQ(entry["verdict"][0]["code"], "robust") << entry["verdict"].dump();
-    EXPECT_EQ(entry["verdict"][0]["text"], "Robust, limited by the margin you asked for.");
+    EXPECT_EQ(entry["verdict"][0]["text"], "Robust, limited by the requested margin.");
 }
 
 /// Otherwise a check that finds nothing would pass too.

@@ -349,7 +349,7 @@ TEST(PidAlgorithm, WhatCannotWorkIsRefusedWithASentence) {
     EXPECT_EQ(fault(pid, {.rate_limit = -1}), "rate_limit: rate_limit is -1; it must be >= 0.");
     pid.gains.Ki = 0;
     pid.velocity = true;
-    EXPECT_NE(fault(pid).find("nothing would bring u back to its level. Choose position."), std::string::npos);
+    EXPECT_NE(fault(pid).find("u would not return to its level. Choose position."), std::string::npos);
 }
 
 }  // namespace

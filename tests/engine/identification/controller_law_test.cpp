@@ -54,7 +54,8 @@ TEST(ControllerLaw, ASmoothLoopAtAConstantSetPointIsRefused) {
             ASSERT_FALSE(model) << "K is answered: " << model->choice_reason;
             EXPECT_EQ(model.error().kind, ErrorKind::not_identifiable);
             EXPECT_THAT(model.error().message, HasSubstr("closed loop"));
-            EXPECT_THAT(model.error().message, HasSubstr("up to " + text(span(record.y), 2) + " (what y moves here)"));
+            EXPECT_THAT(model.error().message,
+                        HasSubstr("up to " + text(span(record.y), 2) + " (the range of y in this record)"));
         }
     }
 }

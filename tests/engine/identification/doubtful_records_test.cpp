@@ -130,7 +130,7 @@ TEST(DoubtfulRecords, AFirstRowOfBeforeTheFirstReadingIsLeftOut) {
     EXPECT_NEAR(plant_as<Fopdt>(model).K, 2, 0.02);
     EXPECT_NEAR(plant_as<Fopdt>(model).L, 12, 0.5);
     EXPECT_EQ(model.data_quality.steps, 1);
-    EXPECT_THAT(model.data_quality.notes, Contains(HasSubstr("1 row at the start left out")));
+    EXPECT_THAT(model.data_quality.notes, Contains(HasSubstr("1 row at the start removed")));
 }
 
 TEST(DoubtfulRecords, RowsOfBeforeTheSensorIsReadAreLeftOut) {
@@ -141,7 +141,7 @@ TEST(DoubtfulRecords, RowsOfBeforeTheSensorIsReadAreLeftOut) {
     const IdentifiedModel model = identified(record, ModelChoice::fopdt);
     EXPECT_NEAR(plant_as<Fopdt>(model).K, plant_as<Fopdt>(whole).K, 1e-3);
     EXPECT_NEAR(plant_as<Fopdt>(model).L, plant_as<Fopdt>(whole).L, 0.05);
-    EXPECT_THAT(model.data_quality.notes, Contains(HasSubstr("10 rows at the start left out")));
+    EXPECT_THAT(model.data_quality.notes, Contains(HasSubstr("10 rows at the start removed")));
     // A plant that is a pure gain also jumps from one value to another in one row, after u.
     Record gain = simulate(even_times(100, 1), 40, 0, {{20, 60}}, first_order(2, 0.01, 3));
     add_noise(gain, 0.01, 6);

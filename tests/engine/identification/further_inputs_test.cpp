@@ -128,7 +128,7 @@ TEST(FurtherInputs, OneThatDoesNothingLeavesThePlantAsItIs) {
     EXPECT_TRUE(with->disturbances.empty());
     EXPECT_EQ(gain_beside_others(with->plant), gain_beside_others(without->plant));
     EXPECT_EQ(with->standard_errors, without->standard_errors);
-    EXPECT_THAT(with->data_quality.notes, ::testing::Contains(::testing::HasSubstr("\"d1\" explains nothing")));
+    EXPECT_THAT(with->data_quality.notes, ::testing::Contains(::testing::HasSubstr("\"d1\" explains no part")));
 }
 
 TEST(FurtherInputs, OfTwoTheOneThatMattersIsKept) {

@@ -100,7 +100,7 @@ TEST(Identify, IntegratorThatDriftsBeforeTheStepKeepsItsGain) {
     const auto plant = plant_as<Ipdt>(model);
     EXPECT_NEAR(plant.K, 0.3, 4 * model.standard_errors.at("K"));
     EXPECT_NEAR(plant.L, 4, 4 * model.standard_errors.at("L"));
-    EXPECT_THAT(model.data_quality.notes, ::testing::Contains(HasSubstr("y rests at u = 2.")));
+    EXPECT_THAT(model.data_quality.notes, ::testing::Contains(HasSubstr("y is at rest for u = 2.")));
 }
 
 TEST(Identify, StepBeforeTheFirstSampleNeedsU0) {
@@ -134,7 +134,7 @@ TEST(Identify, RecordThatStartsInTheMiddleOfAnEarlierResponseIsUnderstood) {
     EXPECT_NEAR(plant.K, 2, 4 * model.standard_errors.at("K"));
     EXPECT_NEAR(plant.T, 12, 4 * model.standard_errors.at("T"));
     EXPECT_NEAR(plant.L, 3, 4 * model.standard_errors.at("L"));
-    EXPECT_THAT(model.data_quality.notes, ::testing::Contains(HasSubstr("y rests at u = 3")));
+    EXPECT_THAT(model.data_quality.notes, ::testing::Contains(HasSubstr("y is at rest for u = 3")));
 }
 
 TEST(Identify, RepeatedTimesUseTheLastInputAndEveryMeasurement) {

@@ -198,11 +198,11 @@ TEST(MinError, RefusesHorizonsThatSayNothing) {
     const auto early = reduce(plant, {.method = ReductionMethod::min_iae, .horizon = 4});
     ASSERT_FALSE(early);
     EXPECT_EQ(early.error().where, "reduction/horizon");
-    EXPECT_THAT(early.error().message, HasSubstr("horizon is 4; by then the step response has not moved (the dead "
+    EXPECT_THAT(early.error().message, HasSubstr("horizon is 4, but the step response has not moved by then (the dead "
                                                  "time is 5)"));
     const auto unused = reduce(plant, {.method = ReductionMethod::tangent, .horizon = 40});
     ASSERT_FALSE(unused);
-    EXPECT_THAT(unused.error().message, HasSubstr("the reduction tangent has none: leave it out"));
+    EXPECT_THAT(unused.error().message, HasSubstr("the reduction tangent has none: omit it"));
 }
 
 TEST(MinError, WarnsOfAHorizonShorterThanTheModelsTimeConstant) {

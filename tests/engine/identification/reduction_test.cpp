@@ -239,7 +239,7 @@ TEST(Reduction, NamesTheReasonForPlantsBeyondIt) {
     EXPECT_THAT(message(OscillatorySopdt{.K = 1, .T = 0.5, .zeta = 0}), HasSubstr("undamped oscillation at 2 rad"));
     EXPECT_THAT(message(TransferFunction{.num = {1, 0}, .den = {1, 2, 1}}), HasSubstr("zero at s = 0"));
     EXPECT_THAT(message(TransferFunction{.num = {1}, .den = {1, 0, 0}}),
-                HasSubstr("2 integrators; the model can carry 1"));
+                HasSubstr("2 integrators; the model can have at most 1"));
 }
 
 TEST(Reduction, ModelsBecomePlantsOfTheirForm) {

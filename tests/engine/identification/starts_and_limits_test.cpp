@@ -86,7 +86,7 @@ TEST(Records, AMoveWithTheLastRowIsNone) {
     EXPECT_EQ(model->data_quality.steps, 1);
     EXPECT_EQ(model->data_quality.kind, RecordKind::step);
     EXPECT_TRUE(model->data_quality.settled);
-    EXPECT_TRUE(noted(*model, "1 change of u with the last sample left out"));
+    EXPECT_TRUE(noted(*model, "1 change of u at the last sample removed"));
 }
 
 TEST(Records, MovesOfUInGapsArePlacedAtTheMissingRows) {
@@ -108,7 +108,7 @@ TEST(Records, MovesOfUInGapsArePlacedAtTheMissingRows) {
     ASSERT_TRUE(model);
     EXPECT_NEAR(static_gain(*model), 2, 0.03 * 2) << model->choice_reason;
     EXPECT_GT(model->fit_percent, 97);
-    EXPECT_TRUE(noted(*model, "happened while rows are missing"));
+    EXPECT_TRUE(noted(*model, "happened where rows are missing"));
 }
 
 bool warned(const IdentifiedModel& model, const std::string& code) {
@@ -208,7 +208,7 @@ TEST(Records, ARelayThatSwitchesBetweenRowsGivesADesignThatHolds) {
         // The times of the switches are estimated, and their uncertainty is included, or the answer warns that it is
         // not.
         const bool counted = std::ranges::any_of(model->data_quality.notes, [](const std::string& note) {
-            return note.find("the standard errors count it") != std::string::npos;
+            return note.find("the standard errors include this") != std::string::npos;
         });
         EXPECT_TRUE(counted || warned(*model, "coarse-relay-record")) << hysteresis;
         TuningRequest request;

@@ -44,11 +44,11 @@ TEST(NonlinearRefusals, Texts) {
         return [text](NonlinearPlant& plant) { set_equation(plant, "T", text); };
     };
     expect_refusals({
-        {T("F/V*(TA0-T"), "plant/equations/T", "equation T, character 5: this parenthesis is never closed."},
+        {T("F/V*(TA0-T"), "plant/equations/T", "equation T, character 5: this parenthesis is not closed."},
         {T(""), "plant/equations/T", "equation T, the expression is empty."},
         {T("F/V*(TA0-Temp)+Tj"), "plant/equations/T",
-         "equation T, character 10: \"Temp\" is no state, parameter or input of this plant."},
-        {T("import(os)"), "plant/equations/T", "equation T, character 1: \"import\" is no function;"},
+         "equation T, character 10: \"Temp\" is not a state, parameter or input of this plant."},
+        {T("import(os)"), "plant/equations/T", "equation T, character 1: \"import\" is not a function;"},
         {T("T'; DROP TABLE jobs"), "plant/equations/T",
          "equation T, character 2: \"'\" cannot be part of an expression."},
         {T(repeated("(", 100000) + "T" + repeated(")", 100000)), "plant/equations/T",
@@ -60,7 +60,7 @@ TEST(NonlinearRefusals, Texts) {
         {[](NonlinearPlant& plant) { plant.output = "T +"; }, "plant/output",
          "output, character 4: the expression ends where"},
         {[](NonlinearPlant& plant) { plant.output = "T + 0.1*Tj"; }, "plant/output",
-         "The output contains the input Tj: y = h(x) must follow from the states alone."},
+         "The output contains the input Tj, but y = h(x) must depend only on the states."},
         {[](NonlinearPlant& plant) { plant.output = "V"; }, "plant/output", "The output contains no state"},
         {[](NonlinearPlant& plant) { plant.output = "log(CA - 1)"; }, "plant/output",
          "The output cannot be evaluated at the steady state: output, character 1: log of -0.4797 does not exist."},
@@ -71,7 +71,7 @@ TEST(NonlinearRefusals, NamesAndNumbers) {
     constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
     using Plant = NonlinearPlant;
     expect_refusals({
-        {[](Plant& p) { p.states.clear(); }, "plant/states", "A nonlinear plant has at least one state."},
+        {[](Plant& p) { p.states.clear(); }, "plant/states", "A nonlinear plant needs at least one state."},
         {[](Plant& p) { p.equations.pop_back(); }, "plant/equations",
          "The state T has no equation: give its derivative dT/dt as equations.T."},
         {[](Plant& p) { p.states.pop_back(); }, "plant/equations", "The equation of \"T\" belongs to no state:"},
@@ -82,13 +82,13 @@ TEST(NonlinearRefusals, NamesAndNumbers) {
         {[](Plant& p) {
              p.parameters.push_back({"T", 1.0});
          },
-         "plant/parameters/T", "\"T\" is named twice:"},
-        {[](Plant& p) { p.input.name = "CA"; }, "plant/input", "\"CA\" is named twice:"},
+         "plant/parameters/T", "\"T\" is used twice:"},
+        {[](Plant& p) { p.input.name = "CA"; }, "plant/input", "\"CA\" is used twice:"},
         {[](Plant& p) {
              p.parameters.push_back({"exp", 1.0});
          },
          "plant/parameters/exp", "\"exp\" is a function and cannot be a name."},
-        {[](Plant& p) { p.states[0].name = "C A"; }, "plant/states", "\"C A\" cannot be a name:"},
+        {[](Plant& p) { p.states[0].name = "C A"; }, "plant/states", "\"C A\" cannot be a name."},
         {[](Plant& p) { p.states[0].value = kNotANumber; }, "plant/states/CA",
          "The value of CA must be a finite number."},
         {[](Plant& p) { p.input.nominal = kNotANumber; }, "plant/input/nominal",
@@ -113,19 +113,19 @@ TEST(NonlinearRefusals, Parameters) {
         return [text](NonlinearPlant& plant) { plant.parameters[6].value = text; };
     };
     expect_refusals({
-        {k0("k0 + 1"), "plant/parameters/k0", "The parameters are defined in a circle: k0 -> k0."},
+        {k0("k0 + 1"), "plant/parameters/k0", "The definitions of the parameters are circular: k0 -> k0."},
         {[](NonlinearPlant& p) {
              p.parameters.push_back({"a", "b*2"});
              p.parameters.push_back({"b", "V + c"});
              p.parameters.push_back({"c", "a/3"});
          },
-         "plant/parameters/a", "The parameters are defined in a circle: a -> b -> c -> a."},
+         "plant/parameters/a", "The definitions of the parameters are circular: a -> b -> c -> a."},
         {k0("4.71e8*T"), "plant/parameters/k0",
-         "parameter k0, character 8: \"T\" is no parameter; parameters are made of numbers and other parameters."},
+         "parameter k0, character 8: \"T\" is not a parameter; a parameter may use only numbers and other parameters."},
         {k0("V/(F-100)"), "plant/parameters/k0", "parameter k0, character 2: division by zero."},
         {k0("exp(1000)"), "plant/parameters/k0", "parameter k0, character 1: exp of 1000 is not finite."},
         {k0("2^(2^(2^(2^(2^2))))"), "plant/parameters/k0", "parameter k0, character 5: 2 ^ 6.554e+04 is not finite."},
-        {k0("1e400"), "plant/parameters/k0", "parameter k0, character 1: \"1e400\" is beyond the range"},
+        {k0("1e400"), "plant/parameters/k0", "parameter k0, character 1: \"1e400\" is out of the range"},
         {k0("4.71e8)"), "plant/parameters/k0", "parameter k0, character 7: \")\" stands where"},
     });
 }
@@ -167,8 +167,9 @@ TEST(NonlinearRefusals, RelativeDegrees) {
     plant.states.push_back({"w", 1});
     plant.equations.push_back({"w", "1 - w"});
     plant.output = "w";
-    EXPECT_THAT(refused(plant).message,
-                testing::StartsWith("The input Tj enters no derivative of the output up to the order 3 of the plant:"));
+    EXPECT_THAT(
+        refused(plant).message,
+        testing::StartsWith("The input Tj enters no derivative of the output up to the order 3 of the plant, so"));
 
     // u moves x through sin(x), which is 0 at x = 0 but not near it.
     EXPECT_THAT(refused(scalar_plant("-x + sin(x)*u", 0)).message,

@@ -151,17 +151,17 @@ TEST(RangeModel, RefusesPointsThatMakeNoRange) {
     auto points = two(Fopdt{1, 10, 2}, Fopdt{2, 10, 2});
     points[1].at = 0;
     EXPECT_EQ(fault(points),
-              "points/1/at: at is 0 after 0; the points must ascend, each place once. Sort them, and keep one of those "
+              "points/1/at: at is 0 after 0; the points must be in ascending order, each place once. Sort them, and "
+              "keep one of those "
               "at the same place.");
     points.pop_back();
     EXPECT_EQ(fault(points), "points: There are 1 points; give 2 to 20.");
     EXPECT_EQ(fault(two(Fopdt{1, 10, 2}, Fopdt{-1, 10, 2})).substr(0, 55),
               "points/1/plant: The gain changes its sign between 0 and");
     EXPECT_EQ(fault(two(Fopdt{1, 10, -2}, Fopdt{1, 10, 2})).substr(0, 14), "points/0/plant");
-    EXPECT_EQ(
-        fault(two(Fopdt{-1, -5, 0.5}, Fopdt{1, 5.6, 0.6})),
-        "points/1/plant: The plant's K goes from -1 to 1 between 0 and 4: where it passes 0 the input does not move "
-        "the output. Part the range there.");
+    EXPECT_EQ(fault(two(Fopdt{-1, -5, 0.5}, Fopdt{1, 5.6, 0.6})),
+              "points/1/plant: The plant's K goes from -1 to 1 between 0 and 4; where it is 0 the input does not move "
+              "the output. Split the range there.");
     EXPECT_EQ(
         fault(two(Zpk{2, {}, {-1, -2, -3}, 1}, Zpk{1, {}, {-1, -2, -3}, 1})),
         "points/1/plant: The plants at 0 and 4 are given by zeros and poles or as state spaces, whose numbers are "

@@ -151,7 +151,7 @@ TEST(ScheduledRun, RefusesAProfileThatIsNone) {
         return run ? "" : run.error().message;
     };
     EXPECT_EQ(refusal({}), "The profile has no points.");
-    EXPECT_EQ(refusal({{1, 12}, {0, 14}}), "The profile's times must ascend; 0 follows 1.");
+    EXPECT_EQ(refusal({{1, 12}, {0, 14}}), "The profile's times must be in ascending order; 0 follows 1.");
 }
 
 }  // namespace

@@ -95,9 +95,9 @@ TEST(SteadyBranch, AlongTheInputNamesTheFoldAndWhereThePlantJumps) {
     EXPECT_EQ(branch.error().kind, ErrorKind::invalid_argument);
     EXPECT_EQ(branch.error().where, "range/to");
     EXPECT_EQ(branch.error().message,
-              "The steady states turn back at Tc = 305.91 (y = 323.491, Tc = 305.91): with a larger Tc there is none "
-              "near, and the plant jumps to y = 373.604. Give a range that ends before, or let it go along the output, "
-              "which the loop holds.");
+              "The branch of steady states turns back at Tc = 305.91 (y = 323.491, Tc = 305.91): with a larger Tc "
+              "there is none near, and the plant jumps to y = 373.604. Give a range that ends before that point, or "
+              "choose a range along the output, which the loop controls.");
     // The end of the jump has the same Tc.
     EXPECT_NEAR(jacket_at_rest(373.604), 305.91, 0.1);
 }
@@ -121,9 +121,9 @@ std::string refusal(const EquationsRange& range) {
 
 TEST(SteadyBranch, RefusesRangesThatCannotBe) {
     EXPECT_EQ(refusal({.plant = conical_tank(20), .along = Along::output, .from = 5, .to = 5}),
-              "range/from: The range goes from 5 to 5; from must be below to.");
+              "range/from: The range goes from 5 to 5; from must be less than to.");
     EXPECT_EQ(refusal({.plant = conical_tank(20), .along = Along::parameter, .parameter = "d", .from = 1, .to = 2}),
-              "range/parameter: \"d\" is no parameter of this plant.");
+              "range/parameter: \"d\" is not a parameter of this plant.");
     // 400 is the input's largest value, and sqrt(h) = 400/40.
     const std::string beyond = refusal({.plant = conical_tank(20), .along = Along::output, .from = 10, .to = 120});
     EXPECT_EQ(beyond.substr(0, 24), "range/to: Resting at y =");
@@ -131,7 +131,7 @@ TEST(SteadyBranch, RefusesRangesThatCannotBe) {
     // y = x^2 has no steady state below y = 0, whatever u.
     NonlinearPlant square = scalar_plant("u - x", 1, 1);
     square.output = "x^2";
-    EXPECT_NE(refusal({.plant = square, .along = Along::output, .from = -1, .to = 2}).find("turn back at y = "),
+    EXPECT_NE(refusal({.plant = square, .along = Along::output, .from = -1, .to = 2}).find("turns back at y = "),
               std::string::npos);
 }
 

@@ -182,13 +182,13 @@ TEST(ArrietaRule, RefusesInWordsWhatItHasNoSettingsFor) {
         {Ipdt{1, 1}, {}, "the plant integrates"},
         {Fopdt{1, -5, 1}, {}, "unstable (a pole at 0.2)"},
         {Fopdt{1, 1, 0.02}, {{"Ms", std::string("free")}}, "gives Kp"},
-        {Fopdt{1, 1, 0.5}, {{"Ms", 1.3}}, "1.4 to 2, and for \"free\""},
-        {Fopdt{1, 1, 0.5}, {{"Ms", 2.1}}, "1.4 to 2, and for \"free\""},
+        {Fopdt{1, 1, 0.5}, {{"Ms", 1.3}}, "1.4 to 2 and for \"free\""},
+        {Fopdt{1, 1, 0.5}, {{"Ms", 2.1}}, "1.4 to 2 and for \"free\""},
     };
     for (const auto& [plant, given, words] : kCases)
         EXPECT_THAT(refusal(plant, "arrieta_ms", given).message, HasSubstr(words));
     EXPECT_THAT(refusal(Fopdt{1, 1, 0.03}, "arrieta_degradation", {{"degradation", 0.4}}).message,
-                HasSubstr("nothing to measure"));
+                HasSubstr("the degradation has no reference"));
 }
 
 TEST(ArrietaRule, ASearchStopsWhenAsked) {

@@ -59,14 +59,14 @@ TEST(Emulation, WrongOptionsAreToldAtTheirPlace) {
         {"remark6",
          {{"formulation", std::string("remark6")}, {"weights/wu", 0.0}},
          "weights/wu",
-         "remark6 compares u alone"},
+         "remark6 compares only u"},
         {"alpha", {{"bounds_from/alpha/0", 2.0}, {"bounds_from/alpha/1", 3.0}}, "bounds_from/alpha", "below 1"},
         {"method", {{"bounds_from/methods/0", std::string("emulation")}}, "bounds_from/methods/0", "emulation"},
-        {"test", {{"bounds_from/test_step", 0.0}}, "bounds_from/test_step", "shows nothing"},
+        {"test", {{"bounds_from/test_step", 0.0}}, "bounds_from/test_step", "must not be 0"},
         {"horizon",
          {{"target/tau_cl", 0.2}, {"target/xi", 1.0}, {"horizon", 130.0}},
          "horizon",
-         "would fall between two samples; it may be 128 at most"},
+         "would lie between two samples. It may be 128 at most"},
     };
     for (const Refusal& refusal : refusals) {
         SCOPED_TRACE(refusal.why);
@@ -98,7 +98,7 @@ TEST(Emulation, AStepThatTheNonlinearControllerCannotMakeIsToldWithItsReason) {
     const auto answer = emulated(reactor.problem, options);
     ASSERT_FALSE(answer);
     EXPECT_EQ(answer.error().where, "scenarios/0");
-    EXPECT_THAT(answer.error().message, HasSubstr("The nonlinear controller itself cannot make this step"));
+    EXPECT_THAT(answer.error().message, HasSubstr("The nonlinear controller itself cannot perform this step"));
 }
 
 TEST(Emulation, StoppedBeforeItBeginsItIsCancelled) {

@@ -138,7 +138,7 @@ TEST(Rimc, WhatIsOutOfReachIsRefusedWithTheRange) {
     const auto low = rimc_tuned(model, {{"disturbance_peak", 0.7}});
     ASSERT_FALSE(low);
     EXPECT_THAT(low.error().message, HasSubstr("disturbance_peak is 0.7"));
-    EXPECT_THAT(low.error().message, HasSubstr("no controller at all comes below 0.7869"));
+    EXPECT_THAT(low.error().message, HasSubstr("no controller has less than 0.7869"));
     const auto high = rimc_tuned(model, {{"disturbance_peak", 1.9}});
     ASSERT_FALSE(high);
     EXPECT_THAT(high.error().message, HasSubstr("it can be from 0.79"));
@@ -154,7 +154,7 @@ TEST(Rimc, WhatIsOutOfReachIsRefusedWithTheRange) {
     const auto lambda = rimc_tuned(model, {{"lambda", 22.0}});
     ASSERT_FALSE(lambda);
     EXPECT_THAT(lambda.error().message,
-                HasSubstr("lambda is 22; a PID with K Kp > 0 and Td >= 0 comes out for lambda up to 21.2"));
+                HasSubstr("lambda is 22; a PID with K Kp > 0 and Td >= 0 exists for lambda up to 21.2"));
 
     const auto both = rimc_tuned(model, {{"lambda", 5.0}, {"Ms", 1.5}});
     ASSERT_FALSE(both);
@@ -217,7 +217,7 @@ TEST(Rimc, LinearFractionalIsTheSamePidWithTheFilterThatMatchesTheFourthTerm) {
 
     const auto refused = rimc_tuned(model, {{"lambda", 0.2}, {"approximation", std::string("linear_fractional")}});
     ASSERT_FALSE(refused);
-    EXPECT_THAT(refused.error().message, HasSubstr("a filter time > 0 comes out for lambda from 0.4005"));
+    EXPECT_THAT(refused.error().message, HasSubstr("a filter time > 0 exists for lambda from 0.4005"));
     const auto doubled = rimc_tuned(model, {{"Tf_over_Td", 0.1}, {"approximation", std::string("linear_fractional")}});
     ASSERT_FALSE(doubled);
     EXPECT_EQ(doubled.error().where, "Tf_over_Td");
@@ -364,7 +364,7 @@ TEST(Imc, RefusesWhatItsFilterCannotServe) {
     EXPECT_FALSE(no_lambda);
     const auto too_slow = rimc_tuned(Fopdt{.K = 1, .T = 1, .L = 1}, {{"lambda", 50.0}, {"filter_order", 2.0}}, "imc");
     ASSERT_FALSE(too_slow);
-    EXPECT_THAT(too_slow.error().message, HasSubstr("Give a smaller lambda, or filter_order 1."));
+    EXPECT_THAT(too_slow.error().message, HasSubstr("Use a smaller lambda, or filter_order 1."));
 }
 
 }  // namespace

@@ -63,7 +63,7 @@ TEST(GainPhaseMargin, RefusesMarginsThatContradictEachOther) {
         tuned("gain_phase_margin", Fopdt{.K = 1, .T = 100, .L = 1}, {{"gain_margin", 2.0}, {"phase_margin_deg", 80.0}});
     ASSERT_FALSE(answer);
     EXPECT_EQ(answer.error().where, "phase_margin_deg");
-    EXPECT_THAT(answer.error().message, testing::HasSubstr("phase margin nearer to 90 (1 - 1/gain_margin) = 45"));
+    EXPECT_THAT(answer.error().message, testing::HasSubstr("phase margin closer to 90 (1 - 1/gain_margin) = 45"));
 }
 
 // Grimholt & Skogestad: with the defaults Ms is 1.43 to 1.75 from a pure dead time to an integrator.

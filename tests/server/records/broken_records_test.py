@@ -96,7 +96,7 @@ BROKEN = {
     "a number that means none": (with_y(lambda k, v: -9999 if k % 40 == 7 else v), (), "removed-outliers"),
     "huge gap": (text(([t + (400 if k > 60 else 0) for k, t in enumerate(T)], U, Y)), (), "gaps"),
     "y missing for long": (with_y(lambda k, v: math.nan if 60 < k < 100 else v), (), "missing-samples"),
-    "step in the last sample": (text(step(at=LENGTH - 1)), (), "the response is not in the record"),
+    "step in the last sample": (text(step(at=LENGTH - 1)), (), "the record does not contain the response"),
     "relay that never switched": (text(([0.1 * k for k in range(400)], [1.0] * 400, plant([0.0] + [1.0] * 399))), (),
                                   "u never moves"),
     "swapped u and y": (text((T, Y, U)), (), ""),

@@ -215,7 +215,7 @@ test("only what a product needs is asked for; it is remembered and sent with lat
       u_span: [0, 100],
     });
     assert.equal((await rowsOf(page))[0][1], asked.body.as_typed.GAIN);
-    assert.ok((await typed(page).innerText()).includes("exact place of ALPHA in the Standard form"), "what is not verified is named");
+    assert.ok((await typed(page).innerText()).includes("exact position of ALPHA in the Standard form"), "what is not verified is named");
 
     await page.getByRole("link", { name: "Start" }).click();
     assert.equal(await search(page).inputValue(), "Emerson DeltaV PID, FORM Standard");
@@ -262,12 +262,12 @@ test("a loop that its sampling makes unstable is said to be so, in the verdict t
     await choose(page, "labview", "NI LabVIEW PID / LabWindows PID toolkit");
     await picker(page).getByLabel("Sample time (s)").fill("60");
     await picker(page).getByLabel("Sample time (s)").press("Tab");
-    await typed(page).getByText("On the controller as it is built the loop is unstable", { exact: false }).waitFor();
+    await typed(page).getByText("The implemented loop is unstable", { exact: false }).waitFor();
     // A design for that sample time holds its limits again.
     const job = await designForMine(page);
     const [entry] = job.result.controllers;
     assert.ok(entry.implemented.robustness.stable && entry.implemented.robustness.Ms <= 1.4 * (1 + 1e-4));
-    await page.getByRole("region", { name: "Verdict" }).getByText("On your controller as it is built Ms is", { exact: false }).waitFor();
+    await page.getByRole("region", { name: "Verdict" }).getByText("On your controller Ms is", { exact: false }).waitFor();
   });
 });
 

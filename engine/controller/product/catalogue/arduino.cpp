@@ -53,12 +53,14 @@ Product pid_v1() {
                       .anti_windup = "integral and output are clamped to the limits",
                       .sample_time_s = kPeriod,
                       .sample_time_text = "100 ms by SetSampleTime, assumed and not measured"},
-        .traps = {"Negative gains are ignored without a word.", "A late call does not change dt.",
-                  "In the revision that was read SetSampleTime scales Ki and Kd anew but does not keep the new period: "
+        .traps = {"Negative gains are silently ignored.",
+                  "A late call does not change the dt of the "
+                  "computation.",
+                  "In the revision that was read, SetSampleTime rescales Ki and Kd but does not store the new period: "
                   "set the gains after it, and test."},
         .evidence = {.level = EvidenceLevel::read,
                      .read = {"the whole file at revision 01cdd643"},
-                     .unverified = {"which release that revision equals"},
+                     .unverified = {"the release that corresponds to that revision"},
                      .sources = {"br3ttb/Arduino-PID-Library PID_v1.cpp"}},
         .example = of_design_a({{"Kp", 3.825}, {"Ki", 0.031875}, {"Kd", 76.5}, {"POn", std::string("P_ON_E")}}),
     };
@@ -96,7 +98,7 @@ Product quickpid() {
                       .anti_windup = "iAwCondition by default; iAwClamp keeps the tuned law; iAwOff",
                       .sample_time_s = kPeriod,
                       .sample_time_text = "100 ms, by a timer of microseconds"},
-        .traps = {"The default iAwCondition changes the law near the limits: take iAwClamp."},
+        .traps = {"The default iAwCondition changes the law near the limits: use iAwClamp."},
         .evidence = {.level = EvidenceLevel::read,
                      .read = {"the whole file (a copy of 3.1.5)"},
                      .unverified = {"newer versions"},

@@ -11,7 +11,7 @@ const Action kDeltaVAction{.kind = Action::Kind::switched,
                            .name = "Direct_Acting",
                            .direct = true,
                            .reverse = false,
-                           .text = "Direct_Acting stands in CONTROL_OPTS."};
+                           .text = "Direct_Acting is an option in CONTROL_OPTS."};
 
 Algorithm deltav_algorithm() {
     return {.published = false,
@@ -43,15 +43,15 @@ Parameter deltav_structure() {
                         {.value = std::string("P action on error, D action on PV"), .b = 1, .c = 0, .integral = false},
                         {.value = std::string("PD action on error"), .b = 1, .c = 1, .integral = false},
                         {.value = std::string("Two degrees of freedom controller"), .free_weights = true}},
-            .remark = "BETA and GAMMA count with two degrees of freedom alone."};
+            .remark = "BETA and GAMMA have an effect only with two degrees of freedom."};
 }
 
 const GainScheduling kDeltaVScheduling{
     .sets = 3,
     .between = Interpolation::steps,
     .text =
-        "The module template PID_GAINSCHED holds GAIN, RESET and RATE of three regions, led by PV, OUT or another "
-        "signal; within a dead band at the two borders it goes linearly from one set to the next.",
+        "The module template PID_GAINSCHED holds GAIN, RESET and RATE of three regions, selected by PV, OUT or another "
+        "signal; within a dead band at the two borders it interpolates linearly between the sets.",
     .source = "DeltaV Books Online, PID_GAINSCHED module template"};
 
 Evidence deltav_evidence(std::vector<std::string_view> read, std::vector<std::string_view> unverified) {
@@ -99,24 +99,24 @@ Product deltav_standard() {
                  .role = ParameterRole::weight_b,
                  .shape = Shape::weight,
                  .range = kShare,
-                 .remark = "counts with STRUCTURE two degrees of freedom alone"},
+                 .remark = "has an effect only with STRUCTURE two degrees of freedom"},
                 {.name = "GAMMA",
                  .label = "GAMMA",
                  .role = ParameterRole::weight_c,
                  .shape = Shape::weight,
                  .range = kShare,
-                 .remark = "counts with STRUCTURE two degrees of freedom alone"},
+                 .remark = "has an effect only with STRUCTURE two degrees of freedom"},
             },
         .filter = {FilterKind::parameter, 0, "First order, ALPHA RATE, ALPHA from 0.05 to 1."},
         .weights = {1, 0, "STRUCTURE sets both; with two degrees of freedom they are BETA and GAMMA."},
         .action = kDeltaVAction,
         .algorithm = deltav_algorithm(),
-        .traps = {"Provox settings (series, repeats per minute, minutes) that had their units changed alone made loops "
-                  "cycle.",
+        .traps = {"Provox settings (series, repeats per minute, minutes) of which only the units were converted made "
+                  "loops oscillate.",
                   "The limits of the anti-reset windup are in engineering units."},
         .evidence = deltav_evidence({"both forms, Standard as the default", "units", "range and default of ALPHA",
                                      "rule of the windup limits", "formulas from series to standard"},
-                                    {"printed transfer functions", "exact place of ALPHA in the Standard form"}),
+                                    {"printed transfer functions", "exact position of ALPHA in the Standard form"}),
         .example = of_design_a({{"GAIN", 3.0},
                                 {"RESET", 120.0},
                                 {"RATE", 20.0},
@@ -160,17 +160,19 @@ Product deltav_series() {
                 deltav_alpha(),
                 fixed_choice("FORM", "FORM", std::string("Series")),
                 fixed_choice("STRUCTURE", "STRUCTURE", std::string(kOwnStructure),
-                             "the default; how the others act in this form was not read"),
+                             "the default; the effect of the others in this form was not read"),
             },
         .series_alpha = kDeltaVAlpha,
-        .filter = {FilterKind::parameter, 0, "Over the whole lead, ALPHA RATE; settings are computed for ALPHA 0.125."},
+        .filter = {FilterKind::parameter, 0,
+                   "The filter covers the whole lead, with ALPHA RATE; settings are computed "
+                   "for ALPHA 0.125."},
         .weights = {1, 0, "The lead acts on the measurement, which makes b = RESET/Ti and c = 0."},
         .action = kDeltaVAction,
         .algorithm = deltav_algorithm(),
-        .traps = {"Gains of the ideal form typed here act as GAIN (1 + RATE/RESET), RESET + RATE and a shorter rate.",
-                  "The maker's own conversion formulas leave ALPHA out."},
+        .traps = {"Settings of the ideal form act here as GAIN (1 + RATE/RESET), RESET + RATE and a shorter rate.",
+                  "The maker's own conversion formulas omit ALPHA."},
         .evidence =
-            deltav_evidence({"formulas from series to standard, ALPHA left out", "units", "range and default of ALPHA"},
+            deltav_evidence({"formulas from series to standard, without ALPHA", "units", "range and default of ALPHA"},
                             {"printed equation", "structures other than the default"}),
         .example = of_design_a({{"GAIN", 2.32793},
                                 {"RESET", 93.1174},
@@ -216,7 +218,7 @@ Product honeywell_interactive() {
         .law = "CV = K (1 + 1/(T1 s)) (SP - ((T2 s + 1)/(0.1 T2 s + 1)) PV)",
         .gain_basis = "percent of span",
         .parameters = honeywell_parameters(
-            fixed_choice("equation", "CTLEQN", std::string("B"), "C would take the set point out of P as well.")),
+            fixed_choice("equation", "CTLEQN", std::string("B"), "C would remove the set point from P as well.")),
         .filter = {FilterKind::ratio, kLeadRatio, "The lead's ratio is 0.1 and cannot be set: Tf = 0.1 T2."},
         .weights = {1, 0,
                     "Equation B has its derivative on the measurement, which makes b = T1/Ti; equation C has "
@@ -227,7 +229,7 @@ Product honeywell_interactive() {
                       .text = "incremental algorithm (believed)",
                       .anti_windup = "limits and windup status",
                       .sample_time_text = "not read"},
-        .traps = {"PID B of a UDC controller shows the set point to the integral alone: that is equation C here."},
+        .traps = {"In PID B of a UDC controller only the integral acts on the set point: that is equation C here."},
         .evidence = {.level = EvidenceLevel::partly,
                      .read = {"equation B with 0.1, minutes, percent, as a forum quotes the reference book",
                               "UDC 3300: PID A on the error, PID B with the set point in the integral alone"},
@@ -246,7 +248,9 @@ Product honeywell_ideal() {
                        .options = {{.value = std::string("B"), .b = 1, .c = 0},
                                    {.value = std::string("A"), .b = 1, .c = 1},
                                    {.value = std::string("C"), .b = 0, .c = 0}},
-                       .remark = "A: all on the error. B: D on the measurement. C: P and D on the measurement."};
+                       .remark =
+                           "A: all parts act on the error. B: D acts on the measurement. C: P and D act on the "
+                           "measurement."};
     return {
         .id = "honeywell_ideal",
         .maker = "Honeywell",

@@ -53,12 +53,12 @@ Product ardupilot() {
                         .shape = Shape::constant,
                         .elsewhere = true}},
         .filter = {FilterKind::parameter, 0, "First order at FLTD; FLTE would filter the whole error."},
-        .weights = {1, 1, "All parts see the error; FF adds to b."},
+        .weights = {1, 1, "All parts act on the error; FF adds to b."},
         .action = kSigned,
         .algorithm = {.text = "position algorithm",
-                      .anti_windup = "at a limit the integral may only shrink; IMAX",
-                      .sample_time_text = "the loop's rate, 400 Hz and more"},
-        .traps = {"SMAX, a limit of the slew, scales P and D while it runs."},
+                      .anti_windup = "at a limit the integral can only decrease; IMAX",
+                      .sample_time_text = "the loop's rate, 400 Hz or more"},
+        .traps = {"SMAX limits the slew rate: it scales P and D during operation."},
         .evidence = {.level = EvidenceLevel::read,
                      .read = {"update_all, update_i", "defaults"},
                      .unverified = {"body of the filter's helper", "notch and D_FF of newer versions"},
@@ -97,7 +97,7 @@ Product px4() {
         .action = kSigned,
         .algorithm = {.integral = IntegralRule::forward,
                       .derivative = DerivativeRule::difference,
-                      .text = "position algorithm; the output takes the integral from before its update",
+                      .text = "position algorithm; the output uses the integral before its update",
                       .anti_windup = "flags of saturation, limits, and an integral that shrinks with the error: "
                                      "1 - (e/400 deg/s)^2",
                       .sample_time_text = "the gyro's rate"},
@@ -125,7 +125,7 @@ Product betaflight() {
                          .range = {low, kUnbounded},
                          .usual_max = 250,
                          .resolution = kWholeNumber,
-                         .remark = "Recent versions take up to 250."};
+                         .remark = "Recent versions accept up to 250."};
     };
     return {
         .id = "betaflight",
@@ -147,12 +147,12 @@ Product betaflight() {
         .filter = {FilterKind::parameter, 0,
                    "One or two filters of the derivative (PT1, PT2, PT3, biquad); this is one "
                    "PT1."},
-        .weights = {1, 0, "P sees the error, D the gyro; feedforward is apart, F 0.013754/100."},
+        .weights = {1, 0, "P acts on the error, D on the gyro; feedforward is separate, F 0.013754/100."},
         .action = {.kind = Action::Kind::reverse_only, .text = "Its sliders are never negative."},
         .algorithm = {.text = "position algorithm",
                       .anti_windup = "limit and relaxation of the integral, anti-gravity",
                       .sample_time_text = "the loop of gyro and PID"},
-        .traps = {"On yaw I counts 2.5 times, unless integrated yaw is used.",
+        .traps = {"On yaw, I is multiplied by 2.5 unless integrated yaw is used.",
                   "Throttle attenuation, D max and I relaxation are not linear."},
         .evidence = {.level = EvidenceLevel::read,
                      .read = {"constants of the scales", "D on the gyro", "I of yaw times 2.5", "largest slider"},

@@ -72,8 +72,8 @@ Product labview() {
             GainScheduling{
                 .between = Interpolation::steps,
                 .text = "PID Gain Schedule.vi gives PID.vi the Kc, Ti and Td of the first set whose max value the "
-                        "scheduling value does not exceed: the max value of a set is the place of the row after it. "
-                        "It has no hysteresis.",
+                        "scheduling value does not exceed: the max value of a set is the value of the scheduling "
+                        "variable at the next row. It has no hysteresis.",
                 .source = "NI, LabVIEW API reference, PID Gain Schedule VI"},
     };
 }
@@ -95,8 +95,8 @@ Product epics() {
                  .role = ParameterRole::integral,
                  .term = {.Ti = -1},
                  .range = {0, kUnbounded},
-                 .zero_remark = "KI = 0 does not hold the integral: it sets it to DRVL, or to DRVH for a negative KP. "
-                                "Set the limits so that this does no harm, or keep a small KI.",
+                 .zero_remark = "KI = 0 does not hold the integral but sets it to DRVL, or to DRVH for a negative KP. "
+                                "Set the limits so that this is harmless, or keep a small KI.",
                  .remark = "a reset rate, 1/Ti"},
                 {.name = "KD",
                  .label = "KD",
@@ -113,13 +113,13 @@ Product epics() {
                  .remark = "smallest interval between two computations"},
             },
         .filter = {FilterKind::none},
-        .weights = {1, 1, "All three parts see the error."},
+        .weights = {1, 1, "All three parts act on the error."},
         .action = kSigned,
         .algorithm = {.derivative = DerivativeRule::difference,
                       .text = "position algorithm",
                       .anti_windup = "at DRVH and DRVL the integral does not grow, and it stays between them",
                       .sample_time_text = "the scan, at least MDT; measured"},
-        .traps = {"KI = 0 does not freeze the integral but drives it to DRVL.", "It computes in single precision."},
+        .traps = {"KI = 0 does not hold the integral but sets it to DRVL.", "It computes in single precision."},
         .evidence = {.level = EvidenceLevel::read,
                      .read = {"do_pid"},
                      .unverified = {"wording of the record's manual"},

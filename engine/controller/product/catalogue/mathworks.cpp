@@ -47,8 +47,8 @@ Product pidstd() {
                         .term = kFilterGain,
                         .range = {0, kUnbounded},
                         .remark = "a ratio, Td/Tf"},
-                       weight_elsewhere("b", ParameterRole::weight_b, "in pidstd2 alone"),
-                       weight_elsewhere("c", ParameterRole::weight_c, "in pidstd2 alone")},
+                       weight_elsewhere("b", ParameterRole::weight_b, "only in pidstd2"),
+                       weight_elsewhere("c", ParameterRole::weight_c, "only in pidstd2")},
         .filter = {FilterKind::parameter, 0, "First order, Td/N."},
         .weights = {1, 1, "pidstd has one input, the error; pidstd2 has b and c."},
         .action = kSigned,
@@ -71,13 +71,13 @@ Product pid() {
         .gain_basis = "engineering units",
         .parameters = {plain("Kp", "", ParameterRole::gain, kKp), plain("Ki", "1/s", ParameterRole::integral, kKi),
                        plain("Kd", "s", ParameterRole::derivative, kKd), time_of("Tf", ParameterRole::filter, kTf),
-                       weight_elsewhere("b", ParameterRole::weight_b, "in pid2 alone"),
-                       weight_elsewhere("c", ParameterRole::weight_c, "in pid2 alone")},
+                       weight_elsewhere("b", ParameterRole::weight_b, "only in pid2"),
+                       weight_elsewhere("c", ParameterRole::weight_c, "only in pid2")},
         .filter = {FilterKind::parameter, 0, "First order, Tf; forward Euler needs Tf > Ts/2."},
         .weights = {1, 1, "pid has one input, the error; pid2 has b and c."},
         .action = kSigned,
         .algorithm = forward_euler("a transfer function; forward Euler in I and D by default", ""),
-        .traps = {"Unless told otherwise it is made discrete by forward Euler."},
+        .traps = {"It is discretised by forward Euler by default."},
         .evidence = {.level = EvidenceLevel::read,
                      .read = {"formula, defaults", "Tf > Ts/2"},
                      .sources = {"mathworks.com control/ref/pid"}},
@@ -104,7 +104,7 @@ Evidence block_evidence() {
 }
 
 Algorithm block_algorithm() {
-    return forward_euler("position algorithm; forward Euler by default, others can be chosen",
+    return forward_euler("position algorithm; forward Euler by default, other rules can be chosen",
                          "none, back-calculation or clamping");
 }
 
@@ -159,8 +159,8 @@ Product block_parallel() {
                                 {"c", 0.0}}),
         .scheduling = block_scheduling(
             {},
-            "The PID Gain Scheduler block looks P, I and D up over the scheduling variable, linear between the "
-            "breakpoints; the PID block takes them as external inputs."),
+            "The PID Gain Scheduler block reads P, I and D from tables over the scheduling variable, linear between "
+            "the breakpoints; the PID block takes them as external inputs."),
     };
 }
 
@@ -183,10 +183,10 @@ Product block_ideal() {
                        time_of("D", ParameterRole::derivative, kTd),
                        pole(),
                        fixed_choice("Form", "Form", std::string("Ideal")),
-                       weight_elsewhere("b", ParameterRole::weight_b, "in the 2DOF block alone"),
-                       weight_elsewhere("c", ParameterRole::weight_c, "in the 2DOF block alone")},
+                       weight_elsewhere("b", ParameterRole::weight_b, "only in the 2DOF block"),
+                       weight_elsewhere("c", ParameterRole::weight_c, "only in the 2DOF block")},
         .filter = {FilterKind::parameter, 0, kPoleFilter},
-        .weights = {1, 1, "The block of one degree of freedom sees the error; the 2DOF block has b and c."},
+        .weights = {1, 1, "The block with one degree of freedom acts on the error; the 2DOF block has b and c."},
         .action = kSigned,
         .algorithm = block_algorithm(),
         .traps = {"I is 1/Ti, not Ti."},
@@ -195,8 +195,8 @@ Product block_ideal() {
             of_design_a({{"P", 1.5}, {"I", 0.00833333}, {"D", 20.0}, {"N", 0.5}, {"Form", std::string("Ideal")}}),
         .scheduling = block_scheduling(
             Interpolation::linear_in_gains,
-            "The PID Gain Scheduler block looks P, I and D up over the scheduling variable, linear between the "
-            "breakpoints; I is 1/Ti here. The PID block takes them as external inputs."),
+            "The PID Gain Scheduler block reads P, I and D from tables over the scheduling variable, linear between "
+            "the breakpoints; I is 1/Ti here. The PID block takes them as external inputs."),
     };
 }
 
@@ -219,7 +219,7 @@ Product autotuner() {
                         .remark = "a ratio; in its parallel form the filter's time"},
                        fixed_choice("Form", "Form", std::string("Ideal"))},
         .filter = {FilterKind::parameter, 0, "First order, D/N."},
-        .weights = {1, 1, "It sees the error."},
+        .weights = {1, 1, "It acts on the error."},
         .action = kSigned,
         .algorithm = {.text = "the rules of I and D are chosen", .sample_time_text = "of the block"},
         .traps = {"The letters of the PID Controller block mean something else here."},

@@ -34,7 +34,7 @@ std::vector<Parameter> with(std::vector<Parameter> parameters, Parameter last) {
     return parameters;
 }
 
-constexpr std::string_view kHeater = "P sees the error, D the measurement.";
+constexpr std::string_view kHeater = "P acts on the error, D on the measurement.";
 
 Product marlin() {
     return {
@@ -52,7 +52,7 @@ Product marlin() {
                             .range = {0, 0.9999},
                             .standard = 0.95,
                             .compiled_in = true,
-                            .remark = "changed by compiling anew alone; 0.95 is a Tf of 19 periods"}),
+                            .remark = "changed only by compiling the firmware; 0.95 is a Tf of 19 periods"}),
         .filter = {FilterKind::parameter, 0,
                    "First order with PID_K1 of the firmware's source; 0.95 makes Tf = 19 periods, 3.1 s."},
         .weights = {1, 0, kHeater},
@@ -63,8 +63,8 @@ Product marlin() {
                       .sample_time_s = 0.1638,
                       .firmware_clock = true,
                       .sample_time_text = "PID_dT follows from the board's temperature timer."},
-        .traps = {"The EEPROM holds the plain gains, the program scaled ones.",
-                  "Who sets M301 does not see the derivative's filter of 3 s."},
+        .traps = {"The EEPROM stores the unscaled gains, the program the scaled ones.",
+                  "M301 does not show the derivative's filter of 3 s."},
         .evidence = {.level = EvidenceLevel::read,
                      .read = {"class PID_t", "macros that scale", "defaults"},
                      .unverified = {"PID_dT of a given board"},
@@ -93,10 +93,12 @@ Product klipper() {
                             .remark = "2.0 by default in older versions"}),
         .filter = {FilterKind::parameter, 0, "First order, Tf = smooth_time less one period."},
         .weights = {1, 0, kHeater},
-        .action = {.kind = Action::Kind::reverse_only, .text = "A heater heats only; temperature_fan turns the sign."},
+        .action = {.kind = Action::Kind::reverse_only,
+                   .text = "A heater only heats; temperature_fan inverts the "
+                           "sign."},
         .algorithm = {.text = "position algorithm",
                       .anti_windup =
-                          "the integral stays between 0 and max_power/Ki and rests while the output is limited",
+                          "the integral stays between 0 and max_power/Ki and stops while the output is limited",
                       .sample_time_s = 0.3,
                       .firmware_clock = true,
                       .sample_time_text = "A thermistor reports every 0.3 s."},
@@ -127,16 +129,18 @@ Product reprapfirmware() {
                    .name = "M307_I",
                    .direct = 1.0,
                    .reverse = 0.0,
-                   .text = "M307 with I1 turns the heater's direction."},
+                   .text = "M307 with I1 inverts the heater's direction."},
         .algorithm = {.derivative = DerivativeRule::slope,
                       .text = "position algorithm; computed in the ideal form inside",
                       .anti_windup = "the integral stays between 0 and the largest output; while P and D alone reach a "
-                                     "limit it is set beforehand",
+                                     "limit it is preset",
                       .sample_time_s = 0.25,
                       .firmware_clock = true,
                       .sample_time_text = "Heaters are served every 250 ms."},
-        .traps = {"M301 replaces the gains for loads and those for set points alike.",
-                  "Slopes above 10 degC/s are left out.", "The duty is corrected by the square of the supply voltage."},
+        .traps = {"M301 replaces both the gains for loads and those for set points.",
+                  "Slopes above 10 degC/s are ignored.",
+                  "The duty cycle is corrected by the square of the supply "
+                  "voltage."},
         .evidence = {.level = EvidenceLevel::read,
                      .read = {"SetM301PidParameters", "control law"},
                      .unverified = {"constant of 250 ms"},

@@ -4,7 +4,7 @@
 namespace tunewright::product {
 namespace {
 
-constexpr std::string_view kSmoothing = "None; an optional smoothing exists whose constant could not be read.";
+constexpr std::string_view kSmoothing = "None; the time constant of the optional smoothing was not found.";
 
 Parameter gain(std::string_view name, std::string_view label, std::string_view unit) {
     return {
@@ -23,7 +23,7 @@ Product logix_pid() {
         .maker = "Rockwell",
         .gain_basis = "percent of span",
         .filter = {FilterKind::none, 0, kSmoothing},
-        .weights = {1, 0, "P sees the error; D sees the measurement (.DOE 0) or the error (.DOE 1)."},
+        .weights = {1, 0, "P acts on the error; D acts on the measurement (.DOE 0) or the error (.DOE 1)."},
         .action = {.kind = Action::Kind::switched,
                    .name = "CA",
                    .direct = 1.0,
@@ -76,7 +76,7 @@ Product pid_dependent() {
                           action_of("KD", ".KD", "min", ParameterRole::derivative, times(kMinutes, kTd)),
                           fixed_choice("PE", ".PE", 1.0, "1: dependent gains"), derivative_of_error()};
     product.traps = {"Seconds typed for minutes are wrong by a factor of 60.",
-                     "A larger .KI is slower here and faster with independent gains."};
+                     "A larger .KI makes the loop slower here, but faster with independent gains."};
     product.example = of_design_a({{"KP", 3.0}, {"KI", 2.0}, {"KD", 0.333333}, {"PE", 1.0}, {"DOE", 0.0}});
     return product;
 }
@@ -84,7 +84,7 @@ Product pid_dependent() {
 // ---- PID of integer words
 
 Product slc() {
-    constexpr double kTenths = 100;  // of RG = 1, and of Td always: steps of 0.01
+    constexpr double kTenths = 100;  // scale of the gain with RG = 1, and always of Td: steps of 0.01
     return {
         .id = "rockwell_slc_pid",
         .maker = "Rockwell",
@@ -120,12 +120,12 @@ Product slc() {
                 fixed_choice("RG", "RG", 1.0, "the range of KC and TI: 1 for steps of 0.01"),
             },
         .filter = {FilterKind::unknown, 0, "Whether the derivative is filtered could not be read."},
-        .weights = {1, 0, "P sees the error, D the measurement."},
+        .weights = {1, 0, "P acts on the error, D on the measurement."},
         .action = {.kind = Action::Kind::switched,
                    .name = "CM",
                    .direct = 1.0,
                    .reverse = 0.0,
-                   .text = "The bit of the control mode chooses the error's sign."},
+                   .text = "The control mode bit sets the error's sign."},
         .algorithm = {.derivative = DerivativeRule::difference,
                       .published = false,
                       .text = "position algorithm",
@@ -147,13 +147,13 @@ Product pide() {
     return {
         .maker = "Rockwell",
         .gain_basis = "percent of span (PVEUMin..PVEUMax, CVEUMin..CVEUMax)",
-        .filter = {FilterKind::none, 0, "None; DSmoothing is an option whose constant could not be read."},
-        .weights = {1, 0, "PVEProportional takes the set point out of P, PVEDerivative out of D."},
+        .filter = {FilterKind::none, 0, "None; the time constant of the option DSmoothing was not found."},
+        .weights = {1, 0, "PVEProportional removes the set point from P, PVEDerivative from D."},
         .action = {.kind = Action::Kind::switched,
                    .name = "ControlAction",
                    .direct = true,
                    .reverse = false,
-                   .text = "ControlAction chooses the error's sign."},
+                   .text = "ControlAction sets the error's sign."},
         .algorithm = {.derivative = DerivativeRule::difference,
                       .velocity = true,
                       .text = "velocity algorithm: increments of the error, error times dt, second difference",
@@ -201,7 +201,7 @@ Product pide_independent() {
     product.name = "Logix PIDE, independent gains";
     product.law = "CV = PGain (b SP - PV) + (IGain/(60 s)) (SP - PV) + 60 DGain s (c SP - PV)";
     product.traps = {"PID counts in 1/s and s, PIDE in 1/min and min.",
-                     "A third party says that the gain is per engineering unit; the maker says percent of span."};
+                     "A third party states the gain per engineering unit, the maker in percent of span."};
     product.example = of_design_a({{"PGain", 3.0},
                                    {"IGain", 1.5},
                                    {"DGain", 1.0},
@@ -219,7 +219,7 @@ Product pide_dependent() {
     product.id = "rockwell_pide_dependent";
     product.name = "Logix PIDE, dependent gains";
     product.law = "CV = PGain [ (b SP - PV) + (1/(60 IGain s)) (SP - PV) + 60 DGain s (c SP - PV) ]";
-    product.traps = {"IGain changes its meaning and its direction with the form."};
+    product.traps = {"The form decides whether a larger IGain gives more or less integral action."};
     product.example = of_design_a({{"PGain", 3.0},
                                    {"IGain", 2.0},
                                    {"DGain", 0.333333},

@@ -4,7 +4,7 @@
 namespace tunewright::product {
 namespace {
 
-constexpr double kMilliseconds = 0.001;  // step of a TIME, in seconds
+constexpr double kMilliseconds = 0.001;  // seconds in one step of the type TIME
 
 Parameter gain() {
     return {.name = "kp",
@@ -41,7 +41,7 @@ Parameter attenuation() {
             .shape = Shape::one_minus_b,
             .range = kShare,
             .standard = 0.0,
-            .remark = "1 less the weight of the set point, not the weight"};
+            .remark = "1 minus the weight of the set point, not the weight"};
 }
 Parameter derivative_of() {
     return {.name = "pv_dev",
@@ -56,7 +56,7 @@ Product pidff() {
     return {
         .maker = "Schneider",
         .filter = {FilterKind::parameter, 0, "First order, td/kd (assumed: the printed function is a picture)."},
-        .weights = {1, 0, "b is 1 - ovs_att, and pv_dev chooses what the derivative sees."},
+        .weights = {1, 0, "b is 1 - ovs_att, and pv_dev chooses the input of the derivative."},
         .action = {.kind = Action::Kind::switched,
                    .name = "rev_dir",
                    .direct = true,
@@ -69,7 +69,7 @@ Product pidff() {
                       .sample_time_text = "the task's period"},
         .evidence = {.level = EvidenceLevel::partly,
                      .read = {"K = kp when mixed, output range over PV range when parallel",
-                              "set point weighed by 1 - ovs_att", "incremental for ti > 0", "RCPY"},
+                              "set point weighted by 1 - ovs_att", "incremental for ti > 0", "RCPY"},
                      .unverified = {"transfer function", "filter by kd", "whether kp is physical or normalised"},
                      .sources = {"Control Expert help, clclib D-SG-0011270, 0011271, 0011273, 0011275",
                                  "Control Expert help, procctlp D-SA-0008605"}},

@@ -1,4 +1,4 @@
-// What the tables of the catalogue have in common: terms that many parameters are, and the design of most examples.
+// Parts that the tables of the catalogue share: terms of many parameters, and the design of most examples.
 #pragma once
 
 #include <utility>
@@ -11,13 +11,13 @@ inline constexpr Term times(double factor, Term term) {
     term.factor *= factor;
     return term;
 }
-/// In percent of the output's span per percent of the measurement's.
+/// A gain in percent of the output's span per percent of the measurement's span.
 inline constexpr Term of_spans(Term term) {
     term.Sy += 1;
     term.Su -= 1;
     return term;
 }
-/// In parts of the output's span.
+/// A gain in fractions of the output's span.
 inline constexpr Term of_output(Term term) {
     term.Su -= 1;
     return term;
@@ -32,7 +32,7 @@ inline constexpr Term kKd{.Kp = 1, .Td = 1};
 inline constexpr Term kKn = of_spans(kKp);
 inline constexpr Term kFilterRatio{.Td = -1, .Tf = 1};
 inline constexpr Term kFilterGain{.Td = 1, .Tf = -1};  ///< N
-inline constexpr double kMinutes = 1.0 / 60;           ///< of a time in seconds
+inline constexpr double kMinutes = 1.0 / 60;           ///< minutes in one second
 inline constexpr double kPerMinute = 60;
 inline constexpr double kWholeNumber = 1;  ///< resolution
 
@@ -44,7 +44,7 @@ inline constexpr double kMaxSignedWord = 32767;  ///< 16 bits with a sign
 inline constexpr IdealPid kDesignA{
     .Kp = 1.5, .Ti = 120, .Td = 20, .b = 0.6, .c = 0, .filter = {FilterType::derivative, 2}};
 inline Example of_design_a(Settings settings) { return {.design = kDesignA, .settings = std::move(settings)}; }
-/// Of flight controllers: per rad/s and normalised output.
+/// For flight controllers: per rad/s and normalised output.
 inline constexpr IdealPid kRateDesign{
     .Kp = 0.135, .Ti = 1, .Td = 0.0267, .b = 1, .c = 0, .filter = {FilterType::derivative, 0.00795775}};
 
@@ -59,6 +59,6 @@ inline Parameter fixed_choice(std::string_view name, std::string_view label, Val
             .remark = remark};
 }
 
-inline const Action kSigned{.kind = Action::Kind::signed_gain, .text = "A negative gain acts directly."};
+inline const Action kSigned{.kind = Action::Kind::signed_gain, .text = "A negative gain gives direct action."};
 
 }  // namespace tunewright::product

@@ -1,4 +1,4 @@
-// Thermostats of homes: ESPHome, HASmartThermostat, Versatile Thermostat.
+// Home thermostats: ESPHome, HASmartThermostat, Versatile Thermostat.
 #include "engine/controller/product/catalogue/terms.h"
 
 namespace tunewright::product {
@@ -6,7 +6,7 @@ namespace {
 
 constexpr double kPercent = 100;
 
-// Of a duty from 0 to `full`.
+// Gains for a duty cycle from 0 to `full`.
 std::vector<Parameter> gains(double full, std::string_view unit, std::string_view unit_I, std::string_view unit_D) {
     const auto part = [&](std::string_view name, std::string_view of, ParameterRole role, Term term) {
         return Parameter{.name = name,
@@ -38,9 +38,8 @@ Product esphome() {
         .gain_basis = "duty per degree",
         .parameters = std::move(parameters),
         .filter = {FilterKind::slope, 0,
-                   "A mean of M slopes; set points are taken out of it. The output may be averaged "
-                   "too."},
-        .weights = {1, 0, "P sees the error, D the measurement."},
+                   "A mean of M slopes, without the changes of the set point. The output may be averaged too."},
+        .weights = {1, 0, "P acts on the error, D on the measurement."},
         .action = {.kind = Action::Kind::reverse_only, .text = "A positive output heats, a negative one cools."},
         .algorithm = {.derivative = DerivativeRule::slope,
                       .text = "position algorithm",
@@ -67,16 +66,16 @@ Product ha_smart() {
         .gain_basis = "percent per degree",
         .parameters = gains(kPercent, "%/degC", "%/(degC s)", "% s/degC"),
         .filter = {FilterKind::none},
-        .weights = {1, 0, "P sees the error, D the measurement."},
+        .weights = {1, 0, "P acts on the error, D on the measurement."},
         .action = {.kind = Action::Kind::switched,
                    .name = "ac_mode",
                    .direct = true,
                    .reverse = false,
-                   .text = "ac_mode cools."},
+                   .text = "ac_mode sets cooling."},
         .algorithm = {.derivative = DerivativeRule::difference,
                       .text = "position algorithm with pulse width; differences between events of the sensor",
                       .anti_windup = "it integrates only while the last output was within its limits",
-                      .sample_time_text = "keep_alive or sampling_period; 0 is on every event"},
+                      .sample_time_text = "keep_alive or sampling_period; 0: on every event"},
         .traps = {"A fork takes ki in % per degC and hour: a factor of 3600.",
                   "generic_thermostat is a relay with hysteresis, not this."},
         .evidence = {.level = EvidenceLevel::read,
@@ -112,7 +111,7 @@ Product versatile() {
                  .remark = "feeds the outdoor temperature forward: 1/(degrees that full power holds)"},
             },
         .filter = {FilterKind::none},
-        .weights = {1, 0, "There is P alone."},
+        .weights = {1, 0, "It has only P."},
         .action = {.kind = Action::Kind::switched,
                    .name = "hvac_mode",
                    .direct = std::string("cool"),
@@ -121,7 +120,7 @@ Product versatile() {
         .algorithm = {.text = "pulse width over cycle_min",
                       .anti_windup = "the duty is clamped to 0..1",
                       .sample_time_text = "cycle_min, in minutes"},
-        .traps = {"It is no PID: Ti and Td have no place in it, and coef_ext takes the steady error over."},
+        .traps = {"It is not a PID: it has no Ti and Td, and coef_ext removes the steady-state error."},
         .evidence = {.level = EvidenceLevel::read,
                      .read = {"the whole class"},
                      .sources = {"jmcollin78/versatile_thermostat prop_algorithm.py"}},

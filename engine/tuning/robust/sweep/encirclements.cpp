@@ -11,22 +11,22 @@
 namespace tunewright::robust {
 namespace {
 
-constexpr double kMaxRelativeRealPart = 1e-9;  // of a pole's real part over its size: so near the axis it may lie on it
+constexpr double kMaxRelativeRealPart = 1e-9;  // of a pole's real part over its size: a smaller one may be 0
 
 }  // namespace
 
 AxisCrossings::AxisCrossings(std::span<const double> L_re, std::span<const double> L_im) {
     const double *re = L_re.data(), *im = L_im.data();
-    double doubtful = 0;  // the largest |L|^2 of a doubtful stretch
+    double doubtful = 0;  // the largest |L|^2 of an ambiguous interval
     const auto look = [&](std::size_t i) {
         const double re0 = re[i - 1], im0 = im[i - 1], re1 = re[i], im1 = im[i];
-        // More than a quarter of a turn: the curve may have gone either way between them.
+        // After more than a quarter of a turn the direction of the curve between them is ambiguous.
         if (re0 * re1 + im0 * im1 < 0) doubtful = std::max({doubtful, re0 * re0 + im0 * im0, re1 * re1 + im1 * im1});
         if ((im0 > 0) == (im1 > 0)) return;
         const double crossed = re0 + (re1 - re0) * im0 / (im0 - im1);
         if (crossed < 0) crossings_.push_back({-1 / crossed, im1 > 0 ? 1 : -1});
     };
-    // Nearly everywhere there is nothing to see.
+    // In nearly all intervals there is no crossing.
     std::size_t i = 1;
     for (; i + 1 < L_re.size(); i += 2) {
         const Pair re0 = load(re + i - 1), im0 = load(im + i - 1), re1 = load(re + i), im1 = load(im + i);
@@ -52,7 +52,7 @@ std::optional<double> phase_from_rest(const LinearPlant& plant, double omega) {
         return std::atan((omega - root.imag()) / std::abs(root.real()));
     };
     double phase = -omega * plant.dead_time() - 0.5 * std::numbers::pi * plant.integrators();
-    // A root to the right turns P the other way round.
+    // A root in the right half-plane turns P in the other direction.
     for (const auto zero : plant.zeros()) phase += zero.real() > 0 ? -turned(zero) : turned(zero);
     for (const auto pole : plant.poles()) {
         if (std::abs(pole.real()) < kMaxRelativeRealPart * std::abs(pole)) return std::nullopt;

@@ -14,29 +14,32 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr int kPointsPerDecade = 40;
-constexpr double kDecades = 3;      // below and above the reference
-constexpr int kTurnsResolved = 24;  // of the dead time, one by one
+constexpr double kDecades = 3;      // decades below and above the reference
+constexpr int kTurnsResolved = 24;  // turns of the dead time that are resolved
 constexpr int kPointsPerTurn = 20;
-constexpr double kFilterDecade = 30;  // times 1/Tf: where a fixed filter has ended the loop
-constexpr double kTiedDecade = 10;    // times 1/(Tf of the least Td)
+constexpr double kFilterDecade = 30;  // multiple of 1/Tf: above it a fixed filter has made the loop small
+constexpr double kTiedDecade = 10;    // multiple of 1/(Tf of the least Td)
 constexpr double kMaxFrequencyOverFastestRoot =
-    3;  // times the plant's fastest root: where it falls as steeply as it ever will
-constexpr double kMaxFrequencyRatio = 1e12;  // times the reference
-constexpr double kMaxResonantDamping = 0.3;  // damping below which a root gets points of its own
-constexpr double kMinWidth = 1e-5;           // of a resonance, over its frequency
-constexpr int kResonancePoints = 12;         // to either side, ever wider apart
-constexpr double kResonanceGrowth = 1.17;    // of their distance beyond, until the grid's own points are as near
-constexpr double kLogPeakMargin = 0.05;  // ln: grid points so far below the threshold may lie beside a peak above it
-constexpr int kMaxParabolas = 6;         // around one peak; three are usual
-constexpr double kParabolaEdge = 0.02;   // of its interval, which a parabola's top stays away from
-constexpr double kLogFrequencyTolerance = 1e-7;  // ln omega: an error of 1e-14 of ln M
+    3;  // multiple of the plant's fastest root: there it falls with its final slope
+constexpr double kMaxFrequencyRatio = 1e12;  // multiple of the reference
+constexpr double kMaxResonantDamping = 0.3;  // damping below which a root has its own grid points
+constexpr double kMinWidth = 1e-5;           // relative width of a resonance
+constexpr int kResonancePoints = 12;         // to either side, with growing distances
+constexpr double kResonanceGrowth = 1.17;    // ratio of successive distances, up to the spacing of the grid's own
+                                             // points
+constexpr double kLogPeakMargin = 0.05;  // in ln: grid points this far below the threshold may be next to a peak above
+                                         // it
+constexpr int kMaxParabolas = 6;         // parabolas for one peak; three are usual
+constexpr double kParabolaEdge = 0.02;   // of its interval: minimal distance of a parabola's maximum from the ends
+constexpr double kLogFrequencyTolerance = 1e-7;  // in ln omega: gives an error of 1e-14 in ln M
 constexpr double kLogPeakTolerance = 1e-10;      // ln M
-constexpr double kMinRelevantLogPeak = -0.05;  // ln M: below it a peak limits no step, and is known well enough sooner
+constexpr double kMinRelevantLogPeak = -0.05;    // ln M: a lower peak limits no step and needs no further refinement
 constexpr double kLogPeakToleranceBelow = 1e-6;  // ln M
-constexpr double kLogParabolaMargin = 0.03;      // ln M: how much higher than the first parabola says a peak may be
-constexpr double kUnboundedLogRatio = 50;        // ln of a ratio that has no end
+constexpr double kLogParabolaMargin = 0.03;      // in ln M: how much a peak may exceed the maximum of the first
+                                                 // parabola
+constexpr double kUnboundedLogRatio = 50;        // stands for ln of an unbounded ratio
 constexpr double kMaxChange =
-    0.5;  // of L, over its distance from -1: far from what could hide between the grid's points
+    0.5;  // distance between neighbours of L over its distance from -1: small enough that nothing hides between them
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double fastest_root(const LinearPlant& plant) {
@@ -51,13 +54,13 @@ std::vector<double> frequencies(const DesignProblem& problem, const LinearPlant&
     const double L = plant.dead_time();
     double high = reference * std::pow(10, kDecades);
     if (problem.filter.Tf && *problem.filter.Tf > 0) high = std::max(high, kFilterDecade / *problem.filter.Tf);
-    // Where the plant itself does not fall a tied filter alone ends the loop, and |C S| peaks near 1/Tf on any plant:
-    // up to beyond the shortest Tf, which belongs to the least Td.
+    // If the plant's gain does not fall, only a filter tied to Td makes the loop small, and |C S| has a peak near 1/Tf
+    // on any plant: the grid extends beyond 1/Tf of the shortest filter, that of the least Td.
     double ended = kInfinity;
     if (problem.pid && problem.filter.Tf_over_Td)
         ended = kTiedDecade * reference / (*problem.filter.Tf_over_Td * kMinTd);
     if (std::isfinite(ended) && (plant.pole_excess() == 0 || problem.limits.Mks)) high = std::max(high, ended);
-    // And until its fastest lag it may not fall: a derivative without end makes L grow there.
+    // Up to its fastest lag the plant's gain may not fall, and an unfiltered derivative makes L grow there.
     high = std::max(
         high, std::min({ended, kMaxFrequencyOverFastestRoot * fastest_root(plant), kMaxFrequencyRatio * reference}));
     const double low = reference * std::pow(10, -kDecades), ratio = std::pow(10, 1.0 / kPointsPerDecade);
@@ -75,7 +78,7 @@ std::vector<double> frequencies(const DesignProblem& problem, const LinearPlant&
         };
         for (int k = -kResonancePoints; k <= kResonancePoints; ++k)
             add(centre + width * k * std::abs(k) / kResonancePoints);
-        // L may pass 1 far out on the flanks of a resonance that is high above it.
+        // L may cross 1 far out on the flanks of a high resonance.
         const double nearest = std::min((ratio - 1) * centre, spacing);
         for (double far = kResonanceGrowth * kResonancePoints * width; far < nearest; far *= kResonanceGrowth) {
             add(centre - far);
@@ -124,7 +127,7 @@ Sweep::Curve Sweep::curve_of(std::size_t index) const {
     for (auto* kept : {&curve.omega, &curve.P_re, &curve.P_im, &curve.log_omega}) kept->reserve(omega.size());
     for (std::size_t i = 0; i < omega.size(); ++i) {
         const Complex P = responses[i];
-        // On an undamped pole P is infinite; its neighbours show the same.
+        // At an undamped pole P is infinite; the neighbours show the same.
         if (!std::isfinite(P.real()) || !std::isfinite(P.imag())) continue;
         curve.omega.push_back(omega[i]);
         curve.P_re.push_back(P.real());
@@ -133,8 +136,8 @@ Sweep::Curve Sweep::curve_of(std::size_t index) const {
     return curve;
 }
 
-/// The band alone. What follows its end is bounded by the end's |L| at the worst phase, as where a dead time turns
-/// fast.
+/// The band alone. Beyond its end, |L| of the end at the worst phase is a bound, as for a dead time that turns too fast
+/// for the grid.
 Sweep::Curve Sweep::measured_curve() const {
     Curve curve;
     curve.resolved_to = problem_.measured->high();
@@ -177,7 +180,7 @@ LoopGains Sweep::gains(const DesignPoint& x) const {
     return {pid.Kp, pid.Kp / pid.Ti, pid.Kp * pid.Td, pid.filter.Tf};
 }
 
-/// The constraint's value at one frequency, exactly.
+/// The exact value of the constraint at one frequency.
 double Sweep::value(const Curve& curve, ConstraintKind kind, const LoopGains& c, double omega) const {
     const Complex C = controller_response(c, omega);
     return constraint_value(kind, worst_phase(curve, plant_at(curve, omega) * C, omega), C, problem_.limits,
@@ -186,13 +189,13 @@ double Sweep::value(const Curve& curve, ConstraintKind kind, const LoopGains& c,
 
 Complex Sweep::worst_phase(const Curve& curve, Complex L, double omega) const {
     if (omega < curve.resolved_to) return L;
-    return -std::min(std::abs(L), 1 - kMinDistance);  // reached within a turn of the dead time
+    return -std::min(std::abs(L), 1 - kMinDistance);  // reached within one turn of the dead time
 }
 
 std::array<double, 3> Sweep::gradient(const Curve& curve, ConstraintKind kind, const LoopGains& c, double omega) const {
     const Complex s(0, omega), integral(0, -c.Ki / omega), derivative = c.Kd * s, sum = c.Kp + integral + derivative;
     const Complex filter = 1.0 + c.Tf * s * (1.0 + 0.5 * c.Tf * s);
-    // d ln C by ln Kp, ln Ti, ln Td.
+    // d ln C by ln Kp, ln Ti and ln Td.
     std::array<Complex, 3> dC = {1.0, -quotient(integral, sum), quotient(derivative, sum)};
     if (problem_.filter.Tf_over_Td) dC[2] -= quotient(c.Tf * s * (1.0 + c.Tf * s), filter);
     const Complex L = worst_phase(curve, plant_at(curve, omega) * quotient(sum, filter), omega),
@@ -210,8 +213,8 @@ std::array<double, 3> Sweep::gradient(const Curve& curve, ConstraintKind kind, c
     return result;
 }
 
-/// The top of the hill around a grid point, by parabolas through three points of ln(value) over ln(omega), renewed
-/// around the best until it no longer moves. Empty where the first of them shows that it stays below the threshold.
+/// The local maximum near a grid point, by parabolas through three points of ln(value) over ln(omega), repeated around
+/// the best point until it no longer moves. Empty if the first parabola shows that it is below the threshold.
 std::optional<Sweep::Top> Sweep::top_near(const Curve& curve, std::size_t i, const std::vector<double>& level,
                                           ConstraintKind kind, const LoopGains& c, double threshold) const {
     const auto at = [&](std::size_t k) { return Top{curve.log_omega[k], 0.5 * std::log(level[k])}; };
@@ -240,7 +243,7 @@ std::optional<Sweep::Top> Sweep::top_near(const Curve& curve, std::size_t i, con
     return best;
 }
 
-/// `level` holds squared ratios: limit reached at 1.
+/// `level` has squared ratios: the limit is at 1.
 void Sweep::add_peaks(const Curve& curve, ConstraintKind kind, const std::vector<double>& level, const LoopGains& c,
                       double threshold, std::vector<ActivePeak>& found) const {
     const std::size_t n = level.size();
@@ -261,7 +264,7 @@ void Sweep::add_peaks(const Curve& curve, ConstraintKind kind, const std::vector
 }
 
 void Sweep::add_limits(const Curve& curve, const LoopGains& c, double threshold, std::vector<ActivePeak>& found) const {
-    // Without filter a direct loop gain q remains at infinite frequency.
+    // Without a filter, a direct loop gain q remains at infinite frequency.
     if (c.Tf > 0 || curve.plant == nullptr) return;
     const int excess = curve.plant->pole_excess() - (problem_.pid ? 1 : 0);
     if (excess > 0) return;
@@ -337,10 +340,10 @@ bool Sweep::stays_stable(const DesignPoint& from, const DesignPoint& to) const {
 namespace {
 
 constexpr double kMinEntranceModulus = 2;    // |L| where a loop enters the grid: it has not been near -1 before
-constexpr std::size_t kUsualIntervals = 64;  // of one plant: room for them is taken at once
+constexpr std::size_t kUsualIntervals = 64;  // intervals of one plant; memory for them is reserved
 
-/// Adds the intervals of positive numbers; those of neighbouring frequencies, which nearly always overlap, are joined
-/// before they are sorted with others.
+/// Adds the intervals of positive numbers; those of neighbouring frequencies, which nearly always overlap, are merged
+/// before they are sorted with the others.
 void add_joined(const Intervals& intervals, std::vector<GainGap>& out) {
     const double *lower = intervals.lower.data(), *upper = intervals.upper.data();
     const std::size_t n = intervals.upper.size();
@@ -358,7 +361,7 @@ void add_joined(const Intervals& intervals, std::vector<GainGap>& out) {
     }
 }
 
-/// What the forbidden intervals leave, in ascending order. `forbidden` is sorted on the way.
+/// The gaps between the forbidden intervals, in ascending order. Sorts `forbidden`.
 std::vector<GainGap> gaps_between(std::vector<GainGap>& forbidden) {
     std::sort(forbidden.begin(), forbidden.end(), [](const GainGap& a, const GainGap& b) { return a.lower < b.lower; });
     std::vector<GainGap> gaps;
@@ -394,7 +397,7 @@ void Sweep::forbid(Curve& curve, std::vector<GainGap>& forbidden) const {
     for (const Intervals& intervals : {first, second}) add_joined(intervals, forbidden);
 }
 
-/// Those that Mks forbids: K^2 |C|^2 <= Mks^2 |1 + K L|^2.
+/// Adds the intervals that Mks forbids: K^2 |C|^2 <= Mks^2 |1 + K L|^2.
 void Sweep::forbid_activity(const Curve& curve, const LoopGains& c, std::vector<GainGap>& forbidden) const {
     const double M = *problem_.limits.Mks * *problem_.limits.Mks;
     for (std::size_t i = 0; i < curve.omega.size(); ++i) {
@@ -408,8 +411,8 @@ void Sweep::forbid_activity(const Curve& curve, const LoopGains& c, std::vector<
     }
 }
 
-/// Where the loop comes from at rest, the integral making L infinite: to the right, or to the left; and its phase at
-/// the grid's lowest frequency, followed from there.
+/// The start of the curve at frequency 0, where the integral makes L infinite: on the right or on the left; and its
+/// phase at the grid's lowest frequency, followed from there.
 Sweep::Entrance Sweep::entrance(const Curve& curve, const LoopGains& c) const {
     const double w = curve.omega.front();
     const double lead = std::atan((c.Kd * w - c.Ki / w) / c.Kp),
@@ -420,9 +423,9 @@ Sweep::Entrance Sweep::entrance(const Curve& curve, const LoopGains& c) const {
             .size = magnitude({curve.L_re.front(), curve.L_im.front()})};
 }
 
-/// Twice the crossings of the negative real axis on the way from rest to the grid's lowest frequency, where the loop's
-/// gain there is k; at rest to the left counts as half a crossing. Empty where the curve may have passed between -1 and
-/// 0 before the grid takes over.
+/// Twice the number of crossings of the negative real axis between frequency 0 and the grid's lowest frequency, for the
+/// gain k; a start on the left counts as half a crossing. Empty if the curve may have crossed between -1 and 0 below
+/// the grid.
 std::optional<int> Sweep::crossed_below(const Entrance& in, double k) {
     using std::numbers::pi;
     if (std::abs(in.phase) < pi) return in.from_left ? 1 : 0;
@@ -430,8 +433,8 @@ std::optional<int> Sweep::crossed_below(const Entrance& in, double k) {
     return (in.from_left ? 1 : 0) + (in.phase < 0 ? 2 : -2);
 }
 
-/// Gains so low that two integrators without enough lead take the loop past -1, nearer than the limit on |S| allows,
-/// before the grid takes over.
+/// Forbids gains that are so low that, below the grid, two integrators without enough lead take the loop closer to -1
+/// than the limit on |S| allows.
 void Sweep::forbid_below(const Curve& curve, const LoopGains& c, std::vector<GainGap>& forbidden) const {
     if (!curve.phase_at_low || curve.plant->integrators() != 1) return;
     const Entrance in = entrance(curve, c);
@@ -439,7 +442,7 @@ void Sweep::forbid_below(const Curve& curve, const LoopGains& c, std::vector<Gai
         forbidden.push_back({.lower = 0, .upper = 1 / in.size});
 }
 
-/// A curve from rest on, and what it says of the loop's stability with the gain k.
+/// A curve from frequency 0, and the stability of the loop with the gain k that follows from it.
 struct Sweep::GainCourse {
     int unstable_poles;
     Entrance in;
@@ -462,7 +465,7 @@ bool Sweep::stable_at_low_gain() const {
 
 void Sweep::tell_stability(const LoopGains& c, std::vector<GainGap>& gaps) const {
     if (!std::ranges::all_of(curves_, [](const Curve& curve) { return curve.phase_at_low.has_value(); })) return;
-    std::vector<GainCourse> courses;  // of every curve, worked out once they are asked for
+    std::vector<GainCourse> courses;  // for every curve, computed at the first use
     for (GainGap& gap : gaps) {
         if (gap.upper == kInfinity) continue;
         gap.stable = gap.verified = gap.lower == 0 && stable_at_low_gain();

@@ -1,5 +1,5 @@
-// The constraints of a robust design over frequency: P is computed once, then thousands of controllers are judged on
-// it.
+// The constraints of a robust design over frequency: P is computed once, then thousands of controllers are evaluated
+// with it.
 //
 // Every constraint is a logarithm that must not exceed 0: ln(|S|/Ms), ln(|T|/Mt), ln(|C S|/Mks), or ln(R/|L - C|) for
 // the M-circle.
@@ -28,25 +28,25 @@ struct ActivePeak {
     std::array<double, 3> gradient{};
 };
 
-/// Gains between which no frequency forbids anything; upper is infinite for the last gap.
+/// Gains that no frequency forbids; upper is infinite for the last gap.
 struct GainGap {
     double lower = 0, upper = 0;
-    /// Whether the loop is stable inside, on every plant, by what the grid tells of the encirclements of -1. Empty: it
-    /// does not tell.
+    /// Whether the loop is stable inside on every plant, inferred from the encirclements of -1 on the grid. Empty: the
+    /// grid does not show it.
     std::optional<bool> stable = std::nullopt;
-    /// It is, for certain: a stable plant at low gain.
+    /// true: the loop is certainly stable: a stable plant at low gain
     bool verified = false;
 
-    /// A gain inside; finite gaps only.
+    /// A gain inside; only for finite gaps.
     double middle() const;
 };
 
 class Sweep {
 public:
-    /// `reference` is the frequency around which the loop will live (phase crossover or the like).
+    /// `reference` is a characteristic frequency of the loop, such as the phase crossover.
     Sweep(const DesignProblem& problem, double reference);
 
-    /// All local maxima above `threshold` on every plant, and the limits at frequency infinity; the largest value
+    /// All local maxima above `threshold` on every plant, and the limits at infinite frequency; the largest value
     /// first.
     std::vector<ActivePeak> peaks(const DesignPoint& x, double threshold) const;
 
@@ -54,12 +54,12 @@ public:
     /// 6, for every circle and every plant at once), in ascending order.
     std::vector<GainGap> gain_gaps(double Ti, double Td) const;
 
-    /// Whether the loop at `to` is stable because that at `from` is: L moves by less than the distance of L(from) from
-    /// -1 at every frequency (Rouche's theorem), with room for what lies between those of the grid. False: it may be
-    /// stable or not.
+    /// True if the loop at `to` is stable because that at `from` is: at every frequency L changes by less than the
+    /// distance of L(from) from -1 (Rouche's theorem), with a margin for frequencies between those of the grid. False:
+    /// it may be stable or not.
     bool stays_stable(const DesignPoint& from, const DesignPoint& to) const;
 
-    /// The constraint's value on the nominal plant at one frequency, exactly.
+    /// The exact value of the constraint on the nominal plant at one frequency.
     double value(ConstraintKind kind, const DesignPoint& x, double omega) const {
         return value(curves_.front(), kind, gains(x), omega);
     }
@@ -73,12 +73,12 @@ private:
         const LinearPlant* plant = nullptr;  // null: measured points
         std::size_t index = 0;
         double resolved_to = std::numeric_limits<double>::infinity();  // above it the dead time turns faster than the
-                                                                       // grid: worst phase assumed
+                                                                       // grid resolves: the worst phase is assumed
         std::size_t resolved = 0;                                      // index of the first such frequency
         std::vector<double> omega, log_omega, P_re, P_im;
-        std::optional<double> phase_at_low;  // of P, followed from rest
+        std::optional<double> phase_at_low;  // phase of P, followed from frequency 0
         int unstable_poles = 0;
-        std::vector<double> S, T, CS, circle;  // scratch: one sweep per thread of work
+        std::vector<double> S, T, CS, circle;  // scratch memory: each thread needs its own sweep
         std::vector<double> L_re, L_im, lower, upper, other_lower, other_upper;
 
         CurveGrid grid() const { return {omega, P_re, P_im}; }
@@ -87,7 +87,7 @@ private:
     };
     Curve curve_of(std::size_t index) const;
     Curve measured_curve() const;
-    void complete(Curve& curve) const;  // what follows from its frequencies
+    void complete(Curve& curve) const;  // sets the members that follow from its frequencies
     std::complex<double> plant_at(const Curve& curve, double omega) const;
     LoopGains gains(const DesignPoint& x) const;
     double value(const Curve& curve, ConstraintKind kind, const LoopGains& c, double omega) const;
@@ -106,7 +106,7 @@ private:
     struct Entrance {
         bool from_left = false;
         double phase = 0;  // rad
-        double size = 0;   // |L| there, with the gain 1
+        double size = 0;   // |L| there with gain 1
     };
     Entrance entrance(const Curve& curve, const LoopGains& c) const;
     static std::optional<int> crossed_below(const Entrance& in, double k);
@@ -119,7 +119,7 @@ private:
 
     DesignProblem problem_;
     double reference_;
-    Circle circle_{};  // the smallest around both
+    Circle circle_{};  // the smallest circle around both
     mutable std::vector<Curve> curves_;
     mutable std::vector<std::size_t> tops_;
 };

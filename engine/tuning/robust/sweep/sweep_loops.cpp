@@ -108,7 +108,7 @@ TUNEWRIGHT_INLINED void factor_loop(const double* re, const double* im, std::siz
         const double a_high = a_inside > 0 ? (ac * x + a_root) * inverse : -1.0,
                      b_high = b_inside > 0 ? (bc * x + b_root) * inverse : -1.0;
         const double a_low = (ac * x - a_root) * inverse, b_low = (bc * x - b_root) * inverse;
-        // Where only one is there it stands for both.
+        // A single interval stands for both.
         const double low0 = a_high > 0 ? a_low : b_low, high0 = a_high > 0 ? a_high : b_high;
         const double low1 = b_high > 0 ? b_low : a_low, high1 = b_high > 0 ? b_high : a_high;
         const double min = low0 < low1 ? low0 : low1, max = high0 > high1 ? high0 : high1;
@@ -122,8 +122,8 @@ TUNEWRIGHT_INLINED void factor_loop(const double* re, const double* im, std::siz
 
 constexpr std::size_t kBlockSize = 64;
 
-/// By how much |L_to - L_from|^2 exceeds most^2 |1 + L_from|^2, at kBlockSize frequencies at most: a maximum over them
-/// would keep the loop from filling registers.
+/// The largest difference |L_to - L_from|^2 - most^2 |1 + L_from|^2 over at most kBlockSize frequencies: a maximum over
+/// all of them would not be vectorised.
 template <bool worst>
 TUNEWRIGHT_INLINED void change_loop(const CurveGrid& grid, const LoopGains& from, const LoopGains& to, double max,
                                     double* __restrict excess) {
@@ -158,13 +158,13 @@ TUNEWRIGHT_INLINED bool change_within(const CurveGrid& grid, const LoopGains& fr
     return true;
 }
 
-/// Whether neighbours, of which the array's ends may have one alone, make number i a top.
+/// True if number i is a local maximum among its neighbours; at the array's ends it may have only one.
 TUNEWRIGHT_INLINED bool is_top(std::span<const double> level, double from, std::size_t i) {
     return level[i] >= from && (i == 0 || level[i] >= level[i - 1]) &&
            (i + 1 == level.size() || level[i] > level[i + 1]);
 }
 
-/// Sixteen numbers at once say whether there is a top among them: mostly there is none.
+/// Checks sixteen numbers at once for a local maximum; mostly there is none.
 template <class Block>
 TUNEWRIGHT_INLINED void find_tops(std::span<const double> level, double from, std::vector<std::size_t>& found) {
     constexpr std::size_t kAtOnce = 16, kWidth = sizeof(Block) / sizeof(double);

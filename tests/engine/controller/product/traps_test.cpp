@@ -70,7 +70,7 @@ TEST(ProductTraps, AForwardFilterThatIsTooShortIsTold) {
 }
 
 TEST(ProductTraps, AFilterThatIsCompiledInIsToldWhereItIsAnother) {
-    EXPECT_THAT(note(typed("marlin", kDesign).notes, "compiled-in"), HasSubstr("0.95 in the firmware"));
+    EXPECT_THAT(note(typed("marlin", kDesign).notes, "compiled-in"), HasSubstr("0.95 in the published firmware"));
     IdealPid stock = kDesign;
     stock.filter.Tf = *compiled_filter_time(product_of("marlin"), kContext);
     EXPECT_NEAR(stock.filter.Tf, 19 * 0.1638, 1e-9);
@@ -83,7 +83,7 @@ TEST(ProductTraps, SettingsThatSwitchTheIntegralOffAreTold) {
                      "integral-off"),
                 HasSubstr("there is no integral action"));
     EXPECT_THAT(note(notes_of("ros_control_toolbox", {{"p", 1.5}}), "integral-off"),
-                HasSubstr("i is not given and no default of it is known"));
+                HasSubstr("i is not given and its default is unknown"));
 }
 
 TEST(ProductTraps, PercentOfAnOutputThatIsNoneAreTold) {

@@ -210,7 +210,8 @@ const Description<RangeContent>& range_content_contract() {
             .field(
                 "verdict", {}, [](const C& c, Writer& out) { finding_contract().write(*c.result.verdict, out); },
                 [](SchemaBook& book) { return finding_contract().schema(book); },
-                "Whether a schedule is worthwhile; for a given schedule, whether it holds the limits and what it costs.",
+                "Whether a schedule is worthwhile; for a given schedule, whether it holds the limits and what it "
+                "costs.",
                 {}, [](const C& c) { return !c.result.verdict; })
             .field(
                 "runs", {},

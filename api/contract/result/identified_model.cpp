@@ -131,8 +131,7 @@ const Description<DataQuality>& quality_contract() {
                    {.unit = "y"})
             .field("quantisation", &Q::quantisation, size(), "Resolution of y; 0: none found.", {.unit = "y"})
             .field("steps", &Q::steps, count(), "Number of moves of u; jitter below 2 % of its range does not count.")
-            .field("move_times", &Q::move_times, list_of(size()), "Times of the first 20 moves of u.",
-                   {.unit = "time"})
+            .field("move_times", &Q::move_times, list_of(size()), "Times of the first 20 moves of u.", {.unit = "time"})
             .field("cycles", &Q::cycles, maybe(count()), "Number of complete periods of a relay test.")
             .field("settled", &Q::settled, truth(), "True if y settled.")
             .field("u0", &Q::u0, size(), "u before its first change.", {.unit = "u"})

@@ -301,7 +301,8 @@ void add_choice(Description<Answer>& d, Of of) {
          [](SchemaBook&) {
              return Json{{"type", "object"}, {"properties", {{"Ms", {{"type", "number"}}}}}, {"required", {"Ms"}}};
          },
-         "The limits of `standing` and the ranking: those of the request, or their defaults. Left out if the entries are "
+         "The limits of `standing` and the ranking: those of the request, or their defaults. Left out if the entries "
+         "are "
          "not ranked.",
          {}, [of](const Answer& answer) { return !of(answer).rank_Ms; })
         .field(

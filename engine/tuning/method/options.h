@@ -59,9 +59,9 @@ struct OptionDescription : NumberRule {
     int at_most_fields = 0;                      ///< of an object: 0, any number may be given
     bool required = false;                       ///< of an object's field
     int max = 100;                               ///< of a list: elements, of numbers_by_name: names; at least one
-    bool main = false;   ///< decides what comes out: a form shows it at once, the others on request
+    bool main = false;             ///< decides what comes out: a form shows it at once, the others on request
     std::string in_place_of = {};  ///< another option, which follows from this one: they are not given together
-    bool draws = false;  ///< adds what a page draws to the report; a page asks for it by itself
+    bool draws = false;            ///< adds what a page draws to the report; a page asks for it by itself
     std::optional<OptionSlider> slider = {};  ///< of a number that makes sense to be moved
 };
 

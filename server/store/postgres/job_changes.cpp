@@ -49,8 +49,8 @@ std::string accept_sql(bool limited) {
            "SELECT id, seq, not_before FROM made";
 }
 
-/// A job that failed or was cancelled gives its key up to a unique one, and keeps it behind its id. The caller has taken
-/// the lock of that key (take_turns): a job that is queued again takes the same lock first.
+/// A job that failed or was cancelled gives its key up to a unique one, and keeps it behind its id. The caller has
+/// taken the lock of that key (take_turns): a job that is queued again takes the same lock first.
 void free_key(Session& session, const std::string& owner, const std::string& key) {
     session.run(
         "WITH free AS MATERIALIZED (SELECT e.seq FROM jobs j JOIN ended e ON e.seq = j.seq WHERE j.owner = $1 "

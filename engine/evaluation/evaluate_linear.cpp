@@ -41,7 +41,7 @@ int nodes_for(const Loop& loop, const LoopGrid& grid) {
     return kMinNodes + static_cast<int>(std::min(2 * highest * loop.plant().dead_time(), kMaxFurtherNodes));
 }
 
-/// What the loop itself says; `add_performance` adds what its responses do.
+/// The checks of the loop; `add_performance` adds those of its responses.
 Verification verify(const Loop& loop, const Figure& Ms) {
     Verification v;
     const LoopGrid other = make_loop_grid(loop, 0.2, 17);
@@ -89,7 +89,7 @@ void warn_of_limits(Evaluation& evaluation, const StepResponse& response, const 
     }
 }
 
-/// Adds the time domain to a stable loop's evaluation.
+/// Adds the time-domain figures to the evaluation of a stable loop.
 void add_performance(Evaluation& evaluation, const LinearPlant& plant, const Loop& loop, const EvaluateOptions& o) {
     const auto* npid = std::get_if<Npid>(&evaluation.controller);
     const auto delta_r = npid != nullptr ? npid->delta_r : std::nullopt;

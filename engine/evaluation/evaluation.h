@@ -27,7 +27,7 @@ struct EvaluateOptions {
     std::optional<ActuatorLimits> actuator;
     std::optional<NoiseOptions> noise;
     std::optional<double> rank_Ms;      ///< entries with Ms above it rank last; empty: as every ranking has it
-    std::optional<bool> optimum_at_Ms;  ///< compare with the robust optimum at the same Ms; empty: of several
+    std::optional<bool> optimum_at_Ms;  ///< compare with the robust optimum at the same Ms; empty: only several designs
     bool tradeoff =
         false;  ///< entries have the trade-off between servo and regulation (tuning/arrieta/tradeoff_report.h)
     std::stop_token stop;  ///< checked between the parts of an evaluation, which then returns the error `cancelled`

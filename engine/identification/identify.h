@@ -98,7 +98,7 @@ struct DataQuality {
     double quantisation = 0;              ///< step of y's grid, 0 if none found
     int steps = 0;                        ///< moves of u
     std::vector<double> move_times = {};  ///< of the first 20 of them
-    std::optional<int> cycles;            ///< of a relay test: complete periods of u
+    std::optional<int> cycles;            ///< for a relay test: complete periods of u
     bool settled = false;
     int samples_dropped = 0;                        ///< rows whose y is not used
     double u0 = 0, y0 = 0;                          ///< operating point: given, or before the first change of u

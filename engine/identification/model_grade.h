@@ -34,7 +34,7 @@ inline constexpr double kMuchWorsePercent = 3;
 /// the record's length is not determined by it.
 void grade_candidates(IdentifiedModel& model);
 
-/// Why a model is doubtful.
+/// The reason why a model is doubtful.
 enum class DoubtReason {
     fit,      ///< it explains too little of its record, whatever its warnings
     warning,  ///< it explains its record, but has a warning of level `bad`

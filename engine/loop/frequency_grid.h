@@ -1,4 +1,4 @@
-// Frequencies at which a loop is looked at: chosen by the loop itself.
+// Frequencies at which a loop is evaluated, adapted to the loop.
 #pragma once
 
 #include <functional>
@@ -9,9 +9,9 @@
 
 namespace tunewright {
 
-/// Where a grid starts from: `density` points a decade from far below to far above every corner of plant and
-/// controller, or up to `highest`, and more at resonances. `open_loop`: L(j omega), asked at a few frequencies for
-/// where its asymptotes cross one. Ascending, at least two.
+/// The frequencies from which a grid starts: `density` points a decade from far below to far above every corner of
+/// plant and controller, or up to `highest`, and more at resonances. `open_loop`: L(j omega), evaluated at a few
+/// frequencies to find where its asymptotes cross one. Ascending, at least two.
 std::vector<double> base_frequencies(const LinearPlant& plant, const ParallelPid& gains,
                                      const std::function<std::complex<double>(double)>& open_loop, int density,
                                      double highest = std::numeric_limits<double>::infinity());

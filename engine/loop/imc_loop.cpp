@@ -18,7 +18,7 @@ constexpr double kTurnsResolved = 60;      // periods of the longer dead time th
 constexpr int kPointsPerDecade = 24;
 
 constexpr double kBelowCorners = 1e-3, kAboveCorners = 1e2;  // of the outermost corners
-constexpr double kGridStep = 0.05;                           // of S between neighbours
+constexpr double kGridStep = 0.05;                           // change of S between neighbours
 
 /// Follows D from one frequency to another, halving the step until its turn is unmistakable.
 void follow(const ImcLoop& loop, Winding& winding, double left, Complex D_left, double right, Complex D_right,

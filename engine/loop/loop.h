@@ -28,7 +28,7 @@ struct LoopGrid {
     double resolved_to = 0;  ///< above it the dead time turns L faster than the grid follows; |L| is still followed
 };
 
-/// What no loop may have, whatever the plant: numbers that are not finite, Tf <= 0 with a filter, all gains 0, a
+/// Errors of a controller that no plant could use: numbers that are not finite, Tf <= 0 with a filter, all gains 0, a
 /// derivative of r without filter.
 std::optional<Error> check_controller(const ParallelPid& gains);
 

@@ -42,7 +42,7 @@ constexpr double kEdgeTolerance = 1e-13;    // relative tolerance of the frequen
 constexpr double kMinShareOfMaximum = 0.9;  // of the largest value so far: a lower grid point is not the top of a peak
 constexpr double kMinRelevantShare = 0.45;  // of the largest value so far: at lower values 2 |T| cannot reach it
 
-/// The frequency at which L crosses the real axis, between two at which it is known.
+/// The frequency at which L crosses the real axis, between two frequencies that enclose it.
 double real_crossing(const AnyLoop& loop, double left, double right, std::complex<double> a, std::complex<double> b) {
     const auto imaginary = [&](double omega) {
         const auto L = loop.at(omega).L;
@@ -51,7 +51,7 @@ double real_crossing(const AnyLoop& loop, double left, double right, std::comple
     return log_root(imaginary, left, right, a.imag() / magnitude(a), b.imag() / magnitude(b), kLogFrequencyTolerance);
 }
 
-/// The frequency at which |L| = 1, between two such frequencies.
+/// The frequency at which |L| = 1, between two frequencies that enclose it.
 double unit_crossing(const AnyLoop& loop, double left, double right, std::complex<double> a, std::complex<double> b) {
     const auto log_gain = [&](double omega) { return std::log(magnitude(loop.at(omega).L)); };
     return log_root(log_gain, left, right, std::log(magnitude(a)), std::log(magnitude(b)), kLogFrequencyTolerance);

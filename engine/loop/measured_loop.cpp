@@ -11,8 +11,8 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kMaxStepOfS = 0.06;        // between neighbours, of S
-constexpr double kMaxFrequencyRatio = 1.2;  // of neighbouring frequencies
+constexpr double kMaxStepOfS = 0.06;        // change of S between neighbours
+constexpr double kMaxFrequencyRatio = 1.2;  // ratio of neighbouring frequencies
 constexpr double kMaxAxisDistance = 1e-9;   // |1 + L|: closer to 0 counts as on the axis
 
 }  // namespace
@@ -48,7 +48,8 @@ LoopGrid make_loop_grid(const MeasuredLoop& loop) {
 }
 
 StabilityCount count_unstable_poles(const MeasuredLoop& loop) {
-    // From omega = 0+ to infinity 1 + L turns by pi (N/2 + p - Z): N integrators, p unstable poles of L, Z of the loop.
+    // From omega = 0+ to infinity 1 + L turns by pi (N/2 + p - Z): N integrators, p unstable poles of L, Z unstable
+    // poles of the loop.
     const MeasuredPlant& plant = loop.plant();
     const ParallelPid& gains = loop.gains();
     const int N = plant.integrators() + (gains.Ki != 0 ? 1 : 0);

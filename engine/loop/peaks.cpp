@@ -53,8 +53,8 @@ Peak interior_peak(const AnyLoop& loop, const LoopGrid& grid, Magnitude magnitud
     return best;
 }
 
-/// Beyond the resolved range: |S| <= 1/(1 - |L|), reached once every turn of the dead time. Scans a few turns around
-/// the places where such a bound is locally largest.
+/// Beyond the resolved range: |S| <= 1/(1 - |L|), a bound that is reached once in every turn of the dead time. Scans a
+/// few turns around the local maxima of such a bound.
 void raise_by_fast_turning(const AnyLoop& loop, const LoopGrid& grid, Peaks& peaks) {
     const double L = loop.turning_time;
     if (L == 0 || loop.ends.omega.empty() || std::isfinite(loop.ends.omega.back())) return;
@@ -106,7 +106,7 @@ void raise_by_ends(const AnyLoop& loop, Peaks& peaks) {
     }
 }
 
-/// Between neighbours of the grid, where the dead time turns L so far that a peak can hide.
+/// Interval between neighbours of the grid in which the dead time turns L so far that a peak can hide.
 struct Stretch {
     double left, right;
     double S, T, CS;             // upper bounds of its peaks, from |L| and |C| at both ends
@@ -199,7 +199,7 @@ void raise_by_turns(const AnyLoop& loop, const LoopGrid& grid, Peaks& peaks) {
 
 /// Beginning with those within the grid.
 Peaks raised(Peaks peaks, const AnyLoop& loop, const LoopGrid& grid) {
-    raise_by_ends(loop, peaks);  // first: the higher a peak already is, the fewer places may exceed it
+    raise_by_ends(loop, peaks);  // first, because a higher known peak leaves fewer candidates
     raise_by_turns(loop, grid, peaks);
     raise_by_fast_turning(loop, grid, peaks);
     return peaks;

@@ -22,13 +22,13 @@ struct Peaks {
 /// the envelope's maximum is searched turn by turn.
 Peaks find_peaks(const AnyLoop& loop, const LoopGrid& grid);
 
-/// That of |S| alone, at a third of the cost.
+/// The peak of |S| alone, at a third of the cost.
 Peak find_sensitivity_peak(const AnyLoop& loop, const LoopGrid& grid);
 
 /// The grid, finer where all of |S| - 1 is small and its maximum as flat. `enough_below`: as in Refinement.
 LoopGrid refined_at_low_peak(const AnyLoop& loop, LoopGrid grid, double enough_below = 0);
 
-/// A grid fine enough for `find_peaks` also there.
+/// A grid that is fine enough for `find_peaks` even if all of |S| - 1 is small.
 template <FrequencyLoop L>
 LoopGrid make_peak_grid(const L& loop) {
     return refined_at_low_peak(loop, make_loop_grid(loop));

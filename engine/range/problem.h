@@ -37,7 +37,7 @@ enum class Aim { worst, mean };
 
 struct RangeOptions {
     ControllerKind controller = ControllerKind::PID;  ///< PI or PID
-    PeakLimits limits = {};                           ///< held everywhere; no m_circle
+    PeakLimits limits = {};                           ///< kept everywhere; m_circle is not allowed
     RobustFilterOptions filter = {};                  ///< empty: range_filter_rule
     Aim aim = Aim::worst;
     double b = 1;                  ///< set-point weight of every row, 0 to 1

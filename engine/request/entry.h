@@ -47,7 +47,7 @@ struct PlacedPeak {
     bool exceeds(double limit) const;
 };
 
-/// A controller with its evaluation, or why there is none.
+/// A controller with its evaluation, or the error in its place.
 struct TuningEntry {
     std::string method;  ///< id; "baseline" for today's settings; empty for controllers that were sent
     std::string title;
@@ -85,7 +85,8 @@ std::optional<PlacedPeak> worst_Ms(const TuningEntry& entry);
 /// The same of Mt, which is not known on the worst plant.
 std::optional<PlacedPeak> worst_Mt(const TuningEntry& entry);
 
-/// One horizon for the responses of all entries, ideal and as built, equations' own and their linearisation's.
+/// Sets one horizon for the responses of all entries: ideal and implemented, of the equations and of their
+/// linearisation.
 void draw_together(std::vector<TuningEntry>& entries);
 
 }  // namespace tunewright

@@ -16,8 +16,8 @@
 namespace tunewright {
 
 struct EvaluationResult {
-    std::optional<OperatingPoint> operating_point;  ///< of a nonlinear plant
-    std::vector<TuningEntry> controllers;           ///< without a method, in the order sent
+    std::optional<OperatingPoint> operating_point;  ///< only for a nonlinear plant
+    std::vector<TuningEntry> controllers;           ///< without a method, in the order of the request
     std::optional<double> rank_Ms;          ///< the limit on the Ms of all that their standing goes by; of controllers
     std::vector<verdict::Finding> verdict;  ///< over all of them
     std::optional<int> proposed;            ///< the one to show first; none without controllers

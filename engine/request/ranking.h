@@ -10,8 +10,8 @@ namespace tunewright {
 
 /// The inputs of the order other than the entries.
 struct RankingTerms {
-    double rank_Ms = 0;     ///< largest Ms of every entry that holds
-    bool over_time = true;  ///< false: the plant is known by points alone, and nothing is known to settle
+    double rank_Ms = 0;     ///< the limit on Ms of every entry
+    bool over_time = true;  ///< false: the plant is known by points alone, so settling is unknown
 };
 
 RankingTerms ranking_terms(const EvaluateOptions& options, bool over_time);

@@ -1,6 +1,5 @@
-// The limits that a design keeps unless the request names others, and how exactly a limit is held at each step: by the
-// search, by the design that is returned, in a ranking, in what a verdict states. Nothing else defines any of them;
-// how far inside its limits a search aims is its own constant.
+// The default limits of a design, and the tolerance with which a limit is checked at each step: in the search, for the
+// returned design, in a ranking, in a verdict. All of them are defined only here.
 #pragma once
 
 namespace tunewright::limits {
@@ -30,16 +29,15 @@ inline constexpr double kMaxRelativeExcessSearched = 1e-6;
 /// of Ti and Td, which look between their grid's points. Half of what the next step accepts, so that a design that is
 /// verified once more on other plants still holds.
 inline constexpr double kMaxRelativeExcessFound = 1e-5;
-/// Verify: the returned design, on its own plants and on frequencies that the search never saw. Peaks that the search
-/// has interpolated differ from those by less.
+/// Verify: the returned design, on its own plants and on frequencies that the search did not use. The interpolated
+/// peaks of the search have a smaller error.
 inline constexpr double kMaxRelativeExcessVerified = 2e-5;
 /// Judge: the same design on plants between its own, in a confidence region or a range. A plant that exceeds the limit
 /// by more is added to those of the design.
 inline constexpr double kMaxRelativeExcessJudged = 5e-5;
 /// Rank: entries of a comparison under the limit that is common to all, whose peaks have been computed to about 1e-5.
 inline constexpr double kMaxRelativeExcessRanked = 1e-4;
-/// Show: an entry's own limit, in its rank and in its verdict. A peak that prints as the limit with three digits is as
-/// good as it.
+/// Show: a peak that prints as the limit with three digits counts as within it.
 inline constexpr double kMaxRelativeExcessShown = 2e-3;
 /// The same on the worst of several plants, which is found by a search.
 inline constexpr double kMaxRelativeExcessShownOfWorst = 1e-2;

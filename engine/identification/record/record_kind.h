@@ -21,8 +21,8 @@ InputLevels input_levels(const CleanRecord& record);
 /// When u moves, by its levels, in the record's unit of time: the first 20 times; more are another kind of test.
 std::vector<double> move_times(const CleanRecord& record);
 
-/// Switches between two levels that lie 10 times as far apart as each varies. The level before the test and the one
-/// after it, where the relay was turned off, may be others.
+/// Switches between two levels whose distance is 10 times their variation. The level before the test and the one after
+/// it, when the relay was off, may be different.
 struct TwoLevels {
     double low = 0, high = 0;         ///< means
     std::vector<double> switch_time;  ///< ascending

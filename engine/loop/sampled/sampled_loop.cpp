@@ -14,10 +14,11 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr int kSparseDensity = 8;   // points a decade where |S| alone is asked for: its own steps refine the grid
-constexpr double kGridStep = 0.15;  // of S between neighbours
-constexpr double kMinFrequencyShare = 1e-3;  // of 1/Ts: where the integral's phase is read
-constexpr double kLightDamping = 0.3;        // of a plant's pole: below it a resonance shows, also folded below pi/Ts
+constexpr int kSparseDensity = 8;            // for |S| alone, whose own steps refine the grid
+constexpr double kGridStep = 0.15;           // change of S between neighbours
+constexpr double kMinFrequencyShare = 1e-3;  // of 1/Ts: frequency at which the integral's phase is read
+constexpr double kLightDamping = 0.3;        // damping of a plant's pole that is a resonance, also when aliased below
+                                             // pi/Ts
 constexpr double kMinWidth = 1e-6;           // of a folded resonance, relative
 
 constexpr double kFollowedTurn = 2;           // rad of z and of the dead time: in shorter turns no full turn is missed
@@ -184,7 +185,7 @@ public:
         return {omega, open, returned, product(open, returned), size, magnitude(returned) <= kMaxAxisDistance * size};
     }
 
-    /// Of z and of the dead time from one to the other, rad.
+    /// Turn of z and of the dead time from one to the other, rad.
     double turn(const Value& left, const Value& right) const {
         return loop_.turning_time() * (right.omega - left.omega);
     }

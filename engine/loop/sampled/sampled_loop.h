@@ -35,7 +35,7 @@ public:
     double turning_time() const { return law_.Ts * (plant_.whole_samples() + 1) + plant_.rest(); }
     bool finite_at_zero() const;
 
-    /// Of |S| alone, to 1e-9, at a third of the cost; infinite where the loop is unstable.
+    /// The peak of |S| alone, to 1e-9, at a third of the cost; infinite if the loop is unstable.
     Peak sensitivity_peak() const;
     /// True if the loop is stable with Ms <= `limit`, which is above 1; at a tenth of the cost.
     bool keeps(double limit) const;

@@ -1,4 +1,4 @@
-// Evaluates settings at one place, and a schedule over the whole range: their distance from the limits and their cost.
+// Evaluates settings at one point, and a schedule over the whole range: distance from the limits and cost.
 #pragma once
 
 #include <vector>

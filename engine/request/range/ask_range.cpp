@@ -78,7 +78,7 @@ verdict::Finding finding_of_given(const range::ScheduleDesign& given) {
         .say(" times each operating point's own optimum.");
 }
 
-/// A fault of the options is one of the schedule's question.
+/// Moves an error's place from the options to the schedule of the request.
 Error in_words_of_question(Error error) {
     if (error.where.starts_with("options/")) error.where = "schedule/" + error.where.substr(8);
     return error;

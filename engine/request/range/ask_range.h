@@ -64,7 +64,7 @@ struct RangeResult {
     std::vector<RangePointPlant> points;
     range::RangeDesign design;
     bool given = false;              ///< the schedule was given: no one setting; the verdict is on the schedule
-    std::vector<RangePlace> places;  ///< those of the curves
+    std::vector<RangePlace> places;  ///< at the points of the curves
     std::vector<RangePassage> runs;
     std::optional<verdict::Finding> verdict;
     double compute_ms = 0;

@@ -15,7 +15,7 @@ struct RequestedLimits {
     std::optional<double> Ms, Mt, Mks;
 };
 
-/// What follows the figure in a sentence: "" or " on the worst plant".
+/// The words after the figure in a sentence: "" or " on the worst plant".
 std::string words_of(PeakLoop loop);
 
 /// An entry that has an evaluation.

@@ -59,8 +59,8 @@ private:
     Equations below_, inside_, above_;
 };
 
-/// Where a loop that would rest there without limits comes to rest within them, or at one of them: there it has no rest
-/// on an integrating or unstable plant. `d`: the load.
+/// The loop's rest within its limits, or at one of them. There is no rest if a limit holds an integrating or unstable
+/// plant.
 SteadyState within_limits(const SteadyState& linear, const LinearPlant& plant, const ActuatorLimits& limits, double d);
 
 }  // namespace tunewright

@@ -19,11 +19,12 @@ namespace {
 
 using Index = std::size_t;
 
-constexpr int kMaxHalvings = 12;            // of a piece, before a node is set whatever the cubic says
-constexpr Index kMaxNodes = 1000000;        // from there on no piece is halved any more
+constexpr int kMaxHalvings = 12;            // of a piece, before a node is added without a further check
+constexpr Index kMaxNodes = 1000000;        // beyond it no piece is halved any more
 constexpr double kProbeShare = 0.309;       // of a piece: where swings that the middle meets at the same place are not
-constexpr double kInstantTolerance = 1e-9;  // of a sample: nearer instants are one
-constexpr int kRestSamples = 10;            // beyond the dead time: the least that a response must have rested for
+constexpr double kInstantTolerance = 1e-9;  // of a sample: closer times are equal
+constexpr int kRestSamples = 10;            // in addition to the dead time: the least time that a response must have
+                                            // rested
 
 /// Where the loop rests without the limits of the program.
 SteadyState rest_of(const LinearPlant& plant, const ParallelPid& gains, const StepInputs& in) {
@@ -37,12 +38,12 @@ SteadyState rest_of(const LinearPlant& plant, const ParallelPid& gains, const St
     return {std::isfinite(y), y, u0 - gains.Kp * y};
 }
 
-/// A piece of a sample period within which the plant's input and the output's value are constant.
+/// A part of a sample period within which the plant's input and the output's value are constant.
 struct Piece {
-    double from = 0;                     // time into the period
-    std::vector<HeldStep> whole, probe;  // halved from one to the next; the latter to kProbeShare of it
+    double from = 0;                     // start within the period
+    std::vector<HeldStep> whole, probe;  // the latter up to kProbeShare of it
     bool arrived;                        // u_{k-d} drives the plant here; before it u_{k-d-1}
-    bool given;  // u_{k-o} is the output here, o the computation delay's whole samples; before it u_{k-o-1}
+    bool given;  // true: the output is u_{k-o}, o whole samples of the computation delay; false: u_{k-o-1}
 };
 
 class SampledRun {
@@ -133,7 +134,7 @@ void SampledRun::add_node(double t, const OutputMotion& now, double u) {
     largest_u_ = std::max(largest_u_, std::abs(u));
 }
 
-// Whole swings between a piece's ends and its middle are seen in neither.
+// True if whole oscillations may lie between a piece's ends and its midpoint, where the check would not notice them.
 bool SampledRun::swings(Piece& piece, int level, std::vector<double> x, const ResponseNode& left,
                         const OutputMotion& end, double v) {
     const double h = halved(piece.whole, level).h, s = kProbeShare, r = 1 - s;

@@ -11,10 +11,10 @@
 
 namespace tunewright::device {
 
-/// A controller with what its program adds; without `Ts` (0) it is the continuous law of the gains.
+/// A controller with its program's rules; with `Ts` = 0 it is the continuous law of the gains.
 using Law = SampledPid;
 
-/// C at omega of the law, by its sampled or its continuous formula.
+/// C at omega, by the law's sampled or continuous formula.
 std::complex<double> response_of(const Law& law, double omega);
 
 /// The frequencies at which the loop is evaluated: from far below to far above its corners, or up to pi/Ts.

@@ -72,7 +72,7 @@ double last_of(const Forbidden& f) {
 GainLimiter::GainLimiter(const LinearPlant& plant, const Law& law)
     : plant_(&plant), omega_(frequencies_of(plant, law)) {
     if (law.Ts > 0) held_.emplace(plant, law.Ts, law.computation_delay);
-    // Twice as dense as the first loop's own grid, which knows nothing of the loops to come.
+    // Twice as dense as the first loop's own grid, because it must also serve later loops.
     std::vector<double> dense;
     for (std::size_t i = 0; i < omega_.size(); ++i) {
         if (i > 0) dense.push_back(std::sqrt(omega_[i - 1] * omega_[i]));

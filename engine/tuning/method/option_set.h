@@ -163,8 +163,8 @@ private:
     std::vector<Binding> bindings_;
 };
 
-/// The members of `T` (default-constructed: every option left out) under their names. A member of type
-/// std::optional has no default of its own: its sentence says what is taken instead.
+/// The members of `T` under their names; a default-constructed `T` has no option set. A member of type std::optional
+/// has no default of its own: its description says what is used instead.
 template <class T>
 class OptionSet {
 public:
@@ -279,7 +279,7 @@ public:
         return *this;
     }
 
-    /// The option adds what a page draws.
+    /// The option adds data for plots of a page.
     OptionSet& draws(std::string_view name) {
         list_.described(name).draws = true;
         return *this;

@@ -55,13 +55,14 @@ struct OptionDescription : NumberRule {
     std::string unit = {};  ///< "", "time", "u/y", ...
     std::optional<OptionValue> default_value = {};
     std::vector<std::string> choices = {};       ///< words of a choice
-    std::vector<OptionDescription> fields = {};  ///< of an object; of a list: one
-    int at_most_fields = 0;                      ///< of an object: 0, any number may be given
-    bool required = false;                       ///< of an object's field
-    int max = 100;                               ///< of a list: elements, of numbers_by_name: names; at least one
-    bool main = false;             ///< decides what comes out: a form shows it at once, the others on request
+    std::vector<OptionDescription> fields = {};  ///< of an object; for a list one element
+    int at_most_fields = 0;                      ///< for an object: 0: no limit on the number of fields
+    bool required = false;                       ///< for an object's field
+    int max = 100;                               ///< for a list the number of elements, for numbers_by_name that of
+                                                 ///< names; at least one
+    bool main = false;                           ///< a main option: a form shows it at once, the others on request
     std::string in_place_of = {};  ///< another option, which follows from this one: they are not given together
-    bool draws = false;            ///< adds what a page draws to the report; a page asks for it by itself
+    bool draws = false;            ///< adds data for plots to the report; a page sets it by itself
     std::optional<OptionSlider> slider = {};  ///< of a number that makes sense to be moved
 };
 

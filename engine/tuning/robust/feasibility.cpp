@@ -21,8 +21,8 @@ constexpr double kPeakTolerance = 1e-5;                     // of ln M: a hundre
 constexpr double kLongestTi = 200, kShortestPeakTd = 1e-3;  // multiple of 1/(reference frequency)
 constexpr double kUnstableLogPeak = 20;                     // ln of the larger peak for an unstable loop
 
-/// ln of the larger of Ms and Mt, on the grid that the loop itself chooses: far from any limit a search's fixed grid
-/// may be left behind.
+/// ln of the larger of Ms and Mt, on a grid adapted to the loop, because far from any limit a search's fixed grid may
+/// not cover it.
 double larger_peak(const DesignProblem& problem, const DesignPoint& x) {
     double largest = 0;
     const bool stable = holds_on_every_loop(problem, to_parallel(controller_at(problem, x)), [&](const auto& loop) {

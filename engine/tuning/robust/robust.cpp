@@ -338,7 +338,7 @@ std::function<double(double)> filter_time(const TuningProblem& tuning, const Rob
     return {};
 }
 
-/// Of each region the plant inside on which the built loop exceeds a limit most, where it does.
+/// For each region, the plant inside on which the implemented loop exceeds a limit most, if it does.
 std::vector<LinearPlant> worst_on_device(const PlantFamily& family, const device::Law& law, const PeakLimits& limits,
                                          const RunControl& control) {
     const PlantCost excess = [&](const LinearPlant& plant) { return device::excess_on(plant, law, limits); };

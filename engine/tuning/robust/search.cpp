@@ -289,12 +289,12 @@ struct PlaneSearchConstants {
     int grid_rounds = 4;
     double grid_finer = 6;         ///< ratio of successive rounds: the next one covers two cells
     int max_tightening_steps = 4;  ///< Newton's, in ln Kp
-    double near_limit = -0.05;     ///< of a peak's logarithm: below it a peak does not end a gap
+    double near_limit = -0.05;     ///< ln of a peak: a lower peak does not end a gap
     double min_slope = 1e-3;       ///< of a peak over ln Kp: a flatter one is not moved by the gain
-    double aim_below = 1e-8;       ///< of a peak's logarithm: inside the limit
+    double aim_below = 1e-8;       ///< in ln of a peak: aims inside the limit
     double min_step = 1e-10;       ///< of ln Kp: changes nothing any more
-    double max_step = 0.1;         ///< of ln Kp: leaves the gap's end
-    double no_Td = 1e-300;         ///< in place of Td = 0, whose logarithm is not used
+    double max_step = 0.1;         ///< in ln Kp: a longer step leaves the gap's end
+    double no_Td = 1e-300;         ///< in place of Td = 0, because its logarithm does not exist
 };
 constexpr PlaneSearchConstants kPlane;
 

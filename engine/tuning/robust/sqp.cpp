@@ -20,10 +20,10 @@ using Matrix = SmallProgram::Matrix;
 /// `optimise::SqpConstants`. They were chosen during development on the AMIGO batch and random plants;
 /// `bench/robust_batch` measures the effect of a change on the time, `bench/robust_search` on the designs.
 struct DesignSqpConstants {
-    double near = -0.25;                                  ///< constraints below it cannot become active within a step
+    double near = -0.25;                                  ///< lower constraints cannot become active within a step
     double aim_below = 1e-7;                              ///< feasibility is aimed this far inside
     double feasible = limits::kMaxRelativeExcessStepped;  ///< and accepted with this much slack
-    std::size_t max_peaks = 8;                            ///< the largest ones, as constraints of a step
+    std::size_t max_peaks = 8;                            ///< largest peaks that are constraints of a step
     int max_restoring_steps = 12;         ///< Newton steps back to the feasible side; three or four are usual
     double near_of_restoring = -0.1;      ///< lower constraints do not limit a step back
     double restoring_radius = 0.5;        ///< the first trust region of a step back

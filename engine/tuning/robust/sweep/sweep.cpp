@@ -93,7 +93,7 @@ std::vector<double> frequencies(const DesignProblem& problem, const LinearPlant&
     return omega;
 }
 
-/// ln of the ratio at a frequency, from L and C.
+/// ln of the constraint's ratio at a frequency, from L and C.
 double constraint_value(ConstraintKind kind, Complex L, Complex C, const PeakLimits& limits, double centre,
                         double radius) {
     switch (kind) {

@@ -1,4 +1,5 @@
-// The plant of a request in the form in which it is computed with, made once from the request, with all its errors.
+// The plant of a request with what the methods need of it. Made once for each request; reports every error of the
+// plant.
 #pragma once
 
 #include <optional>

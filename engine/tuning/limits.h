@@ -21,13 +21,14 @@ inline constexpr double kDefaultMaxRankedMs = 2;
 
 // ---- largest relative excess over a limit that counts as holding it, from the tightest to the widest
 
-/// Step: a point of the search for one PID after Newton's steps back to its limits; they end within rounding of them.
+/// Step: the point of a search for one PID, after Newton's method has moved it back to its limits. That ends within
+/// rounding of them.
 inline constexpr double kMaxRelativeExcessStepped = 1e-8;
-/// Search: its end, on the frequencies that it knows. Far below what the next step tells apart, far above rounding.
+/// Search: the end of a search, on the search's own frequencies. Far below the next tolerance, far above rounding.
 inline constexpr double kMaxRelativeExcessSearched = 1e-6;
-/// Find: the end of a search, on frequencies that it never saw, before it is handed on; and the searches in the plane
-/// of Ti and Td, which look between their grid's points. Half of what the next step accepts, so that a design that is
-/// verified once more on other plants still holds.
+/// Find: the result of a search, on frequencies that the search did not use; and searches over Ti and Td, which
+/// evaluate the loop between the points of their grid. Half of the next tolerance, so that a design still holds when it
+/// is verified on other plants.
 inline constexpr double kMaxRelativeExcessFound = 1e-5;
 /// Verify: the returned design, on its own plants and on frequencies that the search did not use. The interpolated
 /// peaks of the search have a smaller error.

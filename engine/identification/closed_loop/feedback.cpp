@@ -120,7 +120,8 @@ struct Predictions {
 
 double rate(const Moves& m, int j) { return m.dt[j] > 0 ? m.du[j] / m.dt[j] : 0; }
 
-/// For uneven rows: a constant rate continues for the time of the row, and so does its change.
+/// Predictions of a move from the moves before it where the rows are unevenly spaced: `carried_on` at the last rate of
+/// u, `bent_on` at the last change of that rate.
 double carried_on(const Moves& m, int j) { return rate(m, j - 1) * m.dt[j]; }
 double bent_on(const Moves& m, int j) {
     const double apart = m.dt[j - 1] + m.dt[j - 2];

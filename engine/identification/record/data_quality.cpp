@@ -140,8 +140,8 @@ void describe_pretest(const CleanRecord& r, DataQuality& quality) {
     quality.y0 = r.scale.y_origin + r.scale.y_scale * r.y_rest.value_or(y_mean);
     if (n > 0 && n < kRestRows && r.changes() == 1 && !r.u0_given)
         quality.notes.push_back("Only " + counted(n, "row") +
-                                " before the step of u, which cannot show whether the plant is at rest; rest is "
-                                "assumed. Give u0 if it is not at rest.");
+                                " before the step of u: too few to show whether the plant is at rest. Rest is assumed; "
+                                "if it is not at rest, give u0.");
     if (n < 2 || t.back() <= t.front() || at_work) return;
     const double duration = t.back() - t.front();
     // Two samples determine a line but not its error.
@@ -305,7 +305,7 @@ std::vector<Warning> record_warnings(const CleanRecord& r, const DataQuality& qu
     if (r.samples() < kMinSamples)
         warnings.push_back(
             {"few-samples", "The record has only " + std::to_string(r.samples()) +
-                                " samples, so every error of a sample affects the model. Record faster."});
+                                " samples: an error in any one of them changes the model. Use a shorter sample time."});
     if (look_swapped(r))
         warnings.push_back({"columns-look-swapped",
                             "y stays on a few levels while u moves from sample to sample: u and y look exchanged. Set "

@@ -12,9 +12,10 @@
 namespace tunewright::range {
 namespace {
 
-constexpr double kStepsLogMargin = 3e-5;  // of ln of a limit: aimed at, so that points between keep it as well
-constexpr int kMaxStepsRounds = 4;        // of tightening
-constexpr int kMinPointsOfPart = 3;       // points of each part's search at least, ends included
+constexpr double kStepsLogMargin = 3e-5;  // margin to ln of a limit, so that operating points in between also keep the
+                                          // limit
+constexpr int kMaxStepsRounds = 4;        // each with tighter limits
+constexpr int kMinPointsOfPart = 3;       // operating points in each part of the schedule, ends included
 
 class StepsDesign {
 public:

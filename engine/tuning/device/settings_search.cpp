@@ -26,7 +26,8 @@ constexpr double kTolerance = 1e-6;      // of ln IAE
 constexpr int kMaxEvaluationsNear = 50;  // these two for a start that is near the optimum
 constexpr double kNearTolerance = 1e-4;
 constexpr int kMaxCorrections = 6;
-// Of M - 1: if limits bound the gain from both sides, the final grid may leave no gain; then the next margin is tried.
+// Relative to M - 1. If limits bound the gain from both sides, the final grid may show no gain that holds them; the
+// search is then repeated with the next margin.
 constexpr double kMargins[] = {1e-5, 1e-4, 1e-3};
 constexpr double kLowerGains[] = {0.95, 0.85, 0.7};  // tried because a loop at its limits may oscillate, so that a
                                                      // lower gain costs less

@@ -46,10 +46,10 @@ constexpr FastSearchConstants k;
 struct ScanBoxes {
     /// A PI on two slow lags, or on one and an integrator, is much slower than a PID would be.
     ScanBox slow = {.Ti_low = 60, .Ti_high = 1000};
-    /// The usual box with a finer spacing, because the feasible set may be smaller than the usual spacing.
+    /// The usual region with a finer spacing, for a feasible set that is smaller than the usual spacing.
     ScanBox close = {.Ti_points = 27, .Td_points = 21};
-    /// Region of the local minima of a resonant plant. As well as at ordinary designs its optimum may be at integral
-    /// action alone, with a filter that removes the resonance: short Ti, long Td.
+    /// Local minima of a resonant plant. Its optimum may be an ordinary design, or integral action alone with a filter
+    /// that removes the resonance: short Ti, long Td.
     ScanBox wide = {.Ti_points = 9, .Td_points = 8, .Ti_low = 0.01, .Ti_high = 60, .Td_low = 0.02, .Td_high = 60};
     /// Nearly pure integral action, for which Td only sets the filter.
     ScanBox integral = {.Ti_points = 1, .Td_points = 8, .Ti_low = 1e-4, .Ti_high = 1e-4, .Td_low = 1, .Td_high = 250};

@@ -59,14 +59,14 @@ Html figure_table(const char* caption, const FigureRow (&rows)[n], const std::st
     Row heads = {"", "Proposal"};
     std::vector<JsonLocation> columns = {places(s.entry)};
     if (s.entry.at("implemented").exists()) {
-        heads.push_back("As built");
+        heads.push_back("Implemented");
         columns.push_back(places(s.entry.at("implemented")));
     }
     if (s.today) {
         heads.push_back("Today");
         columns.push_back(places(*s.today));
         if (s.today->at("implemented").exists()) {
-            heads.push_back("Today, as built");
+            heads.push_back("Today, implemented");
             columns.push_back(places(s.today->at("implemented")));
         }
     }

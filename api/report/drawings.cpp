@@ -20,7 +20,7 @@ struct Source {
 std::vector<Source> sources_of(const ReportInput& s) {
     std::vector<Source> out = {{"Proposal", Line::proposal, s.entry}};
     if (s.entry.at("implemented").at("responses").exists())
-        out.push_back({"As built", Line::built, s.entry.at("implemented")});
+        out.push_back({"Implemented", Line::built, s.entry.at("implemented")});
     if (s.today) out.push_back({"Today", Line::today, *s.today});
     return out;
 }

@@ -1155,6 +1155,10 @@ export type components = {
       linear_model?: components["schemas"]["Plant"];
       controllers: components["schemas"]["Entry"][];
       verdict: components["schemas"]["Finding"][];
+      rank_limits?: {
+        Ms: number;
+      };
+      proposed?: number;
     };
     IdentifyRequest: {
       name?: string;

@@ -117,13 +117,13 @@ std::optional<double> limit(const Json& entry, const std::string& name) {
     return value && *value > (name == "Mks" ? 0 : 1) ? value : std::nullopt;
 }
 
-struct Words {
+struct ClaimWords {
     const char* text;
     double low, high;
 };
 
 /// The tolerance of words for a ratio.
-constexpr Words kWords[] = {
+constexpr ClaimWords kWords[] = {
     {"about a tenth of", 0.085, 0.115},      {"about a fifth of", 0.17, 0.23},  {"about a quarter of", 0.21, 0.29},
     {"about a third of", 0.29, 0.38},        {"about half of", 0.45, 0.55},     {"about two thirds of", 0.62, 0.71},
     {"about three quarters of", 0.71, 0.79}, {"about the same as", 0.86, 1.16}, {"about twice", 1.88, 2.12},
@@ -138,7 +138,7 @@ void check_against_today(const Json& entry, const Json& today, const Json& findi
         faults.push_back("today's stability: " + text);
     if (unstable || !before || *before <= 0) return;
     const double ratio = *IAE / *before;
-    for (const Words& words : kWords)
+    for (const ClaimWords& words : kWords)
         if (text.find(words.text) != text.npos && !(ratio >= words.low && ratio <= words.high))
             faults.push_back("a ratio of " + std::to_string(ratio) + " is called " + words.text);
     if (at(finding, "/figures/ratio") && std::abs(*at(finding, "/figures/ratio") / ratio - 1) > 1e-9)

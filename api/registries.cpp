@@ -128,8 +128,9 @@ Answer controller_settings_call(std::string_view id, std::string_view body) {
     auto converted = product::to_settings(*product, *pid, request.context, request.nearest);
     if (!converted) return refusal(to_problem(converted.error()));
     Writer out;
-    settings_answer_contract().write(
-        {product, converted->settings, converted->settings, converted->realised, std::move(converted->notes)}, out);
+    settings_answer_contract().write({product, converted->settings, converted->settings, converted->realised,
+                                      std::move(converted->notes), request.context},
+                                     out);
     return {200, out.take()};
 }
 

@@ -1,6 +1,7 @@
 #include "api/contract/product/conversion.h"
 
 #include "api/contract/controller.h"
+#include "engine/controller/product/snippet.h"
 
 namespace tunewright::api {
 namespace {
@@ -51,6 +52,28 @@ void write_notes(const std::vector<product::Note>& notes, Writer& out) {
         out.key("code").text(note.code);
         out.key("detail").text(note.detail);
         out.key("deviation").boolean(product::tells_deviation(note));
+        out.end_object();
+    }
+    out.end_array();
+}
+
+Json snippets_schema(SchemaBook&) {
+    return {{"type", "array"},
+            {"items",
+             {{"type", "object"},
+              {"properties",
+               {{"name", {{"type", "string"}, {"description", "Language or file, and the place in it."}}},
+                {"text", {{"type", "string"}, {"description", "Lines to paste."}}}}},
+              {"required", {"name", "text"}},
+              {"additionalProperties", false}}}};
+}
+
+void write_snippets(const SettingsAnswer& answer, Writer& out) {
+    out.begin_array();
+    for (const auto& snippet : product::filled_snippets(*answer.product, answer.typed, answer.context)) {
+        out.begin_object();
+        out.key("name").text(snippet.name);
+        out.key("text").text(snippet.text);
         out.end_object();
     }
     out.end_array();
@@ -111,6 +134,10 @@ const Description<SettingsAnswer>& settings_answer_contract() {
                     out.end_object();
                 },
                 texts_by_name, "As typed, in the product's resolution.")
+            .field("snippets", {}, write_snippets, snippets_schema,
+                   "Text to paste into the user's program or file, with the settings as typed. Left out if the product "
+                   "is not set by text.",
+                   {}, [](const Answer& a) { return a.product->snippets.empty(); })
             .field(
                 "realised", {},
                 [](const Answer& a, Writer& out) { controller_contract().write(Controller(a.realised), out); },
@@ -183,8 +210,12 @@ const Description<ScheduleSettingsAnswer>& schedule_settings_answer_contract() {
                  out.begin_array();
                  for (const product::RowSettings& row : a.schedule.rows)
                      answered_row_contract().write({row.at,
-                                                    {a.product, row.converted.settings, row.converted.settings,
-                                                     row.converted.realised, row.converted.notes}},
+                                                    {a.product,
+                                                     row.converted.settings,
+                                                     row.converted.settings,
+                                                     row.converted.realised,
+                                                     row.converted.notes,
+                                                     {}}},
                                                    out);
                  out.end_array();
              },

@@ -33,6 +33,7 @@ struct SettingsAnswer {
     product::Settings typed;     ///< as they are typed
     IdealPid realised;
     std::vector<product::Note> notes;
+    product::Context context;
 };
 const Description<SettingsAnswer>& settings_answer_contract();
 

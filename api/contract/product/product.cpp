@@ -313,6 +313,8 @@ void add_head(AnswerDescription<Product>& a) {
             "maker", [](const Product& p) { return p.maker; }, "The maker.")
         .text(
             "name", [](const Product& p) { return p.name; }, "The block, library or firmware.")
+        .texts(
+            "families", [](const Product& p) { return p.families; }, "Other names under which users know it.")
         .text(
             "form", [](const Product& p) { return product::to_string(p.form); }, "ideal, parallel, series or p_only.")
         .texts(

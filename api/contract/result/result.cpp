@@ -207,7 +207,8 @@ void add_device_entry(Description<TuningEntry>& d) {
             "as_entered", {},
             [](const TuningEntry& entry, Writer& out) {
                 const device::Fitted& f = entry.on_device->fitted;
-                settings_answer_contract().write({f.product, f.settings, f.typed, f.controller, f.notes}, out);
+                settings_answer_contract().write({f.product, f.settings, f.typed, f.controller, f.notes, f.context},
+                                                 out);
             },
             [](SchemaBook& book) { return settings_answer_contract().schema(book); },
             "With implement.product: the settings to type into the product.", {},

@@ -182,8 +182,20 @@ struct GainScheduling {
     std::string_view source = "";
 };
 
+/// Text to paste into a program or a configuration file. In `text`:
+///   {name}            the setting as it is typed
+///   {name|other}      `other` if there is no such setting
+///   {name=value:A/B}  A if the setting is typed as `value`, else B
+///   {sample_time_s}   also _ms and _us: the block's period
+/// A line with a setting or a period that does not exist is left out.
+struct Snippet {
+    std::string_view name = "";  ///< language or file, and the place in it
+    std::string_view text = "";
+};
+
 struct Product {
     std::string_view id = "", maker = "", name = "";
+    std::vector<std::string_view> families = {};  ///< names under which users know the maker's controllers
     Form form = Form::ideal;
     std::string_view law = "";  ///< formula over the parameters' names
     std::string_view gain_basis = "";
@@ -199,6 +211,7 @@ struct Product {
     Evidence evidence = {};
     Example example = {};
     std::optional<GainScheduling> scheduling = {};  ///< none: unknown
+    std::vector<Snippet> snippets = {};
 };
 
 /// True if a choice of the product decides whether this parameter has an effect.

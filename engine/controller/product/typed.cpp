@@ -72,6 +72,7 @@ std::string fixed_text(double value, int decimals) {
 
 // Digits before the point count too, so that 1234.567 keeps its two decimals and 0.0083333 has six.
 std::string floating_text(double value) {
+    value += 0.0;  // -0 would be typed as "-0.00"
     if (!std::isfinite(value) || std::abs(value) >= 1e15) return text(value, kSignificantDigits);
     int decimals = kMinDecimals;
     if (value != 0) {

@@ -74,6 +74,7 @@ Expected<Fitted> fit(const DeviceModel& device, const product::Settings& typed) 
     const product::Product& product = *device.product;
     Fitted fitted;
     fitted.product = device.product;
+    fitted.context = device.context;
     fitted.settings = fitted.typed = typed;
     write_texts(product, fitted);
     const auto twin = product::to_controller(product, fitted.typed, device.context, fitted.notes);
@@ -89,7 +90,7 @@ Expected<Fitted> fit(const DeviceModel& device, const product::Settings& typed) 
 }
 
 Expected<Fitted> fit(const DeviceModel& device, const IdealPid& pid, bool nearest) {
-    if (device.product == nullptr) return Fitted{nullptr, pid, program_of(device, pid), {}, {}, {}, {}};
+    if (device.product == nullptr) return Fitted{.controller = pid, .law = program_of(device, pid)};
     auto converted = product::to_settings(*device.product, pid, device.context, nearest);
     if (!converted) return converted.error();
     auto fitted = fit(device, product::as_typed(*device.product, converted->settings));

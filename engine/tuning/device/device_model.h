@@ -32,12 +32,13 @@ struct DeviceModel {
 /// A controller with its settings as entered.
 struct Fitted {
     const product::Product* product = nullptr;
-    IdealPid controller;         ///< the exact ideal equivalent of these settings
-    Law law;                     ///< the law that it computes
-    product::Settings settings;  ///< in full precision, before rounding; empty without a product
-    product::Settings typed;     ///< the values of the texts
-    std::vector<std::string> texts;
-    std::vector<product::Note> notes;
+    product::Context context = {};    ///< of the conversion
+    IdealPid controller = {};         ///< the exact ideal equivalent of these settings
+    Law law = {};                     ///< the law that it computes
+    product::Settings settings = {};  ///< in full precision, before rounding; empty without a product
+    product::Settings typed = {};     ///< the values of the texts
+    std::vector<std::string> texts = {};
+    std::vector<product::Note> notes = {};
 };
 
 /// Converts and rounds, without a search. Errors: those of product::to_settings.

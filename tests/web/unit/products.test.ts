@@ -98,6 +98,7 @@ const PRODUCT: Product = {
   id: "acme",
   maker: "Acme",
   name: "PID",
+  families: ["Acme Plant"],
   form: "ideal",
   needs: [],
   law: "u = Kp e",

@@ -5,16 +5,17 @@ import { DASH, formatNumber, formatParameter, formatPercent } from "./numbers.ts
 /** Lower case, without the signs that separate words in names. */
 const plain = (text: string): string => text.toLowerCase().replaceAll(/[^a-z0-9]+/g, " ");
 
-/** Products with every typed word in maker, name, id or parameters; first those whose name begins with it, then by
+/** Products with every typed word in maker, name, family, id or parameters; first those whose name begins with it, then by
     maker. */
 export function findProducts(products: readonly ProductSummary[], typed: string): ProductSummary[] {
   const wanted = plain(typed).split(" ").filter(Boolean);
   const ranked = products.flatMap((product) => {
     const name = plain(`${product.maker} ${product.name}`);
-    const all = `${name} ${plain(product.id)} ${plain(product.parameters.join(" "))}`;
+    const families = plain(product.families.join(" "));
+    const all = `${name} ${families} ${plain(product.id)} ${plain(product.parameters.join(" "))}`;
     if (!wanted.every((word) => all.includes(word))) return [];
     const inName = wanted.every((word) => ` ${name}`.includes(` ${word}`));
-    return [{ product, rank: inName ? 0 : wanted.every((word) => name.includes(word)) ? 1 : 2 }];
+    return [{ product, rank: inName ? 0 : wanted.every((word) => `${name} ${families}`.includes(word)) ? 1 : 2 }];
   });
   const order = (a: ProductSummary, b: ProductSummary): number =>
     a.maker.localeCompare(b.maker) || a.name.localeCompare(b.name);

@@ -33,6 +33,7 @@ Product pid_v1() {
         .id = "arduino_pid_v1",
         .maker = "Brett Beauregard",
         .name = "Arduino PID_v1 1.2.1",
+        .families = {"Arduino", "ESP32", "ESP8266"},
         .form = Form::parallel,
         .law = "counts = Kp (b r - y) + (Ki/s) (r - y) - Kd s y",
         .gain_basis = "counts of the output (0 to 255 by default) per unit of the measurement",
@@ -63,6 +64,11 @@ Product pid_v1() {
                      .unverified = {"the release that corresponds to that revision"},
                      .sources = {"br3ttb/Arduino-PID-Library PID_v1.cpp"}},
         .example = of_design_a({{"Kp", 3.825}, {"Ki", 0.031875}, {"Kd", 76.5}, {"POn", std::string("P_ON_E")}}),
+        .snippets = {{"Sketch",
+                      "PID myPID(&Input, &Output, &Setpoint, {Kp}, {Ki}, {Kd}, {POn}, {ControllerDirection|DIRECT});\n"
+                      "// in setup(), in this order:\n"
+                      "myPID.SetSampleTime({sample_time_ms});\n"
+                      "myPID.SetTunings({Kp}, {Ki}, {Kd}, {POn});"}},
     };
 }
 
@@ -71,6 +77,7 @@ Product quickpid() {
         .id = "quickpid",
         .maker = "dlloydev",
         .name = "QuickPID 3.1.5",
+        .families = {"Arduino", "ESP32"},
         .form = Form::parallel,
         .law = "counts = Kp (b r - y) + (Ki/s) (r - y) + Kd s (c r - y)",
         .gain_basis = "counts of the output per unit of the measurement",
@@ -108,6 +115,12 @@ Product quickpid() {
                                 {"Kd", 76.5},
                                 {"pMode", std::string("pOnErrorMeas")},
                                 {"dMode", std::string("dOnMeas")}}),
+        .snippets = {{"Sketch",
+                      "QuickPID myPID(&Input, &Output, &Setpoint, {Kp}, {Ki}, {Kd}, QuickPID::pMode::{pMode},\n"
+                      "               QuickPID::dMode::{dMode}, QuickPID::iAwMode::iAwClamp,\n"
+                      "               QuickPID::Action::{ControllerDirection=REVERSE:reverse/direct});\n"
+                      "// in setup():\n"
+                      "myPID.SetSampleTimeUs({sample_time_us});"}},
     };
 }
 

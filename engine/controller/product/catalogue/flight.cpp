@@ -30,6 +30,7 @@ Product ardupilot() {
         .id = "ardupilot_ac_pid",
         .maker = "ArduPilot",
         .name = "AC_PID",
+        .families = {"ArduCopter", "Pixhawk"},
         .form = Form::parallel,
         .law = "out = P e + (I/s) e + (D s/(Tf s + 1)) e, Tf = 1/(2 pi FLTD)",
         .gain_basis = "normalised output per rad/s",
@@ -69,6 +70,13 @@ Product ardupilot() {
              .u_span = 1,
              .sample_time_s = 0.0025,
              .settings = {{"P", 0.135}, {"I", 0.135}, {"D", 0.0036045}, {"FLTD", 20.0}, {"FLTE", 0.0}, {"FLTT", 0.0}}},
+        .snippets = {{"Parameter file, for roll",
+                      "ATC_RAT_RLL_P,{P}\n"
+                      "ATC_RAT_RLL_I,{I}\n"
+                      "ATC_RAT_RLL_D,{D}\n"
+                      "ATC_RAT_RLL_FLTD,{FLTD}\n"
+                      "ATC_RAT_RLL_FLTE,{FLTE}\n"
+                      "ATC_RAT_RLL_FLTT,{FLTT}"}},
     };
 }
 
@@ -77,6 +85,7 @@ Product px4() {
         .id = "px4_rate",
         .maker = "PX4",
         .name = "Rate control (MC_*RATE_*)",
+        .families = {"Pixhawk", "PX4"},
         .form = Form::parallel,
         .law = "out = K [ P e + (I/s) e - D s y ] + FF r, e = r - y",
         .gain_basis = "normalised torque per rad/s",
@@ -112,6 +121,13 @@ Product px4() {
                     .u_span = 1,
                     .sample_time_s = 0.0025,
                     .settings = {{"K", 0.135}, {"P", 1.0}, {"I", 1.0}, {"D", 0.0267}, {"FF", 0.0}}},
+        .snippets = {{"Console, for roll",
+                      "param set MC_ROLLRATE_K {K}\n"
+                      "param set MC_ROLLRATE_P {P}\n"
+                      "param set MC_ROLLRATE_I {I}\n"
+                      "param set MC_ROLLRATE_D {D}\n"
+                      "param set MC_ROLLRATE_FF {FF}\n"
+                      "param save"}},
     };
 }
 
@@ -131,6 +147,7 @@ Product betaflight() {
         .id = "betaflight",
         .maker = "Betaflight",
         .name = "Rate PID",
+        .families = {"FPV", "INAV"},
         .form = Form::parallel,
         .law = "sum = 0.032029 P e + (0.244381 I/s) e - (0.000529 D s/(Tf s + 1)) y, Tf = 1/(2 pi dterm_lpf1)",
         .gain_basis = "sum of the PID (limit 500, mixed by 1/1000) per deg/s",
@@ -168,6 +185,12 @@ Product betaflight() {
                     .u_span = 1,
                     .sample_time_s = 0.00025,
                     .settings = {{"P", 50.0}, {"I", 82.0}, {"D", 42.0}, {"dterm_lpf1_hz", 90.0}}},
+        .snippets = {{"CLI, for roll",
+                      "set p_roll = {P}\n"
+                      "set i_roll = {I}\n"
+                      "set d_roll = {D}\n"
+                      "set dterm_lpf1_static_hz = {dterm_lpf1_hz}\n"
+                      "save"}},
     };
 }
 

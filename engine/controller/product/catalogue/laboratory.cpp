@@ -9,6 +9,7 @@ Product labview() {
         .id = "labview_pid",
         .maker = "NI",
         .name = "LabVIEW PID / LabWindows PID toolkit",
+        .families = {"NI", "National Instruments"},
         .form = Form::ideal,
         .law = "u = Kc [ (beta SP - PV) + (1/(Ti s)) (SP - PV) + Td s (gamma SP - PV) ]",
         .gain_basis = "engineering units; 100/PB where both ranges are in percent",
@@ -83,6 +84,7 @@ Product epics() {
         .id = "epics_epid",
         .maker = "EPICS",
         .name = "epid record (std module, soft)",
+        .families = {"EPICS", "IOC"},
         .form = Form::ideal,
         .law = "OVAL = KP [ e + (KI/s) e + KD s e ], e = VAL - CVAL",
         .gain_basis = "engineering units",
@@ -125,6 +127,10 @@ Product epics() {
                      .unverified = {"wording of the record's manual"},
                      .sources = {"epics-modules/std stdApp/src/devEpidSoft.c"}},
         .example = of_design_a({{"KP", 1.5}, {"KI", 0.00833333}, {"KD", 20.0}}),
+        .snippets = {{"IOC shell, for the record loop",
+                      "dbpf loop.KP {KP}\n"
+                      "dbpf loop.KI {KI}\n"
+                      "dbpf loop.KD {KD}"}},
     };
 }
 

@@ -9,6 +9,7 @@ Product simple_pid() {
         .id = "simple_pid",
         .maker = "m-lundberg",
         .name = "simple-pid (Python)",
+        .families = {"Raspberry Pi", "MicroPython"},
         .form = Form::parallel,
         .law = "u = Kp (b r - y) + (Ki/s) (r - y) + Kd s (c r - y)",
         .gain_basis = "engineering units",
@@ -46,6 +47,12 @@ Product simple_pid() {
                                 {"Kd", 30.0},
                                 {"proportional_on_measurement", false},
                                 {"differential_on_measurement", true}}),
+        .snippets = {{"Python",
+                      "from simple_pid import PID\n"
+                      "\n"
+                      "pid = PID({Kp}, {Ki}, {Kd}, setpoint=0, sample_time={sample_time_s})\n"
+                      "pid.proportional_on_measurement = {proportional_on_measurement=true:True/False}\n"
+                      "pid.differential_on_measurement = {differential_on_measurement=false:False/True}"}},
     };
 }
 
@@ -126,6 +133,11 @@ Product control_systems() {
                                 {"form", std::string(":standard")},
                                 {"Tf", 2.0},
                                 {"filter_order", 1.0}}),
+        .snippets =
+            {{"Julia",
+              "using ControlSystemsBase\n"
+              "\n"
+              "C = pid({param_p}, {param_i}, {param_d}; form = {form}, Tf = {Tf}, filter_order = {filter_order})"}},
     };
 }
 
@@ -205,6 +217,11 @@ Product discrete_pids() {
                                 {"wd", 0.0},
                                 {"Tt", 48.9898},
                                 {"Ts", 0.25}}),
+        .snippets = {{"Julia",
+                      "using DiscretePIDs\n"
+                      "\n"
+                      "controller = DiscretePID(; K = {K}, Ti = {Ti}, Td = {Td}, N = {N}, wp = {wp}, wd = {wd}, Tt = "
+                      "{Tt}, Ts = {Ts})"}},
     };
 }
 
@@ -255,6 +272,14 @@ Product ros() {
                                  "control.ros.org and docs.ros.org, class Pid"}},
         .example = of_design_a(
             {{"p", 1.5}, {"i", 0.0125}, {"d", 30.0}, {"i_clamp", 100.0}, {"error_dot", std::string("of the error")}}),
+        .snippets = {{"YAML, in the parameters of pid_controller",
+                      "gains:\n"
+                      "  joint:\n"
+                      "    p: {p}\n"
+                      "    i: {i}\n"
+                      "    d: {d}\n"
+                      "    i_clamp_max: {i_clamp}\n"
+                      "    i_clamp_min: -{i_clamp}"}},
     };
 }
 

@@ -58,6 +58,7 @@ Product pidstd() {
                      .read = {"formula", "default integrator formulas"},
                      .sources = {"mathworks.com control/ref/pidstd, pidstddata"}},
         .example = of_design_a({{"Kp", 1.5}, {"Ti", 120.0}, {"Td", 20.0}, {"N", 10.0}}),
+        .snippets = {{"MATLAB", "C = pidstd({Kp}, {Ti}, {Td}, {N|Inf});"}},
     };
 }
 
@@ -82,6 +83,7 @@ Product pid() {
                      .read = {"formula, defaults", "Tf > Ts/2"},
                      .sources = {"mathworks.com control/ref/pid"}},
         .example = of_design_a({{"Kp", 1.5}, {"Ki", 0.0125}, {"Kd", 30.0}, {"Tf", 2.0}}),
+        .snippets = {{"MATLAB", "C = pid({Kp}, {Ki}, {Kd}, {Tf|0});"}},
     };
 }
 
@@ -161,6 +163,10 @@ Product block_parallel() {
             {},
             "The PID Gain Scheduler block reads P, I and D from tables over the scheduling variable, linear between "
             "the breakpoints; the PID block takes them as external inputs."),
+        .snippets = {{"MATLAB, for the block in variable block",
+                      "set_param(block, 'Controller', 'PID', 'Form', '{Form}', 'P', '{P}', 'I', '{I}', 'D', '{D}', "
+                      "'N', '{N}');\n"
+                      "set_param(block, 'b', '{b}', 'c', '{c}');"}},
     };
 }
 
@@ -197,6 +203,9 @@ Product block_ideal() {
             Interpolation::linear_in_gains,
             "The PID Gain Scheduler block reads P, I and D from tables over the scheduling variable, linear between "
             "the breakpoints; I is 1/Ti here. The PID block takes them as external inputs."),
+        .snippets = {{"MATLAB, for the block in variable block",
+                      "set_param(block, 'Controller', 'PID', 'Form', '{Form}', 'P', '{P}', 'I', '{I}', 'D', '{D}', "
+                      "'N', '{N}');"}},
     };
 }
 

@@ -41,6 +41,7 @@ Product marlin() {
         .id = "marlin",
         .maker = "Marlin",
         .name = "Marlin hotend and bed PID (M301, M304)",
+        .families = {"Ender", "Prusa", "Creality"},
         .form = Form::parallel,
         .law = "pwm = P e + (I/s) e - (D s/(Tf s + 1)) y, Tf = dt PID_K1/(1 - PID_K1), pwm from 0 to 255",
         .gain_basis = "counts of 255 per degree",
@@ -71,6 +72,12 @@ Product marlin() {
                      .sources = {"MarlinFirmware/Marlin Marlin/src/module/temperature.h",
                                  "configurations with PID_K1 0.95 (several public copies)"}},
         .example = of_design_a({{"P", 3.825}, {"I", 0.031875}, {"D", 76.5}, {"PID_K1", 0.9243}}),
+        .snippets = {{"G-code for the hotend",
+                      "M301 P{P} I{I} D{D}\n"
+                      "M500"},
+                     {"G-code for the bed",
+                      "M304 P{P} I{I} D{D}\n"
+                      "M500"}},
     };
 }
 
@@ -79,6 +86,7 @@ Product klipper() {
         .id = "klipper",
         .maker = "Klipper",
         .name = "Klipper heater (control: pid)",
+        .families = {"Voron", "Mainsail", "Fluidd", "OctoPrint"},
         .form = Form::parallel,
         .law = "duty = [ pid_Kp e + (pid_Ki/s) e - (pid_Kd s/(Tf s + 1)) y ]/255, Tf = smooth_time - dt",
         .gain_basis = "1/255 of full power per degree",
@@ -110,6 +118,12 @@ Product klipper() {
                      .sources = {"Klipper3d/klipper klippy/extras/heaters.py at 84104bbb (2026-08)",
                                  "docs/Config_Reference.md"}},
         .example = of_design_a({{"pid_Kp", 3.825}, {"pid_Ki", 0.031875}, {"pid_Kd", 76.5}, {"smooth_time", 2.3}}),
+        .snippets = {{"printer.cfg, in [extruder] or [heater_bed] instead of the lines of these names",
+                      "control: pid\n"
+                      "pid_Kp: {pid_Kp}\n"
+                      "pid_Ki: {pid_Ki}\n"
+                      "pid_Kd: {pid_Kd}\n"
+                      "smooth_time: {smooth_time}"}},
     };
 }
 
@@ -119,6 +133,7 @@ Product reprapfirmware() {
         .id = "reprapfirmware",
         .maker = "Duet3D",
         .name = "RepRapFirmware 3 (M301)",
+        .families = {"Duet 2", "Duet 3"},
         .form = Form::parallel,
         .law = "duty = [ P e + (I/s) e - D (slope of y over four samples) ]/255",
         .gain_basis = "1/255 of full power per degree",
@@ -146,6 +161,7 @@ Product reprapfirmware() {
                      .unverified = {"constant of 250 ms"},
                      .sources = {"Duet3D/RepRapFirmware src/Heating/FOPDT.cpp, LocalHeater.cpp, LocalHeater.h"}},
         .example = of_design_a({{"P", 3.825}, {"I", 0.031875}, {"D", 76.5}}),
+        .snippets = {{"config.g, for heater 1", "M301 H1 P{P} I{I} D{D}"}},
     };
 }
 

@@ -4,6 +4,11 @@
 namespace tunewright::product {
 namespace {
 
+/// The controllers that run Logix 5000.
+std::vector<std::string_view> logix_families() {
+    return {"ControlLogix", "CompactLogix", "GuardLogix", "Studio 5000", "RSLogix 5000", "Allen-Bradley"};
+}
+
 constexpr std::string_view kSmoothing = "None; the time constant of the optional smoothing was not found.";
 
 Parameter gain(std::string_view name, std::string_view label, std::string_view unit) {
@@ -21,6 +26,7 @@ Parameter action_of(std::string_view name, std::string_view label, std::string_v
 Product logix_pid() {
     return {
         .maker = "Rockwell",
+        .families = logix_families(),
         .gain_basis = "percent of span",
         .filter = {FilterKind::none, 0, kSmoothing},
         .weights = {1, 0, "P acts on the error; D acts on the measurement (.DOE 0) or the error (.DOE 1)."},
@@ -39,6 +45,10 @@ Product logix_pid() {
                      .unverified = {"constant of the smoothing", "discrete rule", "meaning of 0 in .KI when dependent"},
                      .sources = {"1756-RM003N p. 519", "Studio 5000 Logix Designer 37 help, specifying tuning",
                                  "FactoryTalk Design Studio help, PID instructions"}},
+        .snippets = {{"Structured text, for the tag Loop",
+                      "Loop.KP := {KP};\n"
+                      "Loop.KI := {KI};\n"
+                      "Loop.KD := {KD};"}},
     };
 }
 
@@ -89,6 +99,7 @@ Product slc() {
         .id = "rockwell_slc_pid",
         .maker = "Rockwell",
         .name = "SLC 500 / MicroLogix PID (integer words, RG 1)",
+        .families = {"SLC 500", "MicroLogix", "RSLogix 500", "Allen-Bradley"},
         .form = Form::ideal,
         .law = "CV = (KC/100) [ e + (1/(0.6 TI s)) e - 0.6 TD s PV ], e = SP - PV",
         .gain_basis = "percent of span",
@@ -146,6 +157,7 @@ Product slc() {
 Product pide() {
     return {
         .maker = "Rockwell",
+        .families = logix_families(),
         .gain_basis = "percent of span (PVEUMin..PVEUMax, CVEUMin..CVEUMax)",
         .filter = {FilterKind::none, 0, "None; the time constant of the option DSmoothing was not found."},
         .weights = {1, 0, "PVEProportional removes the set point from P, PVEDerivative from D."},
@@ -165,6 +177,14 @@ Product pide() {
                      .unverified = {"printed difference equation", "constant of DSmoothing",
                                     "default of the form's selector"},
                      .sources = {"1756-RM006K pp. 71, 80, 81"}},
+        .snippets = {{"Structured text, for the tag Loop",
+                      "Loop.PGain := {PGain};\n"
+                      "Loop.IGain := {IGain};\n"
+                      "Loop.DGain := {DGain};\n"
+                      "Loop.DependIndepend := {DependIndepend=true:1/0};\n"
+                      "Loop.PVEProportional := {PVEProportional=true:1/0};\n"
+                      "Loop.PVEDerivative := {PVEDerivative=true:1/0};\n"
+                      "Loop.ControlAction := {ControlAction=true:1/0};"}},
     };
 }
 

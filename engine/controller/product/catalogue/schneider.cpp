@@ -55,6 +55,7 @@ Parameter derivative_of() {
 Product pidff() {
     return {
         .maker = "Schneider",
+        .families = {"Modicon M340", "M580", "Quantum", "Unity Pro", "Control Expert"},
         .filter = {FilterKind::parameter, 0, "First order, td/kd (assumed: the printed function is a picture)."},
         .weights = {1, 0, "b is 1 - ovs_att, and pv_dev chooses the input of the derivative."},
         .action = {.kind = Action::Kind::switched,

@@ -9,6 +9,7 @@ Product pid_compact() {
         .id = "siemens_pid_compact",
         .maker = "Siemens",
         .name = "PID_Compact (S7-1200/1500)",
+        .families = {"S7-1200", "S7-1500", "TIA Portal", "TIA"},
         .form = Form::ideal,
         .law =
             "y = Gain [ (PWeighting w - x) + (1/(Ti s)) (w - x) + (Td s/(TdFiltRatio Td s + 1)) (DWeighting w - x) ]",
@@ -84,6 +85,13 @@ Product pid_compact() {
                                 {"TdFiltRatio", 0.1},
                                 {"PWeighting", 0.6},
                                 {"DWeighting", 0.0}}),
+        .snippets = {{"SCL, for the instance PID_Compact_1",
+                      "\"PID_Compact_1\".Retain.CtrlParams.Gain := {Gain};\n"
+                      "\"PID_Compact_1\".Retain.CtrlParams.Ti := {Ti};\n"
+                      "\"PID_Compact_1\".Retain.CtrlParams.Td := {Td};\n"
+                      "\"PID_Compact_1\".Retain.CtrlParams.TdFiltRatio := {TdFiltRatio};\n"
+                      "\"PID_Compact_1\".Retain.CtrlParams.PWeighting := {PWeighting};\n"
+                      "\"PID_Compact_1\".Retain.CtrlParams.DWeighting := {DWeighting};"}},
     };
 }
 
@@ -92,6 +100,7 @@ Product fb41() {
         .id = "siemens_fb41_cont_c",
         .maker = "Siemens",
         .name = "FB41 CONT_C (S7-300/400)",
+        .families = {"Step 7", "S7-300", "S7-400", "Simatic Manager"},
         .form = Form::ideal,
         .law = "LMN = GAIN [ 1 + 1/(TI s) + TD s/(TM_LAG s + 1) ] (SP - PV)",
         .gain_basis = "percent of span; with PV_FAC and PV_OFF also engineering units",

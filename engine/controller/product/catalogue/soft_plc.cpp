@@ -21,6 +21,7 @@ Product beckhoff() {
         .id = "beckhoff_fb_ctrl_pid",
         .maker = "Beckhoff",
         .name = "TwinCAT FB_CTRL_PID / FB_BasicPID",
+        .families = {"TwinCAT 2", "TwinCAT 3", "Tc2_ControllerToolbox"},
         .form = Form::ideal,
         .law = "out = fKp [ (b w - x) + (1/(tTn s)) (w - x) + (tTv s/(tTd s + 1)) (c w - x) ]",
         .gain_basis = "engineering units",
@@ -61,6 +62,13 @@ Product beckhoff() {
                                 {"tTd_ms", 2000.0},
                                 {"bPInTheFeedbackPath", false},
                                 {"bDInTheFeedbackPath", true}}),
+        .snippets = {{"Structured text, for the parameters stParams",
+                      "stParams.fKp := {fKp};\n"
+                      "stParams.tTn := T#{tTn_ms}ms;\n"
+                      "stParams.tTv := T#{tTv_ms}ms;\n"
+                      "stParams.tTd := T#{tTd_ms}ms;\n"
+                      "stParams.bPInTheFeedbackPath := {bPInTheFeedbackPath=true:TRUE/FALSE};\n"
+                      "stParams.bDInTheFeedbackPath := {bDInTheFeedbackPath=true:TRUE/FALSE};"}},
     };
 }
 
@@ -69,6 +77,7 @@ Product codesys() {
         .id = "codesys_util_pid",
         .maker = "CODESYS",
         .name = "Util PID / PID_FIXCYCLE",
+        .families = {"WAGO", "e!COCKPIT", "ifm", "Festo CPX"},
         .form = Form::ideal,
         .law = "Y = Y_OFFSET + KP [ 1 + 1/(TN s) + TV s ] (SET_POINT - ACTUAL)",
         .gain_basis = "engineering units",
@@ -105,6 +114,7 @@ Product codesys() {
                      .sources = {"content.helpme-codesys.com Util 3.5.18.0, Controller, PID",
                                  "zh.helpme-codesys.com Util, PD and PID", "5ichai.com, CODESYS PID help in Chinese"}},
         .example = of_design_a({{"KP", 1.5}, {"TN", 120.0}, {"TV", 20.0}}),
+        .snippets = {{"Structured text, for the instance loop", "loop(KP := {KP}, TN := {TN}, TV := {TV});"}},
     };
 }
 

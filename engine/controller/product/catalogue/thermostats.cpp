@@ -33,6 +33,7 @@ Product esphome() {
         .id = "esphome_pid",
         .maker = "ESPHome",
         .name = "ESPHome climate: pid",
+        .families = {"Home Assistant", "ESP32"},
         .form = Form::parallel,
         .law = "duty = kp e + (ki/s) e - kd (mean slope of y over M samples), duty from -1 to 1",
         .gain_basis = "duty per degree",
@@ -53,6 +54,12 @@ Product esphome() {
                      .sources = {"esphome/esphome esphome/components/pid/pid_controller.cpp",
                                  "esphome.io components/climate/pid"}},
         .example = of_design_a({{"kp", 0.015}, {"ki", 0.000125}, {"kd", 0.3}, {"derivative_averaging_samples", 17.0}}),
+        .snippets = {{"YAML, in climate with platform: pid",
+                      "control_parameters:\n"
+                      "  kp: {kp}\n"
+                      "  ki: {ki}\n"
+                      "  kd: {kd}\n"
+                      "  derivative_averaging_samples: {derivative_averaging_samples}"}},
     };
 }
 
@@ -83,6 +90,11 @@ Product ha_smart() {
                      .unverified = {"newer versions"},
                      .sources = {"ScratMan/HASmartThermostat custom_components/smart_thermostat/pid_controller"}},
         .example = of_design_a({{"kp", 1.5}, {"ki", 0.0125}, {"kd", 30.0}}),
+        .snippets = {{"configuration.yaml, in climate with platform: smart_thermostat",
+                      "kp: {kp}\n"
+                      "ki: {ki}\n"
+                      "kd: {kd}\n"
+                      "ac_mode: {ac_mode|false}"}},
     };
 }
 

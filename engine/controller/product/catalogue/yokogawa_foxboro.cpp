@@ -72,6 +72,7 @@ Product centum() {
         .id = "yokogawa_centum_pid",
         .maker = "Yokogawa",
         .name = "CENTUM CS 3000 / VP PID block",
+        .families = {"CENTUM VP", "CENTUM CS 3000"},
         .form = Form::ideal,
         .law = "MV = (100/PB) [ (b SV - PV) + (1/(TI s)) (SV - PV) + TD s (c SV - PV) ]",
         .gain_basis = "proportional band in percent of span",
@@ -132,6 +133,7 @@ Product foxboro() {
         .id = "foxboro_pid",
         .maker = "Foxboro",
         .name = "I/A Series PID block",
+        .families = {"I/A Series", "Foxboro DCS", "Evo"},
         .form = Form::series,
         .law =
             "OUT = (100/PBAND) (1 + 1/(INT s)) (SP - (1 + DERIV s) y), y = PV/(1 + Tf s + (Tf s)^2/2), "

@@ -10,17 +10,24 @@ export async function getProducts(): Promise<ProductSummary[]> {
 }
 
 const details = new Map<string, Promise<Product>>();
+const known = new Map<string, Product>();
 
 /** Requested once; a failure is not cached. */
 export function getProduct(id: string): Promise<Product> {
   let detail = details.get(id);
   if (!detail) {
     detail = call("GET", `v1/controllers/${encodeURIComponent(id)}`).then((reply) => reply.data as Product);
-    detail.catch(() => details.delete(id));
+    detail.then(
+      (product) => known.set(id, product),
+      () => details.delete(id),
+    );
     details.set(id, detail);
   }
   return detail;
 }
+
+/** One that has arrived: for what must be shown at once. */
+export const knownProduct = (id: string): Product | undefined => known.get(id);
 
 /** The settings to type for a controller: the nearest ones if the block cannot represent it. */
 export async function settingsFor(

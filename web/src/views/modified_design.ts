@@ -39,6 +39,8 @@ export interface ModifiedDesign {
   onScreen(job: Job, result: Result, index: number): OnScreen;
   /** The newest answer, if the entry was modified. */
   answer(): Answer | null;
+  /** How the displayed settings came about if they are not the job's; else "". */
+  mark(): string;
   dispose(): void;
 }
 
@@ -302,6 +304,10 @@ export function modifiedDesign(
       return modified ? answer : { result, index, origin: [...result.controllers.keys()], path: "v1/jobs", request: job.request };
     },
     answer: () => live.answer.peek(),
+    mark() {
+      const answer = live.answer.peek();
+      return !answer ? "" : answer.point.manual ? "set by hand" : "moved by the sliders";
+    },
     dispose() {
       document.removeEventListener("keydown", onKey);
       for (const stop of leaving) stop();

@@ -3,7 +3,7 @@
 import { ApiError, sentenceOf } from "../api/client.ts";
 import { latest } from "../api/latest.ts";
 import { callSubject } from "../api/live.ts";
-import { getProduct } from "../api/products.ts";
+import { getProduct, knownProduct } from "../api/products.ts";
 import type { AsEntered, Controller, Entry, Job, Product, Result, SettingValue, TuningRequest } from "../api/types.ts";
 import { h } from "../dom.ts";
 import { FormErrors } from "../form/errors.ts";
@@ -11,12 +11,17 @@ import { withBaseline, withImplement } from "../form/tuning_request.ts";
 import { implementOf, inUnits, mineOfRequest, named, rememberMine, sameImplement, typedBaseline } from "../my_controller.ts";
 import type { MyController } from "../my_controller.ts";
 import type { Store } from "../store.ts";
+import { formOf, formRows, productRows } from "../words/answer.ts";
 import type { UnitNames } from "../words/numbers.ts";
+import { productTitle, typedRows, typedText } from "../words/products.ts";
+import { formulaLine, rememberedForm, rememberForm, settingsOf, settingsText } from "../words/settings.ts";
+import type { TextbookForm } from "../words/settings.ts";
+import { answerCard } from "./cards/answer_card.ts";
 import { codeCard } from "./cards/code_card.ts";
+import { productDetails, productTroubles } from "./cards/in_product.ts";
 import { myControllerCard } from "./cards/my_controller_card.ts";
 import { ownTodayCard } from "./cards/own_today_card.ts";
 import { productCard } from "./cards/product_card.ts";
-import { typedCard } from "./cards/typed_card.ts";
 import { askTyped } from "./typed_question.ts";
 import type { TypedAnswer, TypedQuestion } from "./typed_question.ts";
 
@@ -31,13 +36,17 @@ interface Shown {
   units: UnitNames;
   /** The entry of the job that the service can write as code; null if the displayed design is not the job's own. */
   code: number | null;
+  /** How the settings came about if they are not the job's, such as "set by hand"; else "". */
+  mark: string;
 }
 
 export interface OwnController {
-  /** The cards next to the plots, and those below them. */
-  side: HTMLElement;
+  /** The settings to enter, first on the screen; and the cards below the plots. */
+  answer: HTMLElement;
   below: HTMLElement[];
   show(shown: Shown): void;
+  /** While a slider is held: the settings alone, as far as they are known without a question. */
+  move(shown: Shown): void;
   /** Settings that are tried by hand; null: the entry's own again. */
   follow(controller: Controller | null): void;
   dispose(): void;
@@ -51,6 +60,7 @@ export function ownController(
 ): OwnController {
   let shown: Shown | null = null;
   let mine: MyController | null = store.get().mine;
+  let form: TextbookForm = rememberedForm();
   let tried: Controller | null = null;
   /** The question whose answer is shown or in progress. */
   let asked = "";
@@ -60,19 +70,24 @@ export function ownController(
   const redesign = h("button", { type: "button", onclick: () => void designForMine() });
   const today = ownTodayCard(errors, (settings) => void designBesideToday(settings));
   const trouble = h("p", { class: "trouble", role: "status", hidden: true });
-  const picker = myControllerCard(errors, chooseMine, h("div", { class: "actions" }, redesign), trouble, today.element);
-  const typed = typedCard(announce);
-  const side = h("div", { class: "own-controller" }, picker.element, typed.element);
+  const picker = myControllerCard(
+    errors,
+    { forms: true, onChange: chooseMine },
+    h("div", { class: "actions" }, redesign),
+    trouble,
+  );
+  const answer = answerCard(announce, picker.element, today.element);
+  answer.element.classList.add("own-controller");
 
   const calls = latest<TypedQuestion, TypedAnswer>(askTyped, {
-    onBusy: typed.setBusy,
+    onBusy: answer.setBusy,
     onAnswer({ product, entered, judged }) {
       if (!shown) return;
       showTyped(product, entered, judged ?? (tried ? null : shown.result.controllers[shown.index]!));
       if (!tried) announce(`Settings of ${shown.name} for ${mine?.name ?? product.name} are shown.`);
     },
     onError(error) {
-      typed.complain(firstFault(error));
+      answer.complain("Nothing to type", firstFault(error));
       asked = "";
     },
   });
@@ -82,16 +97,51 @@ export function ownController(
     return listed[0]?.detail ?? sentenceOf(error);
   }
 
-  function chooseMine(next: MyController | null): void {
+  function chooseMine(next: MyController | null, chosen: TextbookForm): void {
     mine = next;
+    form = chosen;
+    rememberForm(chosen);
     rememberMine(next);
     store.set((workspace) => ({ ...workspace, mine: next }));
     showMine();
   }
 
+  const whose = (): string => [tried ? "the manual controller" : shown!.name, shown!.mark].filter(Boolean).join(", ");
+
+  /** The job's entry of today's settings. */
+  const todayEntry = (): Entry | undefined => shown?.result.controllers.find((entry) => entry.method === "baseline");
+
+  /** Today's settings by the product's own names: as the service wrote them, or as they were given. */
+  function todaysTyped(product: Product): Record<string, SettingValue> {
+    const { baseline, implement } = shown!.request;
+    const written = sameImplement(implement, implementOf(mine)) ? todayEntry()?.as_entered?.as_typed : undefined;
+    return { ...written, ...(baseline?.product === product.id ? baseline.settings : {}) };
+  }
+
   function showTyped(product: Product, entered: AsEntered, judged: Entry | null): void {
-    const name = tried ? "the manual controller" : shown!.name;
-    typed.show({ product, name, entered, judged: tried ? null : judged, time: shown!.units.time });
+    const heading = productTitle(product);
+    const settled = tried ? null : judged;
+    answer.show({
+      heading: `Type into ${heading}`,
+      whose: whose(),
+      rows: productRows(product, entered, todaysTyped(product)),
+      text: typedText(`${heading}: ${whose()}`, typedRows(product, entered)),
+      below: productTroubles(settled),
+      details: productDetails(product, entered, settled, shown!.units.time),
+    });
+  }
+
+  function showForm(): void {
+    const { result, index, units } = shown!;
+    const job = result.controllers[index]!;
+    const entry = tried ? { ...job, controller: tried } : job;
+    const inForm = formOf(entry, form);
+    const rows = formRows(entry, todayEntry(), inForm, units);
+    const settings = settingsOf(entry, inForm, units);
+    const heading = `Settings to enter: ${whose()}`;
+    if (typeof rows === "string" || typeof settings === "string") return answer.complain(heading, String(rows));
+    const text = settingsText(inForm, settings);
+    answer.show({ heading, whose: "", rows, text, below: [h("p", { class: "hint" }, formulaLine(inForm, entry))], details: [] });
   }
 
   /** Shows the product's own cards: its law, and today's settings in it. */
@@ -153,7 +203,9 @@ export function ownController(
     if (!shown || !entry || !controller || !implement) {
       calls.drop();
       asked = "";
-      return typed.hide();
+      answer.setBusy(false);
+      if (shown && entry) showForm();
+      return;
     }
     const request = shown.request;
     const key = JSON.stringify([shown.job.id, shown.index, implement, controller]);
@@ -162,12 +214,12 @@ export function ownController(
     const known = !tried && sameImplement(request.implement, implement) ? entry.as_entered : undefined;
     if (known) {
       calls.drop();
-      typed.setBusy(false);
+      answer.setBusy(false);
       getProduct(implement.product).then(
         (product) => {
           if (asked === key) showTyped(product, known, entry);
         },
-        (error: unknown) => typed.complain(firstFault(error)),
+        (error: unknown) => answer.complain("Nothing to type", firstFault(error)),
       );
       return;
     }
@@ -180,7 +232,7 @@ export function ownController(
     button.disabled = true;
     button.textContent = "Designing…";
     trouble.hidden = true;
-    side.setAttribute("aria-busy", "true");
+    answer.setBusy(true);
     try {
       await retune(request);
     } catch (error) {
@@ -188,7 +240,7 @@ export function ownController(
     } finally {
       button.disabled = false;
       button.textContent = label;
-      side.removeAttribute("aria-busy");
+      answer.setBusy(false);
     }
   }
 
@@ -215,7 +267,7 @@ export function ownController(
   }
 
   picker.setProducts(store.get().products);
-  picker.set(mine);
+  picker.set(mine, form);
   const leave = store.subscribe((workspace, previous) => {
     if (workspace.products === previous.products) return;
     picker.setProducts(workspace.products);
@@ -232,7 +284,7 @@ export function ownController(
   }
 
   return {
-    side,
+    answer: answer.element,
     below: [code.element, about.element],
     show(next) {
       const sameJob = shown?.job.id === next.job.id;
@@ -248,6 +300,15 @@ export function ownController(
       }
       showCode();
       update();
+    },
+    move(next) {
+      shown = next;
+      const entry = next.result.controllers[next.index];
+      const implement = implementOf(mine);
+      if (!implement) return showForm();
+      const entered = sameImplement(next.request.implement, implement) ? entry?.as_entered : undefined;
+      const product = knownProduct(implement.product);
+      if (entered && product) showTyped(product, entered, entry!);
     },
     follow(controller) {
       if (controller === tried) return;

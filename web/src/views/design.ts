@@ -173,7 +173,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     const drawn = drawnEntries(result, workspace.drawn ? drawnOf(workspace.drawn, origin) : defaultDrawn(result));
     const listed = listedEntries(entries.length, drawn, index);
     const record = formatRoute({ screen: "identify", job: job.id });
-    showVerdict(verdict, result, names, index, listed, record);
+    showVerdict(verdict, result, names, index, listed, record, units);
     if (held) own.move(ownShown(job, whole, index, names[index]!, units));
     showFigures(result, listed, drawn, names, units, held);
     linearNote.hidden = !hasLinear(drawn);

@@ -76,7 +76,11 @@ export function designView(store: Store, announce: (sentence: string) => void, e
   const model = h("div", { class: "slot", hidden: true });
   const notes = h("section", { class: "card", "aria-labelledby": "notes-title" });
   const computed = h("section", { class: "card computed", "aria-labelledby": "computed-title" });
-  const own = ownController(store, announce, retuneWhole);
+  const own = ownController(store, {
+    announce,
+    retune: retuneWhole,
+    onByHand: (controller) => modified.setByHand(controller),
+  });
   const reports = reportCards(announce, { onRetune: retune, onTry: own.follow });
   const reportsAt = (place: "above" | "below") => reports.filter((card) => card.place === place).map((card) => card.element);
   const legend = createLegend(store);
@@ -98,7 +102,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
       return job && { job, index };
     },
   });
-  const main = h("div", { class: "main-column" }, legend.element, linearNote, plots.element);
+  const main = h("div", { class: "main-column" }, linearNote, plots.element);
   const aside = h("div", { class: "side" }, figures);
   const more = h(
     "details",
@@ -108,15 +112,15 @@ export function designView(store: Store, announce: (sentence: string) => void, e
   );
   const followsLater = h("p", { class: "hint", hidden: true }, "The figures below follow when you release the slider.");
   const below = h("div", { class: "below" }, followsLater, model, ...reportsAt("above"), notes, more);
-  const said = h("div", { class: "verdict-column" }, trouble, verdict, cures.element, progress.element, range.element);
-  const headRight = h("div", { class: "head-right" }, own.answer, said);
-  const left = h("div", { class: "left-column" }, title.element, modified.controls, modified.front);
-  const element = h("main", { class: "design", id: "main" }, left, headRight);
+  const said = h("div", { class: "verdict-column" }, trouble, verdict, cures.element, progress.element, range.element, legend.element);
+  const head = h("div", { class: "design-head" }, own.answer, said);
+  const left = h("div", { class: "left-column" }, modified.controls, modified.front);
+  const element = h("main", { class: "design", id: "main" }, title.element, head, left);
   const bodyParts = [main, aside, below];
 
   /** Everything below the verdict, and the settings next to it. */
   function showBody(there: boolean): void {
-    for (const part of [own.answer, modified.controls, modified.front]) part.classList.toggle("absent", !there);
+    for (const part of [own.answer, legend.element, modified.controls, modified.front]) part.classList.toggle("absent", !there);
     if (!there) for (const part of bodyParts) part.remove();
     else if (!main.isConnected) element.append(...bodyParts);
   }
@@ -194,6 +198,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     units,
     code: screen!.result === whole ? index : null,
     mark: modified.mark(),
+    typeable: modified.isMovable(),
   });
 
   function showResult(job: Job, whole: Result, workspace: Workspace): void {

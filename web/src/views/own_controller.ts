@@ -7,6 +7,7 @@ import { getProduct, knownProduct } from "../api/products.ts";
 import type { AsEntered, Controller, Entry, Job, Product, Result, SettingValue, TuningRequest } from "../api/types.ts";
 import { h } from "../dom.ts";
 import { FormErrors } from "../form/errors.ts";
+import { choicesOf } from "../form/product_settings.ts";
 import { withBaseline, withImplement } from "../form/tuning_request.ts";
 import { implementOf, inUnits, mineOfRequest, named, rememberMine, sameImplement, typedBaseline } from "../my_controller.ts";
 import type { MyController } from "../my_controller.ts";
@@ -17,6 +18,7 @@ import { productTitle, typedRows, typedText } from "../words/products.ts";
 import { formulaLine, rememberedForm, rememberForm, settingsOf, settingsText } from "../words/settings.ts";
 import type { TextbookForm } from "../words/settings.ts";
 import { answerCard } from "./cards/answer_card.ts";
+import type { Answer } from "./cards/answer_card.ts";
 import { codeCard } from "./cards/code_card.ts";
 import { productDetails, productTroubles } from "./cards/in_product.ts";
 import { myControllerCard } from "./cards/my_controller_card.ts";
@@ -24,6 +26,8 @@ import { ownTodayCard } from "./cards/own_today_card.ts";
 import { productCard } from "./cards/product_card.ts";
 import { askTyped } from "./typed_question.ts";
 import type { TypedAnswer, TypedQuestion } from "./typed_question.ts";
+import { controllerInForm, controllerInProduct } from "./typed_settings.ts";
+import type { TypedTexts } from "./typed_settings.ts";
 
 interface Shown {
   job: Job;
@@ -38,6 +42,8 @@ interface Shown {
   code: number | null;
   /** How the settings came about if they are not the job's, such as "set by hand"; else "". */
   mark: string;
+  /** Other settings can be typed in their place. */
+  typeable: boolean;
 }
 
 export interface OwnController {
@@ -52,12 +58,15 @@ export interface OwnController {
   dispose(): void;
 }
 
-/** `retune`: designs again in this job's place. */
-export function ownController(
-  store: Store,
-  announce: (sentence: string) => void,
-  retune: (request: TuningRequest) => Promise<void>,
-): OwnController {
+export interface OwnControllerEvents {
+  announce(sentence: string): void;
+  /** Designs again in this job's place. */
+  retune(request: TuningRequest): Promise<void>;
+  /** Settings that were typed in the card: shown as set by hand. */
+  onByHand(controller: Controller): void;
+}
+
+export function ownController(store: Store, { announce, retune, onByHand }: OwnControllerEvents): OwnController {
   let shown: Shown | null = null;
   let mine: MyController | null = store.get().mine;
   let form: TextbookForm = rememberedForm();
@@ -76,7 +85,11 @@ export function ownController(
     h("div", { class: "actions" }, redesign),
     trouble,
   );
-  const answer = answerCard(announce, picker.element, today.element);
+  const answer = answerCard({ announce, onType: typeInto }, {
+    picker: picker.element,
+    notes: picker.notes,
+    folded: [picker.facts, today.element],
+  });
   answer.element.classList.add("own-controller");
 
   const calls = latest<TypedQuestion, TypedAnswer>(askTyped, {
@@ -87,7 +100,7 @@ export function ownController(
       if (!tried) announce(`Settings of ${shown.name} for ${mine?.name ?? product.name} are shown.`);
     },
     onError(error) {
-      answer.complain("Nothing to type", firstFault(error));
+      answer.complain(["Nothing to type", ""], firstFault(error));
       asked = "";
     },
   });
@@ -122,13 +135,36 @@ export function ownController(
     const heading = productTitle(product);
     const settled = tried ? null : judged;
     answer.show({
-      heading: `Type into ${heading}`,
+      heading: ["Type into", ` ${heading}`],
       whose: whose(),
       rows: productRows(product, entered, todaysTyped(product)),
       text: typedText(`${heading}: ${whose()}`, typedRows(product, entered)),
       below: productTroubles(settled),
       details: productDetails(product, entered, settled, shown!.units.time),
+      choices: typeable() ? (name) => choicesOf(product, name) : null,
     });
+  }
+
+  const typeable = (): boolean => !tried && shown!.typeable;
+
+  /** Typed texts as a controller: in the product, or in the form. */
+  async function typeInto(texts: TypedTexts): Promise<void> {
+    if (!shown) return;
+    const { request, result, index } = shown;
+    const implement = implementOf(mine);
+    const subject = callSubject(request, result);
+    try {
+      const product = implement && (await getProduct(implement.product));
+      const entry = result.controllers[index]!;
+      onByHand(
+        product
+          ? await controllerInProduct(product, implement, texts, request)
+          : await controllerInForm(entry, formOf(entry, form), texts, subject!),
+      );
+    } catch (error) {
+      const listed = error instanceof ApiError ? (error.problem.errors ?? []) : [];
+      answer.refuse(listed[0]?.detail ?? sentenceOf(error));
+    }
   }
 
   function showForm(): void {
@@ -138,10 +174,18 @@ export function ownController(
     const inForm = formOf(entry, form);
     const rows = formRows(entry, todayEntry(), inForm, units);
     const settings = settingsOf(entry, inForm, units);
-    const heading = `Settings to enter: ${whose()}`;
+    const heading: Answer["heading"] = ["Settings to enter:", ` ${shown!.name}`];
     if (typeof rows === "string" || typeof settings === "string") return answer.complain(heading, String(rows));
     const text = settingsText(inForm, settings);
-    answer.show({ heading, whose: "", rows, text, below: [h("p", { class: "hint" }, formulaLine(inForm, entry))], details: [] });
+    answer.show({
+      heading,
+      whose: whose(),
+      rows,
+      text,
+      below: [h("p", { class: "hint" }, formulaLine(inForm, entry))],
+      details: [],
+      choices: typeable() ? () => [] : null,
+    });
   }
 
   /** Shows the product's own cards: its law, and today's settings in it. */
@@ -219,7 +263,7 @@ export function ownController(
         (product) => {
           if (asked === key) showTyped(product, known, entry);
         },
-        (error: unknown) => answer.complain("Nothing to type", firstFault(error)),
+        (error: unknown) => answer.complain(["Nothing to type", ""], firstFault(error)),
       );
       return;
     }

@@ -8,6 +8,8 @@ import type { Setting, SettingsForm } from "./settings.ts";
 
 /** A setting as it is typed. */
 export interface AnswerRow {
+  /** The setting's name in its form or product. */
+  name: string;
   label: string;
   value: string;
   unit: string;
@@ -17,7 +19,8 @@ export interface AnswerRow {
   about: string;
 }
 
-const OFF = "off";
+/** A part that the controller does not have, such as integral action. */
+export const OFF = "off";
 
 /** The form in which an entry is shown: a nonlinear controller has its own alone. */
 export const formOf = (entry: Entry, chosen: SettingsForm): SettingsForm => (entry.controller?.form === "npid" ? "npid" : chosen);
@@ -32,6 +35,7 @@ export function formRows(entry: Entry, today: Entry | undefined, form: SettingsF
     return setting ? shownValue(setting) : "";
   };
   return settings.map((setting) => ({
+    name: setting.name,
     label: setting.name,
     value: shownValue(setting),
     unit: setting.value === null ? "" : setting.unit,
@@ -45,9 +49,16 @@ const shownValue = ({ value }: Setting): string => (value === null ? OFF : forma
 /** The rows of the product's own list. `today`: its settings by name. */
 export const productRows = (product: Product, entered: AsEntered, today: Record<string, SettingValue>): AnswerRow[] =>
   typedRows(product, entered).map(({ name, label, value, unit, about }) => ({
+    name,
     label,
     value,
     unit,
     today: name in today ? String(today[name]) : "",
     about,
   }));
+
+/** Tab-separated, with a head: for a spreadsheet. */
+export const tableText = (rows: readonly AnswerRow[]): string =>
+  [["parameter", "today", "new", "unit"], ...rows.map(({ label, today, value, unit }) => [label, today, value, unit])]
+    .map((cells) => cells.join("\t"))
+    .join("\n");

@@ -22,6 +22,10 @@ const findForms = (typed: string): Choice[] =>
 
 export interface MyControllerCard {
   element: HTMLElement;
+  /** With forms: the parts that stand elsewhere in the card of the settings. What is missing, and `below`; and the
+      folded ranges. */
+  notes: HTMLElement[];
+  facts: HTMLElement;
   setProducts(products: ProductSummary[]): void;
   setUnits(units: UnitNames): void;
   /** Without reporting. `form`: the textbook form that stands in place of a product, where forms are offered. */
@@ -31,7 +35,7 @@ export interface MyControllerCard {
 }
 
 export interface MyControllerOptions {
-  /** Offers the textbook forms beside the products. */
+  /** Offers the textbook forms as well as the products: the field alone, for the card of the settings. */
   forms: boolean;
   /** Receives the readable part, whether or not something is missing yet; `form`: what stands in place of a product. */
   onChange(mine: MyController | null, form: TextbookForm): void;
@@ -50,10 +54,12 @@ export function myControllerCard(
   const search = combobox(
     {
       label: "Maker and product",
+      bare: forms,
       placeholder: "type a maker or a name, such as DeltaV",
       pointer: () => "/implement/product",
       find: (typed) => [...(forms ? findForms(typed) : []), ...findProducts(products, typed).map(choiceOf)],
       onChoose: choose,
+      onLeft: change,
     },
     errors,
   );
@@ -77,18 +83,19 @@ export function myControllerCard(
   const needed = h("p", { class: "hint", role: "status", hidden: true });
   const fields = h("div", { class: "needs", hidden: true }, measurement.element, output.element, sampling.element);
   const forget = h("button", { type: "button", class: "quiet", hidden: true, onclick: () => choose(null) }, "No controller");
-  /** Where the settings stand in the same card, what is known already gives way to them. */
-  const folded = h("details", { class: "facts", hidden: true }, h("summary", {}, "Ranges and sample time"));
-  if (forms) folded.append(fields);
-  const element = h(
-    "section",
-    { class: "card my-controller", "aria-labelledby": title.id },
-    h("div", { class: "head" }, title, forget),
-    search.element,
-    forms ? folded : fields,
-    needed,
-    below,
-  );
+  const facts = h("details", { class: "facts", hidden: true }, h("summary", {}, "Ranges and sample time"));
+  if (forms) facts.append(fields);
+  const notes = [needed, ...below];
+  const element = forms
+    ? h("div", { class: "my-controller" }, search.element)
+    : h(
+        "section",
+        { class: "card my-controller", "aria-labelledby": title.id },
+        h("div", { class: "head" }, title, forget),
+        search.element,
+        fields,
+        notes,
+      );
 
   const choiceOf = (product: ProductSummary): Choice => ({
     id: product.id,
@@ -108,14 +115,18 @@ export function myControllerCard(
   function show(): void {
     search.set(chosen ? { id: chosen.product, text: chosen.name, aside: "" } : forms ? formChoice(form) : null);
     const needs = (need: Need): boolean => chosen?.needs.includes(need) ?? false;
-    fields.hidden = folded.hidden = !chosen;
+    fields.hidden = facts.hidden = !chosen;
     forget.hidden = !chosen;
     measurement.element.hidden = !needs("y_span");
     output.element.hidden = !needs("u_span");
   }
 
   function read(): { mine: MyController | null; errors: FieldError[] } {
-    if (!chosen) return { mine: null, errors: [] };
+    if (!chosen) {
+      const typed = search.unmatched();
+      const detail = `There is no controller "${typed}" in the list. Choose one from the list, or clear the field.`;
+      return { mine: null, errors: typed ? [{ pointer: "/implement/product", detail }] : [] };
+    }
     const [y, u] = [measurement.read(), output.read()];
     const typed = sampling.input.value.trim();
     const period = typed === "" ? null : parseNumber(typed, "Sample time");
@@ -138,7 +149,7 @@ export function myControllerCard(
 
   function sayMissing(mine: MyController | null): void {
     needed.textContent = mine ? needSentence(missingOf(mine)) : "";
-    if (needed.textContent !== "") folded.open = true;
+    if (needed.textContent !== "") facts.open = true;
     needed.hidden = needed.textContent === "";
   }
 
@@ -151,6 +162,8 @@ export function myControllerCard(
 
   return {
     element,
+    notes,
+    facts,
     setProducts(list) {
       products = list;
       search.refresh();

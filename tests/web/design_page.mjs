@@ -7,7 +7,7 @@ export const setting = (page, name) =>
   page
     .locator(".settings tbody tr")
     .filter({ has: page.locator("th", { hasText: new RegExp(`^${name}\\b`) }) })
-    .locator("td")
+    .locator("td.value")
     .innerText()
     .then((text) => Number(text.replace("−", "-")));
 export const shows = (page, name, value) =>
@@ -16,7 +16,7 @@ export const shows = (page, name, value) =>
       [...document.querySelectorAll(".settings tbody tr")].some(
         (row) =>
           row.querySelector("th").textContent.startsWith(wanted) &&
-          Math.abs(Number(row.querySelector("td").textContent.replace("−", "-")) / number - 1) < 1e-3,
+          Math.abs(Number(row.querySelector("td.value").textContent.replace("−", "-")) / number - 1) < 1e-3,
       ),
     [name, value],
   );

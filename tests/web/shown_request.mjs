@@ -32,12 +32,12 @@ export async function requestHandedOut(page) {
 
 const plain = (text) => text.replaceAll("−", "-").replaceAll(" ", " ").trim();
 
-/** Settings in the ideal form and the verdict's sentences, as displayed. */
+/** Settings in the ideal form, or in a product the values to type, sorted; and the verdict's sentences, as displayed. */
 export async function designOnScreen(page) {
   const settings = await page
-    .locator(".settings tbody tr")
+    .locator("table.typed tbody tr")
     .evaluateAll((rows) =>
-      rows.map((row) => [row.querySelector("th").textContent.replace(/ \(.*/, ""), row.querySelector("td").textContent]),
+      rows.map((row) => [row.querySelector("th").textContent.replace(/ \(.*/, ""), row.querySelector("td.value").textContent]),
     );
   const head = await page.locator(".verdict > h2").evaluate((node) => {
     const copy = node.cloneNode(true);
@@ -46,7 +46,9 @@ export async function designOnScreen(page) {
   });
   const others = await page.locator(".verdict > p:not(.trouble) > span").allTextContents();
   return {
-    settings: Object.fromEntries(settings.map(([name, value]) => [name, plain(value)])),
+    settings: (await page.getByRole("heading", { name: /^Type into/ }).count())
+      ? settings.map(([, value]) => plain(value)).sort()
+      : Object.fromEntries(settings.map(([name, value]) => [name, plain(value)])),
     verdict: [head, ...others].map(plain),
   };
 }
@@ -54,8 +56,9 @@ export async function designOnScreen(page) {
 const five = (value) => String(Number(value.toPrecision(5)));
 
 /** The same data from an entry of an answer. */
-export function designAnswered({ controller, verdict }) {
+export function designAnswered({ controller, verdict, as_entered: entered }) {
   const { Kp, Ti, Td, filter, b, setpoint_filter: lag } = controller;
+  if (entered) return { settings: Object.values(entered.as_typed).map(plain).sort(), verdict: verdict.map(({ text }) => plain(text)) };
   return {
     settings: {
       Kp: five(Kp),

@@ -8,10 +8,11 @@ const tests = browserTests();
 const { withPage, jobOf } = tests;
 
 const designShown = async (page) => {
-  await page.getByRole("heading", { name: /^Settings to enter/ }).waitFor();
+  await page.getByRole("heading", { name: /^(Settings to enter|Type into)/ }).waitFor();
   await openMore(page);
 };
-const picker = (page) => page.getByRole("region", { name: /^My controller/ });
+/** On Design the controller is chosen in the card of the settings. */
+const picker = (page) => page.getByRole("region", { name: /^(Settings to enter|Type into|Nothing to type|My controller)/ });
 const typed = (page) => page.getByRole("region", { name: /^Type into/ });
 const found = (page) => page.getByRole("listbox", { name: "Maker and product" }).getByRole("option");
 const search = (page) => page.getByRole("combobox", { name: "Maker and product" });
@@ -25,6 +26,19 @@ const post = async (path, body) => {
   return { status: response.status, body: await response.json() };
 };
 
+/** Unfolds a part of the card of the settings. */
+async function unfold(page, summary) {
+  const part = picker(page).locator("details").filter({ has: page.locator("summary", { hasText: summary }) }).first();
+  await part.waitFor();
+  if (!(await part.evaluate((element) => element.open))) await part.locator("> summary").click();
+}
+
+async function giveSampleTime(page, value) {
+  if ((await page.locator("details.facts").count()) > 0) await unfold(page, "Ranges and sample time");
+  await picker(page).getByLabel("Sample time (s)").fill(String(value));
+  await picker(page).getByLabel("Sample time (s)").press("Tab");
+}
+
 /** Searches for a product with these words and takes the first result. */
 async function choose(page, words, title) {
   await search(page).fill(words);
@@ -34,6 +48,7 @@ async function choose(page, words, title) {
 }
 
 async function giveRange(page, name, low, high) {
+  if ((await page.locator("details.facts").count()) > 0) await unfold(page, "Ranges and sample time");
   const range = picker(page).getByRole("group", { name });
   await range.getByLabel("from").fill(String(low));
   await range.getByLabel("to").fill(String(high));
@@ -43,8 +58,10 @@ async function giveRange(page, name, low, high) {
 /** The rows of the list to type: label, value, unit. */
 const rowsOf = (page) =>
   typed(page)
-    .locator("table.typed tr")
-    .evaluateAll((rows) => rows.map((row) => [...row.children].slice(0, 3).map((cell) => cell.textContent)));
+    .locator("table.typed tbody tr")
+    .evaluateAll((rows) =>
+      rows.map((row) => ["th", ".value", ".unit"].map((cell) => row.querySelector(cell).textContent)),
+    );
 
 async function tuneModel(page, address = "#/new/fopdt?K=1.25&T=40&L=8") {
   await page.goto(`${tests.service.base}/${address}`);
@@ -67,6 +84,9 @@ const valueOf = (text) => (text === "true" || text === "false" ? text === "true"
 
 const close = (a, b, what) => assert.ok(Math.abs(a - b) <= 1e-9 * Math.max(1, Math.abs(b)), `${what}: ${a} against ${b}`);
 
+/** The textbook forms stand before the products. */
+const TEXTBOOK_FORMS = ["Ideal form: Kp, Ti, Td", "Parallel form: Kp, Ki, Kd", "Series form: Kp, Ti, Td"];
+
 const PRODUCTS = [
   { words: "deltav series", title: "Emerson DeltaV PID, FORM Series", id: "emerson_deltav_series", y: [0, 100], u: [0, 100] },
   { words: "mitsubishi", title: "Mitsubishi FX/FX3/FX5 PID (FNC 88)", id: "mitsubishi_fx_pid", y: [0, 100], u: [0, 100] },
@@ -83,8 +103,7 @@ test("from a record to the settings of three products, each read back as the con
       assert.equal(await picker(page).getByRole("group", { name: /^Measurement range/ }).isVisible(), Boolean(y), title);
       if (y) await giveRange(page, /^Measurement range/, ...y);
       if (u) await giveRange(page, /^Output range/, ...u);
-      await picker(page).getByLabel("Sample time (s)").fill("1");
-      await picker(page).getByLabel("Sample time (s)").press("Tab");
+      await giveSampleTime(page, 1);
       const job = await designForMine(page);
       const spans = { ...(y ? { y_span: y } : {}), ...(u ? { u_span: u } : {}) };
       assert.deepEqual(job.request.implement, { product: id, ...spans, sample_time: 1 });
@@ -116,6 +135,7 @@ test("from a record to the settings of three products, each read back as the con
       close(back.body.controller.filter.Tf ?? 0, entry.as_entered.realised.filter.Tf ?? 0, `${title} Tf`);
 
       // The implemented loop is next to the ideal one.
+      await unfold(page, "How it computes them");
       const built = await typed(page).locator("table.built tbody tr").first().locator("td").allInnerTexts();
       assert.equal(Number(built[0]), Number(entry.robustness.Ms.toPrecision(3)));
       assert.equal(Number(built[1]), Number(entry.implemented.robustness.Ms.toPrecision(3)));
@@ -156,6 +176,7 @@ test("beside settings in seconds the notes of a loop in minutes say their unit",
     await found(page).first().waitFor();
     await page.keyboard.press("Enter");
     await giveRange(page, /^Output range/, 0, 100);
+    await unfold(page, "How it computes them");
     await typed(page).getByText("Times in these notes are in min, the loop's unit of time.").waitFor();
     assert.ok((await rowsOf(page)).some(([, , unit]) => unit === "s"));
   });
@@ -167,7 +188,8 @@ test("a list is searched by maker, name and parameter, with the keyboard alone",
     await search(page).focus();
     const { controllers } = await (await fetch(`${tests.service.base}/v1/controllers`)).json();
     await page.keyboard.press("ArrowDown");
-    assert.equal(await found(page).count(), controllers.length);
+    assert.equal(await found(page).count(), controllers.length + TEXTBOOK_FORMS.length);
+    assert.deepEqual((await found(page).allInnerTexts()).slice(0, 3), TEXTBOOK_FORMS);
     assert.equal(await search(page).getAttribute("aria-expanded"), "true");
     await page.keyboard.type("rockwell pide");
     assert.deepEqual(
@@ -183,13 +205,13 @@ test("a list is searched by maker, name and parameter, with the keyboard alone",
     assert.equal(await active(), first, "after the last comes the first");
     await page.keyboard.press("Escape");
     assert.equal(await search(page).getAttribute("aria-expanded"), "false");
-    assert.equal(await search(page).inputValue(), "", "nothing is chosen by leaving");
+    assert.equal(await search(page).inputValue(), TEXTBOOK_FORMS[0], "nothing is chosen by leaving");
     await page.keyboard.type("PBAND");
     await found(page).filter({ hasText: /^Foxboro/ }).waitFor();
     await search(page).fill("no such maker");
     await page.getByText('There is no entry "no such maker".').first().waitFor();
     await page.keyboard.press("Tab");
-    assert.equal(await search(page).inputValue(), "");
+    assert.equal(await search(page).inputValue(), TEXTBOOK_FORMS[0]);
     assert.equal(await typed(page).count(), 0);
   });
 });
@@ -215,6 +237,7 @@ test("only what a product needs is asked for; it is remembered and sent with lat
       u_span: [0, 100],
     });
     assert.equal((await rowsOf(page))[0][1], asked.body.as_typed.GAIN);
+    await unfold(page, "How it computes them");
     assert.ok((await typed(page).innerText()).includes("exact position of ALPHA in the Standard form"), "what is not verified is named");
 
     await page.getByRole("link", { name: "Start" }).click();
@@ -228,7 +251,7 @@ test("only what a product needs is asked for; it is remembered and sent with lat
       u_span: [0, 100],
     });
     await typed(page).waitFor();
-    await picker(page).getByRole("button", { name: "No controller" }).click();
+    await choose(page, "ideal form", TEXTBOOK_FORMS[0]);
     assert.equal(await typed(page).count(), 0);
     assert.equal((await designForMine(page, "Design for an ideal controller")).request.implement, undefined);
     await page.getByRole("link", { name: "Start" }).click();
@@ -260,8 +283,7 @@ test("a loop that its sampling makes unstable is said to be so, in the verdict t
   await withPage("", {}, async (page) => {
     await tuneModel(page);
     await choose(page, "labview", "NI LabVIEW PID / LabWindows PID toolkit");
-    await picker(page).getByLabel("Sample time (s)").fill("60");
-    await picker(page).getByLabel("Sample time (s)").press("Tab");
+    await giveSampleTime(page, 60);
     await typed(page).getByText("The implemented loop is unstable", { exact: false }).waitFor();
     // A design for that sample time holds its limits again.
     const job = await designForMine(page);
@@ -345,7 +367,7 @@ test("settings that are tried by hand are followed by what to type", async () =>
     });
     await slider.focus();
     for (let press = 0; press < 6; press += 1) await page.keyboard.press("Shift+ArrowRight");
-    await typed(page).getByText(/^Settings of the manual controller, /).waitFor();
+    await typed(page).getByText("the manual controller", { exact: true }).waitFor();
     const kp = await page.locator(".by-hand").getByLabel("Kp", { exact: false }).first().inputValue();
     await page.waitForFunction(
       (value) => Math.abs(Number(document.querySelector("table.typed .value").textContent) / Number(value) - 1) < 2e-3,

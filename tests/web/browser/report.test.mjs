@@ -1,10 +1,15 @@
-// The report for its reader: the link from a result, without scripts, printed on A4 and Letter.
+// The report for its reader, and printed pages: Compare and the report, page by page.
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import test from "node:test";
+import { inflateSync } from "node:zlib";
 import { accessibilityViolations, browserTests, openPage, overflow } from "../harness.mjs";
 
 const tests = browserTests();
+const { withPage } = tests;
 
+const table = (page) => page.getByRole("region", { name: "Comparison table" });
+const PLANT = "#/new/fopdt?K=1.25&T=40&L=8";
 const REQUEST = {
   name: "TIC-101 <b>&",
   units: { time: "s", u: "%", y: "°C" },
@@ -12,6 +17,13 @@ const REQUEST = {
   tune: [{ method: "robust" }, { method: "simc" }],
   baseline: { form: "ideal", Kp: 0.6, Ti: 15 },
 };
+
+async function compareAll(page) {
+  await page.getByLabel("Kp", { exact: true }).fill("1.2");
+  await page.getByLabel("Ti", { exact: true }).fill("40");
+  await page.getByRole("button", { name: "Compare all methods", exact: true }).click();
+  await table(page).waitFor();
+}
 
 async function tuned(request) {
   const response = await fetch(`${tests.service.base}/v1/jobs`, {
@@ -23,6 +35,75 @@ async function tuned(request) {
   assert.equal(job.status, "succeeded");
   return job;
 }
+
+/** The number of text pieces on each page of a PDF from the browser. */
+function textPieces(pdf) {
+  const text = pdf.toString("latin1");
+  const object = (number) => text.slice(text.search(new RegExp(`(^|\\n)${number} 0 obj`)));
+  return [...text.matchAll(/\/Type\s*\/Page\b[^]*?endobj/g)].map(([page]) => {
+    const contents = object(Number(/\/Contents (\d+) 0 R/.exec(page)[1]));
+    const begin = contents.indexOf("stream\n") + "stream\n".length;
+    const stream = Buffer.from(contents.slice(begin, contents.indexOf("\nendstream")), "latin1");
+    return (inflateSync(stream).toString("latin1").match(/ T[jJ]\b/g) ?? []).length;
+  });
+}
+
+test("on paper every column has its heading, and the table is no wider than its card", async () => {
+  // The area of A4 between usual margins.
+  await withPage(PLANT, { width: 720, height: 1000 }, async (page) => {
+    await compareAll(page);
+    await page.locator(".comparison-table tbody tr").first().waitFor();
+    const headings = await page.locator(".comparison-table thead th").allInnerTexts();
+    await page.emulateMedia({ media: "print" });
+    const printed = page.locator(".comparison-table thead th:visible");
+    assert.deepEqual(
+      (await printed.allInnerTexts()).map((text) => text.replace(/\s+/g, " ").trim()),
+      headings.map((text) => text.replace(/\s+/g, " ").trim()).filter((text) => !text.startsWith("y, ")),
+    );
+    const edge = (selector) => page.locator(selector).first().evaluate((box) => box.getBoundingClientRect().right);
+    assert.ok((await edge(".comparison-table")) <= (await edge(".card.comparison")));
+    await page.emulateMedia({ media: "screen" });
+    await page.getByRole("link", { name: "Settings and verdict" }).click();
+    await page.getByRole("heading", { name: /^Settings to enter/ }).waitFor();
+    await page.emulateMedia({ media: "print" });
+    assert.equal(await page.locator(".legend input:visible").count(), 0);
+    assert.match(await page.locator(".legend").innerText(), /robust[^]*today/i);
+  });
+});
+
+test("the table begins on the first page and is printed whole", async () => {
+  await withPage(PLANT, {}, async (page) => {
+    await compareAll(page);
+    await page.locator(".comparison-table tbody tr").first().waitFor();
+    const rows = await page.locator(".comparison-table tbody tr").count();
+    const pieces = textPieces(await page.pdf({ format: "A4", landscape: true }));
+    assert.ok(pieces.length > 1, `${pieces.length} pages of ${rows} rows`);
+    assert.ok(pieces[0] > 100, `the first page holds ${pieces[0]} pieces of text, the pages ${pieces.join(", ")}`);
+    assert.ok(pieces.reduce((sum, count) => sum + count, 0) > 10 * rows);
+  });
+});
+
+test("the report prints on A4 and Letter, its style alone applies, and nothing is wrong with it", async () => {
+  const csv = readFileSync(new URL("../../../api/examples/tclab-step.csv", import.meta.url), "utf8");
+  const record = { record: { csv }, identify: { traces: true }, tune: [{ method: "robust" }] };
+  for (const [request, most] of [
+    [REQUEST, 5],
+    [record, 6],
+  ]) {
+    const job = await tuned(request);
+    const opened = await openPage(tests.browser, {});
+    await opened.page.goto(`${tests.service.base}/v1/jobs/${job.id}/report.html`);
+    assert.equal(await opened.page.evaluate(() => getComputedStyle(document.querySelector("table")).borderCollapse), "collapse");
+    assert.equal(await opened.page.locator("figure svg path").count().then((count) => count > 20), true);
+    for (const format of ["A4", "Letter"]) {
+      const pieces = textPieces(await opened.page.pdf({ format, preferCSSPageSize: false }));
+      assert.ok(pieces.length >= 2 && pieces.length <= most, `${pieces.length} pages of ${format}`);
+      assert.ok(pieces.at(-1) >= 4, `the last page of ${format} holds ${pieces.at(-1)} pieces of text`);
+    }
+    assert.deepEqual(await opened.faults(), []);
+    await opened.close();
+  }
+});
 
 test("a screen with a result leads to the report of the entry that it shows", async () => {
   const job = await tuned(REQUEST);

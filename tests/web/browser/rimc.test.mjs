@@ -66,7 +66,7 @@ test("the slider shows what a lambda would buy while it moves, and designs it wh
     // The slider keeps its focus, and the settings are those of the new design.
     assert.ok(await slider.evaluate((element) => element === document.activeElement));
     await page.getByRole("heading", { name: "Settings to enter: rimc" }).waitFor();
-    const Kp = await page.locator(".settings td").first().innerText();
+    const Kp = await page.locator(".settings td.value").first().innerText();
     assert.equal(Number(Kp), Number(Number(after.result.controllers[1].controller.Kp).toPrecision(5)));
   });
 });

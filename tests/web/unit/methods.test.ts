@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import type { Entry } from "../../../web/src/api/types.ts";
-import { settingsOf } from "../../../web/src/views/cards/settings_card.ts";
+import { settingsOf } from "../../../web/src/words/settings.ts";
 import { mentions, optionRows } from "../../../web/src/words/methods.ts";
 import { unitNames } from "../../../web/src/words/numbers.ts";
 

@@ -7,8 +7,8 @@ import { figureGroups } from "../../../web/src/words/figures.ts";
 import type { FigureRow } from "../../../web/src/words/figures.ts";
 import { comparisonColumns } from "../../../web/src/words/comparison.ts";
 import { formatNumber, formatSetting, formatShare, product, quotient, unitNames, withMinus } from "../../../web/src/words/numbers.ts";
-import { settingsOf, settingsText } from "../../../web/src/views/cards/settings_card.ts";
-import type { Setting } from "../../../web/src/views/cards/settings_card.ts";
+import { settingsOf, settingsText } from "../../../web/src/words/settings.ts";
+import type { Setting } from "../../../web/src/words/settings.ts";
 
 function entry(changes: Record<string, unknown> = {}, performance: Record<string, unknown> = {}): Entry {
   return {

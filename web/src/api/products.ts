@@ -2,7 +2,7 @@
 import { call, getText } from "./client.ts";
 import type { TextFile } from "./client.ts";
 import { settingsOf } from "./evaluate.ts";
-import type { AsEntered, Controller, Implement, Product, ProductSummary, ScheduleRow, TypedSchedule, Units } from "./types.ts";
+import type { AsEntered, Controller, Implement, Product, ProductSummary, ScheduleRow, SettingValue, TypedSchedule, Units } from "./types.ts";
 
 export async function getProducts(): Promise<ProductSummary[]> {
   const data = (await call("GET", "v1/controllers")).data as { controllers?: ProductSummary[] } | null;
@@ -10,17 +10,24 @@ export async function getProducts(): Promise<ProductSummary[]> {
 }
 
 const details = new Map<string, Promise<Product>>();
+const known = new Map<string, Product>();
 
 /** Requested once; a failure is not cached. */
 export function getProduct(id: string): Promise<Product> {
   let detail = details.get(id);
   if (!detail) {
     detail = call("GET", `v1/controllers/${encodeURIComponent(id)}`).then((reply) => reply.data as Product);
-    detail.catch(() => details.delete(id));
+    detail.then(
+      (product) => known.set(id, product),
+      () => details.delete(id),
+    );
     details.set(id, detail);
   }
   return detail;
 }
+
+/** One that has arrived: for what must be shown at once. */
+export const knownProduct = (id: string): Product | undefined => known.get(id);
 
 /** The settings to type for a controller: the nearest ones if the block cannot represent it. */
 export async function settingsFor(
@@ -30,6 +37,17 @@ export async function settingsFor(
 ): Promise<AsEntered> {
   const body = { controller: settingsOf(controller), y_span, u_span, sample_time, units: units ?? {}, nearest: true };
   return (await call("POST", `v1/controllers/${encodeURIComponent(product)}/settings`, body)).data as AsEntered;
+}
+
+/** The controller that settings typed into the product make. */
+export async function controllerOf(
+  { product, y_span, u_span, sample_time }: Implement & { product: string },
+  settings: Record<string, SettingValue>,
+  units: Units | undefined,
+): Promise<Controller> {
+  const body = { settings, y_span, u_span, sample_time, units: units ?? {} };
+  const answer = await call("POST", `v1/controllers/${encodeURIComponent(product)}/controller`, body);
+  return (answer.data as { controller: Controller }).controller;
 }
 
 export async function scheduleSettingsFor(

@@ -17,6 +17,8 @@ export interface Combobox {
   field: Field<HTMLInputElement>;
   /** Shows a choice without reporting it; null empties the field. */
   set(choice: Choice | null): void;
+  /** The typed text that is no item and stays in the field because nothing is chosen; else "". */
+  unmatched(): string;
   /** The list has changed: searched again if it is open. */
   refresh(): void;
 }
@@ -26,6 +28,8 @@ export interface ComboboxOptions extends ControlOptions {
   find(typed: string): Choice[];
   /** null: the field was emptied. */
   onChoose(choice: Choice | null): void;
+  /** The field was left without a choice: it is empty, or has a text that is no item. */
+  onLeft?(): void;
 }
 
 export function combobox(options: ComboboxOptions, errors: FormErrors): Combobox {
@@ -108,12 +112,19 @@ export function combobox(options: ComboboxOptions, errors: FormErrors): Combobox
   }
 
   input.addEventListener("input", () => open(false));
-  input.addEventListener("click", () => (isOpen() ? close() : open(true)));
+  // Typing replaces the chosen item.
+  input.addEventListener("focus", () => input.select());
+  input.addEventListener("click", () => {
+    if (isOpen()) return close();
+    input.select();
+    open(true);
+  });
   input.addEventListener("blur", () => {
     close();
-    if (input.value.trim() === "") return take(null);
-    // An incomplete name chooses nothing: the previous choice is shown again.
-    input.value = chosen?.text ?? "";
+    if (input.value.trim() === "") take(null);
+    // An incomplete name chooses nothing: the previous choice is shown again. Without one the text stays.
+    if (chosen) input.value = chosen.text;
+    else options.onLeft?.();
   });
   input.addEventListener("keydown", (event) => {
     const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
@@ -144,6 +155,7 @@ export function combobox(options: ComboboxOptions, errors: FormErrors): Combobox
       chosen = choice;
       if (document.activeElement !== input || !isOpen()) input.value = choice?.text ?? "";
     },
+    unmatched: () => (chosen || isOpen() ? "" : input.value.trim()),
     refresh() {
       if (isOpen()) open(false);
     },

@@ -44,6 +44,10 @@ function fieldOf(parameter: ProductParameter): SettingField {
   };
 }
 
+/** The texts of which a parameter takes one; empty: a number. A setting that is no parameter has its own text alone. */
+export const choicesOf = (product: Product, name: string): string[] =>
+  settingFields(product).find((field) => field.name === name)?.choices.map(String) ?? ["-"];
+
 export interface SettingsReading {
   /** Undefined: all fields are empty. */
   settings: Record<string, SettingValue> | undefined;

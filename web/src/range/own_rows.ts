@@ -43,7 +43,7 @@ export function ownRows(store: Store, announce: (sentence: string) => void): Own
   const trouble = h("p", { class: "trouble", role: "status", hidden: true });
   const answer = h("div", { class: "own-rows", hidden: true });
   const copy = copyButton({ label: "Copy the table", text: () => copied || null }, announce);
-  const picker = myControllerCard(errors, chooseMine, trouble, answer);
+  const picker = myControllerCard(errors, { forms: false, onChange: chooseMine }, trouble, answer);
   picker.element.hidden = true;
   picker.setProducts(store.get().products);
   picker.set(mine);

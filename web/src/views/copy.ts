@@ -26,10 +26,12 @@ export function copyButton(options: CopyOptions, announce: (sentence: string) =>
     if (text === null) return;
     const done = await toClipboard(text);
     button.textContent = done ? "Copied" : "Not copied: select it by hand";
+    button.removeAttribute("aria-label");
     announce(`${button.textContent}.`);
     clearTimeout(timer);
     timer = setTimeout(() => {
       button.textContent = options.label;
+      if (options.spoken) button.setAttribute("aria-label", options.spoken);
     }, SHOWN_MS);
   }
 

@@ -22,7 +22,6 @@ import { cureButtons } from "./cures.ts";
 import { operatingCard } from "./cards/operating_card.ts";
 import { progressCard } from "./cards/progress_card.ts";
 import { reportCards } from "./cards/report_cards.ts";
-import { settingsCard } from "./cards/settings_card.ts";
 import { titleCard } from "./cards/title_card.ts";
 import { isOfUltimate, showUltimate } from "./cards/ultimate_card.ts";
 import { showFailure, showVerdict } from "./cards/verdict_card.ts";
@@ -65,7 +64,6 @@ export function designView(store: Store, announce: (sentence: string) => void, e
   const cures = cureButtons((request) => events.onTune(request).catch(complain));
   const range = rangeJobCard(announce);
   const progress = progressCard(announce, () => void cancel());
-  const settings = settingsCard(announce);
   let mainFigures: HTMLElement = h("div", {});
   let otherFigures: HTMLElement = h("div", {});
   const figures = h(
@@ -78,7 +76,11 @@ export function designView(store: Store, announce: (sentence: string) => void, e
   const model = h("div", { class: "slot", hidden: true });
   const notes = h("section", { class: "card", "aria-labelledby": "notes-title" });
   const computed = h("section", { class: "card computed", "aria-labelledby": "computed-title" });
-  const own = ownController(store, announce, retuneWhole);
+  const own = ownController(store, {
+    announce,
+    retune: retuneWhole,
+    onByHand: (controller) => modified.setByHand(controller),
+  });
   const reports = reportCards(announce, { onRetune: retune, onTry: own.follow });
   const reportsAt = (place: "above" | "below") => reports.filter((card) => card.place === place).map((card) => card.element);
   const legend = createLegend(store);
@@ -100,19 +102,28 @@ export function designView(store: Store, announce: (sentence: string) => void, e
       return job && { job, index };
     },
   });
-  const main = h("div", { class: "main-column" }, legend.element, linearNote, plots.element);
-  const aside = h("div", { class: "side" }, settings.element, figures);
+  const main = h("div", { class: "main-column" }, linearNote, plots.element);
+  const aside = h("div", { class: "side" }, figures);
   const more = h(
     "details",
     { class: "more", open: store.get().mine !== null },
-    h("summary", {}, "More: my controller, code, set point against load, how it was computed"),
-    h("div", { class: "more-cards" }, own.side, ...reportsAt("below"), ...own.below, computed),
+    h("summary", {}, "More: code, how my controller computes, set point against load, how it was computed"),
+    h("div", { class: "more-cards" }, ...reportsAt("below"), ...own.below, computed),
   );
   const followsLater = h("p", { class: "hint", hidden: true }, "The figures below follow when you release the slider.");
   const below = h("div", { class: "below" }, followsLater, model, ...reportsAt("above"), notes, more);
-  const headRight = h("div", { class: "head-right" }, trouble, verdict, cures.element, progress.element, range.element);
-  const element = h("main", { class: "design", id: "main" }, title.element, headRight);
-  const bodyParts = [modified.controls, main, modified.front, aside, below];
+  const said = h("div", { class: "verdict-column" }, trouble, verdict, cures.element, progress.element, range.element, legend.element);
+  const head = h("div", { class: "design-head" }, own.answer, said);
+  const left = h("div", { class: "left-column" }, modified.controls, modified.front);
+  const element = h("main", { class: "design", id: "main" }, title.element, head, left);
+  const bodyParts = [main, aside, below];
+
+  /** Everything below the verdict, and the settings next to it. */
+  function showBody(there: boolean): void {
+    for (const part of [own.answer, legend.element, modified.controls, modified.front]) part.classList.toggle("absent", !there);
+    if (!there) for (const part of bodyParts) part.remove();
+    else if (!main.isConnected) element.append(...bodyParts);
+  }
 
   /** The entry whose settings are shown. */
   function selectedEntry(result: Result, workspace: Workspace): number {
@@ -166,8 +177,8 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     const drawn = drawnEntries(result, workspace.drawn ? drawnOf(workspace.drawn, origin) : defaultDrawn(result));
     const listed = listedEntries(entries.length, drawn, index);
     const record = formatRoute({ screen: "identify", job: job.id });
-    showVerdict(verdict, result, names, index, listed, record);
-    settings.show(entries[index]!, names[index]!, units);
+    showVerdict(verdict, result, names, index, listed, record, units);
+    if (held) own.move(ownShown(job, whole, index, names[index]!, units));
     showFigures(result, listed, drawn, names, units, held);
     linearNote.hidden = !hasLinear(drawn);
     showEntryPlots(plots, drawn, job.request, index);
@@ -178,11 +189,23 @@ export function designView(store: Store, announce: (sentence: string) => void, e
   const drawnOf = (chosen: number[], origin: number[]): number[] =>
     chosen.flatMap((index) => (origin.includes(index) ? [origin.indexOf(index)] : []));
 
+  const ownShown = (job: Job, whole: Result, index: number, name: string, units: UnitNames) => ({
+    job,
+    request: requestShown(job, screen!),
+    result: screen!.result,
+    index,
+    name,
+    units,
+    code: screen!.result === whole ? index : null,
+    mark: modified.mark(),
+    typeable: modified.isMovable(),
+  });
+
   function showResult(job: Job, whole: Result, workspace: Workspace): void {
     const selected = selectedEntry(whole, workspace);
     screenOf = job.id;
     modified.show(job, whole, selected);
-    if (!main.isConnected) element.append(...bodyParts);
+    showBody(true);
     const drawn = showMoving(job, whole, workspace, false);
     const { result, index, origin } = screen!;
     const entries = result.controllers;
@@ -196,8 +219,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     const linear = result.model?.plant ?? result.linear_model ?? job.request?.plant;
     const reported = { name: names[index]!, entry: entries[index]!, model: linear, request: job.request, units };
     for (const card of reports) card.show(reported);
-    const request = requestShown(job, screen!);
-    own.show({ job, request, result, index, name: names[index]!, units, code: result === whole ? index : null });
+    own.show(ownShown(job, whole, index, names[index]!, units));
     if (model.childElementCount === 0) {
       const about = result.model ? modelResult(result.model, units) : operatingCard(result, job.request);
       model.replaceChildren(...(about ? [about] : []));
@@ -241,14 +263,14 @@ export function designView(store: Store, announce: (sentence: string) => void, e
     finished = null;
     if (!isFinal(job.status)) {
       // The cards still show the previous job.
-      if (screenOf !== job.id) for (const part of bodyParts) part.remove();
+      if (screenOf !== job.id) showBody(false);
       progress.show(job);
     } else if (job.result?.range) {
       showRangeVerdict(verdict, job.result.range);
       range.show(job, job.result.range);
       announce(verdict.textContent ?? "");
     } else if (job.result && isOfUltimate(job.request)) {
-      for (const part of bodyParts) part.remove();
+      showBody(false);
       comparison.hidden = all.hidden = true;
       showUltimate(verdict, job.result, unitNames(job.request?.units));
       announce(verdict.textContent ?? "");
@@ -258,7 +280,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
       if (announced !== job.result) announce(verdict.textContent ?? "");
       announced = job.result;
     } else {
-      for (const part of bodyParts) part.remove();
+      showBody(false);
       showFailure(verdict, job);
     }
   }
@@ -266,6 +288,7 @@ export function designView(store: Store, announce: (sentence: string) => void, e
   const parts = (["job", "jobTrouble", "selected", "drawn", "sort"] as const).map((name) =>
     store.pick((workspace) => workspace[name]),
   );
+  showBody(false);
   const leave = shown(
     () => parts.map((part) => part.value),
     () => show(store.get()),

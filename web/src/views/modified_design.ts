@@ -3,7 +3,7 @@ import { sentenceOf } from "../api/client.ts";
 import { effect, untracked } from "@preact/signals-core";
 import { callSubject } from "../api/live.ts";
 import { isFinal } from "../api/types.ts";
-import type { Entry, Job, Method, Plant, Result, TuningRequest } from "../api/types.ts";
+import type { Controller, Entry, Job, Method, Plant, Result, TuningRequest } from "../api/types.ts";
 import { h, passFocus } from "../dom.ts";
 import { rowsOf, tuneEntryOf } from "../form/tuning_request.ts";
 import type { SliderSpec } from "../live/sliders.ts";
@@ -39,6 +39,12 @@ export interface ModifiedDesign {
   onScreen(job: Job, result: Result, index: number): OnScreen;
   /** The newest answer, if the entry was modified. */
   answer(): Answer | null;
+  /** How the displayed settings came about if they are not the job's; else "". */
+  mark(): string;
+  /** The entry has sliders, hence other settings can be shown in its place. */
+  isMovable(): boolean;
+  /** Shows these settings, as one step. */
+  setByHand(controller: Controller): void;
   dispose(): void;
 }
 
@@ -302,6 +308,14 @@ export function modifiedDesign(
       return modified ? answer : { result, index, origin: [...result.controllers.keys()], path: "v1/jobs", request: job.request };
     },
     answer: () => live.answer.peek(),
+    isMovable: () => live.point.peek() !== null && !controls.element.hidden,
+    setByHand(controller) {
+      live.settle({ tune: (live.point.peek() ?? proposal!).tune, manual: controller });
+    },
+    mark() {
+      const answer = live.answer.peek();
+      return !answer ? "" : answer.point.manual ? "set by hand" : "moved by the sliders";
+    },
     dispose() {
       document.removeEventListener("keydown", onKey);
       for (const stop of leaving) stop();

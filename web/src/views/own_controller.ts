@@ -3,22 +3,31 @@
 import { ApiError, sentenceOf } from "../api/client.ts";
 import { latest } from "../api/latest.ts";
 import { callSubject } from "../api/live.ts";
-import { getProduct } from "../api/products.ts";
+import { getProduct, knownProduct } from "../api/products.ts";
 import type { AsEntered, Controller, Entry, Job, Product, Result, SettingValue, TuningRequest } from "../api/types.ts";
 import { h } from "../dom.ts";
 import { FormErrors } from "../form/errors.ts";
+import { choicesOf } from "../form/product_settings.ts";
 import { withBaseline, withImplement } from "../form/tuning_request.ts";
 import { implementOf, inUnits, mineOfRequest, named, rememberMine, sameImplement, typedBaseline } from "../my_controller.ts";
 import type { MyController } from "../my_controller.ts";
 import type { Store } from "../store.ts";
+import { formOf, formRows, productRows } from "../words/answer.ts";
 import type { UnitNames } from "../words/numbers.ts";
+import { productTitle, typedRows, typedText } from "../words/products.ts";
+import { formulaLine, rememberedForm, rememberForm, settingsOf, settingsText } from "../words/settings.ts";
+import type { TextbookForm } from "../words/settings.ts";
+import { answerCard } from "./cards/answer_card.ts";
+import type { Answer } from "./cards/answer_card.ts";
 import { codeCard } from "./cards/code_card.ts";
+import { productDetails, productTroubles } from "./cards/in_product.ts";
 import { myControllerCard } from "./cards/my_controller_card.ts";
 import { ownTodayCard } from "./cards/own_today_card.ts";
 import { productCard } from "./cards/product_card.ts";
-import { typedCard } from "./cards/typed_card.ts";
 import { askTyped } from "./typed_question.ts";
 import type { TypedAnswer, TypedQuestion } from "./typed_question.ts";
+import { controllerInForm, controllerInProduct } from "./typed_settings.ts";
+import type { TypedTexts } from "./typed_settings.ts";
 
 interface Shown {
   job: Job;
@@ -31,26 +40,36 @@ interface Shown {
   units: UnitNames;
   /** The entry of the job that the service can write as code; null if the displayed design is not the job's own. */
   code: number | null;
+  /** How the settings came about if they are not the job's, such as "set by hand"; else "". */
+  mark: string;
+  /** Other settings can be typed in their place. */
+  typeable: boolean;
 }
 
 export interface OwnController {
-  /** The cards next to the plots, and those below them. */
-  side: HTMLElement;
+  /** The settings to enter, first on the screen; and the cards below the plots. */
+  answer: HTMLElement;
   below: HTMLElement[];
   show(shown: Shown): void;
+  /** While a slider is held: the settings alone, as far as they are known without a question. */
+  move(shown: Shown): void;
   /** Settings that are tried by hand; null: the entry's own again. */
   follow(controller: Controller | null): void;
   dispose(): void;
 }
 
-/** `retune`: designs again in this job's place. */
-export function ownController(
-  store: Store,
-  announce: (sentence: string) => void,
-  retune: (request: TuningRequest) => Promise<void>,
-): OwnController {
+export interface OwnControllerEvents {
+  announce(sentence: string): void;
+  /** Designs again in this job's place. */
+  retune(request: TuningRequest): Promise<void>;
+  /** Settings that were typed in the card: shown as set by hand. */
+  onByHand(controller: Controller): void;
+}
+
+export function ownController(store: Store, { announce, retune, onByHand }: OwnControllerEvents): OwnController {
   let shown: Shown | null = null;
   let mine: MyController | null = store.get().mine;
+  let form: TextbookForm = rememberedForm();
   let tried: Controller | null = null;
   /** The question whose answer is shown or in progress. */
   let asked = "";
@@ -60,19 +79,28 @@ export function ownController(
   const redesign = h("button", { type: "button", onclick: () => void designForMine() });
   const today = ownTodayCard(errors, (settings) => void designBesideToday(settings));
   const trouble = h("p", { class: "trouble", role: "status", hidden: true });
-  const picker = myControllerCard(errors, chooseMine, h("div", { class: "actions" }, redesign), trouble, today.element);
-  const typed = typedCard(announce);
-  const side = h("div", { class: "own-controller" }, picker.element, typed.element);
+  const picker = myControllerCard(
+    errors,
+    { forms: true, onChange: chooseMine },
+    h("div", { class: "actions" }, redesign),
+    trouble,
+  );
+  const answer = answerCard({ announce, onType: typeInto }, {
+    picker: picker.element,
+    notes: picker.notes,
+    folded: [picker.facts, today.element],
+  });
+  answer.element.classList.add("own-controller");
 
   const calls = latest<TypedQuestion, TypedAnswer>(askTyped, {
-    onBusy: typed.setBusy,
+    onBusy: answer.setBusy,
     onAnswer({ product, entered, judged }) {
       if (!shown) return;
       showTyped(product, entered, judged ?? (tried ? null : shown.result.controllers[shown.index]!));
       if (!tried) announce(`Settings of ${shown.name} for ${mine?.name ?? product.name} are shown.`);
     },
     onError(error) {
-      typed.complain(firstFault(error));
+      answer.complain(["Nothing to type", ""], firstFault(error));
       asked = "";
     },
   });
@@ -82,16 +110,82 @@ export function ownController(
     return listed[0]?.detail ?? sentenceOf(error);
   }
 
-  function chooseMine(next: MyController | null): void {
+  function chooseMine(next: MyController | null, chosen: TextbookForm): void {
     mine = next;
+    form = chosen;
+    rememberForm(chosen);
     rememberMine(next);
     store.set((workspace) => ({ ...workspace, mine: next }));
     showMine();
   }
 
+  const whose = (): string => [tried ? "the manual controller" : shown!.name, shown!.mark].filter(Boolean).join(", ");
+
+  /** The job's entry of today's settings. */
+  const todayEntry = (): Entry | undefined => shown?.result.controllers.find((entry) => entry.method === "baseline");
+
+  /** Today's settings by the product's own names: as the service wrote them, or as they were given. */
+  function todaysTyped(product: Product): Record<string, SettingValue> {
+    const { baseline, implement } = shown!.request;
+    const written = sameImplement(implement, implementOf(mine)) ? todayEntry()?.as_entered?.as_typed : undefined;
+    return { ...written, ...(baseline?.product === product.id ? baseline.settings : {}) };
+  }
+
   function showTyped(product: Product, entered: AsEntered, judged: Entry | null): void {
-    const name = tried ? "the manual controller" : shown!.name;
-    typed.show({ product, name, entered, judged: tried ? null : judged, time: shown!.units.time });
+    const heading = productTitle(product);
+    const settled = tried ? null : judged;
+    answer.show({
+      heading: ["Type into", ` ${heading}`],
+      whose: whose(),
+      rows: productRows(product, entered, todaysTyped(product)),
+      text: typedText(`${heading}: ${whose()}`, typedRows(product, entered)),
+      below: productTroubles(settled),
+      details: productDetails(product, entered, settled, shown!.units.time),
+      choices: typeable() ? (name) => choicesOf(product, name) : null,
+    });
+  }
+
+  const typeable = (): boolean => !tried && shown!.typeable;
+
+  /** Typed texts as a controller: in the product, or in the form. */
+  async function typeInto(texts: TypedTexts): Promise<void> {
+    if (!shown) return;
+    const { request, result, index } = shown;
+    const implement = implementOf(mine);
+    const subject = callSubject(request, result);
+    try {
+      const product = implement && (await getProduct(implement.product));
+      const entry = result.controllers[index]!;
+      onByHand(
+        product
+          ? await controllerInProduct(product, implement, texts, request)
+          : await controllerInForm(entry, formOf(entry, form), texts, subject!),
+      );
+    } catch (error) {
+      const listed = error instanceof ApiError ? (error.problem.errors ?? []) : [];
+      answer.refuse(listed[0]?.detail ?? sentenceOf(error));
+    }
+  }
+
+  function showForm(): void {
+    const { result, index, units } = shown!;
+    const job = result.controllers[index]!;
+    const entry = tried ? { ...job, controller: tried } : job;
+    const inForm = formOf(entry, form);
+    const rows = formRows(entry, todayEntry(), inForm, units);
+    const settings = settingsOf(entry, inForm, units);
+    const heading: Answer["heading"] = ["Settings to enter:", ` ${shown!.name}`];
+    if (typeof rows === "string" || typeof settings === "string") return answer.complain(heading, String(rows));
+    const text = settingsText(inForm, settings);
+    answer.show({
+      heading,
+      whose: whose(),
+      rows,
+      text,
+      below: [h("p", { class: "hint" }, formulaLine(inForm, entry))],
+      details: [],
+      choices: typeable() ? () => [] : null,
+    });
   }
 
   /** Shows the product's own cards: its law, and today's settings in it. */
@@ -153,7 +247,9 @@ export function ownController(
     if (!shown || !entry || !controller || !implement) {
       calls.drop();
       asked = "";
-      return typed.hide();
+      answer.setBusy(false);
+      if (shown && entry) showForm();
+      return;
     }
     const request = shown.request;
     const key = JSON.stringify([shown.job.id, shown.index, implement, controller]);
@@ -162,12 +258,12 @@ export function ownController(
     const known = !tried && sameImplement(request.implement, implement) ? entry.as_entered : undefined;
     if (known) {
       calls.drop();
-      typed.setBusy(false);
+      answer.setBusy(false);
       getProduct(implement.product).then(
         (product) => {
           if (asked === key) showTyped(product, known, entry);
         },
-        (error: unknown) => typed.complain(firstFault(error)),
+        (error: unknown) => answer.complain(["Nothing to type", ""], firstFault(error)),
       );
       return;
     }
@@ -180,7 +276,7 @@ export function ownController(
     button.disabled = true;
     button.textContent = "Designing…";
     trouble.hidden = true;
-    side.setAttribute("aria-busy", "true");
+    answer.setBusy(true);
     try {
       await retune(request);
     } catch (error) {
@@ -188,7 +284,7 @@ export function ownController(
     } finally {
       button.disabled = false;
       button.textContent = label;
-      side.removeAttribute("aria-busy");
+      answer.setBusy(false);
     }
   }
 
@@ -215,7 +311,7 @@ export function ownController(
   }
 
   picker.setProducts(store.get().products);
-  picker.set(mine);
+  picker.set(mine, form);
   const leave = store.subscribe((workspace, previous) => {
     if (workspace.products === previous.products) return;
     picker.setProducts(workspace.products);
@@ -232,7 +328,7 @@ export function ownController(
   }
 
   return {
-    side,
+    answer: answer.element,
     below: [code.element, about.element],
     show(next) {
       const sameJob = shown?.job.id === next.job.id;
@@ -248,6 +344,15 @@ export function ownController(
       }
       showCode();
       update();
+    },
+    move(next) {
+      shown = next;
+      const entry = next.result.controllers[next.index];
+      const implement = implementOf(mine);
+      if (!implement) return showForm();
+      const entered = sameImplement(next.request.implement, implement) ? entry?.as_entered : undefined;
+      const product = knownProduct(implement.product);
+      if (entered && product) showTyped(product, entered, entry!);
     },
     follow(controller) {
       if (controller === tried) return;

@@ -113,12 +113,15 @@ export function startView(store: Store, events: StartEvents): StartView {
     mineCard.setUnits(units);
   });
   let mine = store.get().mine;
-  const mineCard = myControllerCard(errors, (next) => {
-    mine = next;
-    rememberMine(next);
-    today.setMine(next);
-    showKept();
-    store.set((workspace) => ({ ...workspace, mine: next }));
+  const mineCard = myControllerCard(errors, {
+    forms: false,
+    onChange(next) {
+      mine = next;
+      rememberMine(next);
+      today.setMine(next);
+      showKept();
+      store.set((workspace) => ({ ...workspace, mine: next }));
+    },
   });
   const examples = h("div", { class: "examples" });
   const recent = h("p", { class: "recent", hidden: true });

@@ -10,35 +10,56 @@ import { spanFields } from "../../form/span_fields.ts";
 import { missingOf } from "../../my_controller.ts";
 import type { MyController } from "../../my_controller.ts";
 import type { UnitNames } from "../../words/numbers.ts";
+import { TEXTBOOK_FORMS, formTitle } from "../../words/settings.ts";
+import type { TextbookForm } from "../../words/settings.ts";
 import { evidenceWords, findProducts, needSentence, productTitle } from "../../words/products.ts";
+
+const formChoice = (form: TextbookForm): Choice => ({ id: form, text: formTitle(form), aside: "" });
+
+/** The forms whose title holds what is typed. */
+const findForms = (typed: string): Choice[] =>
+  TEXTBOOK_FORMS.map(formChoice).filter(({ text }) => text.toLowerCase().includes(typed.trim().toLowerCase()));
 
 export interface MyControllerCard {
   element: HTMLElement;
+  /** With forms: the parts that stand elsewhere in the card of the settings. What is missing, and `below`; and the
+      folded ranges. */
+  notes: HTMLElement[];
+  facts: HTMLElement;
   setProducts(products: ProductSummary[]): void;
   setUnits(units: UnitNames): void;
-  /** Without reporting. */
-  set(mine: MyController | null): void;
+  /** Without reporting. `form`: the textbook form that stands in place of a product, where forms are offered. */
+  set(mine: MyController | null, form?: TextbookForm): void;
   /** The content of the fields. A missing fact is not a fault: the card names it. */
   read(): { mine: MyController | null; errors: FieldError[] };
 }
 
-/** `onChange`: receives the readable part, whether or not something is missing yet. */
+export interface MyControllerOptions {
+  /** Offers the textbook forms as well as the products: the field alone, for the card of the settings. */
+  forms: boolean;
+  /** Receives the readable part, whether or not something is missing yet; `form`: what stands in place of a product. */
+  onChange(mine: MyController | null, form: TextbookForm): void;
+}
+
 export function myControllerCard(
   errors: FormErrors,
-  onChange: (mine: MyController | null) => void,
+  { forms, onChange }: MyControllerOptions,
   ...below: HTMLElement[]
 ): MyControllerCard {
   let products: ProductSummary[] = [];
   let units: UnitNames | null = null;
   let chosen: Pick<MyController, "product" | "name" | "needs"> | null = null;
+  let form: TextbookForm = "ideal";
   const title = h("h2", { id: uniqueId("mine") }, "My controller ", h("span", { class: "optional" }, "optional"));
   const search = combobox(
     {
       label: "Maker and product",
+      bare: forms,
       placeholder: "type a maker or a name, such as DeltaV",
       pointer: () => "/implement/product",
-      find: (typed) => findProducts(products, typed).map(choiceOf),
+      find: (typed) => [...(forms ? findForms(typed) : []), ...findProducts(products, typed).map(choiceOf)],
       onChoose: choose,
+      onLeft: change,
     },
     errors,
   );
@@ -62,15 +83,19 @@ export function myControllerCard(
   const needed = h("p", { class: "hint", role: "status", hidden: true });
   const fields = h("div", { class: "needs", hidden: true }, measurement.element, output.element, sampling.element);
   const forget = h("button", { type: "button", class: "quiet", hidden: true, onclick: () => choose(null) }, "No controller");
-  const element = h(
-    "section",
-    { class: "card my-controller", "aria-labelledby": title.id },
-    h("div", { class: "head" }, title, forget),
-    search.element,
-    fields,
-    needed,
-    below,
-  );
+  const facts = h("details", { class: "facts", hidden: true }, h("summary", {}, "Ranges and sample time"));
+  if (forms) facts.append(fields);
+  const notes = [needed, ...below];
+  const element = forms
+    ? h("div", { class: "my-controller" }, search.element)
+    : h(
+        "section",
+        { class: "card my-controller", "aria-labelledby": title.id },
+        h("div", { class: "head" }, title, forget),
+        search.element,
+        fields,
+        notes,
+      );
 
   const choiceOf = (product: ProductSummary): Choice => ({
     id: product.id,
@@ -79,6 +104,7 @@ export function myControllerCard(
   });
 
   function choose(choice: Choice | null): void {
+    form = TEXTBOOK_FORMS.find((name) => name === choice?.id) ?? form;
     const product = products.find((item) => item.id === choice?.id);
     chosen = product ? { product: product.id, name: productTitle(product), needs: product.needs as Need[] } : null;
     show();
@@ -87,16 +113,20 @@ export function myControllerCard(
 
   /** Shows the fields that the chosen product needs, and no others. */
   function show(): void {
-    search.set(chosen ? { id: chosen.product, text: chosen.name, aside: "" } : null);
+    search.set(chosen ? { id: chosen.product, text: chosen.name, aside: "" } : forms ? formChoice(form) : null);
     const needs = (need: Need): boolean => chosen?.needs.includes(need) ?? false;
-    fields.hidden = !chosen;
+    fields.hidden = facts.hidden = !chosen;
     forget.hidden = !chosen;
     measurement.element.hidden = !needs("y_span");
     output.element.hidden = !needs("u_span");
   }
 
   function read(): { mine: MyController | null; errors: FieldError[] } {
-    if (!chosen) return { mine: null, errors: [] };
+    if (!chosen) {
+      const typed = search.unmatched();
+      const detail = `There is no controller "${typed}" in the list. Choose one from the list, or clear the field.`;
+      return { mine: null, errors: typed ? [{ pointer: "/implement/product", detail }] : [] };
+    }
     const [y, u] = [measurement.read(), output.read()];
     const typed = sampling.input.value.trim();
     const period = typed === "" ? null : parseNumber(typed, "Sample time");
@@ -119,6 +149,7 @@ export function myControllerCard(
 
   function sayMissing(mine: MyController | null): void {
     needed.textContent = mine ? needSentence(missingOf(mine)) : "";
+    if (needed.textContent !== "") facts.open = true;
     needed.hidden = needed.textContent === "";
   }
 
@@ -126,11 +157,13 @@ export function myControllerCard(
     const { mine, errors: faults } = read();
     errors.mark("/implement", faults);
     sayMissing(mine);
-    onChange(mine);
+    onChange(mine, form);
   }
 
   return {
     element,
+    notes,
+    facts,
     setProducts(list) {
       products = list;
       search.refresh();
@@ -141,7 +174,8 @@ export function myControllerCard(
       output.setUnit(units.u);
       sampling.setUnit(units.time);
     },
-    set(mine) {
+    set(mine, given) {
+      form = given ?? form;
       chosen = mine ? { product: mine.product, name: mine.name, needs: mine.needs } : null;
       measurement.set(mine?.y_span);
       output.set(mine?.u_span);

@@ -2,7 +2,10 @@
 import type { Finding, Job, Result } from "../../api/types.ts";
 import { h } from "../../dom.ts";
 import { reasonOf } from "../../words/comparison.ts";
+import { factsOf } from "../../words/facts.ts";
+import type { Fact } from "../../words/facts.ts";
 import { withMinus } from "../../words/numbers.ts";
+import type { UnitNames } from "../../words/numbers.ts";
 import { timeUnitDoubt } from "../../words/quality.ts";
 
 /** The classes of the levels; a note looks like ordinary text. */
@@ -23,6 +26,7 @@ export function showVerdict(
   selected: number,
   listed: number[],
   recordAddress: string,
+  units: UnitNames,
 ): void {
   const entries = result.controllers;
   const [head = NO_VERDICT, ...others] = entries[selected]!.verdict ?? [];
@@ -34,11 +38,20 @@ export function showVerdict(
       : [],
   );
   card.className = `verdict ${LEVEL_CLASS[head.level]}`;
-  card.replaceChildren(h("h2", {}, who, withMinus(head.text)), h("p", {}, [...stopped, ...others].map(said)));
+  const today = entries.find((entry) => entry.method === "baseline");
+  const facts = factsOf(entries[selected]!, today, units).map(factElement);
+  card.replaceChildren(
+    h("h2", {}, who, withMinus(head.text)),
+    facts.length > 0 ? h("dl", { class: "facts" }, facts) : "",
+    h("p", {}, [...stopped, ...others].map(said)),
+  );
   if (failures.length > 0) card.append(h("ul", {}, failures));
   const doubt = result.model ? timeUnitDoubt(result.model) : "";
   if (doubt) card.append(h("p", { class: "trouble" }, `${doubt} `, h("a", { href: recordAddress }, "Choose the unit")));
 }
+
+const factElement = ({ label, value, beside }: Fact): HTMLElement =>
+  h("div", {}, h("dt", {}, label), h("dd", {}, value, beside ? h("small", {}, ` ${beside}`) : ""));
 
 /** The headings for kinds of failures. */
 function failedHead(job: Job): string {

@@ -1,0 +1,146 @@
+// The answer first: the settings to enter stand above the plots, in the user's product, with today's values, and other
+// values can be typed in their place.
+import assert from "node:assert/strict";
+import test from "node:test";
+import { openDesign, PLANT, setting, shows } from "../design_page.mjs";
+import { accessibilityViolations, browserTests, overflow } from "../harness.mjs";
+import { assertRequestIsShown, requestHandedOut, watchCalls } from "../shown_request.mjs";
+
+const tests = browserTests();
+const { withPage, post } = tests;
+
+const DELTAV = { product: "emerson_deltav_standard", y_span: [0, 200], u_span: [0, 100], sample_time: 0.5 };
+const LOOP = {
+  name: "TIC-101",
+  units: { time: "s", u: "%", y: "degC" },
+  plant: { type: "fopdt", K: 2, T: 10, L: 3 },
+  tune: [{ method: "robust" }, { method: "simc" }],
+  implement: DELTAV,
+  baseline: { ...DELTAV, settings: { GAIN: 1, RESET: 10, RATE: 0 } },
+};
+
+async function openLoop(page, request = LOOP) {
+  const { id, result } = await post("v1/jobs", request);
+  await page.goto(`${tests.service.base}/#/jobs/${id}/design`);
+  await page.locator("table.typed tbody tr").first().waitFor();
+  return { id, entry: result.controllers[result.proposed ?? 0] };
+}
+
+/** Label, today's value, new value and unit of each row. */
+const rowsOf = (page) =>
+  page.locator("table.typed tbody tr").evaluateAll((rows) =>
+    rows.map((row) => ["th", ".today", ".value", ".unit"].map((cell) => row.querySelector(cell)?.textContent ?? "")),
+  );
+
+for (const [window, options] of [
+  ["1440 x 900", {}],
+  ["1280 x 720", { width: 1280, height: 720 }],
+  ["a phone", { width: 390, height: 844 }],
+  ["dark 1280 x 720", { width: 1280, height: 720, scheme: "dark" }],
+])
+  test(`the settings to enter stand whole on the first screen, above the plots: ${window}`, async () => {
+    await withPage("", options, async (page) => {
+      const { entry } = await openLoop(page);
+      await page.getByRole("heading", { name: "Type into Emerson DeltaV PID, FORM Standard" }).waitFor();
+      const rows = await rowsOf(page);
+      assert.deepEqual(rows.slice(0, 3), [
+        ["GAIN", "1", entry.as_entered.as_typed.GAIN, entry.as_entered.units.GAIN ?? ""],
+        ["RESET", "10", entry.as_entered.as_typed.RESET, "s"],
+        ["RATE", "0", entry.as_entered.as_typed.RATE, "s"],
+      ]);
+      assert.ok(rows.some(([label, , value]) => label === "STRUCTURE" && value !== ""), "the block needs its structure");
+      const table = await page.locator("table.typed").boundingBox();
+      const plot = await page.locator(".main-column section.plot").first().boundingBox();
+      assert.ok(table.y + table.height <= (options.height ?? 900), `the rows end at ${table.y + table.height}`);
+      assert.ok(table.y + table.height <= plot.y, "the plots follow");
+      const facts = await page.locator(".verdict .facts dt").allInnerTexts();
+      assert.equal(facts.length, 3, facts.join());
+      assert.equal(await overflow(page), 0);
+      assert.deepEqual(await accessibilityViolations(page), []);
+    });
+  });
+
+test("other values typed in the product's rows are shown with their verdict, marked, and asked for again", async () => {
+  await withPage("", {}, async (page) => {
+    const settled = watchCalls(page);
+    await openLoop(page);
+    await page.getByRole("button", { name: "Type other values" }).click();
+    const gain = page.getByRole("textbox", { name: "GAIN, new" });
+    await gain.fill("1,3");
+    await gain.press("Enter");
+    await page.waitForURL(/Kp=0\.65&/);
+    await settled();
+    assert.equal(Number(await gain.inputValue()), 1.3);
+    await page.getByText("robust, set by hand", { exact: true }).waitFor();
+    const request = await requestHandedOut(page);
+    assert.equal(request.controllers[0].Kp, 0.65);
+    assert.deepEqual(request.implement, DELTAV);
+    const { controllers } = await post("v1/evaluate", request);
+    const verdict = await page.locator(".verdict > p:not(.trouble)").innerText();
+    assert.ok(verdict.includes(controllers[0].verdict.at(-1).text.replaceAll("-", "−")) || verdict.includes(controllers[0].verdict.at(-1).text));
+
+    await page.getByRole("textbox", { name: "RESET, new" }).fill("a while");
+    await page.getByRole("textbox", { name: "RESET, new" }).press("Enter");
+    await page.getByText(/^RESET "a while" is not a number/).waitFor();
+    await page.getByRole("button", { name: "Type other values" }).click();
+    await page.getByRole("button", { name: "Undo" }).click();
+    await page.getByText("robust", { exact: true }).first().waitFor();
+    await page.waitForURL(/design(\?entry=\d)?$/);
+  });
+});
+
+for (const [form, name, typed, Kp, Ti, Td] of [
+  ["Ideal form", "Ti", 30, (kp) => kp, () => 30, (_kp, _ti, td) => td],
+  ["Series form", "Ti", 20, (kp, _ti, td) => kp * (1 + td / 20), (_kp, _ti, td) => 20 + td, (_kp, _ti, td) => (20 * td) / (20 + td)],
+  ["Parallel form", "Ki", 0.05, (kp) => kp, (kp) => kp / 0.05, (kp, _ki, kd) => kd / kp],
+])
+  test(`a value typed in the ${form.toLowerCase()} makes the controller of that form`, async () => {
+    await withPage(PLANT, {}, async (page) => {
+      const settled = watchCalls(page);
+      await openDesign(page);
+      const picker = page.getByRole("combobox", { name: "Maker and product" });
+      await picker.fill(form);
+      await page.getByRole("option", { name: form }).click();
+      const rows = await rowsOf(page);
+      const before = rows.slice(0, 3).map(([, , value]) => Number(value));
+      await page.getByRole("button", { name: "Type other values" }).click();
+      const field = page.getByRole("textbox", { name: `${name}, new` });
+      await field.fill(String(typed));
+      await field.press("Enter");
+      await page.waitForURL(/Ti=/);
+      await settled();
+      await page.getByRole("button", { name: "Type other values" }).click();
+      await shows(page, name, typed);
+      await picker.fill("Ideal form");
+      await page.getByRole("option", { name: "Ideal form" }).click();
+      for (const [label, wanted] of [["Kp", Kp(...before)], ["Ti", Ti(...before)], ["Td", Td(...before)]])
+        assert.ok(Math.abs((await setting(page, label)) / wanted - 1) < 1e-3, `${label} is not ${wanted}`);
+      await assertRequestIsShown(page, post, form);
+    });
+  });
+
+test("the card is copied as a table, with today's values", async () => {
+  await withPage("", {}, async (page) => {
+    await page.context().grantPermissions(["clipboard-read", "clipboard-write"], { origin: tests.service.base });
+    await openLoop(page);
+    const rows = await rowsOf(page);
+    await page.getByRole("button", { name: "Copy as table" }).click();
+    await page.getByRole("button", { name: "Copied" }).waitFor();
+    const copied = await page.evaluate(() => navigator.clipboard.readText());
+    assert.equal(copied, [["parameter", "today", "new", "unit"], ...rows].map((cells) => cells.join("\t")).join("\n"));
+  });
+});
+
+for (const [window, options] of [["desktop", {}], ["1280 x 720", { width: 1280, height: 720 }], ["phone", { width: 390, height: 844 }]])
+  test(`long names and units stay in the card: ${window}`, async () => {
+    await withPage("", options, async (page) => {
+      const unit = "Kilogrammprosekunde2";
+      await openLoop(page, { ...LOOP, name: "Temperaturregelung".repeat(6).slice(0, 100), units: { time: "s", u: unit, y: unit }, implement: undefined, baseline: { form: "ideal", Kp: 0.3, Ti: 12 } });
+      assert.equal(await overflow(page), 0);
+      const card = await page.locator(".settings").boundingBox();
+      for (const cell of await page.locator("table.typed td").all()) {
+        const box = await cell.boundingBox();
+        assert.ok(box.x + box.width <= card.x + card.width, await cell.innerText());
+      }
+    });
+  });

@@ -1,0 +1,37 @@
+// The three facts beside a verdict: robustness, load, set point; of the implemented loop where it is known.
+import type { Entry, Figures } from "../api/types.ts";
+import { besideLimit } from "./figures.ts";
+import { formatNumber, formatPercent, product, withUnit } from "./numbers.ts";
+import type { UnitNames } from "./numbers.ts";
+
+export interface Fact {
+  label: string;
+  value: string;
+  /** What the value is compared with: a limit, or today's; "" if there is nothing. */
+  beside: string;
+}
+
+const numberOf = (part: unknown, name: string): number | null => {
+  const value = (part as Figures | undefined)?.[name];
+  return typeof value === "number" && Number.isFinite(value) ? value : null;
+};
+
+/** Facts without a figure are left out. `today`: the entry of today's settings. */
+export function factsOf(entry: Entry, today: Entry | undefined, units: UnitNames): Fact[] {
+  const { robustness, performance } = entry.implemented ?? entry;
+  const worst = numberOf(entry.region, "worst_Ms");
+  const load = numberOf(performance?.load, "IAE");
+  const before = today && today !== entry ? numberOf((today.implemented ?? today).performance?.load, "IAE") : null;
+  const overshoot = numberOf(performance?.setpoint, "overshoot_percent");
+  const facts = [
+    { label: worst === null ? "Ms" : "Worst Ms", number: worst ?? numberOf(robustness, "Ms"), text: formatNumber, beside: "" },
+    {
+      label: withUnit("Load IAE", product(units.y, units.time)),
+      number: load,
+      text: formatNumber,
+      beside: before === null ? "" : `today ${formatNumber(before)}`,
+    },
+    { label: "Overshoot (%)", number: overshoot, text: formatPercent, beside: besideLimit(entry).replaceAll(/[()]/g, "").trim() },
+  ];
+  return facts.flatMap(({ label, number, text, beside }) => (number === null ? [] : [{ label, value: text(number), beside }]));
+}

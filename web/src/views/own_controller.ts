@@ -24,6 +24,7 @@ import { productDetails, productTroubles } from "./cards/in_product.ts";
 import { myControllerCard } from "./cards/my_controller_card.ts";
 import { ownTodayCard } from "./cards/own_today_card.ts";
 import { productCard } from "./cards/product_card.ts";
+import { snippetBlocks } from "./cards/snippets.ts";
 import { askTyped } from "./typed_question.ts";
 import type { TypedAnswer, TypedQuestion } from "./typed_question.ts";
 import { controllerInForm, controllerInProduct } from "./typed_settings.ts";
@@ -139,7 +140,7 @@ export function ownController(store: Store, { announce, retune, onByHand }: OwnC
       whose: whose(),
       rows: productRows(product, entered, todaysTyped(product)),
       text: typedText(`${heading}: ${whose()}`, typedRows(product, entered)),
-      below: productTroubles(settled),
+      below: [...productTroubles(settled), ...snippetBlocks(entered, announce)],
       details: productDetails(product, entered, settled, shown!.units.time),
       choices: typeable() ? (name) => choicesOf(product, name) : null,
     });

@@ -68,6 +68,10 @@ const LoopKind kLoopKinds[] = {{"sampled"},
                                {"limited on the way", ActuatorLimits{-2, 1.0837}},
                                {"at rest at a limit", ActuatorLimits{-2, 0.4137}}};
 
+// The cases' unit of time for a block. With 1 s an integral time is 2.5 s, between two steps of a block that counts
+// whole seconds, where rounding would decide.
+constexpr double kSecondsPerTime = 1.04;
+
 Expected<TuningResult> sampled_answer(const SampledCase& c, OtherUnits s, const char* method, const LoopKind& kind) {
     TuningRequest request;
     request.subject = test::subject_of(c.plant(s));
@@ -79,9 +83,10 @@ Expected<TuningResult> sampled_answer(const SampledCase& c, OtherUnits s, const 
     device::DeviceModel device{.product = kind.product, .Ts = c.Ts * s.time};
     if (kind.product != nullptr) {
         // The block counts in seconds and in fractions of its spans: both are unchanged.
-        device.context = product::Context::with_spans({0, 100 * s.gain, -50, 50}, c.Ts);
-        device.context.loop_clock_s = c.Ts;
-        device.context.seconds_per_time = 1 / s.time;
+        const double seconds = c.Ts * kSecondsPerTime;
+        device.context = product::Context::with_spans({0, 100 * s.gain, -50, 50}, seconds);
+        device.context.loop_clock_s = seconds;
+        device.context.seconds_per_time = kSecondsPerTime / s.time;
     }
     request.device = device;
     return tune(request, {});

@@ -86,6 +86,24 @@ class SnippetsTest(unittest.TestCase):
             self.assertEqual(str(pid.proportional_on_measurement).lower(), typed.proportional_on_measurement)
             self.assertEqual(str(pid.differential_on_measurement).lower(), typed.differential_on_measurement)
 
+    def test_a_kiln_reads_settings_in_python(self):
+        for answer in self.answers("kiln_controller"):
+            scope = {}
+            exec(answer["snippets"][0]["text"], scope)
+            self.numbers_are(scope, answer["as_typed"], ("pid_kp", "pid_ki", "pid_kd"))
+
+    def test_packages_of_control_read_a_transfer_function(self):
+        s = 0.3j  # stands for the variable of a transfer function
+        for product, package in (("python_control", r"import control as ct\n\ns = ct\.tf\('s'\)\n"),
+                                 ("octave_control", r'pkg load control\n\ns = tf\("s"\);\n')):
+            for answer in self.answers(product):
+                text = answer["snippets"][0]["text"]
+                self.assertRegex(text, "^" + package + r"C = [^;\n]+;?$")
+                self.assertEqual(text.endswith(";"), product == "octave_control")
+                gains = {name: float(answer["as_typed"].get(name, 0)) for name in ("Kp", "Ki", "Kd", "Tf")}
+                expected = gains["Kp"] + gains["Ki"] / s + gains["Kd"] * s / (gains["Tf"] * s + 1)
+                self.assertAlmostEqual(eval(text.split("C = ")[1].rstrip(";"), {"s": s}), expected, delta=1e-12)
+
     def test_controllers_of_plants_read_structured_text(self):
         for product in ("siemens_pid_compact", "rockwell_pid_independent", "rockwell_pid_dependent",
                         "rockwell_pide_independent", "rockwell_pide_dependent", "beckhoff_fb_ctrl_pid"):

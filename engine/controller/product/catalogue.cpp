@@ -8,11 +8,25 @@ namespace {
 
 std::vector<Product> collected() {
     using Group = std::vector<Product> (*)();
-    constexpr Group kGroups[] = {
-        siemens_products,           rockwell_products,         schneider_products,        abb_products,
-        emerson_honeywell_products, yokogawa_foxboro_products, omron_mitsubishi_products, soft_plc_products,
-        open_plc_products,          laboratory_products,       mathworks_products,        library_products,
-        arduino_products,           printer_products,          thermostat_products,       flight_products};
+    constexpr Group kGroups[] = {siemens_products,
+                                 rockwell_products,
+                                 schneider_products,
+                                 abb_products,
+                                 emerson_honeywell_products,
+                                 yokogawa_foxboro_products,
+                                 omron_mitsubishi_products,
+                                 small_plc_products,
+                                 panel_controller_products,
+                                 soft_plc_products,
+                                 open_plc_products,
+                                 laboratory_products,
+                                 mathworks_products,
+                                 library_products,
+                                 arduino_products,
+                                 printer_products,
+                                 thermostat_products,
+                                 kiln_and_brewery_products,
+                                 flight_products};
     std::vector<Product> all;
     for (const Group group : kGroups) {
         std::vector<Product> products = group();

@@ -22,6 +22,8 @@ std::vector<Product> abb_products();
 std::vector<Product> emerson_honeywell_products();
 std::vector<Product> yokogawa_foxboro_products();
 std::vector<Product> omron_mitsubishi_products();
+std::vector<Product> small_plc_products();
+std::vector<Product> panel_controller_products();
 std::vector<Product> soft_plc_products();
 std::vector<Product> open_plc_products();
 std::vector<Product> mathworks_products();
@@ -30,6 +32,7 @@ std::vector<Product> arduino_products();
 std::vector<Product> laboratory_products();
 std::vector<Product> printer_products();
 std::vector<Product> thermostat_products();
+std::vector<Product> kiln_and_brewery_products();
 std::vector<Product> flight_products();
 
 }  // namespace tunewright::product

@@ -1,4 +1,5 @@
-// Libraries of programming languages: simple-pid, ControlSystems.jl, DiscretePIDs.jl, ros2_control's control_toolbox.
+// Libraries of programming languages: simple-pid, ControlSystems.jl, DiscretePIDs.jl, ros2_control's control_toolbox,
+// python-control, Octave's package control.
 #include "engine/controller/product/catalogue/terms.h"
 
 namespace tunewright::product {
@@ -283,8 +284,67 @@ Product ros() {
     };
 }
 
+// A transfer function with the variable s: neither package has a constructor of PID controllers.
+Product transfer_function() {
+    const auto part = [](std::string_view name, std::string_view unit, ParameterRole role, Term term) {
+        return Parameter{.name = name, .label = name, .unit = unit, .role = role, .term = term};
+    };
+    return {
+        .form = Form::parallel,
+        .law = "C = Kp + Ki/s + Kd s/(Tf s + 1)",
+        .gain_basis = "engineering units",
+        .parameters = {part("Kp", "", ParameterRole::gain, kKp), part("Ki", "1/s", ParameterRole::integral, kKi),
+                       part("Kd", "s", ParameterRole::derivative, kKd), part("Tf", "s", ParameterRole::filter, kTf)},
+        .filter = {FilterKind::parameter, 0, "First order, written into the transfer function."},
+        .weights = {1, 1, "One input, the error."},
+        .action = kSigned,
+        .algorithm = {.text = "a transfer function in continuous time", .sample_time_text = "none"},
+        .traps = {"Without Tf the transfer function is improper; a simulation needs a filter.",
+                  "A Ki of 0 leaves a pole at 0 that a zero cancels."},
+        .example = of_design_a({{"Kp", 1.5}, {"Ki", 0.0125}, {"Kd", 30.0}, {"Tf", 2.0}}),
+    };
+}
+
+Product python_control() {
+    Product product = transfer_function();
+    product.id = "python_control";
+    product.maker = "python-control";
+    product.name = "python-control transfer function";
+    product.families = {"Python Control Systems Library"};
+    product.evidence = {.level = EvidenceLevel::read,
+                        .read = {"tf('s') and tf(num, den)"},
+                        .sources = {"python-control.readthedocs.io 0.10.1, control.tf"}};
+    product.snippets = {{"Python",
+                         "import control as ct\n"
+                         "\n"
+                         "s = ct.tf('s')\n"
+                         "C = {Kp} + {Ki|0}/s + {Kd|0}*s/({Tf|0}*s + 1)"}};
+    return product;
+}
+
+Product octave_control() {
+    Product product = transfer_function();
+    product.id = "octave_control";
+    product.maker = "GNU Octave";
+    product.name = "Octave package control, transfer function";
+    product.families = {"Octave"};
+    product.traps.push_back(
+        "optiPIDctrl of the package has a second-order filter of the whole controller, 1/(tau s + 1)^2.");
+    product.evidence = {.level = EvidenceLevel::read,
+                        .read = {"tf(\"s\")", "optiPIDctrl"},
+                        .sources = {"gnu-octave/pkg-control inst/@tf/tf.m at 05cf9487, inst/optiPIDctrl.m"}};
+    product.snippets = {{"Octave",
+                         "pkg load control\n"
+                         "\n"
+                         "s = tf(\"s\");\n"
+                         "C = {Kp} + {Ki|0}/s + {Kd|0}*s/({Tf|0}*s + 1);"}};
+    return product;
+}
+
 }  // namespace
 
-std::vector<Product> library_products() { return {simple_pid(), control_systems(), discrete_pids(), ros()}; }
+std::vector<Product> library_products() {
+    return {simple_pid(), control_systems(), discrete_pids(), ros(), python_control(), octave_control()};
+}
 
 }  // namespace tunewright::product

@@ -1,4 +1,4 @@
-// Omron PID(190) and PIDAT(191), Mitsubishi FX PID: words of whole numbers.
+// Omron PID(190) and PIDAT(191), Mitsubishi FX PID: words of whole numbers. Omron PIDAT of NJ and NX: variables.
 #include "engine/controller/product/catalogue/terms.h"
 
 namespace tunewright::product {
@@ -73,6 +73,71 @@ Product omron() {
                                 {"Tdk_0_1s", 200.0},
                                 {"time_unit", 9.0},
                                 {"alpha_code", std::string("140")}}),
+    };
+}
+
+Product omron_nj() {
+    return {
+        .id = "omron_nj_pidat",
+        .maker = "Omron",
+        .name = "PIDAT of NJ and NX",
+        .families = {"NJ501", "NX1P2", "Sysmac Studio"},
+        .form = Form::ideal,
+        .law =
+            "MV = K [ ((1 - alpha) SP - PV) + (1/(IntegrationTime s)) (SP - PV) "
+            "- (DerivativeTime s/(lambda DerivativeTime s + 1)) PV ], K = 100/ProportionalBand",
+        .gain_basis = "proportional band in percent of span",
+        .parameters =
+            {
+                {.name = "ProportionalBand",
+                 .label = "ProportionalBand",
+                 .unit = "%",
+                 .role = ParameterRole::gain,
+                 .term = kBand,
+                 .range = {0, kUnbounded}},
+                {.name = "IntegrationTime_s",
+                 .label = "IntegrationTime",
+                 .unit = "s",
+                 .role = ParameterRole::integral,
+                 .term = kTi,
+                 .range = {0, kUnbounded},
+                 .remark = "a TIME"},
+                {.name = "DerivativeTime_s",
+                 .label = "DerivativeTime",
+                 .unit = "s",
+                 .role = ParameterRole::derivative,
+                 .term = kTd,
+                 .range = {0, kUnbounded},
+                 .remark = "a TIME"},
+                {.name = "alpha",
+                 .label = "2-PID parameter alpha",
+                 .role = ParameterRole::weight_b,
+                 .shape = Shape::one_minus_b,
+                 .range = kShare},
+            },
+        .filter = {FilterKind::unknown, 0, "The derivative is filtered, Td s/(lambda Td s + 1); lambda was not read."},
+        .weights = {1, 0,
+                    "The instruction filters the set point by (1 + (1 - alpha) Ti s)/(1 + Ti s), which is b = 1 - "
+                    "alpha."},
+        .action = {.kind = Action::Kind::switched,
+                   .name = "direction",
+                   .direct = std::string("direct"),
+                   .reverse = std::string("reverse"),
+                   .text = "The direction is a setting of the instruction."},
+        .algorithm = {.published = false,
+                      .text = "position algorithm of two degrees of freedom",
+                      .anti_windup = "limits of MV",
+                      .sample_time_text = "sampling period of the instruction"},
+        .traps = {"The manual spells the first variable ProportinalBand in places.",
+                  "The three constants are in-out variables: assign variables, not constants."},
+        .evidence = {.level = EvidenceLevel::partly,
+                     .read = {"block diagram", "names of the three constants, and that they can change during control"},
+                     .unverified = {"unit and range of ProportionalBand (percent of the input range assumed)",
+                                    "ranges of the times", "name and default of alpha", "value of lambda",
+                                    "name of the switch of the direction", "discrete algorithm"},
+                     .sources = {"Omron W502 (NJ-series Instructions Reference Manual) pp. 2-404, 2-405"}},
+        .example = of_design_a(
+            {{"ProportionalBand", 33.3333}, {"IntegrationTime_s", 120.0}, {"DerivativeTime_s", 20.0}, {"alpha", 0.4}}),
     };
 }
 
@@ -156,6 +221,6 @@ Product mitsubishi() {
 
 }  // namespace
 
-std::vector<Product> omron_mitsubishi_products() { return {omron(), mitsubishi()}; }
+std::vector<Product> omron_mitsubishi_products() { return {omron(), omron_nj(), mitsubishi()}; }
 
 }  // namespace tunewright::product

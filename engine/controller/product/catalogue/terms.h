@@ -30,6 +30,8 @@ inline constexpr Term kTf{.Tf = 1};
 inline constexpr Term kKi{.Kp = 1, .Ti = -1};
 inline constexpr Term kKd{.Kp = 1, .Td = 1};
 inline constexpr Term kKn = of_spans(kKp);
+/// Proportional band, 100/Kn, in percent of the measurement's span.
+inline constexpr Term kBand{.factor = 100, .Kp = -1, .Sy = -1, .Su = 1};
 inline constexpr Term kFilterRatio{.Td = -1, .Tf = 1};
 inline constexpr Term kFilterGain{.Td = 1, .Tf = -1};  ///< N
 inline constexpr double kMinutes = 1.0 / 60;           ///< minutes in one second

@@ -5,8 +5,6 @@ namespace tunewright::product {
 namespace {
 
 constexpr Range kTimeRange{0.1, 10000};
-/// 100/Kn.
-constexpr Term kBand{.factor = 100, .Kp = -1, .Sy = -1, .Su = 1};
 
 Product fieldbus() {
     return {

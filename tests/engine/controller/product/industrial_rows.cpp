@@ -3,6 +3,17 @@
 
 namespace tunewright::product::second {
 
+namespace {
+
+// A band in units of the measurement asks for the whole output, Su.
+Row panel(const char* band, const char* I, const char* D) {
+    return {{{band, Su / Kp}, {I, Ti}, {D, Td}}, {}, [=](const Typed& t, Complex s) {
+                return ideal(Su / t[band], t[I], t[D], 0, 1, 0, s);
+            }};
+}
+
+}  // namespace
+
 const std::map<std::string, Row>& industrial_rows() {
     static const std::map<std::string, Row> rows{
         {"siemens_pid_compact",
@@ -144,6 +155,35 @@ const std::map<std::string, Row>& industrial_rows() {
               return ideal(t["KP"] / 100 * Su / Sy, t["TI"] / 10, t["TD"] / 100, t["KD"] / 100 * t["TD"] / 100, 1, 0,
                            s);
           }}},
+        {"omron_nj_pidat",
+         {{{"ProportionalBand", 100 / Kn}, {"IntegrationTime_s", Ti}, {"DerivativeTime_s", Td}, {"alpha", 1 - b}},
+          {},
+          [](const Typed& t, Complex s) {
+              const double ti = t["IntegrationTime_s"];
+              // The set-point filter stands before P and I; D acts on the measurement.
+              const Complex F = (1.0 + (1 - t["alpha"]) * ti * s) / (1.0 + ti * s);
+              Law law = ideal(100 / t["ProportionalBand"] * Su / Sy, ti, t["DerivativeTime_s"], 0, 1, 0, s);
+              law.r *= F;
+              return law;
+          }}},
+        {"delta_dpid",
+         {{{"Kc_Kp", Kp}, {"Ti_Ki", Ti}, {"Td_Kd", Td}, {"Tf", Tf}},
+          {{"PID_EQ", "true"}, {"PID_DE", "true"}},
+          [](const Typed& t, Complex s) { return ideal(t["Kc_Kp"], t["Ti_Ki"], t["Td_Kd"], t["Tf"], 1, 0, s); }}},
+        {"automationdirect_directlogic",
+         {{{"GAIN", Kn}, {"RESET", Ti}, {"RATE", Td}, {"LIMIT", Td / Tf}},
+          {{"limit_enabled", "true"}, {"reset_unit", "seconds"}},
+          [](const Typed& t, Complex s) {
+              return ideal(t["GAIN"] * Su / Sy, t["RESET"], t["RATE"], t["RATE"] / t["LIMIT"], 1, 0, s);
+          }}},
+        {"eurotherm_3200", panel("PB", "TI", "TD")},
+        {"watlow_ez_zone", panel("h_Pb", "ti", "td")},
+        {"omron_e5", panel("P", "I", "D")},
+        {"delta_dt", panel("PB", "Ti", "Td")},
+        {"yokogawa_ut_advanced",
+         {{{"P", 100 / Kn}, {"I", Ti}, {"D", Td}},
+          {{"ALG", "1"}},
+          [](const Typed& t, Complex s) { return ideal(100 / t["P"] * Su / Sy, t["I"], t["D"], 0, 0, 0, s); }}},
         {"beckhoff_fb_ctrl_pid",
          {{{"fKp", Kp}, {"tTn_ms", 1000 * Ti}, {"tTv_ms", 1000 * Td}, {"tTd_ms", 1000 * Tf}},
           {{"bPInTheFeedbackPath", "true"}, {"bDInTheFeedbackPath", "true"}},

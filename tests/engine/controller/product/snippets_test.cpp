@@ -14,7 +14,12 @@ using ::testing::HasSubstr;
 
 std::vector<std::string> lines_of(std::string_view text) {
     std::vector<std::string> lines{""};
-    for (const char c : text) c == '\n' ? lines.emplace_back() : lines.back().push_back(c), void();
+    for (const char c : text) {
+        if (c == '\n')
+            lines.emplace_back();
+        else
+            lines.back().push_back(c);
+    }
     return lines;
 }
 

@@ -46,7 +46,28 @@ std::map<std::string, Row> heaters() {
     Row& quick = rows["quickpid"] = heater(255, "Kp", "Ki", "Kd");
     quick.words = {{"pMode", "pOnErrorMeas"}, {"dMode", "dOnMeas"}};
     quick.block = heating(255, "Kp", "Ki", "Kd", 0.5, none);
+    // A duty of 100 % of the output's span; pid_ki divides.
+    rows["kiln_controller"] = {
+        {{"pid_kp", 100 * Kp / Su}, {"pid_ki", Su * Ti / (100 * Kp)}, {"pid_kd", 100 * Kp * Td / Su}},
+        {},
+        [](const Typed& t, Complex s) {
+            const double full = Su / 100;
+            return parallel(t["pid_kp"] * full, full / t["pid_ki"], t["pid_kd"] * full, 0, 1, 1, s);
+        }};
+    Row& beer = rows["craftbeerpi_pidboil"] = heater(100, "P", "I", "D");
+    beer.block = heating(100, "P", "I", "D", 1, none);
+    rows["brewblox_pid"] = {{{"Kp", 100 * Kp / Su}, {"Ti", Ti}, {"Td", Td}}, {}, [](const Typed& t, Complex s) {
+                                return ideal(t["Kp"] * Su / 100, t["Ti"], t["Td"], 0, 1, 0, s);
+                            }};
     return rows;
+}
+
+// A transfer function of the error.
+Row transfer_function() {
+    return {{{"Kp", Kp}, {"Ki", Kp / Ti}, {"Kd", Kp * Td}, {"Tf", Tf}}, {}, [](const Typed& t, Complex s) {
+                const Complex C = t["Kp"] + t["Ki"] / s + t["Kd"] * s / (t["Tf"] * s + 1.0);
+                return Law{C, C};
+            }};
 }
 
 }  // namespace
@@ -81,6 +102,8 @@ const std::map<std::string, Row>& software_rows() {
          {{{"Kp", Kp}, {"Ki", Kp / Ti}, {"Kd", Kp * Td}, {"Tf", Tf}},
           {},
           [](const Typed& t, Complex s) { return parallel(t["Kp"], t["Ki"], t["Kd"], t["Tf"], 1, 1, s); }}},
+        {"python_control", transfer_function()},
+        {"octave_control", transfer_function()},
         {"simulink_pid_parallel",
          {{{"P", Kp}, {"I", Kp / Ti}, {"D", Kp * Td}, {"N", 1 / Tf}, {"b", b}, {"c", 0}},
           {{"Form", "Parallel"}, {"block", "PID Controller (2DOF)"}},

@@ -1,0 +1,150 @@
+// Small PLCs: Delta's DPID of AS and AH500, AutomationDirect DirectLOGIC.
+#include "engine/controller/product/catalogue/terms.h"
+
+namespace tunewright::product {
+namespace {
+
+Product dpid() {
+    return {
+        .id = "delta_dpid",
+        .maker = "Delta",
+        .name = "DPID of AS and AH500",
+        .families = {"AS300", "AH500", "ISPSoft"},
+        .form = Form::ideal,
+        .law = "MV = Kc_Kp [ E + (1/(Ti_Ki s)) E + (Td_Kd s/(Tf s + 1)) (c SV - PV) ] + BIAS, E = SV - PV",
+        .gain_basis = "unit of MV per unit of PV",
+        .parameters =
+            {
+                {.name = "Kc_Kp", .label = "Kc_Kp", .role = ParameterRole::gain, .term = kKp, .range = {0, kUnbounded}},
+                {.name = "Ti_Ki",
+                 .label = "Ti_Ki",
+                 .unit = "s",
+                 .role = ParameterRole::integral,
+                 .term = kTi,
+                 .range = {0, kUnbounded},
+                 .off = 0.0,
+                 .remark = "a gain in 1/s if PID_EQ is FALSE"},
+                {.name = "Td_Kd",
+                 .label = "Td_Kd",
+                 .unit = "s",
+                 .role = ParameterRole::derivative,
+                 .term = kTd,
+                 .range = {0, kUnbounded}},
+                {.name = "Tf",
+                 .label = "Tf",
+                 .unit = "s",
+                 .role = ParameterRole::filter,
+                 .term = kTf,
+                 .range = {0, kUnbounded},
+                 .remark = "0: the derivative is not smoothed."},
+                fixed_choice("PID_EQ", "PID_EQ", true,
+                             "TRUE: the dependent formula. FALSE has three independent gains."),
+                {.name = "PID_DE",
+                 .label = "PID_DE",
+                 .role = ParameterRole::choice,
+                 .shape = Shape::option,
+                 .options = {{.value = false, .c = 1}, {.value = true, .c = 0}},
+                 .remark = "TRUE: derivative of PV; FALSE: derivative of the error"},
+            },
+        .filter = {FilterKind::parameter, 0, "Smoothing of the derivative with its own time constant, Tf."},
+        .weights = {1, 1, "P acts on the error; PID_DE sets on what the derivative acts."},
+        .action = {.kind = Action::Kind::switched,
+                   .name = "PID_DIR",
+                   .direct = false,
+                   .reverse = true,
+                   .text = "TRUE: E = SV - PV; FALSE: E = PV - SV. The manuals of AS and AH500 name these two "
+                           "directions the other way round."},
+        .algorithm = {.published = false,
+                      .text = "position algorithm",
+                      .anti_windup = "MV is limited to MV_MIN and MV_MAX; the rule for the integral was not read",
+                      .sample_time_text = "CYCLE"},
+        .traps = {"PID_EQ FALSE uses Ti_Ki and Td_Kd as gains.",
+                  "Within the error dead band ERR_DBW the error counts as 0 once PV has crossed SV."},
+        .evidence = {.level = EvidenceLevel::read,
+                     .read = {"all four formulas", "units, and the meaning of 0", "both block diagrams", "PID_DIR"},
+                     .unverified = {"order of the smoothing by Tf (the first assumed)", "defaults",
+                                    "discrete algorithm"},
+                     .sources = {"Delta AS Series Programming Manual pp. 6-204, 6-482, 6-483",
+                                 "AH500 Programming Manual p. 6-184"}},
+        .example = of_design_a(
+            {{"Kc_Kp", 1.5}, {"Ti_Ki", 120.0}, {"Td_Kd", 20.0}, {"Tf", 2.0}, {"PID_EQ", true}, {"PID_DE", true}}),
+    };
+}
+
+Product direct_logic() {
+    constexpr double kMaxLimit = 20;
+    return {
+        .id = "automationdirect_directlogic",
+        .maker = "AutomationDirect",
+        .name = "DirectLOGIC PID loop (DL05, DL06, DL205, DL405)",
+        .families = {"DirectLOGIC", "DirectSOFT", "Koyo", "DL06"},
+        .form = Form::ideal,
+        .law = "M = GAIN [ (SP - PV) + (1/(RESET s)) (SP - PV) - (RATE s/((RATE/LIMIT) s + 1)) PV ] + bias",
+        .gain_basis = "counts per count; measurement and output in the same data format",
+        .parameters =
+            {
+                {.name = "GAIN",
+                 .label = "Addr + 10, Gain",
+                 .role = ParameterRole::gain,
+                 .term = kKn,
+                 .range = {0, kUnbounded}},
+                {.name = "RESET",
+                 .label = "Addr + 11, Reset",
+                 .unit = "s",
+                 .role = ParameterRole::integral,
+                 .term = kTi,
+                 .range = {0, kUnbounded}},
+                {.name = "RATE",
+                 .label = "Addr + 12, Rate",
+                 .unit = "s",
+                 .role = ParameterRole::derivative,
+                 .term = kTd,
+                 .range = {0, kUnbounded}},
+                {.name = "LIMIT",
+                 .label = "Addr + 25, derivative gain limiting factor",
+                 .role = ParameterRole::filter,
+                 .term = kFilterGain,
+                 .range = {1, kMaxLimit},
+                 .resolution = kWholeNumber,
+                 .remark = "counts only with bit 9 of mode word 1"},
+                fixed_choice("limit_enabled", "Addr + 0, bit 9", true,
+                             "Without it the printed derivative is an unfiltered difference of the error."),
+                fixed_choice("reset_unit", "Addr + 1, bit 4", std::string("seconds"), "0: seconds; 1: minutes"),
+            },
+        .filter = {FilterKind::parameter, 0,
+                   "First order, RATE/LIMIT, exactly a backward Euler step; it needs bit 9 of mode word 1."},
+        .weights = {1, 0, "P acts on the error; with the limit the derivative acts on the measurement."},
+        .action = {.kind = Action::Kind::switched,
+                   .name = "acting",
+                   .direct = std::string("reverse"),
+                   .reverse = std::string("forward"),
+                   .text = "Forward acting is for a measurement that rises with the output, as in heating: the words "
+                           "are the opposite of the usual ones."},
+        .algorithm = {.text = "position or velocity, by mode word 1",
+                      .anti_windup = "not read",
+                      .sample_time_text = "Addr + 7; the maker's example has 0.05 s"},
+        .traps = {"Forward acting is what others call reverse acting.", "Bit 4 of mode word 2 makes RESET minutes.",
+                  "With separate data formats the gain is counts of the output per count of the measurement.",
+                  "The words of the loop table are BCD."},
+        .evidence = {.level = EvidenceLevel::partly,
+                     .read = {"equations of both algorithms", "equation and range of the derivative gain limit",
+                              "loop table", "mode word 2"},
+                     .unverified = {"decimals and ranges of GAIN, RESET and RATE", "unit of RATE (seconds assumed)",
+                                    "which value of the direction is which", "RESET without integral action"},
+                     .sources = {"DL05 User Manual pp. 8-8, 8-10, 8-32, 8-36",
+                                 "DL405 User Manual 4th ed. pp. 8-15, 8-21, 8-23",
+                                 "AutomationDirect's DirectLOGIC PID trainer (sample rate, forward acting)"}},
+        .example = of_design_a({{"GAIN", 3.0},
+                                {"RESET", 120.0},
+                                {"RATE", 20.0},
+                                {"LIMIT", 10.0},
+                                {"limit_enabled", true},
+                                {"reset_unit", std::string("seconds")}}),
+    };
+}
+
+}  // namespace
+
+std::vector<Product> small_plc_products() { return {dpid(), direct_logic()}; }
+
+}  // namespace tunewright::product

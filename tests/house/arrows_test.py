@@ -22,7 +22,7 @@ ROOMS = {
         "loop": {"plant", "controller", "numerics"},
         "simulation": {"loop", "plant", "controller", "numerics"},
         "reduction": {"simulation", "loop", "plant", "numerics"},
-        "identification": {"simulation", "loop", "plant", "numerics"},
+        "identification": {"simulation", "loop", "plant", "controller", "numerics"},
         "evaluation": {"simulation", "loop", "plant", "controller", "numerics"},
         "tuning": {"evaluation", "reduction", "simulation", "loop", "plant", "controller", "numerics"},
         "range": {"tuning", "evaluation", "simulation", "loop", "plant", "controller", "numerics"},

@@ -1,0 +1,283 @@
+#include "engine/identification/controller_law/identify_controller.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "engine/identification/controller_law/law_rows.h"
+#include "engine/identification/controller_law/law_search.h"
+#include "engine/identification/controller_law/law_uncertainty.h"
+#include "engine/number_text.h"
+#include "engine/numerics/statistics.h"
+
+namespace tunewright {
+namespace {
+
+/// Found on the loops 0 to 399 of tests/engine/identification/simulated_controller.h, checked on others.
+struct LawLimits {
+    int min_increments = 80;           ///< fewer give errors of Kp and Ti that are too small
+    double min_explained = 0.5;        ///< loops whose u has other inputs too explain less, those that sample y do not
+    double max_Kp_error = 0.04;        ///< relative; of those above, one in ten is off by more than 5 %
+    double max_Ti_error = 0.05;        ///< the same
+    double doubtful_Kp_error = 0.02;   ///< relative; above: a warning, for 5 % are then within 2.5 deviations
+    double doubtful_Ti_error = 0.025;  ///< the same
+    /// Relative: programs differ in the order of their sums, in what a limit does to the integral and in rounding.
+    double min_error = 0.007;
+};
+constexpr LawLimits kLimits;
+
+Error refused(const std::string& why) { return {ErrorKind::not_identifiable, "record", why, {}}; }
+
+std::optional<Error> fault_of(const Record& record, const ControllerRecordOptions& options) {
+    const std::size_t n = record.t.size();
+    if (record.u.size() != n || record.y.size() != n || (!record.r.empty() && record.r.size() != n))
+        return Error{ErrorKind::invalid_argument, "record", "t, u, y and r must have equal lengths.", {}};
+    if (!options.automatic.empty() && options.automatic.size() != n)
+        return Error{ErrorKind::invalid_argument, "record/mode", "mode must be as long as t.", {}};
+    if (options.sample_time && !(*options.sample_time > 0))
+        return Error{ErrorKind::invalid_argument,
+                     "sample_time",
+                     "sample_time is " + text(*options.sample_time) + "; it must be above 0.",
+                     {}};
+    return std::nullopt;
+}
+
+int count(const std::vector<char>& used) { return static_cast<int>(std::ranges::count(used, 1)); }
+
+/// What steps 1 to 3 find.
+struct LawOfRecord {
+    LawSamples samples;
+    std::vector<char> used;
+    FoundLaws laws;  ///< the best first
+    int odd = 0;
+};
+
+Expected<LawOfRecord> law_of_record(const Record& record, const ControllerRecordOptions& options) {
+    LawOfRecord out;
+    LawSamples& s = out.samples = law_samples(record, options.automatic);
+    const auto too_few = [&](int rows) {
+        return refused("The record has " + std::to_string(rows) +
+                       " rows in which the controller moves u in automatic; " + std::to_string(kLimits.min_increments) +
+                       " are needed. Record a longer time in automatic.");
+    };
+    if (s.size() < kLimits.min_increments) return too_few(s.size());
+    const double u_deviation = deviation(s.u);
+    if (!(u_deviation > 0.9 * s.u_step)) return refused("u does not move. Record a move of the set point or a load.");
+    if (!(deviation(s.y) > 0)) return refused("y does not move. Record a move of the set point or a load.");
+    out.used = law_increments(s, false);
+    if (count(out.used) < kLimits.min_increments) out.used = law_increments(s, true);
+    if (count(out.used) < kLimits.min_increments) return too_few(count(out.used));
+    const double least = std::max(s.u_step / std::sqrt(24.0), 1e-7 * u_deviation);
+    for (int pass = 0; pass < 3; ++pass) {
+        out.laws = search_law(s, out.used, least, out.laws);
+        if (out.laws.empty())
+            return refused(
+                "u does not follow y as a PID controller's output does. Check that u is this loop's own output.");
+        const FoundLaw& law = out.laws.front();
+        if (pass == 0) {
+            take_still_in(s, law, std::sqrt(law.fit.residual / law.samples));
+            out.used = law_increments(s, false);
+            if (count(out.used) < kLimits.min_increments) return too_few(count(out.used));
+        }
+        if (pass < 2) out.odd += leave_odd_out(s, out.used, law, least);
+    }
+    return out;
+}
+
+/// Kp of the backward rule is Kp' - Ki h (centre +- width), h the sample spacing.
+struct RowTiming {
+    bool own = false;  ///< the rows are the controller's samples
+    double centre = 0.5, width = 0;
+};
+
+/// Noise of y between the rows, which a controller that is quicker than they are integrates too, leaves a residual of
+/// u; where there is noise and no such residual, the rows are the controller's own.
+RowTiming row_timing(const LawSamples& s, const ControllerRecordOptions& options, double Ki, double error_square,
+                     double rounding_square) {
+    constexpr double kUnseenShare = 0.7;  // of Ki h times the noise: between 2 and infinitely many samples in a row
+    if (s.rows_per_sample > 1) return {.own = true};
+    if (options.sample_time) {
+        const double share = *options.sample_time / s.period;
+        return share > 0.9 ? RowTiming{.own = true} : RowTiming{.centre = 0.5 * share};
+    }
+    const double between = kUnseenShare * std::abs(Ki) * s.period * white_noise(s.y);
+    const double unexplained = std::sqrt(std::max(0.0, error_square - rounding_square));
+    if (unexplained < 0.25 * between) return {.own = true};
+    if (between > 1.5 * std::sqrt(error_square) && unexplained < 0.6 * between) return {.centre = 0.5};
+    if (between > std::sqrt(rounding_square) && unexplained > 0.6 * between) return {.centre = 0.125, .width = 0.125};
+    return {.centre = 0.25, .width = 0.25};
+}
+
+/// Kp and Ti of one fit.
+struct GainAndTime {
+    double Kp = 0, Ki = 0;
+    double Ti() const { return Kp / Ki; }
+};
+
+GainAndTime settings_of(const LawFit& fit, double rule_time) {
+    return {fit.value[kLawP] - rule_time * fit.value[kLawI], fit.value[kLawI]};
+}
+
+/// The largest squared relative difference from `now` that other fits make.
+struct Shift {
+    GainAndTime now;
+    double rule_time = 0;
+    double Kp = 0, Ti = 0;
+
+    void count_in(const LawFit& other, double weight) {
+        if (!other.solved) return;
+        const GainAndTime then = settings_of(other, rule_time);
+        Kp = std::max(Kp, weight * std::pow(then.Kp / now.Kp - 1, 2));
+        if (now.Ki != 0 && then.Ki != 0) Ti = std::max(Ti, weight * std::pow(then.Ti() / now.Ti() - 1, 2));
+    }
+};
+
+class ControllerEstimate {
+public:
+    ControllerEstimate(const LawOfRecord& found, const ControllerRecordOptions& options)
+        : found_(found), s_(found.samples), law_(found.laws.front()) {
+        const LawResiduals r = law_residuals(s_, found.used, law_);
+        moments_ = law_moments(r.white);
+        const double whitening = 2 / (1 + law_.theta);  // of the variance of what is white in u itself
+        const double error = law_.fit.residual / law_.samples, rounding = s_.u_step * s_.u_step / 12 * whitening;
+        explained_ = 1 - law_.fit.residual / moments_[kLawTarget][kLawTarget];
+        timing_ = row_timing(s_, options, law_.fit.value[kLawI], error, rounding);
+        y_variance_ = std::max(0.0, error - rounding) / whitening / (law_.fit.value[kLawP] * law_.fit.value[kLawP]);
+        const double y_rounding = s_.y_step * s_.y_step / 12;
+        // A residual below that of rounded y says that the controller read y as rounded as the record has it.
+        constexpr double kMinShareOfRounding = 0.3, kShareAfterFilter = 0.01;
+        const LawFit corrected = without_errors_of_y(s_, moments_, law_, std::min(y_variance_, y_rounding));
+        y_may_be_rounded_ = s_.y_step > 0 && y_variance_ > kShareAfterFilter * y_rounding;
+        const bool correct = corrected.solved && s_.y_step > 0 && y_variance_ > kMinShareOfRounding * y_rounding;
+        fit_ = correct ? corrected : law_.fit;
+        other_fit_ = correct ? law_.fit : corrected;
+        covariance_ = law_covariance(s_, found.used, law_);
+        find_errors();
+    }
+
+    double Kp_error() const { return Kp_error_; }
+    double Ti_error() const { return Ti_error_; }
+    double explained() const { return explained_; }
+    bool has_integral() const { return law_.has(kLawI); }
+
+    IdentifiedController answer(const ControllerRecordOptions& options) const {
+        IdentifiedController out;
+        out.pid.Kp = now_.Kp;
+        out.standard_errors["Kp"] = Kp_error_ * std::abs(now_.Kp);
+        if (law_.has(kLawI)) {
+            out.pid.Ti = now_.Ti();
+            out.standard_errors["Ti"] = Ti_error_ * out.pid.Ti;
+        }
+        if (law_.has(kLawD)) {
+            out.pid.Td = fit_.value[kLawD] / now_.Kp;
+            out.standard_errors["Td"] = std::sqrt(covariance_[kLawD][kLawD]) / std::abs(now_.Kp);
+        }
+        if (law_.has(kLawSetPoint)) {
+            out.pid.b = fit_.value[kLawSetPoint] / now_.Kp;
+            out.b_known = true;
+        }
+        if (law_.has(kLawSetPointD)) out.pid.c = fit_.value[kLawSetPointD] / fit_.value[kLawD];
+        if (law_.shape.filter != LawFilter::none) {
+            const FilterType type = law_.shape.filter == LawFilter::derivative ? FilterType::derivative
+                                                                               : FilterType::measurement_first_order;
+            out.pid.filter = {type, law_.shape.ratio * s_.period};
+            out.standard_errors["Tf"] = out.pid.filter.Tf * std::sqrt(covariance_[kLawFilter][kLawFilter]);
+        }
+        if (options.sample_time)
+            out.sample_time = options.sample_time;
+        else if (timing_.own)
+            out.sample_time = s_.period;
+        out.delay = law_.shape.delay_sample ? s_.period : law_.shape.delay_rows * s_.period / s_.rows_per_sample;
+        out.explained = explained_;
+        out.rows = count(found_.used);
+        out.manual_rows = s_.manual_rows + count(s_.still);
+        out.limited_rows = s_.limited_rows;
+        out.odd_rows = found_.odd;
+        return out;
+    }
+
+private:
+    void find_errors() {
+        const double rule_time = timing_.centre * s_.period;
+        now_ = settings_of(fit_, rule_time);
+        const double P = covariance_[kLawP][kLawP], I = covariance_[kLawI][kLawI], PI = covariance_[kLawP][kLawI];
+        const double rule = timing_.width * std::abs(now_.Ki) * s_.period;
+        const double Kp_square = P + rule_time * rule_time * I - 2 * rule_time * PI + rule * rule;
+        Shift shift{.now = now_, .rule_time = rule_time};
+        count_alternatives(shift);
+        Kp_error_ = std::sqrt(std::max(0.0, Kp_square) / (now_.Kp * now_.Kp) + shift.Kp +
+                              kLimits.min_error * kLimits.min_error);
+        if (!has_integral()) return;
+        const double relative =
+            Kp_square / (now_.Kp * now_.Kp) + I / (now_.Ki * now_.Ki) - 2 * (PI - rule_time * I) / (now_.Kp * now_.Ki);
+        Ti_error_ = std::sqrt(std::max(0.0, relative) + shift.Ti + kLimits.min_error * kLimits.min_error);
+    }
+
+    /// Other laws nearly as good, errors of y, other error models. Weights are shares of the squared difference: 1 for
+    /// a law that is as good, 1/4 for half the difference, less where the alternative is an extreme.
+    void count_alternatives(Shift& shift) const {
+        constexpr double kRounding = 0.25, kReverse = 0.1, kTheta = 0.3, kSameOnY = 0.3, kRoundedY = 0.3;
+        constexpr double kSameOnYRange = 0.3;  // of the criterion, a row
+        // Of the criterion, over which a law is as good; residuals that are not white make large records too sure.
+        const double as_good = std::max(8.0, 0.05 * law_.samples);
+        for (const FoundLaw& other : found_.laws) {
+            if (other.has(kLawI) != has_integral()) continue;
+            // A filter of the measurement and a derivative that cancel: the same law with one more free constant.
+            if (other.shape.filter == LawFilter::measurement && other.has(kLawD) && !law_.has(kLawD)) continue;
+            const double worse = std::abs(other.criterion - law_.criterion);
+            // A filter of the derivative is one of the measurement with other gains; only the set point tells them.
+            const bool same_on_y = law_.has(kLawD) && other.has(kLawD) && worse < kSameOnYRange * law_.samples;
+            // Errors of rounded y are not white where y moves slowly; a filter or a derivative then explains them.
+            const double least = y_may_be_rounded_ ? kRoundedY : same_on_y ? kSameOnY : 0;
+            shift.count_in(other.fit, std::max(least, std::exp(-worse / as_good)));
+        }
+        shift.count_in(other_fit_, y_may_be_rounded_ ? 1 : kRounding);
+        shift.count_in(without_errors_of_y(s_, moments_, law_, y_variance_), kReverse * law_.theta);
+        const LawColumns columns = law_columns(s_, law_.shape);
+        for (const double theta : {0.5 * law_.theta, 1 - 0.3 * (1 - law_.theta)}) {
+            if (theta == law_.theta) continue;
+            const LawColumns white = whitened(columns, found_.used, theta, s_.r.empty());
+            shift.count_in(fit_law(law_moments(white), law_.columns), kTheta);
+        }
+    }
+
+    const LawOfRecord& found_;
+    const LawSamples& s_;
+    const FoundLaw& law_;
+    LawMoments moments_ = {};
+    RowTiming timing_;
+    LawFit fit_, other_fit_;
+    LawCovariance covariance_ = {};
+    GainAndTime now_;
+    bool y_may_be_rounded_ = false;  ///< in the record, not where the controller reads it
+    double explained_ = 0, y_variance_ = 0, Kp_error_ = 0, Ti_error_ = 0;
+};
+
+}  // namespace
+
+Expected<IdentifiedController> identify_controller(const Record& record, const ControllerRecordOptions& options) {
+    if (auto fault = fault_of(record, options)) return *std::move(fault);
+    const Expected<LawOfRecord> found = law_of_record(record, options);
+    if (!found) return found.error();
+    const ControllerEstimate estimate(*found, options);
+    if (!(estimate.explained() > kLimits.min_explained))
+        return refused(
+            "A PID law explains " + text(std::round(100 * std::max(0.0, estimate.explained()))) +
+            " % of the moves of u; " + text(100 * kLimits.min_explained) +
+            " % are needed. Check that u is this loop's own output and that no other signal is added to it.");
+    if (!(estimate.Kp_error() < kLimits.max_Kp_error) || !(estimate.Ti_error() < kLimits.max_Ti_error))
+        return refused("The record leaves the settings open: Kp is known to " +
+                       text(std::ceil(100 * estimate.Kp_error())) + " %" +
+                       (estimate.has_integral() ? ", Ti to " + text(std::ceil(100 * estimate.Ti_error())) + " %" : "") +
+                       ". Record moves of the set point in automatic, with the controller's own sample time.");
+    IdentifiedController out = estimate.answer(options);
+    if (estimate.Kp_error() > kLimits.doubtful_Kp_error || estimate.Ti_error() > kLimits.doubtful_Ti_error)
+        out.warnings.push_back({"controller-uncertain",
+                                "The record gives Kp to " + text(std::ceil(100 * estimate.Kp_error())) +
+                                    " % and Ti to " + text(std::ceil(100 * estimate.Ti_error())) +
+                                    " %, one standard deviation. Compare with the settings in the controller.",
+                                WarningLevel::warning});
+    return out;
+}
+
+}  // namespace tunewright

@@ -1,0 +1,155 @@
+// Settings of controllers from records of simulated loops, whose controller is known.
+#include "engine/identification/controller_law/identify_controller.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/engine/identification/simulated_controller.h"
+#include "tests/long_or_quick.h"
+
+namespace tunewright {
+namespace {
+
+using records::ProgramForm;
+using records::ProgramStructure;
+using records::SimulatedController;
+
+/// A noisy PI loop with three moves of its set point; the rows are the program's samples.
+SimulatedController plain_loop() {
+    SimulatedController loop;
+    loop.K = 2, loop.T1 = 20, loop.L = 3, loop.Kp = 1.5, loop.Ti = 18, loop.Ts = 1, loop.row_time = 1;
+    loop.noise = 0.1;
+    loop.load_step = 1;
+    loop.duration = 800;
+    return loop;
+}
+
+IdentifiedController known(const SimulatedController& loop, int seed = 1, ControllerRecordOptions options = {}) {
+    const auto made = recorded(loop, seed);
+    options.automatic = made.automatic;
+    const auto found = identify_controller(made.record, options);
+    EXPECT_TRUE(found.has_value()) << (found ? "" : found.error().message);
+    return found ? *found : IdentifiedController{};
+}
+
+TEST(IdentifyController, RowsThatAreTheProgramsSamplesGiveItsSettingsToTheLastDigits) {
+    // Nothing is rounded and the program reads what is recorded: the regression is exact.
+    for (const ProgramForm form : {ProgramForm::ideal, ProgramForm::velocity, ProgramForm::series}) {
+        SimulatedController loop = plain_loop();
+        loop.form = form;
+        const IdentifiedController found = known(loop);
+        EXPECT_NEAR(found.pid.Kp, 1.5, 1e-6);
+        EXPECT_NEAR(found.pid.Ti, 18, 1e-5);
+        EXPECT_NEAR(found.pid.b, 1, 1e-6);
+        EXPECT_EQ(found.pid.Td, 0);
+        EXPECT_EQ(found.pid.filter.type, FilterType::none);
+    }
+}
+
+TEST(IdentifyController, ASeriesControllerIsItsIdealTwin) {
+    SimulatedController loop = plain_loop();
+    loop.form = ProgramForm::series;
+    loop.structure = ProgramStructure::pid;
+    loop.filter = records::ProgramFilter::derivative;
+    loop.Kp = 1, loop.Td = 2.5, loop.Tf = 0.5;
+    const IdentifiedController found = known(loop);
+    // Kc (1 + 1/(Ti s)) (1 + Td s)/(1 + Tf s) in partial fractions, by hand: Kp = Kc (Ti + Td - Tf)/Ti.
+    EXPECT_NEAR(found.pid.Kp, 20.0 / 18, 0.002);
+    EXPECT_NEAR(found.pid.Ti, 20, 0.04);
+    EXPECT_NEAR(found.pid.Td, 2 * (1 - 0.5 / 18) / (20.0 / 18), 0.02);
+    EXPECT_NEAR(found.pid.filter.Tf, 0.5, 0.02);
+}
+
+TEST(IdentifyController, AStaircaseShowsTheSampleTime) {
+    SimulatedController loop = plain_loop();
+    for (const double row_time : {0.2, 0.25, 1 / 3.0}) {
+        loop.row_time = row_time;
+        const IdentifiedController found = known(loop);
+        ASSERT_TRUE(found.sample_time.has_value());
+        EXPECT_NEAR(*found.sample_time, 1, 0.01);
+        EXPECT_NEAR(found.pid.Kp, 1.5, 0.015);
+        EXPECT_NEAR(found.pid.Ti, 18, 0.2);
+    }
+}
+
+TEST(IdentifyController, ManualPhasesAreLeftOutWithAndWithoutAModeColumn) {
+    SimulatedController loop = plain_loop();
+    loop.manual_phases = 2;
+    loop.u_record_rounding = 0.01;
+    for (const bool with_mode : {false, true}) {
+        loop.with_mode = with_mode;
+        const IdentifiedController found = known(loop);
+        EXPECT_GT(found.manual_rows, 20);
+        EXPECT_NEAR(found.pid.Kp, 1.5, 0.03);
+        EXPECT_NEAR(found.pid.Ti, 18, 0.4);
+    }
+}
+
+TEST(IdentifyController, UnitsOfTheRecordScaleTheSettings) {
+    auto made = recorded(plain_loop(), 1);
+    for (double& t : made.record.t) t = 60 * t + 1000;
+    for (double& u : made.record.u) u = 10 * u - 3;
+    for (double& y : made.record.y) y = -0.5 * y;
+    for (double& r : made.record.r) r = -0.5 * r;
+    const auto found = identify_controller(made.record, {});
+    ASSERT_TRUE(found.has_value());
+    EXPECT_NEAR(found->pid.Kp, 1.5 * 10 / -0.5, 1e-4);
+    EXPECT_NEAR(found->pid.Ti, 18 * 60, 1e-2);
+}
+
+TEST(IdentifyController, WhatHoldsNoLawIsRefused) {
+    const auto refuses = [](const Record& record) { return !identify_controller(record, {}).has_value(); };
+    Record still = recorded(plain_loop(), 1).record;
+    std::ranges::fill(still.u, 40.0);
+    EXPECT_TRUE(refuses(still)) << "u stands still";
+
+    Record quiet = recorded(plain_loop(), 1).record;
+    std::ranges::fill(quiet.y, 50.0);
+    std::ranges::fill(quiet.r, 50.0);
+    EXPECT_TRUE(refuses(quiet)) << "y stands still";
+
+    Record steps = recorded(plain_loop(), 1).record;  // an open-loop test: u in steps of its own
+    for (std::size_t i = 0; i < steps.u.size(); ++i) steps.u[i] = i / 150 % 2 == 0 ? 40 : 45;
+    EXPECT_TRUE(refuses(steps)) << "an open-loop test";
+
+    SimulatedController fed_forward = plain_loop();
+    fed_forward.feedforward = 0.5;
+    EXPECT_TRUE(refuses(recorded(fed_forward, 1).record)) << "another input moves u";
+
+    Record few = recorded(plain_loop(), 1).record;
+    for (auto* column : {&few.t, &few.u, &few.y, &few.r}) column->resize(20);
+    EXPECT_TRUE(refuses(few)) << "20 rows";
+}
+
+TEST(IdentifyController, HoldsTheTruthOnSimulatedLoopsOfEveryKind) {
+    int answered = 0, held = 0, wrong_in_silence = 0, tried = 0;
+    for (int seed = 0; seed < long_or_quick(400, 40); ++seed) {
+        const SimulatedController loop = records::random_controller(seed);
+        const auto made = recorded(loop, seed);
+        if (std::ranges::any_of(made.record.y, [](double y) { return std::abs(y - 50) > 60; })) continue;  // unstable
+        ++tried;
+        const auto found = identify_controller(made.record, {.automatic = made.automatic});
+        if (!found) continue;
+        const double Kp_error = std::abs(found->pid.Kp / loop.ideal_Kp() - 1);
+        const bool integral = std::isfinite(loop.ideal_Ti());
+        const double Ti_error = integral != found->pid.has_integral() ? 1
+                                : integral                            ? std::abs(found->pid.Ti / loop.ideal_Ti() - 1)
+                                                                      : 0;
+        const auto within = [&](const char* name, double error, double value) {
+            const auto found_error = found->standard_errors.find(name);
+            return error < 0.05 && (found_error == found->standard_errors.end() ||
+                                    error <= 3 * found_error->second / std::abs(value) + 1e-4);
+        };
+        ++answered;
+        held += within("Kp", Kp_error, found->pid.Kp) && within("Ti", Ti_error, found->pid.Ti);
+        wrong_in_silence += std::max(Kp_error, Ti_error) > 0.2 && found->warnings.empty();
+    }
+    EXPECT_GE(held, 0.95 * answered) << answered << " of " << tried << " answered";
+    EXPECT_LE(wrong_in_silence, 0.005 * answered);
+    EXPECT_GE(answered, 0.5 * tried);
+}
+
+}  // namespace
+}  // namespace tunewright
